@@ -188,6 +188,8 @@ void emit_samples(const struct emitter *e);                       /* start, slop
 
 bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
+bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
+int  place_in(int count, const int *list, int what);              /* count: it is not there */
 const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
 /* columns of x as in struct tuning */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
@@ -663,18 +665,23 @@ const char *two_words(struct coefficient number);                 /* {1.0, 0.0} 
 const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term); /* what it is, for a comment */
 const char *tap_factor(const struct emitter *e, int input, int tap, const char *row, int at); /* row: of D, a local */
 void emit_powers_of_h(const struct emitter *e);                   /* local power, where an input has further taps */
-void emit_frequency_check(const struct emitter *e);               /* below 0 it has no rate; `value`, `status` */
-void emit_take_loads(const struct emitter *e);                    /* phases and growths of a step to c */
+/* below 0 it has no rate; `value`, `status`. frequency: per load its row of `value`, or -1: no param changes it */
+void emit_frequency_check(const struct emitter *e, const int *frequency);
+/* phases and growths of a step to c */
+void emit_take_loads(const struct emitter *e, const int *frequency);
+void emit_use_function(const struct emitter *e);                           /* NAME_use */
+/* Each with what prints the factors of a step */
+void emit_coefficients_with(const struct emitter *e, void (*factors)(const struct emitter *e));
+void emit_nominal_with(const struct emitter *e, void (*factors)(const struct emitter *e));
+void emit_tuning_functions(const struct emitter *e, bool one);    /* for one h alone */
 
 /* ---- emit_tuned_blocks.c: tunable params of a large step, which the instance has by independent blocks ---- */
 
 void banner_tuned_blocks(const struct emitter *e);
-void emit_block_members(const struct emitter *e);                 /* of struct NAME_coeffs */
-void emit_nominal_blocks(const struct emitter *e);
-void emit_blocks_retune(const struct emitter *e);
-void emit_blocks_pass(const struct emitter *e);
-bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
-const char *block_factor(const struct emitter *e, int row, const struct operand *operand);
+void emit_block_coefficients(const struct emitter *e);            /* struct NAME_coeffs */
+void emit_block_declarations(const struct emitter *e);
+void emit_block_nominal(const struct emitter *e);
+void emit_blocks_tuning(const struct emitter *e);                 /* the equations, retune, use, pass */
 
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 const char *two_words(struct coefficient number);

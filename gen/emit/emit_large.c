@@ -43,6 +43,12 @@ static const char *group_table(const struct emitter *e, const struct group *g, c
 	return g->tuned ? format("s->coeffs.%s%d", what, index) : spell(e, "$n_%s%d", what, index);
 }
 
+/* C has no pointer to const rows of an array that is not const. */
+static const char *own_or_const(const struct group *g)
+{
+	return g->tuned ? "" : "const ";
+}
+
 static const char *matrix_name(const struct emitter *e)
 {
 	return e->step->program->products_added ? "Phi - I" : "Phi";
@@ -175,8 +181,8 @@ static void emit_columns_function(const struct emitter *e, const struct group *g
 	emit_parameters(e, g, "columns", index);
 	say(e, "    double x[%d], z[%d];\n", columns, rows);
 	if (loads)
-		say(e, "    const double (*const changing)[%d] = %s[s->segment];\n"
-		       "    double load[%d];\n", rows, group_table(e, g, "loads", index), loads);
+		say(e, "    %sdouble (*const changing)[%d] = %s[s->segment];\n"
+		       "    double load[%d];\n", own_or_const(g), rows, group_table(e, g, "loads", index), loads);
 	say(e, "    int i, j;\n"
 	       "    for (i = 0; i < %d; i++)\n"
 	       "        x[i] = s->y[%s];\n",
@@ -303,7 +309,7 @@ static void emit_alike_function(const struct emitter *e, const struct group *g, 
 	const bool added = e->step->program->products_added;
 	emit_parameters(e, g, "alike", index);
 	if (changes(e, g))
-		say(e, "    const double (*const changing)[%d] = %s[s->segment];\n", g->blocks,
+		say(e, "    %sdouble (*const changing)[%d] = %s[s->segment];\n", own_or_const(g), g->blocks,
 		    group_table(e, g, "loads", index));
 	for (int k = 0; k < acting(g); k++)
 		say(e, "    const double act%d = act[%d];\n", k, k);

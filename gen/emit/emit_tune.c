@@ -39,10 +39,6 @@ static const char *column_list(const struct emitter *e)
 
 void banner_tuning(const struct emitter *e)
 {
-	if (e->step->blocks) {
-		banner_tuned_blocks(e);
-		return;
-	}
 	say(e, " * Tunable: %s. $n_retune computes the factors of a step from other values and another h on the target;"
 	       " of the spec's\n"
 	       " * values they are these, correctly rounded. It needs some %d KB of stack.\n", param_list(e),
@@ -75,9 +71,14 @@ static void load_members(const struct emitter *e)
 		       e->phases ? "" : "of the loads, in one step");
 }
 
-void emit_coefficient_struct(const struct emitter *e)
+static void emit_step_member(const struct emitter *e)
 {
-	const char *step = format("double step[%s_STATES][%d];", e->upper, step_columns(e));
+	coefficient_member(e, format("double step[%s_STATES][%d];", e->upper, step_columns(e)),
+			   e->step->form == FORM_DELTA ? "y += step z" : "y = step z");
+}
+
+void emit_coefficients_with(const struct emitter *e, void (*factors)(const struct emitter *e))
+{
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
 	       "typedef struct $n_coeffs $n_coeffs;"
 	       "  /* what a step multiplies with, at one set of params and one h */\n"
@@ -88,10 +89,7 @@ void emit_coefficient_struct(const struct emitter *e)
 	if (e->system->segments > 1)
 		coefficient_member(e, "double h_low;", "of the spec's step: what h leaves out; else 0");
 	coefficient_member(e, format("double params[%s_PARAMS];", e->upper), param_list(e));
-	if (e->step->blocks)
-		emit_block_members(e);
-	else
-		coefficient_member(e, step, e->step->form == FORM_DELTA ? "y += step z" : "y = step z");
+	factors(e);
 	if (tuned_outputs(e))
 		coefficient_member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
 		       format("out z, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
@@ -100,9 +98,13 @@ void emit_coefficient_struct(const struct emitter *e)
 	say(e, "};\n\n");
 }
 
-void emit_tuning_declarations(const struct emitter *e)
+void emit_coefficient_struct(const struct emitter *e)
 {
-	const bool one = e->step->blocks && !e->step->blocks->whole;
+	emit_coefficients_with(e, emit_step_member);
+}
+
+void emit_tuning_functions(const struct emitter *e, bool one)
+{
 	say(e, "\n/* Computes c anew from params (%s) and h [s]%s. 0, or c is as it was and\n"
 	       " *     PL_NO_STEP     h is not %s\n"
 	       " *     PL_SINGULAR    the mass matrix has no inverse, or a divisor is 0\n", param_list(e),
@@ -119,6 +121,11 @@ void emit_tuning_declarations(const struct emitter *e)
 	       "/* Of the spec's values, correctly rounded: what $n_init starts with */\n"
 	       "extern const $n_coeffs $n_nominal;\n"
 	       "\n", e->phases ? "; phases of loads go on from where they are" : "");
+}
+
+void emit_tuning_declarations(const struct emitter *e)
+{
+	emit_tuning_functions(e, false);
 }
 
 /* ---- the generator's own coefficients ---- */
@@ -145,7 +152,14 @@ static void emit_nominal_loads(const struct emitter *e, const int *index,
 	say(e, "    },\n");
 }
 
-void emit_nominal(const struct emitter *e)
+static void emit_nominal_step(const struct emitter *e)
+{
+	say(e, "    {\n");
+	emit_number_rows(e, e->system->states, step_columns(e), nominal_step(e->step), e->model->state_name);
+	say(e, "    },\n");
+}
+
+void emit_nominal_with(const struct emitter *e, void (*factors)(const struct emitter *e))
 {
 	say(e, "\nconst $n_coeffs $n_nominal = {\n"
 	       "    $N_H,\n"
@@ -154,13 +168,7 @@ void emit_nominal(const struct emitter *e)
 		say(e, "%s,\n"
 		       "    ", low_text(e->model->h));
 	emit_nominal_params(e);
-	if (e->step->blocks) {
-		emit_nominal_blocks(e);
-	} else {
-		say(e, "    {\n");
-		emit_number_rows(e, e->system->states, step_columns(e), nominal_step(e->step), e->model->state_name);
-		say(e, "    },\n");
-	}
+	factors(e);
 	if (tuned_outputs(e))
 		emit_nominal_outputs(e);
 	emit_nominal_peaks(e);
@@ -174,6 +182,11 @@ void emit_nominal(const struct emitter *e)
 	if (e->growths)
 		emit_nominal_loads(e, e->growth, growth_step_text);
 	say(e, "};\n");
+}
+
+void emit_nominal(const struct emitter *e)
+{
+	emit_nominal_with(e, emit_nominal_step);
 }
 
 /* ---- the equations on the target ---- */
@@ -411,17 +424,11 @@ static void emit_take_factors(const struct emitter *e)
 		    e->model->n);
 }
 
-/* The row of `value` with a load's frequency; -1: no param changes it */
-static int frequency_row(const struct emitter *e, int load)
-{
-	return (e->step->blocks ? e->step->blocks->frequency : e->model->tuning->frequency)[load];
-}
-
-void emit_take_loads(const struct emitter *e)
+void emit_take_loads(const struct emitter *e, const int *frequency)
 {
 	const struct tuning *t = e->model->tuning;
 	for (int l = 0; l < e->system->loads && t->frequencies; l++) {
-		int phase = e->phase[l], row = frequency_row(e, l);
+		int phase = e->phase[l], row = frequency[l];
 		if (phase >= 0 && row >= 0)
 			say(e, "    c->phase_rate[%d] = pl_rate_of(value[%d][0]);\n", phase, row);
 		else if (phase >= 0)
@@ -454,12 +461,12 @@ static void emit_increment(const struct emitter *e, const char *D)
 		       "            status = pl_increment(%d, $N_STATES, A[0], h, 2, %s, work);\n", cancels, size, D);
 }
 
-void emit_frequency_check(const struct emitter *e)
+void emit_frequency_check(const struct emitter *e, const int *frequency)
 {
 	const char *below = "";
 	for (int l = 0; l < e->system->loads; l++)
-		if (frequency_row(e, l) >= 0)
-			below = format("%s%svalue[%d][0].hi < 0.0", below, *below ? " || " : "", frequency_row(e, l));
+		if (frequency[l] >= 0)
+			below = format("%s%svalue[%d][0].hi < 0.0", below, *below ? " || " : "", frequency[l]);
 	if (*below)
 		say(e, "    if (status == 0 && (%s))\n"
 		       "        return PL_NO_RATE;\n", below);
@@ -495,7 +502,7 @@ static void emit_retune_function(const struct emitter *e)
 	       "        return PL_NO_STEP;\n"
 	       "    status = pl_equations_at(&$n_equations, params, value[0], work);\n",
 	    segments > 1 ? format("[%d]", segments) : "", size);
-	emit_frequency_check(e);
+	emit_frequency_check(e, e->model->tuning->frequency);
 	emit_increments(e);
 	if (segments > 1)
 		say(e, "    c->h_low = 0.0;\n");
@@ -503,7 +510,7 @@ static void emit_retune_function(const struct emitter *e)
 	       "    for (i = 0; i < $N_PARAMS; i++)\n"
 	       "        c->params[i] = params[i];\n");
 	emit_take_factors(e);
-	emit_take_loads(e);
+	emit_take_loads(e, e->model->tuning->frequency);
 	emit_retune_peaks(e);
 	say(e, "    return 0;\n"
 	       "}\n");
@@ -573,15 +580,8 @@ static void emit_tuned_pass(const struct emitter *e)
 	       "}\n", changes ? "segment, tau - done" : "tau");
 }
 
-void emit_retune(const struct emitter *e)
+void emit_use_function(const struct emitter *e)
 {
-	if (e->step->blocks) {
-		emit_blocks_retune(e);
-	} else {
-		emit_equations(e);
-		emit_slopes(e);
-		emit_retune_function(e);
-	}
 	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
 	       "{\n"
 	       "    if (c->h != s->coeffs.h) {\n"
@@ -590,10 +590,15 @@ void emit_retune(const struct emitter *e)
 	       "    }\n"
 	       "    s->coeffs = *c;\n"
 	       "}\n");
-	if (!e->step->blocks)
-		emit_tuned_pass(e);
-	else if (e->step->series.emitted)
-		emit_blocks_pass(e);
+}
+
+void emit_retune(const struct emitter *e)
+{
+	emit_equations(e);
+	emit_slopes(e);
+	emit_retune_function(e);
+	emit_use_function(e);
+	emit_tuned_pass(e);
 }
 
 void emit_tuned_at(const struct emitter *e)

@@ -13,51 +13,6 @@ static const struct group *group_at(const struct emitter *e, int index)
 	return &e->step->program->group[index];
 }
 
-/* ---- factors in steps ---- */
-
-static const struct group *group_of_state(const struct emitter *e, int state, int *index, int *row)
-{
-	for (int k = 0; k < e->step->program->groups; k++) {
-		const struct group *g = group_at(e, k);
-		for (int i = 0; i < g->states * g->blocks; i++)
-			if (g->state[i] == state) {
-				*index = k;
-				*row = i / g->blocks;
-				return g;
-			}
-	}
-	internal_error(e->step, "a state stands in no group");
-}
-
-bool has_own_factors(const struct emitter *e, int state)
-{
-	int index, row;
-	return e->step->program->tuned && (!blocks_of_step(e) || group_of_state(e, state, &index, &row)->tuned);
-}
-
-static int place_in(int count, const int *list, int what)
-{
-	int place = 0;
-	while (place < count && list[place] != what)
-		place++;
-	return place;
-}
-
-const char *block_factor(const struct emitter *e, int state, const struct operand *operand)
-{
-	int index, row;
-	const struct group *g = group_of_state(e, state, &index, &row);
-	const int segments = e->system->segments;
-	if (operand->kind == OPERAND_STATE)
-		return format("s->coeffs.rows%d[%d][%d]", index, row, place_in(g->states, g->state, operand->index));
-	if (operand->kind == OPERAND_INPUT)
-		return format("s->coeffs.rows%d[%d][%d]", index, row,
-			      g->states + segments * g->loads + place_in(g->inputs, g->input, operand->index));
-	const int place = g->states + place_in(g->loads, g->load, operand->index);
-	return segments > 1 ? format("s->coeffs.rows%d[%d][%d + s->segment * %d]", index, row, place, g->loads)
-			    : format("s->coeffs.rows%d[%d][%d]", index, row, place);
-}
-
 /* ---- the header ---- */
 
 static int count_touched(const struct emitter *e)
@@ -72,10 +27,10 @@ void banner_tuned_blocks(const struct emitter *e)
 {
 	const int blocks = blocks_of_step(e)->blocks, touched = count_touched(e);
 	const char *of = touched == blocks ? format("all %d", touched) : format("%d of %d", touched, blocks);
-	say(e, " * Tunable: %s. They touch %s independent blocks; $n_retune computes the factors of these from other\n"
-	       " * values%s on the target, of a block whose params are the spec's these, correctly rounded.\n"
-	       " * It needs some %d KB of stack.\n",
-	    param_list(e), of, blocks_of_step(e)->whole ? " and another h" : ", for the spec's h,",
+	say(e, " * Tunable: %s.\n"
+	       " * They touch %s independent blocks; $n_retune computes the factors of these from other values%s,\n"
+	       " * of a block whose params are the spec's these, correctly rounded. It needs some %d KB of stack.\n",
+	    param_list(e), of, blocks_of_step(e)->whole ? " and another h" : "",
 	    blocks_of_step(e)->kilobytes);
 }
 
@@ -84,7 +39,7 @@ static const char *first_state(const struct emitter *e, const struct group *g)
 	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
 }
 
-void emit_block_members(const struct emitter *e)
+static void emit_block_members(const struct emitter *e)
 {
 	for (int k = 0; k < e->step->program->groups; k++) {
 		const struct group *g = group_at(e, k);
@@ -101,7 +56,7 @@ void emit_block_members(const struct emitter *e)
 	}
 }
 
-void emit_nominal_blocks(const struct emitter *e)
+static void emit_nominal_blocks(const struct emitter *e)
 {
 	for (int k = 0; k < e->step->program->groups; k++) {
 		const struct group *g = group_at(e, k);
@@ -119,6 +74,21 @@ void emit_nominal_blocks(const struct emitter *e)
 			say(e, "    },\n");
 		}
 	}
+}
+
+void emit_block_coefficients(const struct emitter *e)
+{
+	emit_coefficients_with(e, emit_block_members);
+}
+
+void emit_block_declarations(const struct emitter *e)
+{
+	emit_tuning_functions(e, !blocks_of_step(e)->whole);
+}
+
+void emit_block_nominal(const struct emitter *e)
+{
+	emit_nominal_with(e, emit_nominal_blocks);
 }
 
 /* ---- the equations on the target ---- */
@@ -497,7 +467,7 @@ static void emit_tuned_loads(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	if (p->whole) {
-		emit_take_loads(e);
+		emit_take_loads(e, p->frequency);
 		return;
 	}
 	for (int l = 0; l < e->system->loads; l++)
@@ -518,7 +488,7 @@ static void emit_value_of_others(const struct emitter *e)
 	say(e, "    pl_two value[%d][%d], work[%d];\n"
 	       "    int status = pl_equations_at(&$n_equations, params, value[0], work);\n",
 	    part->rows, part->width, e->model->tuning->monomials + 1);
-	emit_frequency_check(e);
+	emit_frequency_check(e, blocks_of_step(e)->frequency);
 	say(e, "    if (status != 0)\n"
 	       "        return status;\n");
 }
@@ -588,7 +558,7 @@ static void emit_retune_all(const struct emitter *e)
 	       "}\n");
 }
 
-void emit_blocks_retune(const struct emitter *e)
+static void emit_blocks_retune(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	emit_terms(e);
@@ -615,7 +585,7 @@ static void emit_block_changes(const struct emitter *e, int changes)
 	       "        }\n", changes);
 }
 
-void emit_blocks_pass(const struct emitter *e)
+static void emit_blocks_pass(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const int changes = e->system->segments - 1;
@@ -642,4 +612,12 @@ void emit_blocks_pass(const struct emitter *e)
 	       "            y[at[i]] = part[i];\n"
 	       "    }\n"
 	       "}\n", changes ? "segment, tau - done" : "0, tau");
+}
+
+void emit_blocks_tuning(const struct emitter *e)
+{
+	emit_blocks_retune(e);
+	emit_use_function(e);
+	if (e->step->series.emitted)
+		emit_blocks_pass(e);
 }

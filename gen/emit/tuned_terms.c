@@ -2,6 +2,49 @@
 /* Factors that the instance has, in steps and in outputs. */
 #include "emit/emit.h"
 
+static const struct group *group_of_state(const struct emitter *e, int state, int *index, int *row)
+{
+	for (int k = 0; k < e->step->program->groups; k++) {
+		const struct group *g = &e->step->program->group[k];
+		for (int i = 0; i < g->states * g->blocks; i++)
+			if (g->state[i] == state) {
+				*index = k;
+				*row = i / g->blocks;
+				return g;
+			}
+	}
+	internal_error(e->step, "a state stands in no group");
+}
+
+bool has_own_factors(const struct emitter *e, int state)
+{
+	int index, row;
+	return e->step->program->tuned && (!e->step->blocks || group_of_state(e, state, &index, &row)->tuned);
+}
+
+int place_in(int count, const int *list, int what)
+{
+	int place = 0;
+	while (place < count && list[place] != what)
+		place++;
+	return place;
+}
+
+static const char *block_factor(const struct emitter *e, int state, const struct operand *operand)
+{
+	int index, row;
+	const struct group *g = group_of_state(e, state, &index, &row);
+	const int segments = e->system->segments;
+	if (operand->kind == OPERAND_STATE)
+		return format("s->coeffs.rows%d[%d][%d]", index, row, place_in(g->states, g->state, operand->index));
+	if (operand->kind == OPERAND_INPUT)
+		return format("s->coeffs.rows%d[%d][%d]", index, row,
+			      g->states + segments * g->loads + place_in(g->inputs, g->input, operand->index));
+	const int place = g->states + place_in(g->loads, g->load, operand->index);
+	return segments > 1 ? format("s->coeffs.rows%d[%d][%d + s->segment * %d]", index, row, place, g->loads)
+			    : format("s->coeffs.rows%d[%d][%d]", index, row, place);
+}
+
 static const char *tuned_entry(const struct emitter *e, const char *table, int row, int column)
 {
 	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;

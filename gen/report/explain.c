@@ -83,8 +83,19 @@ static void person_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
-static void person_tuning(FILE *to, const struct model *model)
+/* Of a large step: which of its independent blocks they touch */
+static void person_blocks(FILE *to, const struct tuned_blocks *p)
 {
+	int touched = 0;
+	for (int b = 0; b < p->blocks; b++)
+		touched += p->block[b].group->tuned;
+	fprintf(to, "They touch %d of %d independent blocks; %s.\n", touched, p->blocks,
+		p->whole ? "another h does, too" : "the others have tables, of this h");
+}
+
+static void person_tuning(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
 	const struct tuning *t = tunables_of(model);
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
@@ -101,6 +112,8 @@ static void person_tuning(FILE *to, const struct model *model)
 	else
 		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
 			t->solves ? ", and are solved for the highest derivatives" : "");
+	if (step->blocks)
+		person_blocks(to, step->blocks);
 }
 
 /* What the step keeps in the place of positions and velocities as written */
@@ -171,9 +184,12 @@ static void person_step(FILE *to, const struct step *step)
 		fputc('\n', to);
 	}
 	if (tunables_of(model))
-		person_tuning(to, model);
+		person_tuning(to, step);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
+	else if (model->tuning && !step->series.emitted)
+		fprintf(to, "No %s_at: an independent block has more than %d states, load states and inputs.\n",
+			model->name, LIMIT_TUNED_BLOCK);
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);

@@ -224,6 +224,7 @@ static void print_group(FILE *to, const struct step *step, const struct group *g
 		fprintf(to, "    %s of %d states by columns", added, g->states);
 	else if (g->kind == GROUP_ALIKE)
 		fprintf(to, "    %s of %d blocks alike of %d states, in a loop", added, g->blocks, g->states);
+	fputs(g->tuned ? ", the instance's" : "", to);
 	fprintf(to, acting ? ", %d column%s of loads and inputs: " : ": ", acting, acting == 1 ? "" : "s");
 	fputs(states_of_group(step, g, 0), to);
 	if (g->blocks > 1)
@@ -262,7 +263,8 @@ static void print_list(FILE *to, const struct step *step)
 	const struct program *program = step->program;
 	print_tables(to, step);
 	if (program->tuned)
-		fputs("Factors are read from the instance; these are of the spec's values.\n", to);
+		fprintf(to, "Factors%s are read from the instance; these are of the spec's values.\n",
+			step->blocks ? " of blocks that tunable params touch" : "");
 	if (step->branch->system.segments > 1)
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");

@@ -318,7 +318,7 @@ static bool try_rows(struct step *step, int count)
 static const char *rows_objection(const struct step *step)
 {
 	const struct model *model = step->model;
-	if (step->kind != KIND_LINEAR && step->kind != KIND_TUNED)
+	if (step->kind != KIND_LINEAR && !model->tuning)
 		return "they are of a linear step";
 	if (step->modal)
 		return "modes are stepped";

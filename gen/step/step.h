@@ -244,6 +244,7 @@ struct series {                     /* of e^{A tau} x: the Taylor series behind 
 enum step_kind {                    /* what a step is made of */
 	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
 	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
+	KIND_TUNED_BLOCKS,          /* a large one, by its independent blocks: factors of those that params touch */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
