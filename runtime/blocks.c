@@ -12,10 +12,12 @@ static void fill_slopes(const pl_block *b, const pl_two *value, int width, int s
 {
     const int size = size_of(b), loads = b->states + segment * b->loads, inputs = b->states + b->segments * b->loads;
     int i, j;
-    for (i = 0; i < size * size; i++)
+    for (i = 0; i < size * size; i++) {
         A[i] = two(0, 0);
-    for (i = 0; i < b->entries; i++)
+    }
+    for (i = 0; i < b->entries; i++) {
         A[b->entry[i].row * size + b->entry[i].column] = b->entry[i].value;
+    }
     for (i = 0; i < b->turns; i++) {
         const int at = b->turn[2 * i + 1];
         const pl_two w = value[b->turn[2 * i] * width];
@@ -25,12 +27,15 @@ static void fill_slopes(const pl_block *b, const pl_two *value, int width, int s
     for (i = 0; i < b->derivatives; i++) {
         const pl_two *const from = value + i * width;
         pl_two *const to = A + b->row[i] * size;
-        for (j = 0; j < b->states; j++)
+        for (j = 0; j < b->states; j++) {
             to[j] = from[j];
-        for (j = 0; j < b->loads; j++)
+        }
+        for (j = 0; j < b->loads; j++) {
             to[b->states + j] = from[loads + j];
-        for (j = 0; j < b->inputs; j++)
+        }
+        for (j = 0; j < b->inputs; j++) {
             to[b->states + b->loads + j] = from[inputs + j];
+        }
     }
 }
 
@@ -42,9 +47,11 @@ static int width_of(const pl_equations *e)
 static int ramp_cancels(const pl_block *b, const pl_two *D, real tau)
 {
     int i;
-    for (i = 0; i < b->ramps; i++)
-        if (pl_ramp_cancels(size_of(b), b->states, D, b->ramp[i], tau))
+    for (i = 0; i < b->ramps; i++) {
+        if (pl_ramp_cancels(size_of(b), b->states, D, b->ramp[i], tau)) {
             return 1;
+        }
+    }
     return 0;
 }
 
@@ -57,8 +64,9 @@ int pl_block_increment(const pl_block *b, const real *params, real tau, pl_two *
     for (segment = 0; segment < b->segments && status == 0; segment++, D += b->states * size) {
         fill_slopes(b, work, width, segment, A);
         status = pl_increment(size, b->states, A, tau, 1, D, further);
-        if (status == 0 && ramp_cancels(b, D, tau))
+        if (status == 0 && ramp_cancels(b, D, tau)) {
             status = pl_increment(size, b->states, A, tau, 2, D, further);
+        }
     }
     return status;
 }
@@ -82,10 +90,12 @@ void pl_block_advance(const pl_block *b, const real *params, int segment, real t
     }
     for (i = 0; i < rows && status == 0; i++) {
         real more = 0;
-        for (j = 0; j < size; j++)
+        for (j = 0; j < size; j++) {
             more += D[i * size + j].hi * x[j];
+        }
         A[i].hi = x[i] + more;
     }
-    for (i = 0; i < rows; i++)
+    for (i = 0; i < rows; i++) {
         x[i] = status == 0 ? A[i].hi : infinity_of_type();
+    }
 }
