@@ -180,6 +180,43 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);
 /* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
 bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
+/* ---- stream.c: x' = A x, x enclosed ---- */
+
+enum { STREAM_HALVINGS = 40 };
+struct stream {                       /* of one rational A (n x n) */
+	int n, precision;
+	int *first, *column;        /* entries that are not 0, row by row: */
+	mpfi_t *entry;
+	double *size;               /* |A|, rounded up, n x n */
+	double *scale, rate;        /* D, powers of two; rate bounds the norm of D^-1 |A| D */
+	int halvings;
+	mpq_t piece;                /* h 2^-halvings: there rate times it is at most 1 */
+	int powers;
+	mpfi_t **power;             /* e^{A piece 2^k} */
+};
+struct series_room {                /* x(s tau) = sum of term[m] s^m */
+	int terms;
+	mpfi_t **term;
+};
+struct stream *stream_of(int n, const mpq_t *A, mpq_srcptr h, int precision);
+void stream_free(struct stream *f);
+mpfi_t *stream_room(const struct stream *f);                    /* n enclosures, 0 */
+/* The Taylor polynomial of x from these on, its remainder for 0 <= s <= 1.0001 in term[0]; returns its degree */
+int  stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struct series_room *room);
+void stream_sum(const struct stream *f, const struct series_room *room, int degree, mpfr_srcptr s, mpfi_t *x);
+/* From the equations `before` to those `after`, at a time within delta of now: x as `after` would have it now. False:
+ * that is too long to be known */
+bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x);
+void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
+void series_room_free(int n, struct series_room *room);
+
+/* ---- rise.c: where an enclosed polynomial first rises through 0 ---- */
+
+enum rise { RISE_NONE, RISE_AT, RISE_UNKNOWN };
+/* On 0 <= s <= end, value(0) at most 0, or not known apart from it. RISE_AT: `at` encloses the root, where it rises
+ * with a slope above 0; RISE_UNKNOWN: it comes closer to 0 than is known. */
+enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_srcptr end, mpfi_ptr at);
+
 /* ---- walk.c: x+ = A x in double, step by step, and how far that rounds ---- */
 
 /* A <- D^-1 A D, D = diag(scale) powers of 2, so that rows and columns of A - I become alike in size: exact */

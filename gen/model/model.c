@@ -105,7 +105,7 @@ static void choose_scheme(void *context)
 	const char *wanted = blank ? format("%.*s", (int)(blank - asked), asked) : asked ? asked : b->spec->scheme;
 	b->collector.scheme = "exact";
 	b->collector.closed = b->request->solution;
-	b->collector.keep = b->request->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
+	b->collector.keep = wanted || b->request->solution ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
 	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->scheme_at;
@@ -118,9 +118,7 @@ static void choose_scheme(void *context)
 			blank ? parse_scheme_order(b->spec, at.source, (size_t)(blank - asked), &over) : order;
 		b->model->asked.scheme_over = over;
 		b->collector.scheme = scheme_name(b->model->scheme);
-		b->collector.keep = b->request->solution     ? KEEP_NOTHING
-				    : scheme == SCHEME_EXACT ? KEEP_PIECEWISE
-							     : KEEP_ALL;
+		b->collector.keep = b->model->scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
 		return;
 	}
 	const char *nearest = nearest_scheme(wanted);
@@ -454,7 +452,7 @@ static void collect_with_params(struct building *b)
 {
 	struct collector *c = &b->collector;
 	const bool left = leaves_over(b);
-	if (!left && !needs_regions(b))
+	if (!left && (b->request->solution || !needs_regions(b)))
 		return;
 	spread_tuned(b->spec);
 	b->nominal = b->snapshot;

@@ -115,7 +115,7 @@ bool leaves_over(const struct building *b)
 bool needs_regions(const struct building *b)
 {
 	const struct demands demands = demands_of(b);
-	return !b->request->solution && b->model->scheme == SCHEME_EXACT && demands.piecewise && !demands.linear;
+	return b->model->scheme == SCHEME_EXACT && demands.piecewise && !demands.linear;
 }
 
 /* Only loads may change their formula in time. */

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. */
+/* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. That of a
+ * piecewise-linear model goes from crossing to crossing. */
 #include "report/report.h"
 
 #include <math.h>
+#include <string.h>
 
 static void check_outputs(const struct model *model)
 {
@@ -46,12 +48,129 @@ static void check_peaks_of(const struct model *model)
 			      model->output[i].name);
 }
 
+/* ---- through crossings ---- */
+
+struct printing {
+	FILE *to;
+	const struct model *model;
+	unsigned long last, rows;   /* steps; those printed */
+	int passed;                 /* likewise of crossings */
+	double *largest;            /* per output */
+	const char *why;            /* of what is not told: at this precision */
+};
+
+/* To the nearest double. What is 0 to 2^-128 of the largest value so far, or to 2^-192, is 0. */
+static bool round_value(mpfi_srcptr x, double *largest, double *value)
+{
+	if (!round_enclosure(x, value)) {
+		double most = fmax(fabs(mpfr_get_d(&x->left, MPFR_RNDA)), fabs(mpfr_get_d(&x->right, MPFR_RNDA)));
+		if (!mpfi_has_zero(x) || most > ldexp(fmax(*largest, 0x1p-64), -128))
+			return false;
+		*value = 0;
+	}
+	*largest = fmax(*largest, fabs(*value));
+	return true;
+}
+
+static bool print_passed(struct printing *p, const struct through *t)
+{
+	const struct passed *list;
+	int count = through_passed(t, &list);
+	for (; p->passed < count; p->passed++) {
+		const struct passed *now = &list[p->passed];
+		double when;
+		if (!round_enclosure(now->at, &when)) {
+			p->why = format("a crossing at t = %.12g s is not known to all digits", mpfi_get_d(now->at));
+			return false;
+		}
+		fprintf(p->to, "# t = %.17g: %s passes %s %s\n", when,
+			spoken_expression(p->model, now->expression),
+			readable_text(p->model->switching->expression[now->expression].at[now->breakpoint]),
+			now->upward ? "upward" : "downward");
+	}
+	return true;
+}
+
+static bool print_row(struct printing *p, const struct through *t, mpq_srcptr time)
+{
+	const struct model *model = p->model;
+	double *value = ARRAY(double, (size_t)model->outputs);
+	mpfi_t x;
+	mpfi_init(x);
+	for (int j = 0; j < model->outputs; j++) {
+		through_value(t, &model->output[j], x);
+		if (!round_value(x, &p->largest[j], &value[j])) {
+			p->why = format("output '%s' is not known to all digits at t = %s s", model->output[j].name,
+					readable_text(time));
+			return false;
+		}
+		if (!isfinite(value[j]))
+			error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+			      model->output[j].name, readable_text(time));
+	}
+	fprintf(p->to, "%.17g", nearest_double(time));
+	for (int j = 0; j < model->outputs; j++)
+		fprintf(p->to, ",%.17g", value[j]);
+	fputc('\n', p->to);
+	discard(value);
+	mpfi_clear(x);
+	return true;
+}
+
+/* What was not told with fewer bits, with so many; true: all is */
+static bool print_with(struct printing *p, int precision)
+{
+	struct through *t = through_start(p->model, p->model, (const mpq_t *)p->model->initial, precision);
+	bool told = true;
+	mpq_t time;
+	mpq_init(time);
+	for (; p->rows <= p->last && told; p->rows += told) {
+		mpq_set_ui(time, p->rows, 1);
+		mpq_mul(time, time, p->model->h);
+		progress("row", (int)p->rows, (int)p->last);
+		told = through_reach(t, time);
+		if (!told)
+			p->why = through_undecided(t);
+		told = told && print_passed(p, t) && print_row(p, t, time);
+	}
+	mpq_clear(time);
+	through_free(t);
+	return told;
+}
+
+static void print_through(FILE *to, const struct model *model, unsigned long last)
+{
+	enum { FEWEST_BITS = 192, MOST_BITS = 6144, EQUAL = 3 };
+	struct printing p = { .to = to, .model = model, .last = last,
+			      .largest = ARRAY(double, (size_t)model->outputs) };
+	const char *before = NULL;
+	fputc('t', to);
+	for (int j = 0; j < model->outputs; j++)
+		fprintf(to, ",%s", model->output[j].name);
+	fputc('\n', to);
+	int equal = 1;                  /* what more bits do not tell apart, may be one */
+	for (int bits = FEWEST_BITS; !print_with(&p, bits); bits *= 2) {
+		equal = before && strcmp(before, p.why) == 0 ? equal + 1 : 1;
+		before = p.why;
+		if (2 * bits > MOST_BITS || equal == EQUAL) {
+			progress_end();
+			error(model->asked.end_at, "until then it is known: a shorter --solution prints it", "%s",
+			      p.why);
+		}
+	}
+	progress_end();
+}
+
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end)
 {
 	check_outputs(model);
 	check_peaks_of(model);
-	check_pole_size(model, written);
 	unsigned long last = last_step(model, end);
+	if (model->switching) {
+		print_through(to, model, last);
+		return;
+	}
+	check_pole_size(model, written);
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++) {

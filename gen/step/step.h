@@ -797,6 +797,27 @@ struct bank {                       /* the leftover of an operator = common + su
 };
 struct bank bank_of(const struct step *step);
 
+/* ---- through.c: a piecewise-linear model through its crossings, enclosed ---- */
+
+struct passed {                     /* a breakpoint, by its expression */
+	int expression, breakpoint;
+	bool upward;
+	bool jumped;                /* by a load that jumps, not by crossing */
+	mpfi_t at;                  /* when [s] */
+	double speed;               /* of the expression there [its unit/s] */
+};
+struct through;
+/* From t = 0 on in so many bits; of a model that has regions and no parts, `whole` the one whose loads and changes it
+ * has: itself, or of a part that of all. Inputs follow u = 1 - t/h; held, u = 1. */
+struct through *through_start(const struct model *model, const struct model *whole, const mpq_t *initial,
+			      int precision);
+bool through_reach(struct through *t, mpq_srcptr time);     /* false: it is not decided what comes before */
+const char *through_undecided(const struct through *t);     /* why */
+void through_state(const struct through *t, int state, mpfi_ptr value);        /* where it has got to */
+void through_value(const struct through *t, const struct output *output, mpfi_ptr value);
+int  through_passed(const struct through *t, const struct passed **list);      /* so far, in order */
+void through_free(struct through *t);
+
 /* ---- closed.c: states in closed form for the self-test ---- */
 
 struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */

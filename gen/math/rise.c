@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where an enclosed polynomial first rises through 0: isolated by bisection, by the ranges of its value and its slope,
+ * then enclosed by Newton's method for intervals. */
+#include "math/math.h"
+
+struct rising {
+	int degree;
+	const mpfi_t *value, *slope;        /* coefficients in s */
+	int deepest;
+	mpfi_t s, g, d;
+	mpfr_t middle;
+};
+
+static void horner(int degree, const mpfi_t *c, mpfi_srcptr s, mpfi_ptr sum)
+{
+	mpfi_set(sum, c[degree]);
+	for (int m = degree - 1; m >= 0; m--) {
+		mpfi_mul(sum, sum, s);
+		mpfi_add(sum, sum, c[m]);
+	}
+}
+
+static void horner_at(int degree, const mpfi_t *c, mpfr_srcptr s, mpfi_ptr sum)
+{
+	mpfi_set(sum, c[degree]);
+	for (int m = degree - 1; m >= 0; m--) {
+		mpfi_mul_fr(sum, sum, s);
+		mpfi_add(sum, sum, c[m]);
+	}
+}
+
+/* The value over [a, b] by its middle and the range of the slope, which stands in r->d */
+static void value_over(struct rising *r, mpfr_srcptr a, mpfr_srcptr b)
+{
+	mpfi_interv_fr(r->s, a, b);
+	horner(r->degree, r->slope, r->s, r->d);
+	mpfr_add(r->middle, a, b, MPFR_RNDN);
+	mpfr_div_2ui(r->middle, r->middle, 1, MPFR_RNDN);
+	horner_at(r->degree, r->value, r->middle, r->g);
+	mpfi_sub_fr(r->s, r->s, r->middle);
+	mpfi_mul(r->s, r->s, r->d);
+	mpfi_add(r->g, r->g, r->s);
+}
+
+/* at = [a, b] holds one root, and the slope is above 0 there */
+static void enclose_root(struct rising *r, mpfi_ptr at)
+{
+	mpfr_t width, old;
+	mpfr_inits2(64, width, old, NULL);
+	mpfi_diam_abs(old, at);
+	for (int round = 0; round < 64; round++) {
+		mpfi_mid(r->middle, at);
+		horner_at(r->degree, r->value, r->middle, r->g);
+		horner(r->degree, r->slope, at, r->d);
+		if (mpfr_sgn(&r->d->left) <= 0)
+			break;
+		mpfi_div(r->g, r->g, r->d);
+		mpfi_fr_sub(r->g, r->middle, r->g);
+		mpfi_intersect(r->s, at, r->g);
+		if (mpfi_is_empty(r->s)) {              /* it lay before the start, by what that is not known */
+			mpfi_set_fr(at, &at->left);
+			break;
+		}
+		mpfi_set(at, r->s);
+		mpfi_diam_abs(width, at);
+		mpfr_mul_2ui(old, old, 1, MPFR_RNDN);
+		mpfr_div_ui(old, old, 3, MPFR_RNDN);
+		if (mpfr_cmp(width, old) >= 0)
+			break;
+		mpfr_set(old, width, MPFR_RNDU);
+	}
+	mpfr_clears(width, old, NULL);
+}
+
+/* On [a, b], where nothing has risen before a */
+static enum rise look(struct rising *r, mpfr_srcptr a, mpfr_srcptr b, int depth, mpfi_ptr at)
+{
+	enum rise found = RISE_NONE;
+	value_over(r, a, b);
+	if (mpfr_sgn(&r->g->right) <= 0 || mpfr_sgn(&r->d->right) < 0)
+		return RISE_NONE;
+	if (mpfr_sgn(&r->d->left) > 0) {
+		horner_at(r->degree, r->value, b, r->g);
+		if (mpfr_sgn(&r->g->right) <= 0)
+			return RISE_NONE;
+		if (mpfr_sgn(&r->g->left) > 0) {
+			mpfi_interv_fr(at, a, b);
+			enclose_root(r, at);
+			return RISE_AT;
+		}
+	}
+	if (depth == r->deepest)
+		return RISE_UNKNOWN;
+	mpfr_t split;
+	mpfr_init2(split, mpfr_get_prec(r->middle));
+	mpfr_sub(split, b, a, MPFR_RNDN);
+	mpfr_mul_ui(split, split, 499, MPFR_RNDN);      /* not the middle, where a root may be */
+	mpfr_div_2ui(split, split, 10, MPFR_RNDN);
+	mpfr_add(split, split, a, MPFR_RNDN);
+	found = look(r, a, split, depth + 1, at);
+	if (found == RISE_NONE)
+		found = look(r, split, b, depth + 1, at);
+	mpfr_clear(split);
+	return found;
+}
+
+enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_srcptr end, mpfi_ptr at)
+{
+	int precision = (int)mpfi_get_prec(value[0]);
+	struct rising r = { .degree = degree, .value = value, .slope = slope, .deepest = precision / 2 };
+	mpfr_t start;
+	mpfr_init2(start, precision);
+	mpfr_set_zero(start, 1);
+	mpfi_init2(r.s, precision);
+	mpfi_init2(r.g, precision);
+	mpfi_init2(r.d, precision);
+	mpfr_init2(r.middle, precision);
+	enum rise found = look(&r, start, end, 0, at);
+	mpfi_clear(r.s);
+	mpfi_clear(r.g);
+	mpfi_clear(r.d);
+	mpfr_clears(r.middle, start, NULL);
+	return found;
+}
