@@ -12,7 +12,7 @@ static void emit_values(const struct emitter *e, int count, const double *value)
 
 static void emit_sample(const struct emitter *e, const char *indent, const char *ramp)
 {
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < given_inputs(e); i++)
 		say(e, "%su[%d] = %s;\n", indent, i, e->system->input[i].hold ? ramp : "1.0");
 }
 
@@ -31,11 +31,16 @@ static void emit_replay(const struct emitter *e, const struct reference *r)
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        for (; k < reference[i].steps; k++) {\n", r->rows);
 	emit_sample(e, "            ", "-(double)k");
-	say(e, "            $n_step(&s%s);\n"
-	       "        }\n"
+	say(e, "            $n_step(&s%s);\n", given_inputs(e) ? ", u" : "");
+	if (r->crossings)
+		say(e, "            worst = $n_crossed_as(&s, k, &crossed, worst);\n");
+	say(e, "        }\n"
 	       "        $n_get(&s, y);\n"
 	       "        worst = $n_deviation(y, reference[i].y, worst);\n"
-	       "    }\n", e->system->inputs ? ", u" : "");
+	       "    }\n");
+	if (r->crossings)
+		say(e, "    if (crossed != %d)\n"
+		       "        worst = 1e30;\n", r->crossings);
 }
 
 static void emit_deviation(const struct emitter *e, const struct reference *r)
@@ -56,6 +61,42 @@ static void emit_deviation(const struct emitter *e, const struct reference *r)
 	       "    }\n"
 	       "    return worst;\n"
 	       "}\n");
+}
+
+/* Crossings listed otherwise than by their order are none of these. */
+static void emit_crossings(const struct emitter *e, const struct reference *r)
+{
+	say(e, "\n/* The larger of worst and how far crossings of the last step, that after k others, are from those in closed"
+	       " form, in\n"
+	       " * what rounding makes of their times; one that is missing or more is far off */\n"
+	       "static double $n_crossed_as(const $n *s, uint64_t k, int *crossed, double worst)\n"
+	       "{\n"
+	       "    static const struct {\n"
+	       "        uint64_t step;\n"
+	       "        double after, unit;\n"
+	       "    } reference[%d] = {\n", r->crossings);
+	for (int k = 0; k < r->crossings; k++)
+		say(e, "        {%lu, %s, %s},\n", r->crossing[k].step, shortest(r->crossing[k].after),
+		    shortest(r->crossing[k].unit));
+	say(e, "    };\n"
+	       "    pl_crossing crossing[$N_MAX_EVENTS];\n"
+	       "    const int count = $n_crossings(s, crossing);\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < count; i++) {\n"
+	       "        double off;\n"
+	       "        if (k == 0 && !(crossing[i].time > 0.0))\n"
+	       "            continue;  /* where the start stands is found there */\n"
+	       "        if (*crossed == %d)\n"
+	       "            return 1e30;\n"
+	       "        off = ((double)k - (double)reference[*crossed].step) * $N_H + crossing[i].time -\n"
+	       "              reference[*crossed].after;\n"
+	       "        off = (off < 0.0 ? -off : off) / reference[*crossed].unit;\n"
+	       "        if (!(off <= worst) && worst == worst)\n"
+	       "            worst = off;\n"
+	       "        ++*crossed;\n"
+	       "    }\n"
+	       "    return worst;\n"
+	       "}\n", r->crossings);
 }
 
 static void emit_reference(const struct emitter *e, const struct reference *r)
@@ -94,21 +135,23 @@ static void emit_at_check(const struct emitter *e)
 	emit_begin(e);
 	emit_sample(e, "    ", "0.0");
 	say(e, "    $n_at(&s%s, 0.5 * $N_H, y);\n"
-	       "    worst = $n_deviation(y, between, worst);\n", e->system->inputs ? ", u" : "");
+	       "    worst = $n_deviation(y, between, worst);\n", given_inputs(e) ? ", u" : "");
 }
 
 void emit_selftest(const struct emitter *e, bool jumps)
 {
 	const struct reference r = reference_of(e->step->shown);
 	emit_deviation(e, &r);
+	if (r.crossings)
+		emit_crossings(e, &r);
 	say(e, "\ndouble $n_selftest(void)\n"
 	       "{\n");
 	emit_reference(e, &r);
 	say(e, "    $n s;\n"
 	       "    double y[$N_STATES], worst = 0.0;\n"
 	       "    uint64_t k = 0;\n"
-	       "    int i;\n");
-	if (e->system->inputs)
+	       "    int i%s;\n", r.crossings ? ", crossed = 0" : "");
+	if (given_inputs(e))
 		say(e, "    double u[$N_INPUTS];\n");
 	emit_begin(e);
 	emit_replay(e, &r);

@@ -120,7 +120,7 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 /* What was not told with fewer bits, with so many; true: all is */
 static bool print_with(struct printing *p, int precision)
 {
-	struct through *t = through_start(p->model, p->model, (const mpq_t *)p->model->initial, precision);
+	struct through *t = through_start(p->model, NULL, (const mpq_t *)p->model->initial, precision);
 	bool told = true;
 	mpq_t time;
 	mpq_init(time);

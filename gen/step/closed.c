@@ -8,7 +8,7 @@ static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100 };
 enum { ROWS = sizeof steps / sizeof steps[0] };
 
 /* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
-static void start_value(int state, mpq_ptr value)
+void reference_start(int state, mpq_ptr value)
 {
 	int power = state < 20 ? state : 20;
 	mpq_set_ui(value, (1ul << power) + 1, 1ul << power);
@@ -43,7 +43,7 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 	mpq_t *start = rationals((size_t)n);
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)n);
 	for (int i = 0; i < n; i++) {
-		start_value(i, start[i]);
+		reference_start(i, start[i]);
 		r->start[i] = round_rational(start[i]);
 	}
 	for (int i = 0; i < n; i++)
@@ -51,7 +51,7 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 	return form;
 }
 
-static double ulp_of(double value, bool single)
+double ulp_of(double value, bool single)
 {
 	int exponent;
 	frexp(value, &exponent);
@@ -97,6 +97,8 @@ static void fill_units(struct reference *r, bool single)
 
 struct reference reference_of(const struct step *step)
 {
+	if (step->model->switching)
+		return reference_through(step);
 	size_t states = (size_t)step->branch->system.states;
 	struct reference r = { .states = (int)states, .steps = steps };
 	r.start = ARRAY(double, states);

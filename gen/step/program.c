@@ -105,14 +105,14 @@ bool has_leftover(const struct step *step)
 void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
-		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
-		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
 		[KIND_EXPANDED] = "what is left over has no closed form",
 		[KIND_COLLOCATED] = "what is left over has no closed form",
 		[KIND_NORMAL] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
+	if (!why && step->model->switching && has_events(step->model->switching))
+		why = "what sticks, slips and bounces has no reference";
 	if (!why && step->model->scheme != SCHEME_EXACT)
 		why = format("scheme %s approximates", scheme_name(step->model->scheme));
 	if (why)

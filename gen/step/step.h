@@ -805,11 +805,12 @@ struct passed {                     /* a breakpoint, by its expression */
 	bool jumped;                /* by a load that jumps, not by crossing */
 	mpfi_t at;                  /* when [s] */
 	double speed;               /* of the expression there [its unit/s] */
+	double size;                /* of what it is summed from there [its unit] */
 };
 struct through;
-/* From t = 0 on in so many bits; of a model that has regions and no parts, `whole` the one whose loads and changes it
- * has: itself, or of a part that of all. Inputs follow u = 1 - t/h; held, u = 1. */
-struct through *through_start(const struct model *model, const struct model *whole, const mpq_t *initial,
+/* From t = 0 on in so many bits. NULL: of the whole model, which then has no parts; `initial` has its states. Inputs
+ * follow u = 1 - t/h; held, u = 1; those that stand for params have the spec's values. */
+struct through *through_start(const struct model *model, const struct region_part *part, const mpq_t *initial,
 			      int precision);
 bool through_reach(struct through *t, mpq_srcptr time);     /* false: it is not decided what comes before */
 const char *through_undecided(const struct through *t);     /* why */
@@ -826,8 +827,17 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	double *start, *value;      /* [states]; [row][states] */
 	double *between;            /* [states] at h/2, where NAME_at is there */
 	double *unit;               /* [states]: one in the last place of the largest value */
+	/* of a piecewise-linear model the crossings up to the last row: when, and how much of that is rounding */
+	int crossings;
+	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
 struct reference reference_of(const struct step *step);
+double ulp_of(double value, bool single);
+void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
+
+/* ---- passing.c: the same through crossings ---- */
+
+struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 /* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
 

@@ -381,6 +381,8 @@ static void note(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	mpfi_add(p->at, p->at, width);
 	dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->x, slope);
 	p->speed = fabs(mpfi_get_d(slope));
+	for (int i = 0; i < t->n && gate->near_row; i++)
+		p->size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
 	mpfi_clear(slope);
 	mpfi_clear(width);
 }
@@ -700,9 +702,12 @@ static void take_start(struct through *t, const mpq_t *initial)
 			mpq_set_ui(exact[t->layout.load[l]], 1, 1);
 	}
 	for (int i = 0; i < t->layout.states; i++)
-		mpq_set(exact[i], initial[i]);
+		mpq_set(exact[i], initial[t->part ? t->part->state[i] : i]);
 	for (int i = 0; i < t->system->inputs; i++) {
+		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->inputs;
 		mpq_set_ui(exact[t->layout.input[i]], 1, 1);
+		if (param >= 0 && t->whole->held)
+			mpq_set(exact[t->layout.input[i]], t->whole->held->nominal[param]);
 		if (t->system->input[i].hold) {
 			mpq_inv(exact[t->layout.input[i] + 1], t->model->h);
 			mpq_neg(exact[t->layout.input[i] + 1], exact[t->layout.input[i] + 1]);
@@ -744,12 +749,14 @@ static void make_room(struct through *t)
 	mpfr_set_ui(t->one, 1, MPFR_RNDN);
 }
 
-struct through *through_start(const struct model *model, const struct model *whole, const mpq_t *initial,
+struct through *through_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
 			      int precision)
 {
 	struct through *t = NEW(struct through);
-	t->model = model;
-	t->s = model->switching;
+	t->whole = whole;
+	t->part = part;
+	t->model = part ? part->model : whole;
+	t->s = t->model->switching;
 	t->system = &t->s->system[0];
 	t->precision = precision;
 	t->layout = layout_of_columns(t->system);

@@ -26,7 +26,8 @@ struct area {                       /* a region as it is met */
 	struct gate *gate;
 };
 struct through {
-	const struct model *model;
+	const struct model *whole, *model;
+	const struct region_part *part; /* NULL: both are one */
 	const struct switching *s;
 	const struct linear *system; /* the first: coordinates, loads and inputs are those of all */
 	int precision, n;           /* bits; entries of x */

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* States and crossings of a piecewise-linear model in closed form, for the target's self-test to step to. Of several
+ * starts one is taken that crosses and that rounding does not lead astray: a second start beside it must pass the same
+ * breakpoints and stay close. */
+#include "step/step.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000 };
+enum {
+	ROWS = sizeof steps / sizeof steps[0],
+	LEAST_ROWS = 8,             /* without a crossing */
+	ENOUGH = 5,                 /* crossings */
+	STARTS = 13,
+	FEWEST_BITS = 192, MOST_BITS = 1536,
+	BESIDE = 36,                /* the second start is off by 2^-36; in float */
+	GROWTH = 24                 /* and grows by no more than that */
+};
+
+/* The model on its way, all parts of it */
+struct ways {
+	const struct step *step;
+	int count;
+	struct through **way;
+};
+
+static const struct switching *regions_of(const struct step *step)
+{
+	return step->model->switching;
+}
+
+static struct ways ways_of(const struct step *step, const mpq_t *start, int bits)
+{
+	const struct switching *s = regions_of(step);
+	struct ways w = { .step = step, .count = s->parts ? s->parts : 1 };
+	w.way = ARRAY(struct through *, (size_t)w.count);
+	for (int p = 0; p < w.count; p++)
+		w.way[p] = through_start(step->model, s->parts ? &s->part[p] : NULL, start, bits);
+	return w;
+}
+
+static void free_ways(struct ways *w)
+{
+	for (int p = 0; p < w->count; p++)
+		through_free(w->way[p]);
+	discard(w->way);
+}
+
+static const char *reach(const struct ways *w, mpq_srcptr time)
+{
+	for (int p = 0; p < w->count; p++)
+		if (!through_reach(w->way[p], time))
+			return through_undecided(w->way[p]);
+	return NULL;
+}
+
+/* Rounded, what is 0 but for its enclosure to 0; false: not known well enough */
+static bool states_of(const struct ways *w, double *y)
+{
+	const struct switching *s = regions_of(w->step);
+	bool known = true;
+	mpfi_t x;
+	mpfi_init(x);
+	for (int p = 0; p < w->count; p++) {
+		int count = s->parts ? s->part[p].model->system.states : w->step->branch->system.states;
+		for (int i = 0; i < count; i++) {
+			double *value = &y[s->parts ? s->part[p].state[i] : i];
+			through_state(w->way[p], i, x);
+			if (round_enclosure(x, value))
+				continue;
+			known = known && mpfi_has_zero(x) && fabs(mpfr_get_d(&x->left, MPFR_RNDA)) < 0x1p-160;
+			*value = 0;
+		}
+	}
+	mpfi_clear(x);
+	return known;
+}
+
+static int crossings_of(const struct ways *w)
+{
+	const struct passed *list;
+	int count = 0;
+	for (int p = 0; p < w->count; p++)
+		count += through_passed(w->way[p], &list);
+	return count;
+}
+
+/* ---- crossings, of all parts by time ---- */
+
+struct moment {
+	double at;                  /* [s] */
+	struct passed passed;
+};
+
+static int by_time(const void *a, const void *b)
+{
+	const struct moment *x = a, *y = b;
+	return (x->at > y->at) - (x->at < y->at);
+}
+
+static struct moment *all_crossings(const struct ways *w, int *count)
+{
+	struct moment *all = ARRAY(struct moment, (size_t)crossings_of(w) + 1);
+	*count = 0;
+	for (int p = 0; p < w->count; p++) {
+		const struct passed *list;
+		int passed = through_passed(w->way[p], &list);
+		for (int k = 0; k < passed; k++)
+			all[(*count)++] = (struct moment){ mpfi_get_d(list[k].at), list[k] };
+	}
+	qsort(all, (size_t)*count, sizeof *all, by_time);
+	return all;
+}
+
+/* Steps before it, what of the time is after them, and what rounding takes: of the expression as it is summed, by its
+ * speed, and of the step */
+static void take_crossing(const struct step *step, struct reference *r, const struct moment *now)
+{
+	bool single = step->model->asked.single;
+	double h = mpq_get_d(step->model->h), speed = now->passed.jumped ? HUGE_VAL : now->passed.speed;
+	mpq_t time, whole;
+	mpz_t before;
+	mpq_inits(time, whole, NULL);
+	mpz_init(before);
+	mpfr_get_q(time, &now->passed.at->left);
+	mpq_div(whole, time, step->model->h);
+	mpz_fdiv_q(before, mpq_numref(whole), mpq_denref(whole));
+	ENLARGE(r->crossing, (size_t)r->crossings + 1);
+	r->crossing[r->crossings].step = mpz_get_ui(before);
+	mpq_set_z(whole, before);
+	mpq_mul(whole, whole, step->model->h);
+	mpq_sub(time, time, whole);
+	r->crossing[r->crossings].after = round_rational(time);
+	r->crossing[r->crossings++].unit = ulp_of(fmax(h, now->passed.size / speed), single);
+	mpz_clear(before);
+	mpq_clears(time, whole, NULL);
+}
+
+static void take_crossings(struct reference *r, const struct ways *w)
+{
+	int count;
+	struct moment *all = all_crossings(w, &count);
+	r->crossings = 0;
+	for (int k = 0; k < count; k++)
+		if (all[k].at > 0)
+			take_crossing(w->step, r, &all[k]);
+	discard(all);
+}
+
+/* ---- a start, and beside it another ---- */
+
+static void start_of(const struct step *step, int number, mpq_t *start)
+{
+	static const int power[STARTS] = { 0, 0, 3, -3, 6, -6, 9, -9, 12, -12, 16, -16, -20 };
+	for (int i = 0; i < step->branch->system.states; i++) {
+		if (number == 0)                        /* as the target has it */
+			mpq_set_d(start[i], round_rational(step->model->initial[i]));
+		if (number == 0)
+			continue;
+		reference_start(i, start[i]);
+		if (power[number] > 0)
+			mpq_mul_2exp(start[i], start[i], (mp_bitcnt_t)power[number]);
+		else
+			mpq_div_2exp(start[i], start[i], (mp_bitcnt_t)-power[number]);
+	}
+}
+
+static mpq_t *start_beside(const struct step *step, const mpq_t *start)
+{
+	int states = step->branch->system.states, bits = step->model->asked.single ? 18 : BESIDE;
+	mpq_t *beside = rationals((size_t)states), largest, off;
+	mpq_inits(largest, off, NULL);
+	for (int i = 0; i < states; i++) {
+		mpq_abs(off, start[i]);
+		if (mpq_cmp(off, largest) > 0)
+			mpq_set(largest, off);
+	}
+	for (int i = 0; i < states; i++) {              /* no state at 0 is off by more than others */
+		mpq_abs(off, start[i]);
+		mpq_div_2exp(off, off, (mp_bitcnt_t)bits);
+		(i % 3 == 1 ? mpq_sub : mpq_add)(beside[i], start[i], off);
+	}
+	mpq_clears(largest, off, NULL);
+	return beside;
+}
+
+/* Whether both have passed the same, and are no further apart than a start may be */
+static bool are_close(const struct reference *r, const struct ways *a, const struct ways *b, const double *y,
+		      const double *beside)
+{
+	int count, other;
+	const struct moment *x = all_crossings(a, &count), *z = all_crossings(b, &other);
+	bool close = count == other;
+	double apart = ldexp(GROWTH, -(a->step->model->asked.single ? 18 : BESIDE));
+	for (int k = 0; k < count && close; k++)
+		close = x[k].passed.expression == z[k].passed.expression &&
+			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward;
+	for (int i = 0; i < r->states && close; i++) {
+		double largest = fmax(fabs(r->start[i]), fabs(y[i]));
+		for (int k = 0; k < r->rows; k++)
+			largest = fmax(largest, fabs(r->value[k * r->states + i]));
+		close = isfinite(y[i]) && fabs(y[i] - beside[i]) <= apart * largest;
+	}
+	return close;
+}
+
+/* The references from one start, with so many bits; false: these were too few */
+static bool try_start(const struct step *step, struct reference *r, const mpq_t *start, int bits)
+{
+	mpq_t *near = start_beside(step, start), time;
+	double *other = ARRAY(double, (size_t)r->states);
+	struct ways a = ways_of(step, start, bits), b = ways_of(step, (const mpq_t *)near, bits);
+	bool known = true, goes = true;
+	mpq_init(time);
+	mpq_div_2exp(time, step->model->h, 1);
+	r->rows = r->crossings = 0;
+	for (int i = 0; i < r->states; i++)
+		r->start[i] = round_rational(start[i]);
+	known = !reach(&a, time) && states_of(&a, r->between);
+	while (known && goes && r->rows < ROWS && (r->crossings < ENOUGH || r->rows < LEAST_ROWS)) {
+		double *y = r->value + r->rows * r->states;
+		mpq_set_ui(time, steps[r->rows], 1);
+		mpq_mul(time, time, step->model->h);
+		known = !reach(&a, time) && states_of(&a, y);
+		goes = known && !reach(&b, time);
+		if (goes)
+			(void)states_of(&b, other);
+		if (goes && (goes = are_close(r, &a, &b, y, other))) {
+			r->rows++;
+			take_crossings(r, &a);
+		}
+	}
+	mpq_clear(time);
+	rationals_free(near, (size_t)r->states);
+	free_ways(&a);
+	free_ways(&b);
+	return known || r->rows >= LEAST_ROWS;
+}
+
+static void fill_units(struct reference *r, bool single)
+{
+	for (int i = 0; i < r->states; i++) {
+		double largest = fabs(r->start[i]);
+		for (int k = 0; k < r->rows; k++)
+			largest = fmax(largest, fabs(r->value[k * r->states + i]));
+		r->unit[i] = largest > 0 ? ulp_of(largest, single) : 1;
+	}
+}
+
+static struct reference new_reference(const struct step *step)
+{
+	size_t states = (size_t)step->branch->system.states;
+	struct reference r = { .states = (int)states, .steps = steps };
+	r.start = ARRAY(double, states);
+	r.value = ARRAY(double, states * ROWS);
+	r.between = ARRAY(double, states);
+	r.unit = ARRAY(double, states);
+	return r;
+}
+
+struct reference reference_through(const struct step *step)
+{
+	struct reference best = { 0 };
+	mpq_t *start = rationals((size_t)step->branch->system.states);
+	for (int number = 0; number < STARTS && best.crossings < ENOUGH; number++) {
+		struct reference r = new_reference(step);
+		start_of(step, number, start);
+		for (int bits = FEWEST_BITS; !try_start(step, &r, (const mpq_t *)start, bits) && bits < MOST_BITS;)
+			bits *= 2;
+		if (r.rows > 0 && (r.crossings > best.crossings || best.rows == 0))
+			best = r;
+	}
+	if (best.crossings == 0)
+		error((struct place){ source_argument("--selftest"), 0 }, NULL,
+		      "--selftest finds no start from which a breakpoint is passed in %lu steps, apart from others and "
+		      "clearly", steps[ROWS - 1]);
+	fill_units(&best, step->model->asked.single);
+	return best;
+}
