@@ -144,8 +144,6 @@ static struct form *friction_form(struct collector *c, const struct node *node, 
 {
 	if (c->tolerant)
 		not_linear(c, node, "is dry friction");
-	if (c->closed)
-		error(node->at, NULL, "--solution needs a linear model: friction sticks and slips");
 	if (!keeps_piecewise(c))
 		error(node->at, "x' and what else moves has friction", "friction stands in equations and outputs");
 	check_friction(c, node, x);

@@ -204,8 +204,8 @@ mpfi_t *stream_room(const struct stream *f);                    /* n enclosures,
 /* The Taylor polynomial of x from these on, its remainder for 0 <= s <= 1.0001 in term[0]; returns its degree */
 int  stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struct series_room *room);
 void stream_sum(const struct stream *f, const struct series_room *room, int degree, mpfr_srcptr s, mpfi_t *x);
-/* From the equations `before` to those `after`, at a time within delta of now: x as `after` would have it now. False:
- * that is too long to be known */
+/* From the equations `before` to those `after`, at a time within delta of now: x as `after` would have it now; NULL:
+ * as it is then. False: that is too long to be known */
 bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x);
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
 void series_room_free(int n, struct series_room *room);

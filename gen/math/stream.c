@@ -231,7 +231,7 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 {
 	mpfr_t size, angle;
 	mpfi_t *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision), time;
-	const double rates = (before->rate + largest_row(before, after->size)) * (1 + 1e-9);
+	const double rates = (before->rate + (after ? largest_row(before, after->size) : 0)) * (1 + 1e-9);
 	mpfr_inits2(64, size, angle, NULL);
 	mpfi_init2(time, 64);
 	mpfr_neg(&time->left, delta, MPFR_RNDD);
@@ -242,7 +242,8 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 	mpfr_mul(size, size, angle, MPFR_RNDU);
 	mpfr_mul_2ui(size, size, 1, MPFR_RNDU);
 	product(before, (const mpfi_t *)x, old);
-	product(after, (const mpfi_t *)x, new);
+	if (after)
+		product(after, (const mpfi_t *)x, new);
 	for (int i = 0; i < before->n; i++) {
 		mpfi_sub(old[i], old[i], new[i]);
 		mpfi_mul(old[i], old[i], time);

@@ -178,9 +178,6 @@ void tell_no_impacts(const struct building *b)
 {
 	const struct model *model = b->model;
 	struct place at = b->spec->when->at;
-	if (b->request->solution)
-		error(at, "the C that is printed without it goes from event to event",
-		      "there is no closed form where the state jumps");
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
 		      "scheme exact, which impacts need, leaves no load over");

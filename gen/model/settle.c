@@ -268,8 +268,7 @@ static enum scheme scheme_of_choice(const struct building *b)
 static void settle_impacts(void *context)
 {
 	struct building *b = context;
-	if (b->model->scheme != SCHEME_EXACT || b->request->loads_left || b->request->solution ||
-	    !is_piecewise_linear(b))
+	if (b->model->scheme != SCHEME_EXACT || b->request->loads_left || !is_piecewise_linear(b))
 		tell_no_impacts(b);
 	build_impacts(b);
 	if (diagnostics_errors())

@@ -12,6 +12,8 @@ struct near {                       /* x in double, and how far off it may be */
 struct gate {                       /* a row over x that must not become greater than its limit */
 	int expression, breakpoint, leads;
 	bool upward;
+	bool release;               /* its value is a force, which then lets go what it held */
+	int impact;                 /* that begins there; -1: none */
 	mpq_t *row, *slope;         /* slope: of its derivative with respect to time */
 	mpq_t limit;
 	/* the same in double; fourth . |x| bounds the fourth derivative */
@@ -54,9 +56,49 @@ struct through {
 	struct near near[2];
 	double *most;
 	int at_once;
+	/* an expression that was let go at base, but for so much [s]: it is 0 there with its first derivatives */
+	int fresh, order;           /* order 0: there is none */
+	mpfr_t fresh_off, most_off;
+	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
 	int passed;
 	struct passed *list;
 	const char *undecided;
 };
+
+
+/* ---- areas.c: regions as they are met, loads at a time ---- */
+
+void through_row(const struct through *t, const struct output *output, mpq_t *row);     /* over x, now */
+void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum);
+mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A);        /* row A */
+struct area *through_area(struct through *t, int region);
+void through_enter(struct through *t, int region);
+void through_loads(struct through *t);                       /* load states at base */
+const char *through_time(mpq_srcptr time);
+bool through_lost(struct through *t, const struct gate *gate, const char *what);       /* false: it is not known */
+
+/* ---- passes.c: the first event of a piece, and what is behind it ---- */
+
+bool through_clear(struct through *t, const mpfi_t *y, double tau);    /* nothing is met up to y, tau on */
+/* In t->room, of that degree: 1: found; -1: not known; 0: none. at: s */
+int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at);
+bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at);
+/* of e - at: 1 above, -1 below; 0: not told apart */
+int  through_side(const struct through *t, int expression, mpq_srcptr at);
+bool through_follow(struct through *t);                      /* what has left its interval by a jump */
+void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off);
+void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
+
+/* ---- settling.c: friction and impacts ---- */
+
+void through_hold(struct through *t);                        /* states that the region gives */
+/* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
+bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
+bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
+int  through_order(struct through *t, const struct gate *gate);
+
+/* ---- begun.c ---- */
+
+bool through_place(struct through *t);                       /* the region of the start */
 
 #endif

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of a way through crossings: the first event of a piece, and what is behind it. */
+#include "step/through.h"
+
+#include <math.h>
+
+enum { AT_ONCE = 64 };              /* events at one instant, before they count as without end */
+
+/* ---- a piece that stays clear ---- */
+
+static void near_of(const struct through *t, const mpfi_t *x, struct near *room)
+{
+	for (int i = 0; i < t->n; i++) {
+		double low = mpfr_get_d(&x[i]->left, MPFR_RNDD), high = mpfr_get_d(&x[i]->right, MPFR_RNDU);
+		room->x[i] = low / 2 + high / 2;
+		room->off[i] = (high - low) * (1 + 1e-9) + 1e-13 * fabs(room->x[i]);
+	}
+}
+
+/* row . x, and by how much it is not known */
+static double value_near(int n, const double *row, const struct near *x, double *off)
+{
+	double sum = 0;
+	for (int i = 0; i < n; i++) {
+		sum += row[i] * x->x[i];
+		*off += fabs(row[i]) * x->off[i];
+	}
+	return sum;
+}
+
+/* A cubic lies within its Bezier points, and the gate is off it by its fourth derivative. */
+static bool is_clear(const struct through *t, const struct gate *g, const struct near *x, const struct near *y,
+		     const double *most, double tau)
+{
+	int n = t->n;
+	double off = 1e-13 * fabs(g->near_limit), bend = 0, slope = 0;
+	double from = value_near(n, g->near_row, x, &off), to = value_near(n, g->near_row, y, &off);
+	double leaves = value_near(n, g->near_slope, x, &slope) * tau / 3;
+	double arrives = value_near(n, g->near_slope, y, &slope) * tau / 3;
+	for (int i = 0; i < n; i++)
+		bend += g->fourth[i] * most[i];
+	off += slope * tau + bend * tau * tau * tau * tau / 384 * (1 + 1e-9);
+	return from + off < g->near_limit && to + off < g->near_limit && from + leaves + off < g->near_limit &&
+	       to - arrives + off < g->near_limit;
+}
+
+bool through_clear(struct through *t, const mpfi_t *y, double tau)
+{
+	const struct near *from = &t->near[0], *to = &t->near[1];
+	near_of(t, (const mpfi_t *)t->x, &t->near[0]);
+	near_of(t, y, &t->near[1]);
+	for (int i = 0; i < t->n; i++) {
+		t->most[i] = 0;
+		for (int j = 0; j < t->n; j++)
+			t->most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
+	}
+	for (int k = 0; k < t->at->gates; k++)
+		if (!t->resting[t->at->gate[k].expression] && !is_clear(t, &t->at->gate[k], from, to, t->most, tau))
+			return false;
+	return true;
+}
+
+/* ---- the first event of a piece ---- */
+
+static void add_room(struct through *t, int degree)
+{
+	if (degree < t->terms)
+		return;
+	ENLARGE(t->value, (size_t)degree + 1);
+	ENLARGE(t->slope, (size_t)degree + 1);
+	for (; t->terms <= degree; t->terms++) {
+		mpfi_init2(t->value[t->terms], t->precision);
+		mpfi_init2(t->slope[t->terms], t->precision);
+	}
+}
+
+/* The gate's polynomial in s, less its limit, and that of its slope */
+static void expand_gate(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau)
+{
+	add_room(t, degree);
+	for (int m = 0; m <= degree; m++) {
+		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->room.term[m], t->value[m]);
+		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->room.term[m], t->slope[m]);
+		mpfi_mul_q(t->slope[m], t->slope[m], tau);
+	}
+	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
+}
+
+/* Of an expression that was let go: its polynomial has its first coefficients 0, but that it was let go `fresh_off`
+ * away; it is divided by that power of s. */
+static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
+{
+	mpfi_t wide;
+	int rest = degree - t->order;
+	mpfi_init2(wide, t->precision);
+	for (int m = 0; m <= degree; m++) {
+		if (m < degree) {
+			mpfi_set_fr(wide, t->fresh_off);
+			mpfi_div_q(wide, wide, tau);
+			mpfi_mul(wide, wide, t->value[m + 1]);
+			mpfi_mul_ui(wide, wide, 2 * (unsigned long)(m + 1));
+			mpfi_mag(t->most_off, wide);
+			mpfi_increase(t->value[m], t->most_off);
+		}
+		if (m >= t->order)
+			mpfi_set(t->value[m - t->order], t->value[m]);
+	}
+	for (int m = 0; m <= rest; m++)
+		mpfi_set_ui(t->slope[m], 0);
+	for (int m = 1; m <= rest; m++)
+		mpfi_mul_ui(t->slope[m - 1], t->value[m], (unsigned long)m);
+	mpfi_clear(wide);
+	return rest;
+}
+
+/* 1: found; -1: not known; 0: none */
+int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
+{
+	mpfr_t end;
+	mpfi_t root;
+	int result = 0;
+	mpfr_init2(end, t->precision);
+	mpfi_init2(root, t->precision);
+	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
+	for (int k = 0; k < t->at->gates && result >= 0; k++) {
+		const struct gate *gate = &t->at->gate[k];
+		if (t->resting[gate->expression])
+			continue;
+		int terms = degree;
+		expand_gate(t, gate, degree, tau);
+		if (t->order > 0 && gate->expression == t->fresh && !gate->release && degree > t->order)
+			terms = divide_by_power(t, degree, tau);
+		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
+		if (rise == RISE_UNKNOWN) {
+			through_lost(t, gate, "it comes closer than is known");
+			result = -1;
+		} else if (rise == RISE_AT && mpfr_cmp_ui(&root->left, 1) <= 0) {
+			*found = gate;
+			mpfi_set(at, root);
+			result = 1;
+			mpfr_min(end, end, &root->right, MPFR_RNDU);
+		}
+	}
+	mpfr_clear(end);
+	mpfi_clear(root);
+	return result;
+}
+
+/* ---- an event ---- */
+
+static struct passed *new_passed(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
+{
+	ENLARGE(t->list, (size_t)t->passed + 1);
+	struct passed *p = &t->list[t->passed++];
+	*p = (struct passed){ .expression = expression, .breakpoint = breakpoint, .upward = upward };
+	mpfi_init2(p->at, t->precision);
+	mpfi_set_q(p->at, t->base);
+	mpfi_increase(p->at, off);
+	return p;
+}
+
+void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
+	mpfi_t slope;
+	mpfi_init2(slope, t->precision);
+	through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->x, slope);
+	p->speed = t->speed = fabs(mpfi_get_d(slope));
+	t->size = 0;
+	for (int i = 0; i < t->n; i++)
+		t->size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
+	p->size = t->size;
+	mpfi_clear(slope);
+}
+
+/* By an event that was noted, or by a load that jumps */
+void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
+{
+	struct passed *p = new_passed(t, expression, breakpoint, upward, off);
+	p->jumped = t->speed == 0;
+	p->speed = t->speed;
+	p->size = t->size;
+}
+
+/* How far from base + s tau the event may be [s], rounded up */
+static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off)
+{
+	mpfr_t other;
+	mpfr_init2(other, 64);
+	mpfr_sub(off, &at->right, s, MPFR_RNDU);
+	mpfr_sub(other, s, &at->left, MPFR_RNDU);
+	mpfr_max(off, off, other, MPFR_RNDU);
+	mpfr_mul_q(off, off, tau, MPFR_RNDU);
+	mpfr_clear(other);
+}
+
+/* What sticks and slips behind it */
+static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	through_hold(t);
+	if (!through_settle(t, gate, off))
+		return false;
+	t->order = through_order(t, gate);
+	t->fresh = gate->expression;
+	mpfr_set(t->fresh_off, off, MPFR_RNDU);
+	return true;
+}
+
+bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at)
+{
+	mpfr_t s, off;
+	mpq_t part;
+	const struct stream *before = t->at->flow;
+	mpfr_init2(s, t->precision);
+	mpfr_init2(off, 64);
+	mpq_init(part);
+	mpfi_mid(s, at);
+	if (mpfi_cmp_ui(at, 1) == 0)
+		mpfr_set_ui(s, 1, MPFR_RNDN);
+	if (mpfr_cmp_ui(&at->left, 0) <= 0)
+		mpfr_set_zero(s, 1);
+	width_of(at, s, tau, off);
+	stream_sum(before, &t->room, degree, s, t->x);
+	mpfr_get_q(part, s);
+	mpq_mul(part, part, tau);
+	mpq_add(t->base, t->base, part);
+	t->at_once = mpq_sgn(part) == 0 ? t->at_once + 1 : 0;
+	through_note(t, gate, off);
+	bool known;
+	if (gate->impact >= 0) {
+		mpfi_clear(t->list[--t->passed].at);    /* as what is struck it is noted again */
+		known = through_strike(t, gate, off);
+	} else {
+		through_enter(t, t->region + gate->leads);
+		known = stream_change(before, t->at->flow, off, t->x);
+		if (has_events(t->s))
+			known = known && settle(t, gate, off);
+	}
+	through_hold(t);
+	through_loads(t);
+	mpq_clear(part);
+	mpfr_clears(s, off, NULL);
+	if (!known)
+		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
+	return t->at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
+}
+
+/* ---- where expressions stand ---- */
+
+/* e - at, 1 above, -1 below; 0: not told apart */
+int through_side(const struct through *t, int expression, mpq_srcptr at)
+{
+	mpq_t *row = rationals((size_t)t->n);
+	mpfi_t value;
+	mpfi_init2(value, t->precision);
+	through_row(t, t->s->expression[expression].row, row);
+	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
+	mpfi_sub_q(value, value, at);
+	int side = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
+	mpfi_clear(value);
+	rationals_free(row, (size_t)t->n);
+	return side;
+}
+
+/* ---- jumps ---- */
+
+/* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
+bool through_follow(struct through *t)
+{
+	mpfr_t none;
+	mpfr_init2(none, 64);
+	mpfr_set_zero(none, 1);
+	for (int e = 0; e < t->s->expressions; e++) {
+		const struct expression *x = &t->s->expression[e];
+		for (int way = 1; way;) {
+			int interval = interval_of(t->s, t->region, e);
+			way = interval < x->breaks && through_side(t, e, x->at[interval]) > 0	  ? 1
+			      : interval > 0 && through_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
+			if (!way)
+				break;
+			through_note_plain(t, e, interval - (way < 0), way > 0, none);
+			through_enter(t, t->region + way * x->stride);
+		}
+	}
+	mpfr_clear(none);
+	return true;
+}
