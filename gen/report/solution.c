@@ -78,8 +78,8 @@ static bool print_passed(struct printing *p, const struct through *t)
 	int count = through_passed(t, &list);
 	for (; p->passed < count; p->passed++) {
 		const struct passed *now = &list[p->passed];
-		double when;
-		if (!round_enclosure(now->at, &when)) {
+		double when, latest = 0;
+		if (!round_value(now->at, &latest, &when)) {
 			p->why = format("a crossing at t = %.12g s is not known to all digits", mpfi_get_d(now->at));
 			return false;
 		}

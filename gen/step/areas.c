@@ -272,7 +272,7 @@ const char *through_time(mpq_srcptr time)
 
 bool through_lost(struct through *t, const struct gate *gate, const char *what)
 {
-	t->undecided = format("at t = %s s it is not known whether %s passes %s: %s", through_time(t->base),
+	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", through_time(t->base),
 			      spoken_expression(t->model, gate->expression),
 			      readable_text(t->s->expression[gate->expression].at[gate->breakpoint]), what);
 	return false;

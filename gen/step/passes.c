@@ -113,6 +113,11 @@ static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
 	return rest;
 }
 
+static bool is_fresh(const struct through *t, const struct gate *gate)
+{
+	return t->order > 0 && gate->expression == t->fresh && gate->upward == t->back && !gate->release;
+}
+
 /* 1: found; -1: not known; 0: none */
 int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
 {
@@ -128,7 +133,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 			continue;
 		int terms = degree;
 		expand_gate(t, gate, degree, tau);
-		if (t->order > 0 && gate->expression == t->fresh && !gate->release && degree > t->order)
+		if (is_fresh(t, gate) && degree > t->order)
 			terms = divide_by_power(t, degree, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
 		if (rise == RISE_UNKNOWN) {
@@ -202,6 +207,8 @@ static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 		return false;
 	t->order = through_order(t, gate);
 	t->fresh = gate->expression;
+	t->back = !gate->upward;
+	t->list[t->passed - 1].faint = t->order == 3;
 	mpfr_set(t->fresh_off, off, MPFR_RNDU);
 	return true;
 }
@@ -242,6 +249,8 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	mpfr_clears(s, off, NULL);
 	if (!known)
 		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
+	if (t->most_passed > 0 && t->passed >= t->most_passed)
+		return through_lost(t, gate, "that many crossings are not followed");
 	return t->at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
 }
 

@@ -169,23 +169,19 @@ static void note_change(struct through *t, const struct idle *idle, int count, i
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	struct idle idle[MOST_IDLE];
-	int count = find_idle(t, gate, idle), codes = 1, best = -1, least = 0;
+	int count = find_idle(t, gate, idle), codes = 1, best = -1;
 	if (count == 0)
 		return true;
 	for (int i = 0; i < count; i++)
 		codes *= 3;
-	for (int code = 0; code < codes; code++) {
-		int score, region = region_with(t, idle, count, code, &score);
-		if (best >= 0 && score >= least)
-			continue;
-		int agree = agrees(t, region, idle, count);
-		if (agree < 0)
-			return unknown(t, "what sticks and what slips");
-		if (agree > 0) {
-			best = region;
-			least = score;
+	for (int least = 0; best < 0 && least <= MOST_IDLE * (2 * MOST_IDLE + 1); least++)
+		for (int code = 0; code < codes && best < 0; code++) {
+			int score, region = region_with(t, idle, count, code, &score);
+			int agree = score == least ? agrees(t, region, idle, count) : 0;
+			if (agree < 0)
+				return unknown(t, "what sticks and what slips");
+			best = agree > 0 ? region : -1;
 		}
-	}
 	if (best < 0)
 		return unknown(t, "what sticks: no combination of what sticks and what slips agrees");
 	if (best == t->region)
@@ -226,6 +222,24 @@ static bool touches(const struct through *t, const struct impact *p)
 	       through_side(t, p->expression, p->at) == 0;
 }
 
+/* Whether a speed is 0 to half the digits of the largest: speeds that impacts have made equal */
+static bool is_none(const struct through *t, const mpq_t *row)
+{
+	mpfi_t value;
+	double most = 0, size = 0;
+	mpfi_init2(value, t->precision);
+	through_dot(t, row, (const mpfi_t *)t->x, value);
+	for (int i = t->system->n; i < t->layout.states; i++) {
+		most = fmax(most, fabs(mpfi_get_d(t->x[i])));
+		size += fabs(mpq_get_d(row[i]));
+	}
+	size = ldexp(size * most, -t->precision / 2);
+	bool none = fabs(mpfr_get_d(&value->left, MPFR_RNDA)) <= size &&
+		    fabs(mpfr_get_d(&value->right, MPFR_RNDA)) <= size;
+	mpfi_clear(value);
+	return none;
+}
+
 /* Whether it comes closer: 1, 0, -1: not known. What was struck without restitution, or rests, does not. */
 static int closes(const struct through *t, int k, unsigned struck)
 {
@@ -234,6 +248,8 @@ static int closes(const struct through *t, int k, unsigned struck)
 			    ((struck >> k & 1) && mpq_sgn(p->restitution) == 0);
 	mpq_t *row = row_of(t, p->speed_row);
 	int sign = sign_of(t, (const mpq_t *)row, NULL, &known);
+	if (!known && !still)
+		still = is_none(t, (const mpq_t *)row);
 	rationals_free(row, (size_t)t->n);
 	return known ? sign > 0 : still ? 0 : -1;
 }

@@ -215,6 +215,11 @@ const char *through_undecided(const struct through *t)
 	return t->undecided;
 }
 
+void through_limit(struct through *t, int most)
+{
+	t->most_passed = most;
+}
+
 int through_passed(const struct through *t, const struct passed **list)
 {
 	*list = t->list;

@@ -58,9 +58,10 @@ struct through {
 	int at_once;
 	/* an expression that was let go at base, but for so much [s]: it is 0 there with its first derivatives */
 	int fresh, order;           /* order 0: there is none */
+	bool back;                  /* which way it would come back */
 	mpfr_t fresh_off, most_off;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
-	int passed;
+	int passed, most_passed;    /* most: 0: any number */
 	struct passed *list;
 	const char *undecided;
 };
