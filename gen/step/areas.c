@@ -198,7 +198,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 	mpq_clear(zero);
 }
 
-/* Regions that cannot be are passed through where two expressions cross at once; then the equations stay those before */
+/* Regions that cannot be are passed through where two expressions cross at once; the equations stay those before. */
 struct area *through_area(struct through *t, int region)
 {
 	struct area *area = &t->area[region];

@@ -20,6 +20,23 @@ enum {
 	GROWTH = 8                  /* and grows by no more than that */
 };
 
+/* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
+void reference_start(int state, mpq_ptr value)
+{
+	int power = state < 20 ? state : 20;
+	mpq_set_ui(value, (1ul << power) + 1, 1ul << power);
+	mpq_div_2exp(value, value, 1);
+	if (state % 2)
+		mpq_neg(value, value);
+}
+
+double ulp_of(double value, bool single)
+{
+	int exponent;
+	frexp(value, &exponent);
+	return ldexp(1, exponent - (single ? 24 : 53));
+}
+
 /* The model on its way, all parts of it */
 struct ways {
 	const struct step *step;

@@ -104,7 +104,18 @@ static bool next_segment(struct through *t)
 		return true;
 	through_enter(t, t->region + regions_at_once(t->s));
 	t->speed = 0;
-	return through_follow(t);
+	if (!through_follow(t))
+		return false;
+	if (!has_events(t->s))
+		return true;
+	mpfr_t none;
+	mpfr_init2(none, 64);
+	mpfr_set_zero(none, 1);
+	through_hold(t);
+	bool known = through_settle(t, NULL, none);
+	through_hold(t);
+	mpfr_clear(none);
+	return known;
 }
 
 static bool changes_here(const struct through *t)

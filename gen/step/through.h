@@ -84,6 +84,9 @@ bool through_clear(struct through *t, const mpfi_t *y, double tau);    /* nothin
 /* In t->room, of that degree: 1: found; -1: not known; 0: none. at: s */
 int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at);
 bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at);
+
+/* ---- noted.c: the list of crossings, and where expressions stand ---- */
+
 /* of e - at: 1 above, -1 below; 0: not told apart */
 int  through_side(const struct through *t, int expression, mpq_srcptr at);
 bool through_follow(struct through *t);                      /* what has left its interval by a jump */
