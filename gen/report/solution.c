@@ -166,6 +166,9 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	check_outputs(model);
 	check_peaks_of(model);
 	unsigned long last = last_step(model, end);
+	if (model->switching && model->switching->sliders > 0)
+		error(model->asked.end_at, "plrun MODEL.spec steps it",
+		      "--solution does not go with friction of what has no mass");
 	if (model->switching) {
 		print_through(to, model, last);
 		return;

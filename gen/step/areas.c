@@ -116,7 +116,7 @@ static void add_gate(const struct through *t, struct area *area, struct gate gat
 static void add_ends(const struct through *t, struct area *area, int region, int expression)
 {
 	const struct expression *e = &t->s->expression[expression];
-	int interval = interval_of(t->s, region, expression);
+	int interval = interval_of(t->s, region, expression), segment = segment_of_region(t->s, region);
 	mpq_t limit;
 	mpq_init(limit);
 	for (int upward = 0; upward < 2; upward++) {
@@ -124,8 +124,8 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 		if (breakpoint < 0 || breakpoint == e->breaks)
 			continue;
 		mpq_t *row = rationals((size_t)t->n);
-		int leads = upward ? e->stride : -e->stride, impact = impact_at(t->s, expression, e->at[breakpoint], upward);
-		if (impact < 0 && impact_resting(t->s, expression, interval + (upward ? 1 : -1)) >= 0)
+		int leads = upward ? e->stride : -e->stride, impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
+		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
 		through_row(t, e->row, row);
 		mpq_set(limit, e->at[breakpoint]);
