@@ -13,9 +13,16 @@
 extern const pl_model plain_model, contacts_model;
 
 enum { SAMPLES = 501, STEPS = 20, LOOKED_AT = 1000000, APART = 101 };
-enum kind { FREE, STICKS, TO_STICK, EVENT, KINDS };
-static const char *const what[2][KINDS] = {{"clear", "", "", "one impact"},
-                                           {"slips", "sticks", "slip to stick", "stick to slip"}};
+enum kind { FREE, STICKS, TO_STICK, EVENT, CHANGE, KINDS };
+static const char *const what[2][KINDS] = {
+    {"clear", "", "", "one impact", "a change of the load"},
+    {"slips", "sticks", "slip to stick", "stick to slip", "a change of the load"}};
+
+#ifdef CHANGES /* the loads of the model change their formula */
+static int segment_of(const contacts *s) { return s->segment; }
+#else
+static int segment_of(const contacts *s) { return s == NULL; }
+#endif
 
 struct kept { int count; contacts from[STEPS]; };
 
@@ -23,6 +30,8 @@ struct kept { int count; contacts from[STEPS]; };
 static enum kind kind_of(const contacts *before, const contacts *after, int rubs)
 {
 	const int sticks = rubs && contacts_region(after) == 1;
+	if (segment_of(after) != segment_of(before))
+		return CHANGE;
 	if (contacts_crossed(after) == contacts_crossed(before))
 		return sticks ? STICKS : FREE;
 	return sticks ? TO_STICK : EVENT;
@@ -38,7 +47,7 @@ static void look(struct kept *kept, int rubs)
 		if (contacts_crossed(&s) > contacts_crossed(&before) + 1)
 			continue;
 		struct kept *of = &kept[kind_of(&before, &s, rubs)];
-		const int eventful = of == &kept[TO_STICK] || of == &kept[EVENT];
+		const int eventful = of != &kept[FREE] && of != &kept[STICKS];
 		if (of->count < STEPS && (eventful || k % APART == 0))
 			of->from[of->count++] = before;
 	}

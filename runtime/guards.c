@@ -234,7 +234,7 @@ static int impact_of(const pl_guards *m, int expression, int interval)
 static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, resting *found)
 {
     int count = 0, k;
-    real noise;
+    real noise = 0;
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         for (k = 1; k < w.breaks; k++) {

@@ -14,6 +14,7 @@
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     guards.c    the same with dry friction and jumps: events that each region has its own of
  *     retune.c    coefficients of a step from other params: NAME_retune
+ *     blocks.c    the same of one independent block of a large model
  *     rate.c      the rate of a load's phase from another frequency
  *     root.c      rough roots: the length of a step by its error
  *     dense.c     linear equations: Newton's method of implicit schemes
@@ -765,6 +766,65 @@ int pl_equationsf_at(const pl_equationsf *e, const float *params, pl_twof *value
 int pl_incrementf(int size, int states, const pl_twof *A, float tau, int words, pl_twof *D, pl_twof *work);
 int pl_rampf_cancels(int size, int states, const pl_twof *D, int column, float h);
 float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
+
+/* ---- blocks.c: coefficients of a large model, block by block -------------------------------------------------- */
+
+/* An entry of A in x' = A x */
+typedef struct pl_entry {
+    int row, column;
+    pl_two value;
+} pl_entry;
+
+/* A block that no state outside acts on: x is its states, the load states that act on it, the inputs that do. */
+typedef struct pl_block {
+    /* of its highest derivatives, then (in column 0) of frequencies of its loads; over its states, the load states in
+     * each segment of time, the inputs */
+    pl_equations equations;
+    int states, loads, inputs;    /* entries of x */
+    int segments;                 /* of time, in which loads have formulas of their own */
+    int derivatives;              /* the first rows of the equations, */
+    const unsigned short *row;    /* and which rows of A they are */
+    int entries;                  /* of A that no param changes */
+    const pl_entry *entry;
+    int turns;                    /* pairs of load states, cosine and sine, whose frequency params change: */
+    const unsigned short *turn;   /* its row of the equations, the place of the cosine in x */
+    int ramps;
+    const unsigned short *ramp;   /* columns of D of inputs that are ramps, u; the next is u' */
+} pl_block;
+
+/* D <- e^{A tau} - I, its first `states` rows, in each segment of time: pl_equations_at, pl_increment, and again in two
+ * words where a ramp's value before the step would else be lost; errors and results as theirs.
+ *     D     segments x states x size, size = states + loads + inputs
+ *     work  PL_BLOCK_WORK(rows, width, size) entries, rows and width those of the equations; monomials + 1 behind the
+ *           first rows x width + size x size, if that is more */
+int pl_block_increment(const pl_block *b, const double *params, double tau, pl_two *D, pl_two *work);
+
+#define PL_BLOCK_WORK(rows, width, size) ((rows) * (width) + (size) * (size) + PL_INCREMENT_WORK(size))
+
+/* x <- e^{A tau} x in a segment of time: its states; where there are several segments, all of it.  Infinite where the
+ * other would not return 0.  work: size x size entries more */
+void pl_block_advance(const pl_block *b, const double *params, int segment, double tau, double *x, pl_two *work);
+
+/* The same in floats. */
+typedef struct pl_entryf {
+    int row, column;
+    pl_twof value;
+} pl_entryf;
+
+typedef struct pl_blockf {
+    pl_equationsf equations;
+    int states, loads, inputs, segments, derivatives;
+    const unsigned short *row;
+    int entries;
+    const pl_entryf *entry;
+    int turns;
+    const unsigned short *turn;
+    int ramps;
+    const unsigned short *ramp;
+} pl_blockf;
+
+int  pl_blockf_increment(const pl_blockf *b, const float *params, float tau, pl_twof *D, pl_twof *work);
+void pl_blockf_advance(const pl_blockf *b, const float *params, int segment, float tau, float *x, pl_twof *work);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

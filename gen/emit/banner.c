@@ -272,8 +272,7 @@ static void banner_impacts(const struct emitter *e)
 		const struct impact *impact = &model->impact[i];
 		const char *text = text_between(impact->when->at, impact->when->end);
 		say(e, " *     impact %d: %s%s\n", i, printable(text),
-		    impact->bounces ? format(", a bounce of restitution %s", readable_text(impact->in->restitution))
-				    : "");
+		    impact->bounces ? format(", a bounce of restitution %s", restitution_text(model, impact)) : "");
 	}
 	if (model->impacts > 1)
 		say(e, " * Those of one instant act in this order, each from the state that the one before has "

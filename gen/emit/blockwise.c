@@ -40,7 +40,7 @@ void emit_block_list(const struct emitter *e)
 	const int blocks = count_blocks(e), states = e->system->states;
 	int *first = ARRAY(int, (size_t)blocks + 1), *state = ARRAY(int, (size_t)states), count = 0, block = 0;
 	const bool at = !e->model->switching && e->step->series.emitted && e->system->segments == 1;
-	if (!is_blockwise(e) || !(at || has_jump(e)))
+	if (!is_blockwise(e) || e->step->blocks || !(at || has_jump(e)))
 		return;
 	for (int k = 0; k < program->groups; k++)
 		for (int b = 0; b < program->group[k].blocks; b++) {

@@ -487,6 +487,16 @@ void emit_descriptor(const struct emitter *e);
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
 bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
 void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
+struct group_shape {                /* of its numbers, where they are a table or stand in the instance */
+	const char *name;           /* columns */
+	int rows, columns;
+	int changing;               /* rows of what it has in each segment of time beside them */
+};
+struct group_shape shape_of_group(const struct emitter *e, const struct group *g);
+void emit_group_numbers(const struct emitter *e, const struct group *g, bool changing);
+const char *group_note(const struct emitter *e, const struct group *g);
+/* Which row and column of its blocks a row of numbers of blocks alike is of; columns: states, loads, inputs */
+int  alike_entry(const struct emitter *e, const struct group *g, bool changing, int index, int *column);
 
 /* ---- blockwise.c: between steps, and many at once, of a large model block by block ---- */
 
@@ -630,6 +640,24 @@ void emit_clear_step(const struct emitter *e);                    /* states and 
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void banner_tuning(const struct emitter *e);
+void coefficient_member(const struct emitter *e, const char *text, const char *comment); /* of struct NAME_coeffs */
+void emit_monomials(const struct emitter *e);
+const char *two_words(struct coefficient number);                 /* {1.0, 0.0} */
+const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term); /* what it is, for a comment */
+const char *tap_factor(const struct emitter *e, int input, int tap, const char *row, int at); /* row: of D, a local */
+void emit_powers_of_h(const struct emitter *e);                   /* local power, where an input has further taps */
+void emit_frequency_check(const struct emitter *e);               /* below 0 it has no rate; `value`, `status` */
+void emit_take_loads(const struct emitter *e);                    /* phases and growths of a step to c */
+
+/* ---- emit_tuned_blocks.c: tunable params of a large step, which the instance has by independent blocks ---- */
+
+void banner_tuned_blocks(const struct emitter *e);
+void emit_block_members(const struct emitter *e);                 /* of struct NAME_coeffs */
+void emit_nominal_blocks(const struct emitter *e);
+void emit_blocks_retune(const struct emitter *e);
+void emit_blocks_pass(const struct emitter *e);
+bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
+const char *block_factor(const struct emitter *e, int row, const struct operand *operand);
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
 

@@ -37,6 +37,12 @@ static double group_number(const struct emitter *e, const struct group *g, int r
 	return factor->zero ? 0 : factor->value;
 }
 
+/* Where a group's numbers stand: in a table of the code, or in the instance's coefficients */
+static const char *group_table(const struct emitter *e, const struct group *g, const char *what, int index)
+{
+	return g->tuned ? format("s->coeffs.%s%d", what, index) : spell(e, "$n_%s%d", what, index);
+}
+
 static const char *matrix_name(const struct emitter *e)
 {
 	return e->step->program->products_added ? "Phi - I" : "Phi";
@@ -62,7 +68,7 @@ static void fill_column(const struct emitter *e, const struct group *g, const st
 		value[i] = group_number(e, g, i, 0, operand, segment);
 }
 
-static void emit_column_table(const struct emitter *e, const struct group *g, int index)
+static void emit_column_numbers(const struct emitter *e, const struct group *g)
 {
 	const int rows = padded(g->states, ROW_MULTIPLE), first = changes(e, g) ? g->loads : 0;
 	const int operands = g->states + acting(g) - first, columns = padded(operands, COLUMNS_AT_ONCE);
@@ -77,22 +83,20 @@ static void emit_column_table(const struct emitter *e, const struct group *g, in
 		if (k < operands)
 			fill_column(e, g, &operand, 0, &value[k * rows]);
 	}
-	say(e, "\n"
-	       "/* %s by columns%s, each padded to %d rows */\n"
-	       "static const double $n_columns%d[%d][%d] = {\n",
-	    matrix_name(e), acting(g) > first ? ", then those of what acts on it" : "", rows, index, columns, rows);
 	emit_number_rows(e, columns, rows, value, note);
-	say(e, "};\n");
 }
 
-static void emit_changing_columns(const struct emitter *e, const struct group *g, int index)
+static const char *column_note(const struct emitter *e, const struct group *g)
+{
+	return format("%s by columns%s, each padded to %d rows", matrix_name(e),
+		      acting(g) > (changes(e, g) ? g->loads : 0) ? ", then those of what acts on it" : "",
+		      padded(g->states, ROW_MULTIPLE));
+}
+
+static void emit_changing_columns(const struct emitter *e, const struct group *g)
 {
 	const int rows = padded(g->states, ROW_MULTIPLE), columns = padded(g->loads, COLUMNS_AT_ONCE);
 	const char **note = ARRAY(const char *, (size_t)columns);
-	say(e, "\n"
-	       "/* The columns of its loads, in each segment of time */\n"
-	       "static const double $n_loads%d[%d][%d][%d] = {\n",
-	    index, e->system->segments, columns, rows);
 	for (int s = 0; s < e->system->segments; s++) {
 		double *value = ARRAY(double, (size_t)(rows * columns));
 		for (int k = 0; k < columns; k++) {
@@ -105,7 +109,6 @@ static void emit_changing_columns(const struct emitter *e, const struct group *g
 		emit_number_rows(e, columns, rows, value, note);
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
 }
 
 /* z += table times x */
@@ -172,8 +175,8 @@ static void emit_columns_function(const struct emitter *e, const struct group *g
 	emit_parameters(e, g, "columns", index);
 	say(e, "    double x[%d], z[%d];\n", columns, rows);
 	if (loads)
-		say(e, "    const double (*const changing)[%d] = $n_loads%d[s->segment];\n"
-		       "    double load[%d];\n", rows, index, loads);
+		say(e, "    const double (*const changing)[%d] = %s[s->segment];\n"
+		       "    double load[%d];\n", rows, group_table(e, g, "loads", index), loads);
 	say(e, "    int i, j;\n"
 	       "    for (i = 0; i < %d; i++)\n"
 	       "        x[i] = s->y[%s];\n",
@@ -183,7 +186,7 @@ static void emit_columns_function(const struct emitter *e, const struct group *g
 	say(e, "    for (i = 0; i < %d; i++)\n"
 	       "        z[i] = 0.0;\n",
 	    rows);
-	emit_column_sums(e, spell(e, "$n_columns%d", index), "x", rows, columns);
+	emit_column_sums(e, group_table(e, g, "columns", index), "x", rows, columns);
 	if (loads)
 		emit_column_sums(e, "changing", "load", rows, loads);
 	say(e, "    for (i = 0; i < %d; i++)\n"
@@ -239,31 +242,23 @@ static void emit_alike_rows(const struct emitter *e, const struct group *g, int 
 	emit_number_rows(e, terms, g->blocks, value, note);
 }
 
-static void emit_alike_tables(const struct emitter *e, const struct group *g, int index)
+static int count_alike_terms(const struct emitter *e, const struct group *g, bool changing)
 {
 	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states * (g->states + acting(g))));
-	int terms = all_terms(e, g, false, term);
-	if (terms) {
-		say(e, "\n"
-		       "/* %s of %d independent blocks alike: each term of theirs, block by block */\n"
-		       "static const double $n_alike%d[%d][%d] = {\n",
-		    matrix_name(e), g->blocks, index, terms, g->blocks);
+	return all_terms(e, g, changing, term);
+}
+
+static void emit_alike_numbers(const struct emitter *e, const struct group *g, bool changing)
+{
+	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states * (g->states + acting(g))));
+	const int terms = all_terms(e, g, changing, term);
+	if (!changing)
 		emit_alike_rows(e, g, terms, term, 0);
-		say(e, "};\n");
-	}
-	terms = all_terms(e, g, true, term);
-	if (!terms)
-		return;
-	say(e, "\n"
-	       "/* What their loads add, in each segment of time */\n"
-	       "static const double $n_loads%d[%d][%d][%d] = {\n",
-	    index, e->system->segments, terms, g->blocks);
-	for (int s = 0; s < e->system->segments; s++) {
+	for (int s = 0; s < e->system->segments && changing; s++) {
 		say(e, "  {\n");
 		emit_alike_rows(e, g, terms, term, s);
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
 }
 
 /* Of a row, from one block to the next; 0: at no constant distance */
@@ -292,8 +287,9 @@ static const char *alike_row(const struct emitter *e, const struct group *g, int
 	for (int changing = 0; changing < 2; changing++) {
 		const int here = alike_terms(e, g, row, changing, term);
 		for (int k = 0; k < here; k++) {
+			const char *table = group_table(e, g, "alike", index);
 			const char *factor = changing ? format("changing[%d][i]", count[1]++)
-						      : spell(e, "$n_alike%d[%d][i]", index, count[0]++);
+						      : format("%s[%d][i]", table, count[0]++);
 			text[terms++] = format("%s * %s%d", factor, term[k].acting < 0 ? "y" : "act",
 					       term[k].acting < 0 ? term[k].operand.index : term[k].acting);
 		}
@@ -307,7 +303,8 @@ static void emit_alike_function(const struct emitter *e, const struct group *g, 
 	const bool added = e->step->program->products_added;
 	emit_parameters(e, g, "alike", index);
 	if (changes(e, g))
-		say(e, "    const double (*const changing)[%d] = $n_loads%d[s->segment];\n", g->blocks, index);
+		say(e, "    const double (*const changing)[%d] = %s[s->segment];\n", g->blocks,
+		    group_table(e, g, "loads", index));
 	for (int k = 0; k < acting(g); k++)
 		say(e, "    const double act%d = act[%d];\n", k, k);
 	say(e, "    int i;\n"
@@ -327,34 +324,128 @@ static void emit_alike_function(const struct emitter *e, const struct group *g, 
 	       "}\n");
 }
 
+/* ---- the numbers of a group ---- */
+
+/* Of a row in the instance: states, load states in each segment of time, inputs */
+static int row_width(const struct emitter *e, const struct group *g)
+{
+	return g->states + e->system->segments * g->loads + g->inputs;
+}
+
+struct group_shape shape_of_group(const struct emitter *e, const struct group *g)
+{
+	const bool changing = changes(e, g);
+	const int first = changing ? g->loads : 0, rows = padded(g->states, ROW_MULTIPLE);
+	if (g->kind == GROUP_ROWS)
+		return (struct group_shape){ "rows", g->states, row_width(e, g), 0 };
+	if (g->kind == GROUP_COLUMNS)
+		return (struct group_shape){ "columns", padded(g->states + acting(g) - first, COLUMNS_AT_ONCE), rows,
+					     changing ? padded(g->loads, COLUMNS_AT_ONCE) : 0 };
+	return (struct group_shape){ "alike", count_alike_terms(e, g, false), g->blocks,
+				     changing ? count_alike_terms(e, g, true) : 0 };
+}
+
+static void emit_row_numbers(const struct emitter *e, const struct group *g)
+{
+	const int width = row_width(e, g), segments = e->system->segments;
+	double *value = ARRAY(double, (size_t)(g->states * width)), *to = value;
+	const char **note = ARRAY(const char *, (size_t)g->states);
+	for (int i = 0; i < g->states; i++) {
+		note[i] = e->model->state_name[g->state[i]];
+		for (int j = 0; j < g->states; j++)
+			*to++ = group_number(e, g, i, 0, &(struct operand){ OPERAND_STATE, j }, 0);
+		for (int s = 0; s < segments; s++)
+			for (int k = 0; k < g->loads; k++)
+				*to++ = group_number(e, g, i, 0, &(struct operand){ OPERAND_LOAD, g->load[k] }, s);
+		for (int k = 0; k < g->inputs; k++)
+			*to++ = group_number(e, g, i, 0, &(struct operand){ OPERAND_INPUT, g->input[k] }, 0);
+	}
+	emit_number_rows(e, g->states, width, value, note);
+}
+
+void emit_group_numbers(const struct emitter *e, const struct group *g, bool changing)
+{
+	if (g->kind == GROUP_ROWS)
+		emit_row_numbers(e, g);
+	else if (g->kind == GROUP_ALIKE)
+		emit_alike_numbers(e, g, changing);
+	else if (changing)
+		emit_changing_columns(e, g);
+	else
+		emit_column_numbers(e, g);
+}
+
+const char *group_note(const struct emitter *e, const struct group *g)
+{
+	if (g->kind == GROUP_ROWS)
+		return format("%s%s of a block", matrix_name(e), acting(g) ? ", then what acts on it:" : "");
+	return g->kind == GROUP_COLUMNS
+		       ? column_note(e, g)
+		       : format("%s of %d independent blocks alike: each term of theirs, block by block",
+				matrix_name(e), g->blocks);
+}
+
+int alike_entry(const struct emitter *e, const struct group *g, bool changing, int index, int *column)
+{
+	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states * (g->states + acting(g))));
+	all_terms(e, g, changing, term);
+	*column = term[index].acting < 0 ? term[index].operand.index : g->states + term[index].acting;
+	return term[index].row;
+}
+
+static void emit_tables_of_group(const struct emitter *e, const struct group *g, int index)
+{
+	const struct group_shape shape = shape_of_group(e, g);
+	if (shape.rows) {
+		say(e, "\n"
+		       "/* %s */\n"
+		       "static const double $n_%s%d[%d][%d] = {\n",
+		    group_note(e, g), shape.name, index, shape.rows, shape.columns);
+		emit_group_numbers(e, g, false);
+		say(e, "};\n");
+	}
+	if (!shape.changing)
+		return;
+	say(e, "\n"
+	       "/* %s, in each segment of time */\n"
+	       "static const double $n_loads%d[%d][%d][%d] = {\n",
+	    g->kind == GROUP_ALIKE ? "What their loads add" : "The columns of its loads", index, e->system->segments,
+	    shape.changing, shape.columns);
+	emit_group_numbers(e, g, true);
+	say(e, "};\n");
+}
+
 /* ---- the whole ---- */
+
+static bool needs_places(const struct group *g)
+{
+	if (g->kind == GROUP_COLUMNS)
+		return !in_a_row(g);
+	for (int row = 0; row < g->states; row++)
+		if (stride_of(g, row) == 0)
+			return true;
+	return false;
+}
 
 static void emit_group(const struct emitter *e, const struct group *g, int index)
 {
-	if (g->kind == GROUP_COLUMNS) {
-		if (!in_a_row(g))
-			emit_places(e, g, index);
-		emit_column_table(e, g, index);
-		if (changes(e, g))
-			emit_changing_columns(e, g, index);
+	if (g->kind == GROUP_ROWS)
+		return;
+	if (needs_places(g))
+		emit_places(e, g, index);
+	if (!g->tuned)
+		emit_tables_of_group(e, g, index);
+	if (g->kind == GROUP_COLUMNS)
 		emit_columns_function(e, g, index);
-	}
-	if (g->kind == GROUP_ALIKE) {
-		for (int row = 0, told = 0; row < g->states && !told; row++) {
-			told = stride_of(g, row) == 0;
-			if (told)
-				emit_places(e, g, index);
-		}
-		emit_alike_tables(e, g, index);
+	else
 		emit_alike_function(e, g, index);
-	}
 }
 
 bool rows_read_changing_loads(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	for (int k = 0; k < program->groups; k++)
-		if (program->group[k].kind == GROUP_ROWS && changes(e, &program->group[k]))
+		if (program->group[k].kind == GROUP_ROWS && !program->group[k].tuned && changes(e, &program->group[k]))
 			return true;
 	return false;
 }

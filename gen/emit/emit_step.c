@@ -37,7 +37,7 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
 	const char *operand = operand_text(e, &p->operand);
-	bool tuned = e->step->program->tuned;
+	bool tuned = has_own_factors(e, a->target);
 	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
 	if (turned >= 0)
 		return format("turned[%d] * %s", turned, operand);

@@ -39,6 +39,10 @@ static const char *column_list(const struct emitter *e)
 
 void banner_tuning(const struct emitter *e)
 {
+	if (e->step->blocks) {
+		banner_tuned_blocks(e);
+		return;
+	}
 	say(e, " * Tunable: %s. $n_retune computes the factors of a step from other values and another h on the target;"
 	       " of the spec's\n"
 	       " * values they are these, correctly rounded. It needs some %d KB of stack.\n", param_list(e),
@@ -46,7 +50,7 @@ void banner_tuning(const struct emitter *e)
 }
 
 /* A member, its comment at a common column */
-static void member(const struct emitter *e, const char *text, const char *comment)
+void coefficient_member(const struct emitter *e, const char *text, const char *comment)
 {
 	if (*comment)
 		say(e, "    %-38s /* %s */\n", text, comment);
@@ -63,11 +67,11 @@ static const char *ramp_note(const struct emitter *e, const char *what)
 static void load_members(const struct emitter *e)
 {
 	if (e->phases)
-		member(e, format("pl_turn phase_step[%d];", e->phases), "of the loads, in one step");
+		coefficient_member(e, format("pl_turn phase_step[%d];", e->phases), "of the loads, in one step");
 	if (e->model->tuning->frequencies)
-		member(e, format("pl_rate phase_rate[%d];", e->phases), "in turns per second");
+		coefficient_member(e, format("pl_rate phase_rate[%d];", e->phases), "in turns per second");
 	if (e->growths)
-		member(e, format("pl_growth growth_step[%d];", e->growths),
+		coefficient_member(e, format("pl_growth growth_step[%d];", e->growths),
 		       e->phases ? "" : "of the loads, in one step");
 }
 
@@ -80,13 +84,16 @@ void emit_coefficient_struct(const struct emitter *e)
 	       "/* z = %s%s */\n"
 	       "struct $n_coeffs {\n", e->model->tuning->params, param_list(e), column_list(e),
 	    ramp_note(e, "its value before the step, then after it"));
-	member(e, "double h;", "[s]");
+	coefficient_member(e, "double h;", "[s]");
 	if (e->system->segments > 1)
-		member(e, "double h_low;", "of the spec's step: what h leaves out; else 0");
-	member(e, format("double params[%s_PARAMS];", e->upper), param_list(e));
-	member(e, step, e->step->form == FORM_DELTA ? "y += step z" : "y = step z");
+		coefficient_member(e, "double h_low;", "of the spec's step: what h leaves out; else 0");
+	coefficient_member(e, format("double params[%s_PARAMS];", e->upper), param_list(e));
+	if (e->step->blocks)
+		emit_block_members(e);
+	else
+		coefficient_member(e, step, e->step->form == FORM_DELTA ? "y += step z" : "y = step z");
 	if (tuned_outputs(e))
-		member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
+		coefficient_member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
 		       format("out z, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
 	emit_peak_coefficients(e);
 	load_members(e);
@@ -95,9 +102,11 @@ void emit_coefficient_struct(const struct emitter *e)
 
 void emit_tuning_declarations(const struct emitter *e)
 {
-	say(e, "\n/* Computes c anew from params (%s) and h [s]. 0, or c is as it was and\n"
-	       " *     PL_NO_STEP     h is not above 0\n"
-	       " *     PL_SINGULAR    the mass matrix has no inverse, or a divisor is 0\n", param_list(e));
+	const bool one = e->step->blocks && !e->step->blocks->whole;
+	say(e, "\n/* Computes c anew from params (%s) and h [s]%s. 0, or c is as it was and\n"
+	       " *     PL_NO_STEP     h is not %s\n"
+	       " *     PL_SINGULAR    the mass matrix has no inverse, or a divisor is 0\n", param_list(e),
+	    one ? ", the spec's" : "", one ? spell(e, "$N_H") : "above 0");
 	if (e->model->tuning->frequencies)
 		say(e, " *     PL_NO_RATE     a frequency of a load is below 0\n");
 	say(e, " *     PL_NOT_FINITE  a number of it is infinite, or not a number\n"
@@ -145,9 +154,13 @@ void emit_nominal(const struct emitter *e)
 		say(e, "%s,\n"
 		       "    ", low_text(e->model->h));
 	emit_nominal_params(e);
-	say(e, "    {\n");
-	emit_number_rows(e, e->system->states, step_columns(e), nominal_step(e->step), e->model->state_name);
-	say(e, "    },\n");
+	if (e->step->blocks) {
+		emit_nominal_blocks(e);
+	} else {
+		say(e, "    {\n");
+		emit_number_rows(e, e->system->states, step_columns(e), nominal_step(e->step), e->model->state_name);
+		say(e, "    },\n");
+	}
 	if (tuned_outputs(e))
 		emit_nominal_outputs(e);
 	emit_nominal_peaks(e);
@@ -174,7 +187,7 @@ static const char *monomial_text(const struct tuning *t, int number)
 	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
 }
 
-static void emit_monomials(const struct emitter *e)
+void emit_monomials(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	if (t->monomials == 0)
@@ -211,7 +224,7 @@ static const char *product_text(const struct tuning *t, const struct tuned_term 
 	return minus ? format("-%s", product) : format("%s*%s", factor, product);
 }
 
-static const char *term_note(const struct emitter *e, const struct tuned_term *term)
+const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term)
 {
 	const struct tuning *t = e->model->tuning;
 	bool left = term->column >= t->x.size;
@@ -224,7 +237,7 @@ static const char *term_note(const struct emitter *e, const struct tuned_term *t
 	return format("%s: %s %s", where, product_text(t, term), of);
 }
 
-static const char *two_words(struct coefficient number)
+const char *two_words(struct coefficient number)
 {
 	return format("{%s, %s}", shortest(number.value), shortest(number.low));
 }
@@ -236,7 +249,7 @@ static void emit_equations(const struct emitter *e)
 	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n", t->terms);
 	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
 		say(e, "    {%d, %d, %d, %s},  /* %s */\n", term->row, term->column, term->monomial,
-		    two_words(equation_number(e->model, term->factor)), term_note(e, term));
+		    two_words(equation_number(e->model, term->factor)), tuned_term_note(e, term));
 	say(e, "};\n"
 	       "\n"
 	       "/* The highest derivatives%s, over x%s */\n", tuned_outputs(e) ? " and outputs" : "",
@@ -323,30 +336,26 @@ static void emit_slopes(const struct emitter *e)
 
 /* ---- retune, use ---- */
 
-/* Of an input that goes through further taps: D's columns of its derivatives, by what each tap gives these */
-static void emit_tap_factors(const struct emitter *e, int input, const char *D, int at, int column)
+/* Of an input that goes through further taps: what D's columns of its derivatives, from `at` on, make of a tap */
+const char *tap_factor(const struct emitter *e, int input, int tap, const char *row, int at)
 {
-	int hold = e->system->input[input].hold;
+	int hold = e->system->input[input].hold, terms = 0;
 	const char **term = ARRAY(const char *, (size_t)hold + 1);
 	mpq_t weight, one;
 	mpq_inits(weight, one, NULL);
 	mpq_set_ui(one, 1, 1);
-	for (int c = 0; c <= hold; c++) {
-		int terms = 0;
-		for (int m = 0; m <= hold; m++) {
-			tap_derivative(hold, m, c, one, weight);
-			const char *entry = m ? format("%s[i][%d].hi / power[%d]", D, at + m, m - 1)
-					      : format("%s[i][%d].hi", D, at);
-			if (mpq_sgn(weight) != 0)
-				term[terms++] = scaled(round_rational(weight), entry);
-		}
-		say(e, "        c->step[i][%d] = %s;\n", column + c, tree(terms, term, 27));
+	for (int m = 0; m <= hold; m++) {
+		tap_derivative(hold, m, tap, one, weight);
+		const char *entry = m ? format("%s[%d].hi / power[%d]", row, at + m, m - 1)
+				      : format("%s[%d].hi", row, at);
+		if (mpq_sgn(weight) != 0)
+			term[terms++] = scaled(round_rational(weight), entry);
 	}
 	mpq_clears(weight, one, NULL);
+	return tree(terms, term, 27);
 }
 
-/* Powers of h that these are divided by */
-static void emit_powers_of_h(const struct emitter *e)
+void emit_powers_of_h(const struct emitter *e)
 {
 	int most = most_taps_before(e);
 	if (!most)
@@ -364,8 +373,9 @@ static void emit_input_factors(const struct emitter *e, const char *D)
 	for (int i = 0; i < e->system->inputs; i++) {
 		int at = e->step->layout.input[i];
 		if (e->system->input[i].hold > 1) {
-			emit_tap_factors(e, i, D, at, column);
-			column += e->system->input[i].hold + 1;
+			for (int c = 0; c <= e->system->input[i].hold; c++)
+				say(e, "        c->step[i][%d] = %s;\n", column++,
+				    tap_factor(e, i, c, format("%s[i]", D), at));
 		} else if (e->system->input[i].hold) {
 			say(e, "        c->step[i][%d] = pl_ramp_before(%s[i][%d], %s[i][%d], h);\n"
 			       "        c->step[i][%d] = %s[i][%d].hi / h;\n", column, D, at, D, at + 1, column + 1, D,
@@ -402,11 +412,17 @@ static void emit_take_factors(const struct emitter *e)
 		    e->model->n);
 }
 
-static void emit_take_loads(const struct emitter *e)
+/* The row of `value` with a load's frequency; -1: no param changes it */
+static int frequency_row(const struct emitter *e, int load)
+{
+	return (e->step->blocks ? e->step->blocks->frequency : e->model->tuning->frequency)[load];
+}
+
+void emit_take_loads(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	for (int l = 0; l < e->system->loads && t->frequencies; l++) {
-		int phase = e->phase[l], row = t->frequency[l];
+		int phase = e->phase[l], row = frequency_row(e, l);
 		if (phase >= 0 && row >= 0)
 			say(e, "    c->phase_rate[%d] = pl_rate_of(value[%d][0]);\n", phase, row);
 		else if (phase >= 0)
@@ -439,14 +455,12 @@ static void emit_increment(const struct emitter *e, const char *D)
 		       "            status = pl_increment(%d, $N_STATES, A[0], h, 2, %s, work);\n", cancels, size, D);
 }
 
-/* A frequency below 0 has no rate. */
-static void emit_frequency_check(const struct emitter *e)
+void emit_frequency_check(const struct emitter *e)
 {
-	const int *frequency = e->model->tuning->frequency;
 	const char *below = "";
 	for (int l = 0; l < e->system->loads; l++)
-		if (frequency[l] >= 0)
-			below = format("%s%svalue[%d][0].hi < 0.0", below, *below ? " || " : "", frequency[l]);
+		if (frequency_row(e, l) >= 0)
+			below = format("%s%svalue[%d][0].hi < 0.0", below, *below ? " || " : "", frequency_row(e, l));
 	if (*below)
 		say(e, "    if (status == 0 && (%s))\n"
 		       "        return PL_NO_RATE;\n", below);
@@ -562,9 +576,13 @@ static void emit_tuned_pass(const struct emitter *e)
 
 void emit_retune(const struct emitter *e)
 {
-	emit_equations(e);
-	emit_slopes(e);
-	emit_retune_function(e);
+	if (e->step->blocks) {
+		emit_blocks_retune(e);
+	} else {
+		emit_equations(e);
+		emit_slopes(e);
+		emit_retune_function(e);
+	}
 	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
 	       "{\n"
 	       "    if (c->h != s->coeffs.h) {\n"
@@ -573,7 +591,10 @@ void emit_retune(const struct emitter *e)
 	       "    }\n"
 	       "    s->coeffs = *c;\n"
 	       "}\n");
-	emit_tuned_pass(e);
+	if (!e->step->blocks)
+		emit_tuned_pass(e);
+	else if (e->step->series.emitted)
+		emit_blocks_pass(e);
 }
 
 void emit_tuned_at(const struct emitter *e)

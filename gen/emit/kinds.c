@@ -72,6 +72,12 @@ static const struct kind linear = {
 
 /* ---- tuned: a linear step whose factors the instance has ---- */
 
+static const char *far_block(const struct step *step)
+{
+	return step->series.emitted ? NULL : format("an independent block has more than %d states, load states and inputs",
+						     LIMIT_TUNED_BLOCK);
+}
+
 static bool any_load(const struct emitter *e, int load)
 {
 	(void)e;
@@ -100,7 +106,7 @@ static const struct kind tuned = {
 	.step_note = "",
 	.banner_more = banner_tuning,
 	.no_jump = "retuned coefficients have one word",
-	.no_at = far_pole,
+	.no_at = far_block,
 	.constants = nothing,
 	.types = emit_coefficient_struct,
 	.coefficients = emit_own_coefficients,

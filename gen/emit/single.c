@@ -24,6 +24,8 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false },
 	{ "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false },
 	{ "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },
+	{ "pl_entry", "pl_entry", false }, { "pl_block", "pl_block", false },
+	{ "pl_block_increment", "pl_block", false }, { "pl_block_advance", "pl_block", false },
 	{ "pl_impact", "pl_impact", false },
 	{ "pl_guards", "pl_guards", false }, { "pl_guards_start", "pl_guards", false },
 	{ "pl_guards_step", "pl_guards", false }, { "pl_guards_advance", "pl_guards", false },

@@ -14,6 +14,8 @@ static const char *tuned_entry(const struct emitter *e, const char *table, int r
 
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand)
 {
+	if (e->step->blocks)
+		return block_factor(e, row, operand);
 	int states = e->system->states, loads = e->model->tuning->x.loads;
 	const int first[] = { [OPERAND_STATE] = 0, [OPERAND_LOAD] = states, [OPERAND_INPUT] = states + loads };
 	return tuned_entry(e, "step", row, first[operand->kind] + operand->index);

@@ -39,6 +39,16 @@ bool has_bounces(const struct model *model)
 	return any;
 }
 
+const char *restitution_text(const struct model *model, const struct impact *impact)
+{
+	const char *text = readable_text(impact->in->restitution);
+	for (int s = 1; s < model->system.segments; s++)
+		if (!mpq_equal(impact->in[s].restitution, impact->in[s - 1].restitution))
+			text = format("%s, from t = %s on %s", text, readable_text(model->system.change[s - 1]),
+				      readable_text(impact->in[s].restitution));
+	return text;
+}
+
 bool has_events(const struct switching *s)
 {
 	return rubs(s) || s->impacts > 0;

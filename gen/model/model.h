@@ -592,6 +592,7 @@ int  impact_resting(const struct switching *s, int segment, int expression, int 
 /* the interval in which it rests; -1: it is no bounce */
 int  rest_of(const struct switching *s, int segment, const struct impact *impact);
 bool has_bounces(const struct model *model);
+const char *restitution_text(const struct model *model, const struct impact *impact); /* of a bounce, at all times */
 bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 

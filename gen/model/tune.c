@@ -98,9 +98,6 @@ static void check_kind(const struct model *model)
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
 	if (model->switching && has_events(model->switching))
 		error(at, NULL, "a model with friction or impacts cannot be retuned yet");
-	if (model->system.states > LIMIT_UNROLLED_STATES)
-		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
-		      model->system.states);
 }
 
 /* ---- the model at other values ---- */
@@ -112,8 +109,11 @@ struct search {
 	struct model *found;
 	mpq_t *values;
 	int points;                 /* looked at so far */
-	mpq_t **point, **seen;      /* params; entries there */
-	int entries;
+	mpq_t **point;              /* params */
+	mpq_ptr **seen;             /* entries there, NULL: 0; of the first points all, of others those that change */
+	mpq_t zero;
+	ptrdiff_t entries, changing;
+	ptrdiff_t *place;           /* per entry: which of those that change; -1: it does not. NULL: not known yet */
 	const bool *wanted;         /* outputs, in the raw equations */
 };
 
@@ -153,6 +153,9 @@ static bool same_shape(const struct model *model, const struct model *other)
 	return true;
 }
 
+/* Points of which all entries are kept: what is the same at all of them does not change. */
+enum { WHOLE_POINTS = FIT_POINTS + 1 };
+
 /* Entries of one point: W^-1 R of all rows, then [R | W], then the frequencies of the loads. Rows: the coordinates,
  * then the outputs. */
 static int all_rows(const struct search *s)
@@ -165,19 +168,43 @@ static int all_columns(const struct search *s)
 	return s->tuning->x.size + all_rows(s);
 }
 
+static ptrdiff_t solved_index(const struct search *s, int row, int column)
+{
+	return (ptrdiff_t)row * s->tuning->x.size + column;
+}
+
+static ptrdiff_t raw_index(const struct search *s, int row, int column)
+{
+	return solved_index(s, all_rows(s), 0) + (ptrdiff_t)row * all_columns(s) + column;
+}
+
+static ptrdiff_t frequency_index(const struct search *s, int load)
+{
+	return raw_index(s, all_rows(s), 0) + load;
+}
+
 static mpq_t *solved_entry(const struct search *s, mpq_t *entry, int row, int column)
 {
-	return &entry[row * s->tuning->x.size + column];
+	return &entry[solved_index(s, row, column)];
 }
 
 static mpq_t *raw_entry(const struct search *s, mpq_t *entry, int row, int column)
 {
-	return &entry[all_rows(s) * s->tuning->x.size + row * all_columns(s) + column];
+	return &entry[raw_index(s, row, column)];
 }
 
-static mpq_t *frequency_entry(const struct search *s, mpq_t *entry, int load)
+/* An entry at a point that was looked at */
+static mpq_srcptr seen_at(const struct search *s, int point, ptrdiff_t index)
 {
-	return &entry[all_rows(s) * (s->tuning->x.size + all_columns(s)) + load];
+	const bool all = point < WHOLE_POINTS;
+	mpq_srcptr entry = all ? s->seen[point][index]
+			   : s->place[index] < 0 ? s->seen[0][index] : s->seen[point][s->place[index]];
+	return entry ? entry : s->zero;
+}
+
+static bool stays(const struct search *s, ptrdiff_t index)
+{
+	return s->place[index] < 0;
 }
 
 /* Calls take(context, column, force) for what acts on the equations, in the order of the columns behind the states */
@@ -212,6 +239,7 @@ static void read_force(void *context, int column, const mpq_t *force)
 		mpq_set(*raw_entry(r->search, r->entry, i, column), force[i]);
 		mpq_set(*solved_entry(r->search, r->entry, i, column), product[i]);
 	}
+	rationals_free(product, (size_t)n);
 }
 
 /* W highest = -(K q + C v) + forces, and the same solved */
@@ -235,6 +263,8 @@ static void read_equations(struct reading *r)
 				(system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
 	}
 	each_force(system, read_force, r);
+	rationals_free(inverse, (size_t)(n * n));
+	rationals_free(highest, (size_t)(n * states));
 }
 
 /* The whole row of an output over the columns */
@@ -291,8 +321,47 @@ static mpq_t *read_entries(const struct search *s, const struct model *model)
 		part_output_row(&r, model->n + o, &model->output[o]);
 	}
 	for (int l = 0; l < model->system.loads; l++)
-		mpq_set(*frequency_entry(s, r.entry, l), model->system.load[l].wave->w);
+		mpq_set(r.entry[frequency_index(s, l)], model->system.load[l].wave->w);
 	return r.entry;
+}
+
+static void find_changing(struct search *s)
+{
+	s->place = ARRAY(ptrdiff_t, (size_t)s->entries);
+	for (ptrdiff_t i = 0; i < s->entries; i++) {
+		bool changes = false;
+		for (int p = 1; p < WHOLE_POINTS; p++)
+			changes = changes || !mpq_equal(seen_at(s, p, i), seen_at(s, 0, i));
+		s->place[i] = changes ? s->changing++ : -1;
+	}
+}
+
+/* Those that are not 0, of all entries, or of those that change */
+static mpq_ptr *keep(const struct search *s, mpq_t *all)
+{
+	mpq_ptr *kept = ARRAY(mpq_ptr, (size_t)(s->place ? s->changing : s->entries));
+	for (ptrdiff_t i = 0; i < s->entries; i++) {
+		if (mpq_sgn(all[i]) == 0 || (s->place && s->place[i] < 0))
+			continue;
+		mpq_ptr entry = *rationals(1);
+		mpq_swap(entry, all[i]);
+		kept[s->place ? s->place[i] : i] = entry;
+	}
+	rationals_free(all, (size_t)s->entries);
+	return kept;
+}
+
+/* Of the model at a point that is not looked at again, matrices and rows: what a large one is made of */
+static void forget(struct search *s)
+{
+	struct linear *system = &s->found->system;
+	const size_t cells = (size_t)system->n * (size_t)system->n;
+	rationals_free(system->M, cells);
+	rationals_free(system->C, cells);
+	rationals_free(system->K, cells);
+	for (int o = 0; o < s->found->outputs; o++)
+		rationals_free(s->found->output[o].state, (size_t)system->states);
+	s->found = NULL;
 }
 
 /* The param that alone, with another value, gives another model in this sense; else the first */
@@ -310,8 +379,8 @@ static const struct tunable *suspect(struct search *s, bool (*same)(const struct
 	return &t->param[0];
 }
 
-/* The entries where the params have these values; kept, since several questions ask for the same */
-static const mpq_t *look(struct search *s, const mpq_t *values)
+/* The point where the params have these values; kept, since several questions ask for the same */
+static int look(struct search *s, const mpq_t *values)
 {
 	struct tuning *t = s->tuning;
 	for (int i = 0; i < s->points; i++) {
@@ -319,7 +388,7 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 		for (int k = 0; k < t->params; k++)
 			same = same && mpq_equal(s->point[i][k], values[k]);
 		if (same)
-			return (const mpq_t *)s->seen[i];
+			return i;
 	}
 	s->values = rationals((size_t)t->params);
 	for (int k = 0; k < t->params; k++)
@@ -342,8 +411,10 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 	ENLARGE(s->point, (size_t)s->points + 1);
 	ENLARGE(s->seen, (size_t)s->points + 1);
 	s->point[s->points] = s->values;
-	s->seen[s->points] = read_entries(s, s->found);
-	return (const mpq_t *)s->seen[s->points++];
+	s->seen[s->points] = keep(s, read_entries(s, s->found));
+	if (s->place)
+		forget(s);
+	return s->points++;
 }
 
 /* ---- all of them ---- */
@@ -403,19 +474,14 @@ static void number_rows(struct search *s)
 	t->output = ARRAY(int, (size_t)s->model->outputs);
 	for (int o = 0; o < s->model->outputs; o++) {
 		bool changes = false;
-		for (int i = 1; i < s->points; i++)
-			for (int j = 0; j < t->x.size; j++)
-				changes = changes || !mpq_equal(*solved_entry(s, s->seen[i], s->model->n + o, j),
-								*solved_entry(s, s->seen[0], s->model->n + o, j));
+		for (int j = 0; j < t->x.size; j++)
+			changes = changes || !stays(s, solved_index(s, s->model->n + o, j));
 		t->output[o] = changes ? t->rows++ : -1;
 		t->outputs += changes;
 	}
 	t->frequency = ARRAY(int, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++) {
-		bool changes = false;
-		for (int i = 1; i < s->points; i++)
-			changes = changes ||
-				  !mpq_equal(*frequency_entry(s, s->seen[i], l), *frequency_entry(s, s->seen[0], l));
+		const bool changes = !stays(s, frequency_index(s, l));
 		t->frequency[l] = changes ? t->rows++ : -1;
 		t->frequencies += changes;
 	}
@@ -444,15 +510,20 @@ struct entry {
 static mpq_srcptr entry_at(void *context, const mpq_t *values)
 {
 	const struct entry *entry = context;
-	return look(entry->search, values)[entry->index];
+	return seen_at(entry->search, look(entry->search, values), entry->index);
 }
 
-static bool fit_into(struct search *s, const mpq_t *entry, int row, int column, int *culprit)
+static bool fit_into(struct search *s, ptrdiff_t index, int row, int column, int *culprit)
 {
+	if (stays(s, index)) {
+		if (mpq_sgn(seen_at(s, 0, index)) != 0)
+			mpq_set(add_term(s->tuning, row, column, 0)->factor, seen_at(s, 0, index));
+		return true;
+	}
 	struct fit *f = NEW(struct fit);
 	f->params = s->tuning->params;
 	f->value = entry_at;
-	f->context = &(struct entry){ s, entry - (const mpq_t *)s->seen[0] };
+	f->context = &(struct entry){ s, index };
 	if (!fit_value(f)) {
 		*culprit = f->culprit;
 		return false;
@@ -467,7 +538,7 @@ static bool fit_frequencies(struct search *s, int *culprit)
 	struct tuning *t = s->tuning;
 	for (int l = 0; l < s->model->system.loads; l++) {
 		int row = t->frequency[l];
-		if (row >= 0 && !fit_into(s, (const mpq_t *)frequency_entry(s, s->seen[0], l), row, 0, culprit))
+		if (row >= 0 && !fit_into(s, frequency_index(s, l), row, 0, culprit))
 			return false;
 		if (row >= 0 && t->solves)
 			add_unit(t, row, t->x.size + row);
@@ -481,12 +552,11 @@ static bool fit_all(struct search *s, bool solved, int *culprit)
 	int rows = t->rows - t->frequencies;
 	t->solves = !solved;
 	t->terms = t->monomials = 0;
-	mpq_t *first = s->seen[0];
 	for (int i = 0; i < rows; i++)
 		for (int j = 0; j < t->x.size + (solved ? 0 : rows); j++) {
-			mpq_t *entry = solved ? solved_entry(s, first, entry_row(s, i), j)
-					      : raw_entry(s, first, entry_row(s, i), entry_column(s, j));
-			if (!fit_into(s, (const mpq_t *)entry, i, j, culprit))
+			const ptrdiff_t index = solved ? solved_index(s, entry_row(s, i), j)
+						       : raw_index(s, entry_row(s, i), entry_column(s, j));
+			if (!fit_into(s, index, i, j, culprit))
 				return false;
 		}
 	return fit_frequencies(s, culprit);
@@ -496,12 +566,13 @@ static void mark_acting(struct search *s)
 {
 	struct tuning *t = s->tuning;
 	t->acts = ARRAY(bool, (size_t)(t->rows * t->x.size));
-	for (int p = 0; p < s->points; p++)
-		for (int i = 0; i < t->rows - t->frequencies; i++)
-			for (int j = 0; j < t->x.size; j++)
-				t->acts[i * t->x.size + j] =
-					t->acts[i * t->x.size + j] ||
-					mpq_sgn(*solved_entry(s, s->seen[p], entry_row(s, i), j)) != 0;
+	for (int i = 0; i < t->rows - t->frequencies; i++)
+		for (int j = 0; j < t->x.size; j++) {
+			const ptrdiff_t index = solved_index(s, entry_row(s, i), j);
+			bool *acts = &t->acts[i * t->x.size + j];
+			for (int p = 0; p < (stays(s, index) ? 1 : s->points); p++)
+				*acts = *acts || mpq_sgn(seen_at(s, p, index)) != 0;
+		}
 }
 
 static void warn_of_idle(const struct tuning *t)
@@ -538,9 +609,10 @@ static void find(void *context)
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
 		param_value(t->param[k].symbol, t->nominal[k]);
-	for (int i = 0; i < FIT_POINTS; i++)
+	for (int i = 0; i < WHOLE_POINTS; i++)
 		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;
+	find_changing(s);
 	number_rows(s);
 	if (!fit_all(s, true, &culprit) && !fit_all(s, false, &culprit))
 		refuse_form(s, culprit);
@@ -564,11 +636,12 @@ bool find_tuning(struct model *model, const struct request *request)
 	}
 	struct tuning *t = NEW(struct tuning);
 	struct search s = { .tuning = t, .model = model, .request = request };
+	mpq_init(s.zero);
 	t->params = spec->tunables;
 	t->param = spec->tunable;
 	t->nominal = rationals((size_t)t->params);
 	t->x = layout_of_columns(system);
-	s.entries = all_rows(&s) * (t->x.size + all_columns(&s)) + system->loads;
+	s.entries = frequency_index(&s, system->loads);
 	model->tuning = t;
 	return statement_guard(find, &s);
 }

@@ -333,7 +333,7 @@ static void person_impacts(FILE *to, const struct model *model)
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
 			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
-				readable_text(impact->in->restitution), rest_of(model->switching, 0, impact),
+				restitution_text(model, impact), rest_of(model->switching, 0, impact),
 				impact->in->expression);
 		fputs("\n", to);
 	}

@@ -35,8 +35,7 @@ static double *turned(int size, const double *row, bool upward)
 	return result;
 }
 
-/* Whether a guard of its own stands where the interval of an expression ends */
-static bool is_released(const struct region *region, int expression, bool upward)
+bool is_released(const struct region *region, int expression, bool upward)
 {
 	bool any = false;
 	for (int k = 0; k < region->releases; k++)

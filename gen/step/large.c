@@ -52,14 +52,14 @@ static int first_of(int *parent, int i)
 static int *blocks_of_step(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
-	const int n = table->states;
+	const int n = table->states, *tuned = tuned_components(step);
 	int *parent = ARRAY(int, (size_t)n);
 	for (int i = 0; i < n; i++)
 		parent[i] = i;
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
 			const int a = first_of(parent, i), b = first_of(parent, j);
-			if (!table->Phi[i * n + j].zero && a != b)
+			if ((!table->Phi[i * n + j].zero || (tuned && tuned[i] == tuned[j])) && a != b)
 				parent[a > b ? a : b] = a < b ? a : b;
 		}
 	for (int i = 0; i < n; i++)
@@ -67,9 +67,9 @@ static int *blocks_of_step(const struct step *step)
 	return parent;
 }
 
-static struct group block_from(const int *first, int states, int state)
+static struct group block_from(const int *first, int states, int state, const bool *touched)
 {
-	struct group g = { .blocks = 1, .state = ARRAY(int, (size_t)states) };
+	struct group g = { .blocks = 1, .state = ARRAY(int, (size_t)states), .tuned = touched && touched[state] };
 	for (int i = 0; i < states; i++)
 		if (first[i] == state)
 			g.state[g.states++] = i;
@@ -95,7 +95,7 @@ static int operands_of(const struct step *step, const struct group *g)
 /* The same factors are 0. */
 static bool is_alike(const struct step *step, const struct group *a, const struct group *b)
 {
-	bool alike = a->states == b->states;
+	bool alike = a->states == b->states && a->tuned == b->tuned;
 	for (int i = 0; alike && i < a->states; i++) {
 		for (int k = 0; alike && k < operands_of(step, a); k++) {
 			const struct operand operand = operand_of_column(step, a, k);
@@ -119,7 +119,7 @@ static int terms_of(const struct step *step, const struct group *g)
 /* One group of blocks that are alike, from their list */
 static struct group gathered(const struct group *block, int count, const int *which)
 {
-	struct group g = { .states = block[which[0]].states, .blocks = count };
+	struct group g = { .states = block[which[0]].states, .blocks = count, .tuned = block[which[0]].tuned };
 	g.state = ARRAY(int, (size_t)(g.states * count));
 	for (int i = 0; i < g.states; i++)
 		for (int b = 0; b < count; b++)
@@ -180,7 +180,7 @@ static bool is_one(const struct step *step, const struct group *g, int row, cons
 {
 	const struct coefficient *factor = group_factor(step, g, row, 0, operand, 0);
 	const bool changes = operand->kind == OPERAND_LOAD && step->branch->system.segments > 1;
-	return g->kind == GROUP_ROWS && !changes &&
+	return g->kind == GROUP_ROWS && !changes && !g->tuned &&
 	       (factor->value == 1 || factor->value == -1 ||
 		(operand->kind == OPERAND_LOAD && is_constant_column(&step->branch->system, operand->index)));
 }
@@ -236,11 +236,12 @@ void find_groups(struct program *program, const struct step *step)
 {
 	const int states = step->branch->whole->states, *first = blocks_of_step(step);
 	struct group *block = ARRAY(struct group, (size_t)states);
+	const bool *touched = touched_states(step);
 	bool *grouped = ARRAY(bool, (size_t)states);
 	int *which = ARRAY(int, (size_t)states), blocks = 0, page = ROW_TERMS;
 	for (int i = 0; i < states; i++)
 		if (first[i] == i)
-			block[blocks++] = block_from(first, states, i);
+			block[blocks++] = block_from(first, states, i, touched);
 	for (int b = 0; b < blocks; b++) {
 		if (grouped[b])
 			continue;

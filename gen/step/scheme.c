@@ -127,6 +127,8 @@ static void build_tuned_step(struct step *step)
 {
 	place_all_loads(step);
 	build_exact(step);
+	if (step->program->loops)
+		plan_tuned_blocks(step);
 }
 
 static void build_leftover_step(struct step *step)

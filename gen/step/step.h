@@ -155,6 +155,7 @@ struct group {
 	int *state;                 /* [states][blocks]: which it is */
 	int loads, *load;           /* columns of loads that act on it, */
 	int inputs, *input;         /* and of inputs */
+	bool tuned;                 /* tunable params touch its factors: the instance has them */
 };
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are leftovers. */
@@ -291,6 +292,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
 	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
+	struct tuned_blocks *blocks; /* NULL: no large step with tunable params */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
@@ -490,6 +492,8 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
+/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
+bool is_released(const struct region *region, int expression, bool upward);
 double *grips_of(const struct step *step); /* what friction carries that outputs read: regions x felts x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
@@ -834,6 +838,12 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
 struct reference reference_of(const struct step *step);
+double ulp_of(double value, bool single);
+void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
+
+/* ---- passing.c: the same through crossings ---- */
+
+struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 /* ---- passing.c: the same through crossings ---- */
 
@@ -855,6 +865,51 @@ struct workspace {                  /* that the target computes coefficients in,
 	int kilobytes;              /* of stack; frames of the calls not counted */
 };
 struct workspace workspace_of(const struct step *step);
+
+/* ---- tuned_blocks.c: a large step with tunable params, block by block ---- */
+
+struct part_term {
+	int row, column;            /* of the part; W's columns stand behind those of x */
+	const struct tuned_term *of;
+};
+struct tuned_part {                 /* some of the equations of struct tuning, which the target solves by themselves */
+	int rows, columns;          /* columns of its x */
+	int *row, *unknown;         /* of struct tuning: what row i is, and what is found in its place */
+	int terms;
+	struct part_term *term;
+	unsigned params;            /* that it depends on, a bit each */
+	int width;                  /* columns, W's among them */
+};
+struct tuned_block {                /* an independent block; x: its states, load states and inputs that act on it */
+	const struct group *group;
+	int index, block;           /* of the group */
+	struct tuned_part part;     /* its highest derivatives, then frequencies of its loads */
+	int derivatives;            /* of the rows, */
+	int *place;                 /* and of which state each is */
+	int size;                   /* of x */
+	int slopes;
+	struct fixed_slope *slope;  /* entries of A that no param changes */
+	int turns, *turn;           /* pairs of load states whose frequency changes: row of the part, place in x */
+	int ramps, *ramp;           /* places in x of inputs that are ramps */
+};
+struct tuned_blocks {
+	int blocks;
+	struct tuned_block *block;  /* in the order of groups */
+	struct tuned_part others;   /* outputs and frequencies that depend on params, and what accelerations these read */
+	int first_output;           /* row there of the first output that does; the others follow */
+	int *frequency;             /* per load: its row there, or -1 */
+	int increment, work;        /* numbers of two words: for e^{A h} - I of a block, and for computing it */
+	int more;                   /* the same for a state tau later */
+	int size;                   /* of the largest x */
+	bool whole;                 /* params touch every block: any h will do */
+	int kilobytes;              /* of stack */
+};
+/* Per state: tunable params touch its independent block. NULL: there are none */
+bool *touched_states(const struct step *step);
+/* Per state: a number that those whose equations hang together share. NULL: there are no tunable params */
+int *tuned_components(const struct step *step);
+/* step->blocks; leaves the statement where a block is too large */
+void plan_tuned_blocks(struct step *step);
 
 /* ---- written.c: the equations as written, for NAME_rhs ---- */
 

@@ -95,6 +95,21 @@ static struct motion walled(wide t)
 	return (struct motion){ 1, 0, 0, 0 };
 }
 
+/* ---- halted: x'' + friction(x', 2) = L from t = 1 on, where it comes to rest ---- */
+
+static struct motion halted_by(wide t, wide L)
+{
+	const wide d = t - 1, a = L > 2 ? L - 2 : L < -2 ? L + 2 : 0;
+	if (t < 1)
+		return (struct motion){ 2 * t - t * t, 2 - 2 * t, 2, -2 };
+	return (struct motion){ 1 + a * d * d / 2, a * d, L > 2 ? 2 : L < -2 ? -2 : L, a };
+}
+
+static struct motion halted(wide t) { return halted_by(t, 1); }
+static struct motion onward(wide t) { return halted_by(t, 3); }
+static struct motion back(wide t)   { return halted_by(t, -3); }
+static struct motion just(wide t)   { return halted_by(t, 2); }
+
 /* ---- dropped: parabolas from bounce to bounce, of which infinitely many end in rest ---- */
 
 static wide gravity(wide t, wide *until)
@@ -136,6 +151,25 @@ static struct motion dropped(wide end)
 		t = land >= 0 ? t + by : fminl(until, end);
 	}
 	return (struct motion){ z, v, 0, 0 };
+}
+
+/* ---- outputs on a step's end where the load changes, beside a clearance ---- */
+
+static void outputs_at_changes(int step)
+{
+	struct run r = run_new(variant_of(changes_table, "pushed_%d", step));
+	double out[2], worst = 0;
+	for (long k = 1; k * r.of->model->h < 5; k++) {
+		run_step(&r, NULL);
+		r.of->model->out(r.state, out);
+		const double t = round((double)k * r.of->model->h * 1e6) / 1e6;
+		const double load = t < 1 ? 1 : t < 2 ? 3 : t < 3.2 ? -2 : cos(t);
+		worst = worse(worst, fabs(out[0] - load));
+		worst = worse(worst, fabs(out[1] - load));
+	}
+	ok(worst <= 1e-14, "pushed, h = %g: load and x'' at the ends of steps, off by %.2g at most", r.of->model->h,
+	   worst);
+	run_free(&r);
 }
 
 /* ---- beside the model ---- */
@@ -286,10 +320,15 @@ int main(void)
 		{ "slow", slow, 8, 2e-14, true, { 2.5, 5.5 } },
 		{ "walled", walled, 5, 2e-14, false, { 0.5, 2.05 } },
 		{ "dropped", dropped, 25, 2e-13, false, { 0 } },
+		{ "halted", halted, 3, 2e-14, true, { 1 } },
+		{ "onward", onward, 3, 2e-14, true, { 1 } },
+		{ "back", back, 3, 2e-14, true, { 1 } },
+		{ "just", just, 3, 2e-14, true, { 1 } },
 	};
 	for (int step = 0; step < 4; step++) {
 		for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
 			compare(&forms[i], forms[i].name, step, 0, 0, forms[i].tolerance);
+		outputs_at_changes(step);
 		compare(&forms[0], "ramped", step, 0, 0.123456789, 2e-14);
 		compare(&forms[0], "late", step, 1e6, 0, 1e-9);
 		compare(&forms[0], "late", step, 1e6, 0.123456789, 1e-9);

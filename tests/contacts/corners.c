@@ -5,7 +5,10 @@
 #include "at_limit_float.h"
 #include "counted.h"
 #include "four_balls.h"
+#include "high_ball.h"
+#include "lively_ball.h"
 #include "slopes.h"
+#include "thrown.h"
 #include "tight.h"
 #include "wall.h"
 #include "tap.h"
@@ -46,6 +49,24 @@ static void counted_jumps(void)
 	is_close(found[2], z, 1e-11 * fabs(z), "counted: z after %d jumps", jumps);
 }
 
+/* ---- what a jump or an input takes out of its interval moves by what acts where it then is ---- */
+
+static void out_of_intervals(void)
+{
+	thrown s;
+	double y[6], off;
+	thrown_init(&s);
+	for (int k = 0; k < 5; k++) {
+		thrown_step(&s, (double[]){ k < 4 ? 0 : 1 });
+		thrown_get(&s, y);
+		if (k == 1)
+			is_close(y[1], 1 + cos(0.6), 1e-14, "thrown: y in its stop, 0.2 s behind the jump");
+	}
+	off = 8 / 9.0 * (1 - cos(0.75));
+	is_close(y[2], off, 1e-14, "thrown: z, a step behind the input's jump");
+	is_close(thrown_status(&s), 0, 0, "thrown: status");
+}
+
 /* ---- balls: in the order of statements, again from the first after each impact ---- */
 
 struct pair {
@@ -82,6 +103,50 @@ static void balls(void)
 	}
 	ok(good && impacts > 4, "four balls: struck from both sides, %d impacts", impacts);
 	is_close((double)four_balls_crossed(&s), impacts, 0, "four balls: impacts counted");
+}
+
+/* ---- a ball: bounce n at t0 (1 + 2 (e + ... + e^n)), t0 = sqrt(2 drop/g), rest at t0 (1 + e)/(1 - e). What rounding
+ * does to the place at a step's end, 1e-13, is more than that in time for what is slow. ---- */
+
+static void high(void)
+{
+	const double e = 0.8, t0 = sqrt(2 / 9.81);
+	double due = t0, flight = 2 * t0, worst = 0, last = 0, y[2];
+	pl_crossing crossing[HIGH_BALL_MAX_EVENTS];
+	int count = 0, down = 0;
+	high_ball s;
+	high_ball_init(&s);
+	for (int k = 0; k < 500; k++) {
+		high_ball_step(&s);
+		const int here = high_ball_crossings(&s, crossing);
+		for (int i = 0; i < here; i++, count++) {
+			last = k * HIGH_BALL_H + crossing[i].time;
+			down += crossing[i].breakpoint == 1 && !crossing[i].upward;
+			if (flight > 1e-8)
+				worst = worse(worst, fabs(last - due));
+			flight *= e;
+			due += flight;
+		}
+	}
+	ok(worst <= 1e-9 && flight < 1e-8, "high ball: %d bounces, times off by %.3g s at most", count, worst);
+	ok(down == count, "high ball: all come down to the upper of its two breakpoints (%d of %d)", down, count);
+	is_close(last, t0 * (1 + e) / (1 - e), 1e-9, "high ball: rests [s]");
+	high_ball_get(&s, y);
+	ok(y[0] == 1000 && y[1] == 0, "high ball: rests at 1000, velocity 0 (%.17g, %g)", y[0], y[1]);
+}
+
+/* ---- where the list is almost full and what is left is over within a step, it rests ---- */
+
+static void lively(void)
+{
+	double y[2];
+	lively_ball s;
+	lively_ball_init(&s);
+	lively_ball_step(&s);
+	lively_ball_get(&s, y);
+	ok(y[0] == 0 && y[1] == 0, "lively ball: rests at 0 (%g, %g)", y[0], y[1]);
+	is_close(lively_ball_rested(&s), 1, 0, "lively ball: contacts that came to rest");
+	is_close(lively_ball_status(&s), 0, 0, "lively ball: status");
 }
 
 /* ---- too many: time is lost, but neither speed nor place ---- */
@@ -162,9 +227,12 @@ static void on_slopes(void)
 int main(void)
 {
 	counted_jumps();
+	out_of_intervals();
 	balls();
 	too_many();
 	dead_wall();
+	high();
+	lively();
 	limits();
 	on_slopes();
 	return tap_end();

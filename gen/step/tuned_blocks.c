@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A large step with tunable params, independent block by independent block: what params touch is the instance's, and
+ * the target computes e^{A h} of these blocks alone; the others keep their tables. */
+#include "step/step.h"
+
+/* ---- what hangs together ---- */
+
+static void join(int *parent, int a, int b)
+{
+	parent[root_of_node(parent, a)] = root_of_node(parent, b);
+}
+
+/* Equations 0 .. n-1 and coordinates n .. 2n-1, as parent pointers. Solved, an equation is that of a coordinate. */
+static int *components(const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct linear *system = &step->branch->system;
+	const int n = system->n;
+	int *parent = ARRAY(int, 2 * (size_t)n);
+	for (int i = 0; i < 2 * n; i++)
+		parent[i] = i;
+	for (int i = 0; i < n && !t->solves; i++)
+		join(parent, i, n + i);
+	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
+		if (term->row < n && term->column < system->states)
+			join(parent, term->row, n + system->coord[term->column]);
+		else if (term->row < n && term->column >= t->x.size)
+			join(parent, term->row, n + term->column - t->x.size);
+	return parent;
+}
+
+int *tuned_components(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	if (!step->model->tuning)
+		return NULL;
+	int *parent = components(step), *number = ARRAY(int, (size_t)system->states);
+	for (int i = 0; i < system->states; i++)
+		number[i] = root_of_node(parent, system->n + system->coord[i]);
+	return number;
+}
+
+/* In some segment of time, for some values of the params */
+static bool load_reaches(const struct step *step, int load, int coord)
+{
+	const struct tuning *t = step->model->tuning;
+	const bool *acts = t->acts + coord * t->x.size + t->x.load[load];
+	bool any = false;
+	for (int s = 0; s < t->x.segments; s++)
+		for (int k = 0; k < step->branch->system.load[load].columns; k++)
+			any = any || acts[s * t->x.loads + k];
+	return any;
+}
+
+bool *touched_states(const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct linear *system = &step->branch->system;
+	const int n = system->n;
+	if (!t)
+		return NULL;
+	int *parent = components(step);
+	bool *root = ARRAY(bool, 2 * (size_t)n), *touched = ARRAY(bool, (size_t)system->states);
+	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
+		if (term->row < n && term->monomial != 0)
+			root[root_of_node(parent, term->row)] = true;
+	for (int l = 0; l < system->loads; l++)
+		for (int c = 0; c < n; c++)
+			if (t->frequency[l] >= 0 && load_reaches(step, l, c))
+				root[root_of_node(parent, n + c)] = true;
+	for (int i = 0; i < system->states; i++)
+		touched[i] = root[root_of_node(parent, n + system->coord[i])];
+	return touched;
+}
+
+/* ---- some of the equations ---- */
+
+static int *nowhere(int count)
+{
+	int *place = ARRAY(int, (size_t)count);
+	for (int i = 0; i < count; i++)
+		place[i] = -1;
+	return place;
+}
+
+static void add_row(struct tuned_part *part, int row, int unknown)
+{
+	ENLARGE(part->row, (size_t)part->rows + 1);
+	ENLARGE(part->unknown, (size_t)part->rows + 1);
+	part->row[part->rows] = row;
+	part->unknown[part->rows++] = unknown;
+}
+
+/* Equations and coordinates of a component: as many of each, one beside the other */
+static void add_component(struct tuned_part *part, const struct step *step, int *parent, int root)
+{
+	const int n = step->branch->system.n;
+	int equation = 0;
+	for (int c = 0; c < n; c++) {
+		if (root_of_node(parent, n + c) != root)
+			continue;
+		while (equation < n - 1 && root_of_node(parent, equation) != root)
+			equation++;
+		add_row(part, equation++, c);
+	}
+}
+
+static unsigned params_of(const struct tuning *t, int monomial)
+{
+	unsigned params = 0;
+	for (; monomial != 0; monomial = t->monomial[monomial - 1].from)
+		params |= 1u << t->monomial[monomial - 1].param;
+	return params;
+}
+
+/* Its terms: those of its rows. column: per column of struct tuning, its place */
+static void take_terms(struct tuned_part *part, const struct step *step, const int *column)
+{
+	const struct tuning *t = step->model->tuning;
+	int *row = nowhere(t->rows), *unknown = nowhere(t->rows), left = t->rows - t->frequencies;
+	for (int i = 0; i < part->rows; i++) {
+		row[part->row[i]] = i;
+		unknown[part->unknown[i]] = i;
+	}
+	part->width = part->columns + (t->solves ? part->rows : 0);
+	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++) {
+		if (row[term->row] < 0)
+			continue;
+		const bool of_w = term->column >= t->x.size, rate = term->row >= left;
+		const int at = of_w ? unknown[term->column - t->x.size] : rate ? 0 : column[term->column];
+		if (at < 0)
+			internal_error(step, "a term of tunable params leaves its independent block");
+		ENLARGE(part->term, (size_t)part->terms + 1);
+		part->term[part->terms++] =
+			(struct part_term){ row[term->row], of_w ? part->columns + at : at, term };
+		part->params |= params_of(t, term->monomial);
+	}
+}
+
+/* ---- a block ---- */
+
+static int *columns_of(struct tuned_block *b, const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct group *g = b->group;
+	int *column = nowhere(t->x.size), states = step->branch->system.states, segments = t->x.segments;
+	for (int i = 0; i < g->states; i++)
+		column[g->state[i * g->blocks + b->block]] = i;
+	for (int s = 0; s < segments; s++)
+		for (int k = 0; k < g->loads; k++)
+			column[states + s * t->x.loads + g->load[k]] = g->states + s * g->loads + k;
+	for (int k = 0; k < g->inputs; k++)
+		column[states + segments * t->x.loads + g->input[k]] = g->states + segments * g->loads + k;
+	b->part.columns = g->states + segments * g->loads + g->inputs;
+	return column;
+}
+
+/* Places in its x of what stands in the x of the whole */
+static int *places_of(const struct tuned_block *b, const struct step *step)
+{
+	const struct group *g = b->group;
+	const struct table *table = step->branch->whole;
+	int *place = nowhere(step->layout.size);
+	for (int i = 0; i < g->states; i++)
+		place[g->state[i * g->blocks + b->block]] = i;
+	for (int k = 0; k < g->loads; k++)
+		place[table->states + g->load[k]] = g->states + k;
+	for (int k = 0; k < g->inputs; k++)
+		place[table->states + table->columns + g->input[k]] = g->states + g->loads + k;
+	return place;
+}
+
+static void take_slopes(struct tuned_block *b, const int *place, int count, const struct fixed_slope *all)
+{
+	b->slope = ARRAY(struct fixed_slope, (size_t)count);
+	for (int i = 0; i < count; i++)
+		if (place[all[i].row] >= 0 && place[all[i].column] >= 0)
+			b->slope[b->slopes++] =
+				(struct fixed_slope){ place[all[i].row], place[all[i].column], all[i].value };
+}
+
+/* Loads whose frequency changes: a row each, and the pairs of load states that turn with it */
+static void take_turns(struct tuned_block *b, const struct step *step, const int *place)
+{
+	const struct tuning *t = step->model->tuning;
+	for (int l = 0; l < step->branch->system.loads; l++) {
+		const int from = step->layout.load[l], columns = step->branch->system.load[l].columns;
+		if (t->frequency[l] < 0 || place[from] < 0)
+			continue;
+		for (int k = from; k < from + columns; k += 2) {
+			if (place[k] < 0)
+				continue;
+			ENLARGE(b->turn, 2 * (size_t)b->turns + 2);
+			b->turn[2 * b->turns] = b->part.rows;
+			b->turn[2 * b->turns++ + 1] = place[k];
+		}
+		add_row(&b->part, t->frequency[l], t->frequency[l]);
+	}
+}
+
+static void take_ramps(struct tuned_block *b, const struct step *step, const int *place)
+{
+	const struct linear *system = &step->branch->system;
+	b->ramp = ARRAY(int, (size_t)system->inputs);
+	for (int i = 0; i < system->inputs; i++)
+		if (system->input[i].hold == 1 && place[step->layout.input[i]] >= 0)
+			b->ramp[b->ramps++] = place[step->layout.input[i]];
+}
+
+static struct tuned_block block_of(const struct step *step, int group, int block, int count,
+				   const struct fixed_slope *fixed)
+{
+	const struct linear *system = &step->branch->system;
+	struct tuned_block b = { .group = &step->program->group[group], .index = group, .block = block };
+	int *parent = components(step), *column = columns_of(&b, step), *place = places_of(&b, step);
+	add_component(&b.part, step, parent,
+		      root_of_node(parent, system->n + system->coord[b.group->state[block]]));
+	b.derivatives = b.part.rows;
+	b.size = b.group->states + b.group->loads + b.group->inputs;
+	b.place = ARRAY(int, (size_t)b.derivatives);
+	for (int i = 0; i < b.derivatives; i++) {
+		const int coord = b.part.unknown[i];
+		b.place[i] = place[system->velocity[coord] >= 0 ? system->velocity[coord] : coord];
+	}
+	take_slopes(&b, place, count, fixed);
+	take_turns(&b, step, place);
+	take_ramps(&b, step, place);
+	take_terms(&b.part, step, column);
+	return b;
+}
+
+/* ---- what belongs to no block ---- */
+
+/* Components whose accelerations a changed output reads, where the target solves for them */
+static void add_read_components(struct tuned_part *part, const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const int n = step->branch->system.n;
+	int *parent = components(step);
+	bool *read = ARRAY(bool, 2 * (size_t)n);
+	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
+		if (term->row >= n && term->row < t->rows - t->frequencies && term->column >= t->x.size &&
+		    term->column < t->x.size + n)
+			read[root_of_node(parent, n + term->column - t->x.size)] = true;
+	for (int root = 0; root < 2 * n; root++)
+		if (read[root])
+			add_component(part, step, parent, root);
+}
+
+static void plan_others(struct tuned_blocks *p, const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const int loads = step->branch->system.loads;
+	int *column = ARRAY(int, (size_t)t->x.size);
+	for (int k = 0; k < t->x.size; k++)
+		column[k] = k;
+	p->others.columns = t->x.size;
+	add_read_components(&p->others, step);
+	p->first_output = p->others.rows;
+	for (int row = 0; row < t->outputs; row++)
+		add_row(&p->others, step->branch->system.n + row, step->branch->system.n + row);
+	p->frequency = nowhere(loads);
+	for (int l = 0; l < loads; l++)
+		if (t->frequency[l] >= 0) {
+			p->frequency[l] = p->others.rows;
+			add_row(&p->others, t->frequency[l], t->frequency[l]);
+		}
+	take_terms(&p->others, step, column);
+}
+
+/* ---- the whole ---- */
+
+static void larger_of(int *most, int count)
+{
+	*most = count > *most ? count : *most;
+}
+
+static void measure_block(struct tuned_blocks *p, const struct step *step, const struct tuned_block *b)
+{
+	const int entries = b->part.rows * b->part.width + b->size * b->size;
+	int further = PL_INCREMENT_WORK(b->size);
+	larger_of(&further, step->model->tuning->monomials + 1);
+	larger_of(&p->size, b->size);
+	larger_of(&p->more, entries + further + b->size * b->size);
+	if (!b->group->tuned)
+		return;
+	larger_of(&p->work, entries + further);
+	larger_of(&p->increment, step->branch->system.segments * b->group->states * b->size);
+}
+
+static void check_size(const struct step *step, const struct tuned_block *b)
+{
+	const struct tuning *t = step->model->tuning;
+	const bool changes = step->branch->system.segments > 1;
+	int k = 0;
+	while (b->group->tuned && k < t->params - 1 && !(b->part.params >> k & 1))
+		k++;
+	if (b->size > LIMIT_TUNED_BLOCK && (b->group->tuned || changes))
+		error(t->param[k].at,
+		      format("e^{A h} of a block is computed on the stack, up to a size of %d: some 600 KB",
+			     LIMIT_TUNED_BLOCK),
+		      b->group->tuned ? "'%s' is tunable and touches an independent block of %d states, load states "
+					"and inputs"
+				      : "'%s' is tunable, loads change their formula, and there is an independent "
+					"block of %d states, load states and inputs",
+		      t->param[k].symbol->name, b->size);
+}
+
+/* Numbers that an instance has of a group: those that hold no place for nothing */
+static int numbers_of(const struct step *step, const struct group *g)
+{
+	return g->tuned ? g->blocks * g->states * (g->states + step->branch->system.segments * g->loads + g->inputs) : 0;
+}
+
+void plan_tuned_blocks(struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct program *program = step->program;
+	struct tuned_blocks *p = NEW(struct tuned_blocks);
+	int stack = 0;
+	struct fixed_slope *fixed;
+	const int count = fixed_slopes(step, &fixed), real = step->model->asked.single ? 4 : 8;
+	int numbers = 0;
+	p->whole = true;
+	for (int k = 0; k < program->groups; k++) {
+		p->whole = p->whole && program->group[k].tuned;
+		numbers += numbers_of(step, &program->group[k]);
+		for (int b = 0; b < program->group[k].blocks; b++) {
+			ENLARGE(p->block, (size_t)p->blocks + 1);
+			p->block[p->blocks] = block_of(step, k, b, count, fixed);
+			check_size(step, &p->block[p->blocks]);
+			measure_block(p, step, &p->block[p->blocks++]);
+		}
+	}
+	plan_others(p, step);
+	larger_of(&p->work, p->others.rows * p->others.width + t->monomials + 1);
+	larger_of(&stack, p->more);
+	larger_of(&stack, p->work + p->increment);
+	p->kilobytes = 1 + real * (numbers + 2 * stack) / 1024;
+	step->series.emitted = p->size <= LIMIT_TUNED_BLOCK;
+	step->blocks = p;
+}
