@@ -11,9 +11,6 @@ static void check_outputs(const struct model *model)
 	if (model->system.inputs)
 		error(model->asked.end_at, "plrun MODEL.spec --input FILE.csv runs it by recorded samples",
 		      "--solution needs a model without inputs: their samples are not known");
-	if (model->switching && model->switching->sliders > 0)
-		error(model->asked.end_at, "plrun MODEL.spec steps it, exact to rounding",
-		      "--solution does not go through sliders without mass");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start,
@@ -170,8 +167,8 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	check_peaks_of(model);
 	unsigned long last = last_step(model, end);
 	if (model->switching && model->switching->sliders > 0)
-		error(model->asked.end_at, "plrun MODEL.spec steps it",
-		      "--solution does not go with friction of what has no mass");
+		error(model->asked.end_at, "plrun MODEL.spec steps it, exact to rounding",
+		      "--solution does not go through sliders without mass");
 	if (model->switching) {
 		print_through(to, model, last);
 		return;

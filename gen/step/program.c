@@ -111,8 +111,6 @@ void need_closed_form(const struct step *step)
 		[KIND_NORMAL] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
-	if (!why && step->model->switching && step->model->switching->sliders > 0)
-		why = "friction without mass has no reference";
 	if (!why && step->model->scheme != SCHEME_EXACT)
 		why = format("scheme %s approximates", scheme_name(step->model->scheme));
 	if (!why && step->model->switching && step->model->switching->sliders > 0)

@@ -838,12 +838,6 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
 struct reference reference_of(const struct step *step);
-double ulp_of(double value, bool single);
-void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
-
-/* ---- passing.c: the same through crossings ---- */
-
-struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 /* ---- passing.c: the same through crossings ---- */
 
