@@ -84,7 +84,7 @@ static void emit_crossings(const struct emitter *e, const struct reference *r)
 	       "    int i;\n"
 	       "    for (i = 0; i < count; i++) {\n"
 	       "        double off;\n"
-	       "        if (k == 0 && !(crossing[i].time > 0.0))\n"
+	       "        if (k == 0 && !(crossing[i].time > 0.0009765625 * $N_H))\n"
 	       "            continue;  /* where the start stands is found there */\n"
 	       "        if (*crossed == %d)\n"
 	       "            return 1e30;\n"

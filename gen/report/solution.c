@@ -11,9 +11,6 @@ static void check_outputs(const struct model *model)
 	if (model->system.inputs)
 		error(model->asked.end_at, "plrun MODEL.spec --input FILE.csv runs it by recorded samples",
 		      "--solution needs a model without inputs: their samples are not known");
-	if (model->switching && model->switching->sliders > 0)
-		error(model->asked.end_at, "plrun MODEL.spec steps it, exact to rounding",
-		      "--solution does not go through sliders without mass");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start,
@@ -81,8 +78,8 @@ static bool print_passed(struct printing *p, const struct through *t)
 	int count = through_passed(t, &list);
 	for (; p->passed < count; p->passed++) {
 		const struct passed *now = &list[p->passed];
-		double when;
-		if (!round_enclosure(now->at, &when)) {
+		double when, latest = 0;
+		if (!round_value(now->at, &latest, &when)) {
 			p->why = format("a crossing at t = %.12g s is not known to all digits", mpfi_get_d(now->at));
 			return false;
 		}
@@ -169,6 +166,9 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	check_outputs(model);
 	check_peaks_of(model);
 	unsigned long last = last_step(model, end);
+	if (model->switching && model->switching->sliders > 0)
+		error(model->asked.end_at, "plrun MODEL.spec steps it, exact to rounding",
+		      "--solution does not go through sliders without mass");
 	if (model->switching) {
 		print_through(to, model, last);
 		return;

@@ -116,16 +116,15 @@ static void add_gate(const struct through *t, struct area *area, struct gate gat
 static void add_ends(const struct through *t, struct area *area, int region, int expression)
 {
 	const struct expression *e = &t->s->expression[expression];
-	int interval = interval_of(t->s, region, expression);
+	int interval = interval_of(t->s, region, expression), segment = segment_of_region(t->s, region);
 	mpq_t limit;
 	mpq_init(limit);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&t->s->region[region], expression, upward))
+		if (breakpoint < 0 || breakpoint == e->breaks)
 			continue;
 		mpq_t *row = rationals((size_t)t->n);
-		int leads = upward ? e->stride : -e->stride, segment = segment_of_region(t->s, region);
-		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
+		int leads = upward ? e->stride : -e->stride, impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
 		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
 		through_row(t, e->row, row);
@@ -199,7 +198,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 	mpq_clear(zero);
 }
 
-/* Regions that cannot be are passed through where two expressions cross at once; then the equations stay those before */
+/* Regions that cannot be are passed through where two expressions cross at once; the equations stay those before. */
 struct area *through_area(struct through *t, int region)
 {
 	struct area *area = &t->area[region];
@@ -212,9 +211,7 @@ struct area *through_area(struct through *t, int region)
 	area->growth = t->growth[system];
 	for (int e = 0; e < t->s->expressions; e++) {
 		bool held = r->possible && is_stick(&t->s->expression[e], interval_of(t->s, region, e));
-		add_releases(t, area, region, e);
-		if (!held)
-			add_ends(t, area, region, e);
+		(held ? add_releases : add_ends)(t, area, region, e);
 	}
 	return area;
 }
@@ -275,7 +272,7 @@ const char *through_time(mpq_srcptr time)
 
 bool through_lost(struct through *t, const struct gate *gate, const char *what)
 {
-	t->undecided = format("at t = %s s it is not known whether %s passes %s: %s", through_time(t->base),
+	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", through_time(t->base),
 			      spoken_expression(t->model, gate->expression),
 			      readable_text(t->s->expression[gate->expression].at[gate->breakpoint]), what);
 	return false;

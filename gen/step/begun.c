@@ -78,17 +78,17 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	const struct expression *e = &t->s->expression[expression];
 	if (!*on || !is_stick(e, interval + 1))
 		return interval;
-	int impact = impact_resting(t->s, through_segment(t), expression, interval + 1), speed = 0;
+	int impact = impact_resting(t->s, t->segment, expression, interval + 1), speed = 0;
 	mpq_t *row = rationals((size_t)t->n), zero;
 	mpq_init(zero);
 	if (impact >= 0) {
-		through_row(t, strike_of(t, &t->s->impact[impact])->speed_row, row);
+		through_row(t, t->s->impact[impact].in[t->segment].speed_row, row);
 		speed = sign_at_start(t, (const mpq_t *)row, zero, known);
 	}
 	*on = false;
 	mpq_clear(zero);
 	rationals_free(row, (size_t)t->n);
-	return speed == 0 ? interval + 1 : strike_of(t, &t->s->impact[impact])->upward ? interval : interval + 2;
+	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->segment].upward ? interval : interval + 2;
 }
 
 bool through_place(struct through *t)

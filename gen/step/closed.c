@@ -7,16 +7,6 @@
 static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100 };
 enum { ROWS = sizeof steps / sizeof steps[0] };
 
-/* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
-void reference_start(int state, mpq_ptr value)
-{
-	int power = state < 20 ? state : 20;
-	mpq_set_ui(value, (1ul << power) + 1, 1ul << power);
-	mpq_div_2exp(value, value, 1);
-	if (state % 2)
-		mpq_neg(value, value);
-}
-
 struct closed_form {                /* of one state */
 	int count;
 	struct started *list;
@@ -49,13 +39,6 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 	for (int i = 0; i < n; i++)
 		form[i] = closed_form_of(step, i, (const mpq_t *)start);
 	return form;
-}
-
-double ulp_of(double value, bool single)
-{
-	int exponent;
-	frexp(value, &exponent);
-	return ldexp(1, exponent - (single ? 24 : 53));
 }
 
 static bool fill_row(const struct step *step, const struct closed_form *form, mpq_srcptr t, double *row)

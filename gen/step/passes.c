@@ -113,6 +113,11 @@ static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
 	return rest;
 }
 
+static bool is_fresh(const struct through *t, const struct gate *gate)
+{
+	return t->order > 0 && gate->expression == t->fresh && gate->upward == t->back && !gate->release;
+}
+
 /* 1: found; -1: not known; 0: none */
 int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
 {
@@ -128,7 +133,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 			continue;
 		int terms = degree;
 		expand_gate(t, gate, degree, tau);
-		if (t->order > 0 && gate->expression == t->fresh && !gate->release && degree > t->order)
+		if (is_fresh(t, gate) && degree > t->order)
 			terms = divide_by_power(t, degree, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
 		if (rise == RISE_UNKNOWN) {
@@ -147,40 +152,6 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 }
 
 /* ---- an event ---- */
-
-static struct passed *new_passed(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
-{
-	ENLARGE(t->list, (size_t)t->passed + 1);
-	struct passed *p = &t->list[t->passed++];
-	*p = (struct passed){ .expression = expression, .breakpoint = breakpoint, .upward = upward };
-	mpfi_init2(p->at, t->precision);
-	mpfi_set_q(p->at, t->base);
-	mpfi_increase(p->at, off);
-	return p;
-}
-
-void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
-{
-	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
-	mpfi_t slope;
-	mpfi_init2(slope, t->precision);
-	through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->x, slope);
-	p->speed = t->speed = fabs(mpfi_get_d(slope));
-	t->size = 0;
-	for (int i = 0; i < t->n; i++)
-		t->size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
-	p->size = t->size;
-	mpfi_clear(slope);
-}
-
-/* By an event that was noted, or by a load that jumps */
-void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
-{
-	struct passed *p = new_passed(t, expression, breakpoint, upward, off);
-	p->jumped = t->speed == 0;
-	p->speed = t->speed;
-	p->size = t->size;
-}
 
 /* How far from base + s tau the event may be [s], rounded up */
 static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off)
@@ -202,6 +173,8 @@ static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 		return false;
 	t->order = through_order(t, gate);
 	t->fresh = gate->expression;
+	t->back = !gate->upward;
+	t->list[t->passed - 1].faint = t->order == 3;
 	mpfr_set(t->fresh_off, off, MPFR_RNDU);
 	return true;
 }
@@ -242,46 +215,7 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	mpfr_clears(s, off, NULL);
 	if (!known)
 		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
+	if (t->most_passed > 0 && t->passed >= t->most_passed)
+		return through_lost(t, gate, "that many crossings are not followed");
 	return t->at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
-}
-
-/* ---- where expressions stand ---- */
-
-/* e - at, 1 above, -1 below; 0: not told apart */
-int through_side(const struct through *t, int expression, mpq_srcptr at)
-{
-	mpq_t *row = rationals((size_t)t->n);
-	mpfi_t value;
-	mpfi_init2(value, t->precision);
-	through_row(t, t->s->expression[expression].row, row);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
-	mpfi_sub_q(value, value, at);
-	int side = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
-	mpfi_clear(value);
-	rationals_free(row, (size_t)t->n);
-	return side;
-}
-
-/* ---- jumps ---- */
-
-/* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
-bool through_follow(struct through *t)
-{
-	mpfr_t none;
-	mpfr_init2(none, 64);
-	mpfr_set_zero(none, 1);
-	for (int e = 0; e < t->s->expressions; e++) {
-		const struct expression *x = &t->s->expression[e];
-		for (int way = 1; way;) {
-			int interval = interval_of(t->s, t->region, e);
-			way = interval < x->breaks && through_side(t, e, x->at[interval]) > 0	  ? 1
-			      : interval > 0 && through_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
-			if (!way)
-				break;
-			through_note_plain(t, e, interval - (way < 0), way > 0, none);
-			through_enter(t, t->region + way * x->stride);
-		}
-	}
-	mpfr_clear(none);
-	return true;
 }

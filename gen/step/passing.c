@@ -11,12 +11,31 @@ static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 10
 enum {
 	ROWS = sizeof steps / sizeof steps[0],
 	LEAST_ROWS = 8,             /* without a crossing */
-	ENOUGH = 5,                 /* crossings */
+	ENOUGH = 5, MANY = 40,      /* crossings */
 	STARTS = 13,
-	FEWEST_BITS = 192, MOST_BITS = 1536,
+	FEWEST_BITS = 192, MOST_BITS = 768,
+	MOST = 150,                 /* crossings that are followed */
+	PASSED_AT_START = 10,       /* crossings in the first 2^-10 of a step are none that is counted */
 	BESIDE = 36,                /* the second start is off by 2^-36; in float */
-	GROWTH = 24                 /* and grows by no more than that */
+	GROWTH = 8                  /* and grows by no more than that */
 };
+
+/* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
+void reference_start(int state, mpq_ptr value)
+{
+	int power = state < 20 ? state : 20;
+	mpq_set_ui(value, (1ul << power) + 1, 1ul << power);
+	mpq_div_2exp(value, value, 1);
+	if (state % 2)
+		mpq_neg(value, value);
+}
+
+double ulp_of(double value, bool single)
+{
+	int exponent;
+	frexp(value, &exponent);
+	return ldexp(1, exponent - (single ? 24 : 53));
+}
 
 /* The model on its way, all parts of it */
 struct ways {
@@ -36,7 +55,7 @@ static struct ways ways_of(const struct step *step, const mpq_t *start, int bits
 	struct ways w = { .step = step, .count = s->parts ? s->parts : 1 };
 	w.way = ARRAY(struct through *, (size_t)w.count);
 	for (int p = 0; p < w.count; p++)
-		w.way[p] = through_start(step->model, s->parts ? &s->part[p] : NULL, start, bits);
+		through_limit(w.way[p] = through_start(step->model, s->parts ? &s->part[p] : NULL, start, bits), MOST);
 	return w;
 }
 
@@ -86,10 +105,19 @@ static int crossings_of(const struct ways *w)
 	return count;
 }
 
+static double largest_of(const struct reference *r, int state)
+{
+	double largest = fabs(r->start[state]);
+	for (int k = 0; k < r->rows; k++)
+		largest = fmax(largest, fabs(r->value[k * r->states + state]));
+	return largest;
+}
+
 /* ---- crossings, of all parts by time ---- */
 
 struct moment {
 	double at;                  /* [s] */
+	const struct region_part *part;
 	struct passed passed;
 };
 
@@ -105,12 +133,26 @@ static struct moment *all_crossings(const struct ways *w, int *count)
 	*count = 0;
 	for (int p = 0; p < w->count; p++) {
 		const struct passed *list;
+		const struct switching *s = regions_of(w->step);
+		const struct region_part *part = s->parts ? &s->part[p] : NULL;
 		int passed = through_passed(w->way[p], &list);
 		for (int k = 0; k < passed; k++)
-			all[(*count)++] = (struct moment){ mpfi_get_d(list[k].at), list[k] };
+			all[(*count)++] = (struct moment){ mpfi_get_d(list[k].at), part, list[k] };
 	}
 	qsort(all, (size_t)*count, sizeof *all, by_time);
 	return all;
+}
+
+/* What the expression is summed from where the states are largest */
+static double size_of_expression(const struct step *step, const struct reference *r, const struct moment *now)
+{
+	const struct region_part *part = now->part;
+	const struct model *model = part ? part->model : step->model;
+	const struct output *row = model->switching->expression[now->passed.expression].row;
+	double size = 0;
+	for (int i = 0; i < model->system.states; i++)
+		size += fabs(mpq_get_d(row->state[i])) * largest_of(r, part ? part->state[i] : i);
+	return size;
 }
 
 /* Steps before it, what of the time is after them, and what rounding takes: of the expression as it is summed, by its
@@ -119,6 +161,7 @@ static void take_crossing(const struct step *step, struct reference *r, const st
 {
 	bool single = step->model->asked.single;
 	double h = mpq_get_d(step->model->h), speed = now->passed.jumped ? HUGE_VAL : now->passed.speed;
+	double size = now->passed.size + size_of_expression(step, r, now);
 	mpq_t time, whole;
 	mpz_t before;
 	mpq_inits(time, whole, NULL);
@@ -132,7 +175,7 @@ static void take_crossing(const struct step *step, struct reference *r, const st
 	mpq_mul(whole, whole, step->model->h);
 	mpq_sub(time, time, whole);
 	r->crossing[r->crossings].after = round_rational(time);
-	r->crossing[r->crossings++].unit = ulp_of(fmax(h, now->passed.size / speed), single);
+	r->crossing[r->crossings++].unit = ulp_of(fmax(h, size / speed), single);
 	mpz_clear(before);
 	mpq_clears(time, whole, NULL);
 }
@@ -143,7 +186,7 @@ static void take_crossings(struct reference *r, const struct ways *w)
 	struct moment *all = all_crossings(w, &count);
 	r->crossings = 0;
 	for (int k = 0; k < count; k++)
-		if (all[k].at > 0)
+		if (all[k].at > ldexp(mpq_get_d(w->step->model->h), -PASSED_AT_START))
 			take_crossing(w->step, r, &all[k]);
 	discard(all);
 }
@@ -185,7 +228,17 @@ static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 	return beside;
 }
 
-/* Whether both have passed the same, and are no further apart than a start may be */
+/* Whether the target may meet two in another order, or one of them not: floats, and contacts that bounce together */
+static bool blur(const struct step *step, const struct reference *r, const struct moment *a, const struct moment *b)
+{
+	bool single = step->model->asked.single;
+	double size = a->passed.size + size_of_expression(step, r, a), gap = b->at - a->at;
+	return (single || regions_of(step)->impacts > 1) && gap > 0 && a->passed.speed > 0 &&
+	       gap < 4 * ulp_of(size / a->passed.speed, single);
+}
+
+/* Whether both have passed the same, and are no further apart than a start may be. What was let go at rest floats do
+ * not tell apart from what is not. */
 static bool are_close(const struct reference *r, const struct ways *a, const struct ways *b, const double *y,
 		      const double *beside)
 {
@@ -194,12 +247,12 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 	bool close = count == other;
 	double apart = ldexp(GROWTH, -(a->step->model->asked.single ? 18 : BESIDE));
 	for (int k = 0; k < count && close; k++)
-		close = x[k].passed.expression == z[k].passed.expression &&
-			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward;
+		close = !(x[k].passed.faint && a->step->model->asked.single) &&
+			x[k].passed.expression == z[k].passed.expression &&
+			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward &&
+			!(k > 0 && blur(a->step, r, &x[k - 1], &x[k]));
 	for (int i = 0; i < r->states && close; i++) {
-		double largest = fmax(fabs(r->start[i]), fabs(y[i]));
-		for (int k = 0; k < r->rows; k++)
-			largest = fmax(largest, fabs(r->value[k * r->states + i]));
+		double largest = fmax(largest_of(r, i), fabs(y[i]));
 		close = isfinite(y[i]) && fabs(y[i] - beside[i]) <= apart * largest;
 	}
 	return close;
@@ -218,12 +271,13 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 	for (int i = 0; i < r->states; i++)
 		r->start[i] = round_rational(start[i]);
 	known = !reach(&a, time) && states_of(&a, r->between);
-	while (known && goes && r->rows < ROWS && (r->crossings < ENOUGH || r->rows < LEAST_ROWS)) {
+	while (known && goes && r->rows < ROWS && (r->crossings < ENOUGH || (r->rows < LEAST_ROWS && r->crossings < MANY))) {
 		double *y = r->value + r->rows * r->states;
 		mpq_set_ui(time, steps[r->rows], 1);
 		mpq_mul(time, time, step->model->h);
-		known = !reach(&a, time) && states_of(&a, y);
-		goes = known && !reach(&b, time);
+		goes = !reach(&a, time);
+		known = goes ? states_of(&a, y) : crossings_of(&a) >= MOST;
+		goes = goes && known && !reach(&b, time);
 		if (goes)
 			(void)states_of(&b, other);
 		if (goes && (goes = are_close(r, &a, &b, y, other))) {
@@ -241,9 +295,7 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 static void fill_units(struct reference *r, bool single)
 {
 	for (int i = 0; i < r->states; i++) {
-		double largest = fabs(r->start[i]);
-		for (int k = 0; k < r->rows; k++)
-			largest = fmax(largest, fabs(r->value[k * r->states + i]));
+		double largest = largest_of(r, i);
 		r->unit[i] = largest > 0 ? ulp_of(largest, single) : 1;
 	}
 }

@@ -76,7 +76,7 @@ static int find_idle(const struct through *t, const struct gate *gate, struct id
 		if (let_go)
 			interval -= gate->upward ? 1 : -1;
 		if (is_stick(x, interval))
-			idle[count++] = (struct idle){ e, interval, impact_resting(t->s, through_segment(t), e, interval),
+			idle[count++] = (struct idle){ e, interval, impact_resting(t->s, t->segment, e, interval),
 						       let_go ? gate->upward ? 1 : -1 : 0 };
 	}
 	return count;
@@ -129,7 +129,7 @@ static int agrees(struct through *t, int region, const struct idle *idle, int co
 	for (int i = 0; i < count; i++) {
 		int side = interval_of(t->s, region, idle[i].expression) - idle[i].stick, agree = 1;
 		bool known = true;
-		if (idle[i].impact >= 0 && side == (strike_of(t, &t->s->impact[idle[i].impact])->upward ? 1 : -1))
+		if (idle[i].impact >= 0 && side == (t->s->impact[idle[i].impact].in[t->segment].upward ? 1 : -1))
 			return 0;
 		if (side == 0)
 			agree = is_held(t, area, &idle[i]);
@@ -169,23 +169,19 @@ static void note_change(struct through *t, const struct idle *idle, int count, i
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	struct idle idle[MOST_IDLE];
-	int count = find_idle(t, gate, idle), codes = 1, best = -1, least = 0;
+	int count = find_idle(t, gate, idle), codes = 1, best = -1;
 	if (count == 0)
 		return true;
 	for (int i = 0; i < count; i++)
 		codes *= 3;
-	for (int code = 0; code < codes; code++) {
-		int score, region = region_with(t, idle, count, code, &score);
-		if (best >= 0 && score >= least)
-			continue;
-		int agree = agrees(t, region, idle, count);
-		if (agree < 0)
-			return unknown(t, "what sticks and what slips");
-		if (agree > 0) {
-			best = region;
-			least = score;
+	for (int least = 0; best < 0 && least <= MOST_IDLE * (2 * MOST_IDLE + 1); least++)
+		for (int code = 0; code < codes && best < 0; code++) {
+			int score, region = region_with(t, idle, count, code, &score);
+			int agree = score == least ? agrees(t, region, idle, count) : 0;
+			if (agree < 0)
+				return unknown(t, "what sticks and what slips");
+			best = agree > 0 ? region : -1;
 		}
-	}
 	if (best < 0)
 		return unknown(t, "what sticks: no combination of what sticks and what slips agrees");
 	if (best == t->region)
@@ -200,40 +196,60 @@ bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 
 static int free_of(const struct through *t, const struct impact *p)
 {
-	return rest_of(t->s, through_segment(t), p) + (strike_of(t, p)->upward ? -1 : 1);
+	return rest_of(t->s, t->segment, p) + (p->in[t->segment].upward ? -1 : 1);
 }
 
 static void go_to(struct through *t, const struct impact *p, int interval)
 {
-	int now = interval_of(t->s, t->region, strike_of(t, p)->expression);
+	int now = interval_of(t->s, t->region, p->in[t->segment].expression);
 	if (now != interval)
-		through_enter(t, t->region + (interval - now) * t->s->expression[strike_of(t, p)->expression].stride);
+		through_enter(t, t->region + (interval - now) * t->s->expression[p->in[t->segment].expression].stride);
 }
 
 static int breakpoint_of(const struct through *t, const struct impact *p)
 {
-	const struct expression *e = &t->s->expression[strike_of(t, p)->expression];
+	const struct expression *e = &t->s->expression[p->in[t->segment].expression];
 	int b = 0;
-	while (!mpq_equal(e->at[b], strike_of(t, p)->at))
+	while (!mpq_equal(e->at[b], p->in[t->segment].at))
 		b++;
-	return b + (p->bounces && !strike_of(t, p)->upward);
+	return b + (p->bounces && !p->in[t->segment].upward);
 }
 
 static bool touches(const struct through *t, const struct impact *p)
 {
-	int interval = interval_of(t->s, t->region, strike_of(t, p)->expression);
-	return p->bounces && (interval == rest_of(t->s, through_segment(t), p) || interval == free_of(t, p)) &&
-	       through_side(t, strike_of(t, p)->expression, strike_of(t, p)->at) == 0;
+	int interval = interval_of(t->s, t->region, p->in[t->segment].expression);
+	return p->bounces && (interval == rest_of(t->s, t->segment, p) || interval == free_of(t, p)) &&
+	       through_side(t, p->in[t->segment].expression, p->in[t->segment].at) == 0;
+}
+
+/* Whether a speed is 0 to half the digits of the largest: speeds that impacts have made equal */
+static bool is_none(const struct through *t, const mpq_t *row)
+{
+	mpfi_t value;
+	double most = 0, size = 0;
+	mpfi_init2(value, t->precision);
+	through_dot(t, row, (const mpfi_t *)t->x, value);
+	for (int i = t->system->n; i < t->layout.states; i++) {
+		most = fmax(most, fabs(mpfi_get_d(t->x[i])));
+		size += fabs(mpq_get_d(row[i]));
+	}
+	size = ldexp(size * most, -t->precision / 2);
+	bool none = fabs(mpfr_get_d(&value->left, MPFR_RNDA)) <= size &&
+		    fabs(mpfr_get_d(&value->right, MPFR_RNDA)) <= size;
+	mpfi_clear(value);
+	return none;
 }
 
 /* Whether it comes closer: 1, 0, -1: not known. What was struck without restitution, or rests, does not. */
 static int closes(const struct through *t, int k, unsigned struck)
 {
 	const struct impact *p = &t->s->impact[k];
-	bool known, still = interval_of(t->s, t->region, strike_of(t, p)->expression) == rest_of(t->s, through_segment(t), p) ||
-			    ((struck >> k & 1) && mpq_sgn(strike_of(t, p)->restitution) == 0);
-	mpq_t *row = row_of(t, strike_of(t, p)->speed_row);
+	bool known, still = interval_of(t->s, t->region, p->in[t->segment].expression) == rest_of(t->s, t->segment, p) ||
+			    ((struck >> k & 1) && mpq_sgn(p->in[t->segment].restitution) == 0);
+	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
 	int sign = sign_of(t, (const mpq_t *)row, NULL, &known);
+	if (!known && !still)
+		still = is_none(t, (const mpq_t *)row);
 	rationals_free(row, (size_t)t->n);
 	return known ? sign > 0 : still ? 0 : -1;
 }
@@ -249,8 +265,8 @@ static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *st
 		if (comes == 0)
 			continue;
 		rounds++;
-		through_note_plain(t, strike_of(t, p)->expression, breakpoint_of(t, p), strike_of(t, p)->upward, off);
-		jump(t, strike_of(t, p)->jumps, strike_of(t, p)->jump);
+		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
+		jump(t, p->in[t->segment].jumps, p->in[t->segment].jump);
 		if (p->bounces)
 			go_to(t, p, free_of(t, p));
 		*struck |= 1u << k;
@@ -263,19 +279,19 @@ static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *st
 /* left = 2 v/(a (1 - e)) of what leaves with v and is pressed back by a; false: nothing presses it. *known */
 static bool time_left(struct through *t, const struct impact *p, mpfi_ptr left, bool *known)
 {
-	mpq_t *row = row_of(t, strike_of(t, p)->speed_row), part;
+	mpq_t *row = row_of(t, p->in[t->segment].speed_row), part;
 	mpq_t *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
 	bool presses = sign_of(t, (const mpq_t *)press, NULL, known) > 0;
 	mpfi_t a;
 	mpq_init(part);
 	mpfi_init2(a, t->precision);
 	mpfi_set_ui(left, 0);
-	if (presses && mpq_sgn(strike_of(t, p)->restitution) != 0) {
+	if (presses && mpq_sgn(p->in[t->segment].restitution) != 0) {
 		through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, left);
 		through_dot(t, (const mpq_t *)press, (const mpfi_t *)t->x, a);
 		mpfi_div(left, left, a);
 		mpq_set_si(part, 1, 1);
-		mpq_sub(part, strike_of(t, p)->restitution, part);
+		mpq_sub(part, p->in[t->segment].restitution, part);
 		mpfi_div_q(left, left, part);
 		mpfi_mul_ui(left, left, 2);
 	}
@@ -298,7 +314,7 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 	mpq_div_2exp(brief, t->whole->h, t->whole->asked.single && !t->whole->asked.solution ? 10 : 23);
 	for (int k = 0; k < t->s->impacts && known; k++) {
 		const struct impact *p = &t->s->impact[k];
-		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(strike_of(t, p)->restitution, one) >= 0 || !touches(t, p))
+		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 || !touches(t, p))
 			continue;
 		bool presses = time_left(t, p, left, &known);
 		if (!known || !presses)
@@ -308,10 +324,10 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 		if (!known || mpfr_sgn(&left->left) > 0)
 			continue;
 		mpfi_add_q(left, left, brief);
-		jump(t, strike_of(t, p)->jumps, strike_of(t, p)->still);
-		go_to(t, p, rest_of(t->s, through_segment(t), p));
+		jump(t, p->in[t->segment].jumps, p->in[t->segment].still);
+		go_to(t, p, rest_of(t->s, t->segment, p));
 		through_hold(t);
-		through_note_plain(t, strike_of(t, p)->expression, breakpoint_of(t, p), strike_of(t, p)->upward, off);
+		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
 		mpfi_add(t->list[t->passed - 1].at, t->list[t->passed - 1].at, left);
 		known = through_settle(t, NULL, off);
 	}
@@ -341,7 +357,7 @@ int through_order(struct through *t, const struct gate *gate)
 	bool known;
 	if (!gate->release)
 		return 0;
-	if (impact_resting(t->s, through_segment(t), gate->expression,
+	if (impact_resting(t->s, t->segment, gate->expression,
 			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
 		return 3;
 	mpq_t *row = row_of(t, t->s->expression[gate->expression].row);

@@ -817,6 +817,7 @@ struct passed {                     /* a breakpoint, by its expression */
 	int expression, breakpoint;
 	bool upward;
 	bool jumped;                /* by a load that jumps, not by crossing */
+	bool faint;                 /* it begins with speed and acceleration 0: what rested is let go */
 	mpfi_t at;                  /* when [s] */
 	double speed;               /* of the expression there [its unit/s] */
 	double size;                /* of what it is summed from there [its unit] */
@@ -831,6 +832,7 @@ const char *through_undecided(const struct through *t);     /* why */
 void through_state(const struct through *t, int state, mpfi_ptr value);        /* where it has got to */
 void through_value(const struct through *t, const struct output *output, mpfi_ptr value);
 int  through_passed(const struct through *t, const struct passed **list);      /* so far, in order */
+void through_limit(struct through *t, int most);            /* crossings; what comes behind them is not decided */
 void through_free(struct through *t);
 
 /* ---- closed.c: states in closed form for the self-test ---- */
@@ -846,11 +848,11 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
 struct reference reference_of(const struct step *step);
-double ulp_of(double value, bool single);
-void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
 
 /* ---- passing.c: the same through crossings ---- */
 
+double ulp_of(double value, bool single);
+void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
 struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 /* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */

@@ -102,13 +102,20 @@ static bool next_segment(struct through *t)
 	t->gridded = false;
 	if (t->s->segments == 1)
 		return true;
-	if (has_events(t->s)) {
-		t->undecided = "what sticks and what rests where loads change their formula";
-		return false;
-	}
 	through_enter(t, t->region + regions_at_once(t->s));
 	t->speed = 0;
-	return through_follow(t);
+	if (!through_follow(t))
+		return false;
+	if (!has_events(t->s))
+		return true;
+	mpfr_t none;
+	mpfr_init2(none, 64);
+	mpfr_set_zero(none, 1);
+	through_hold(t);
+	bool known = through_settle(t, NULL, none);
+	through_hold(t);
+	mpfr_clear(none);
+	return known;
 }
 
 static bool changes_here(const struct through *t)
@@ -217,6 +224,11 @@ struct through *through_start(const struct model *whole, const struct region_par
 const char *through_undecided(const struct through *t)
 {
 	return t->undecided;
+}
+
+void through_limit(struct through *t, int most)
+{
+	t->most_passed = most;
 }
 
 int through_passed(const struct through *t, const struct passed **list)

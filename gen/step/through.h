@@ -58,22 +58,13 @@ struct through {
 	int at_once;
 	/* an expression that was let go at base, but for so much [s]: it is 0 there with its first derivatives */
 	int fresh, order;           /* order 0: there is none */
+	bool back;                  /* which way it would come back */
 	mpfr_t fresh_off, most_off;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
-	int passed;
+	int passed, most_passed;    /* most: 0: any number */
 	struct passed *list;
 	const char *undecided;
 };
-static inline const struct strike *strike_of(const struct through *t, const struct impact *p)
-{
-	return &p->in[t->segment];
-}
-
-/* Of its regions */
-static inline int through_segment(const struct through *t)
-{
-	return t->s->segments > 1 ? t->segment : 0;
-}
 
 
 /* ---- areas.c: regions as they are met, loads at a time ---- */
@@ -93,6 +84,9 @@ bool through_clear(struct through *t, const mpfi_t *y, double tau);    /* nothin
 /* In t->room, of that degree: 1: found; -1: not known; 0: none. at: s */
 int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at);
 bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at);
+
+/* ---- noted.c: the list of crossings, and where expressions stand ---- */
+
 /* of e - at: 1 above, -1 below; 0: not told apart */
 int  through_side(const struct through *t, int expression, mpq_srcptr at);
 bool through_follow(struct through *t);                      /* what has left its interval by a jump */
