@@ -581,8 +581,8 @@ typedef struct pl_strike {
     double per; /* of the expression for a guard of 1 */
 } pl_strike;
 
-/* Holds that cannot be all at once, as bits.  Of friction of what a contact at rest holds: it brakes what presses there,
- * and while it does not stick slips to that side, 1 or -1 interval on, whatever its velocity is. */
+/* Holds that cannot be all at once, as bits.  Of friction of what a contact at rest holds: it brakes what presses
+ * there, and while it does not stick slips to that side, 1 or -1 interval on, whatever its velocity is. */
 typedef struct pl_conflict {
     uint32_t set;
     int hold, side; /* that friction; -1: it is others */
@@ -623,8 +623,8 @@ typedef struct pl_instant {
     int status;         /* 0, PL_UNDECIDED */
 } pl_instant;
 
-/* The intervals of a state that was set.  What is on a breakpoint that stands twice is held where that can be, else goes
- * where it is heading. */
+/* The intervals of a state that was set.  What is on a breakpoint that stands twice is held where that can be, else
+ * goes where it is heading. */
 void pl_events_place(const pl_events *m, pl_instant *at);
 
 /* The series from here.  1: an expression or what is held has left its interval, and that has been passed; -1: there

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c, crossings.c,
- * retune.c and blocks.c are written over `real`, a double with the names of plrt.h; seriesf.c and so on define
- * REAL_IS_FLOAT and include them, and then the same names stand for those that end in f.  Constants are integers there,
- * which are of either type: no float is promoted. */
+/* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c,
+ * crossings.c, retune.c and blocks.c are written over `real`, a double with the names of plrt.h; seriesf.c and so on
+ * define REAL_IS_FLOAT and include them, and then the same names stand for those that end in f.  Constants are
+ * integers there, which are of either type: no float is promoted. */
 #ifndef PLRT_REAL_H
 #define PLRT_REAL_H
 

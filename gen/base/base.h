@@ -41,7 +41,8 @@ enum {
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
 	LIMIT_TUNABLES = 16,        /* params that the target may change */
-	LIMIT_TUNED_BLOCK = 64,     /* states, loads and inputs of an independent block whose e^{A h} the target computes */
+	/* states, loads and inputs of an independent block whose e^{A h} the target computes */
+	LIMIT_TUNED_BLOCK = 64,
 	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
 	LIMIT_REGIONS = 243,        /* of a piecewise-linear model, in one segment of time */
 	LIMIT_REGIONS_IN_TIME = 1024, /* in all */

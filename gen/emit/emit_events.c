@@ -73,8 +73,8 @@ static void emit_holds(const struct emitter *e)
 static void emit_strikes(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
-	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, without "
-	       "restitution, how many; restitution; of the expression for a guard of 1 */\n"
+	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, "
+	       "without restitution, how many; restitution; of the expression for a guard of 1 */\n"
 	       "static const pl_strike $n_event_strike[%d] = {\n", c->strikes > 0 ? c->strikes : 1);
 	for (int i = 0; i < c->strikes; i++) {
 		const struct series_strike *s = &c->strike[i];
@@ -106,7 +106,8 @@ void emit_event_tables(const struct emitter *e)
 				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);
 	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n"
 	       "static const pl_events $n_events = {\n"
-	       "    &$n_divided, $N_STATES, $n_event_watch, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike, $n_event_place[0],\n"
+	       "    &$n_divided, $N_STATES, $n_event_watch, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
+	       "    $n_event_place[0],\n"
 	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
 	       "};\n", *conflict ? conflict : "{0u, -1, 0}", c->holds, c->strikes, c->conflicts);
 }

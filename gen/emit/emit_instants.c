@@ -30,7 +30,8 @@ static void emit_start(const struct emitter *e)
 	       "{\n"
 	       "    %s here = $o_switching%s;\n"
 	       "    here.matrix += segment * %d;\n",
-	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, search, own ? "(c, segment)" : "[segment]",
+	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, search,
+	    own ? "(c, segment)" : "[segment]",
 	    regions_in_one(e));
 	if (has_guards(e))
 		say(e, "    here.first += segment * %d;\n"

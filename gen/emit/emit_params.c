@@ -58,6 +58,8 @@ void emit_param_locals(const struct emitter *e, const bool *reads)
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads)
 {
 	const struct tuning *t = tunables_of(e->model);
+	if (!t)
+		return;
 	bool *read = ARRAY(bool, (size_t)t->params);
 	for (int k = 0; k < t->params; k++)
 		read[k] = reads->param[k];
@@ -112,9 +114,11 @@ void emit_held_declarations(const struct emitter *e)
 	       " *     PL_NO_STEP     h is not $N_H\n", param_list(e));
 	if (e->model->retuned)
 		say(e, " *     PL_SINGULAR    a divisor is 0, as a mass is\n"
-		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is below 0;\n"
-		       " *                    breakpoints change their order; or a pole times h is above 2^%d\n"
-		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n", LIMIT_PIECES);
+		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is\n"
+		       " *                    below 0; "
+		       "breakpoints change their order; or a pole times h is above 2^%d\n"
+		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n",
+		       LIMIT_PIECES);
 	else
 		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"

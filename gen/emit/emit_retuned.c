@@ -35,7 +35,8 @@ static void guard_members(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	const struct guards g = own_guards(e);
-	int size = e->step->layout.size, values = g.assignments > 0 ? g.assignments : 1, all = g.impacts > 0 ? g.impacts : 1;
+	int size = e->step->layout.size;
+	int values = g.assignments > 0 ? g.assignments : 1, all = g.impacts > 0 ? g.impacts : 1;
 	member(e, "double", "limit", format("[%d]", g.guards), "of each guard");
 	member(e, "double", "play", format("[%d]", s->expressions), "factors of cos and sin in each expression");
 	member(e, "double", "gate_play", format("[%d]", g.rows), "in each row of guards");
@@ -164,7 +165,8 @@ static void emit_solved(const struct emitter *e)
 		       "        return status;\n"
 		       "    for (i = 0; i < %d; i++)\n"
 		       "        for (k = 0; k < %d; k++)\n"
-		       "            value[%d + i][k] = wide[%d * i + k];\n", b + 1, t->rows, size, r->block[b].place, width);
+		       "            value[%d + i][k] = wide[%d * i + k];\n", b + 1, t->rows, size, r->block[b].place,
+		       width);
 	}
 }
 
@@ -244,7 +246,8 @@ static void emit_checks(const struct emitter *e)
 				    : row->kind == RETUNED_LEAST ? format("%s < 0.0", value)
 							       : NULL;
 		if (row->kind == RETUNED_RESTITUTION)
-			wrong = e->model->impact[row->of].when->restitution ? format("%s < 0.0 || %s > 1.0", value, value)
+			wrong = e->model->impact[row->of].when->restitution
+					? format("%s < 0.0 || %s > 1.0", value, value)
 									    : format("%s < 0.0", value);
 		if (row->place >= 0 && wrong)
 			say(e, "    if (%s)  /* %s */\n"
@@ -271,7 +274,8 @@ static void emit_taken_expressions(const struct emitter *e)
 	for (int segment = 0; segment < s->segments; segment++)
 		for (int i = 0; i < s->expressions; i++)
 			take(e, retuned_place(r, RETUNED_EXPRESSION, segment, i),
-			     s->segments > 1 ? format("made.row[%d][%d]", segment, i) : format("made.row[%d]", i), false);
+			     s->segments > 1 ? format("made.row[%d][%d]", segment, i) : format("made.row[%d]", i),
+			     false);
 	for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks)
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			take_number(e, retuned_place(r, RETUNED_BREAK, i, k), format("made.breakpoint[%d]", first + k),
@@ -398,7 +402,8 @@ static void emit_bounds(const struct emitter *e)
 	}
 	const char *indent = s->segments > 1 ? "    " : "";
 	say(e, "%s        pl_region_bounds(%d, d, made.slopes[k][0], %d, %s,\n"
-	       "%s                         made.lean[k][0], %s, %s, room);\n", indent, size, s->expressions, row, indent,
+	       "%s                         made.lean[k][0], %s, %s, room);\n", indent, size, s->expressions, row,
+	       indent,
 	    has_guards(e) ? "spare[0]" : "made.sag[k][0]", has_guards(e) ? "spare[1]" : "made.sway[k][0]");
 	say(e, s->segments > 1 ? "        }\n" : "");
 }

@@ -358,7 +358,8 @@ static void emit_take_columns(const struct emitter *e, const struct group *g, in
 		say(e, "    for (j = 0; j < %d; j++)\n"
 		       "        for (i = 0; i < %d; i++)\n"
 		       "            c->loads%d[j / %d][j %% %d][i] = D[j / %d][i][%d + j %% %d].hi;\n",
-		    e->system->segments * g->loads, g->states, index, g->loads, g->loads, g->loads, g->states, g->loads);
+		    e->system->segments * g->loads, g->states, index, g->loads, g->loads, g->loads, g->states,
+		    g->loads);
 }
 
 static void emit_alike_list(const struct emitter *e, const struct group *g, const char *name, bool changing)

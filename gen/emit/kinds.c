@@ -126,7 +126,8 @@ static const struct kind tuned = {
 
 static const char *far_block(const struct step *step)
 {
-	return step->series.emitted ? NULL : format("an independent block has more than %d states, load states and inputs",
+	return step->series.emitted ? NULL
+			: format("an independent block has more than %d states, load states and inputs",
 						     LIMIT_TUNED_BLOCK);
 }
 

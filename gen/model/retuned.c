@@ -122,7 +122,8 @@ static _Noreturn void tell_shape(struct search *s)
 	bool loads = !same_loads(pattern(s), s->found);
 	const struct tunable *why = suspect(s);
 	if (loads)
-		error(why->at, "a load is there only where its factor is not 0; its frequency, phase and growth are fixed",
+		error(why->at,
+		      "a load is there only where its factor is not 0; its frequency, phase and growth are fixed",
 		      "with another value of '%s' the model has other loads", why->symbol->name);
 	error(why->at, "what is equal at the spec's values has to stay equal: breakpoints, factors, forces",
 	      "with another value of '%s' the model has other regions", why->symbol->name);
@@ -462,7 +463,8 @@ static void check_model(const struct model *model)
 	check_outputs(model);
 	if (has_events(model->switching) && model->switching->segments > 1)
 		error(spec->tunable[0].at, "the load as an input is exact beside them",
-		      "tunable params beside friction or impacts and loads that change their formula are not built yet");
+		      "tunable params beside friction or impacts and loads that change their formula are not built "
+		      "yet");
 	if (model->switching->sliders > 0)
 		error(spec->tunable[0].at, "a small mass slides with its own inertia",
 		      "tunable params beside what slides without mass are not built yet");

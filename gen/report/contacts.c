@@ -42,7 +42,8 @@ void person_contacts(FILE *to, const struct step *step)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
 	for (int i = 0; c && i < c->strikes; i++) {
 		const struct when *when = step->model->impact[i].when;
-		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end), rest_text(step, &c->strike[i]));
+		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end),
+			rest_text(step, &c->strike[i]));
 	}
 }
 

@@ -124,7 +124,8 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 		if (breakpoint < 0 || breakpoint == e->breaks)
 			continue;
 		mpq_t *row = rationals((size_t)t->n);
-		int leads = upward ? e->stride : -e->stride, impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
+		int leads = upward ? e->stride : -e->stride;
+		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
 		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
 		through_row(t, e->row, row);

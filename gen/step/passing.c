@@ -271,7 +271,8 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 	for (int i = 0; i < r->states; i++)
 		r->start[i] = round_rational(start[i]);
 	known = !reach(&a, time) && states_of(&a, r->between);
-	while (known && goes && r->rows < ROWS && (r->crossings < ENOUGH || (r->rows < LEAST_ROWS && r->crossings < MANY))) {
+	while (known && goes && r->rows < ROWS &&
+	       (r->crossings < ENOUGH || (r->rows < LEAST_ROWS && r->crossings < MANY))) {
 		double *y = r->value + r->rows * r->states;
 		mpq_set_ui(time, steps[r->rows], 1);
 		mpq_mul(time, time, step->model->h);

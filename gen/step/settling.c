@@ -244,8 +244,9 @@ static bool is_none(const struct through *t, const mpq_t *row)
 static int closes(const struct through *t, int k, unsigned struck)
 {
 	const struct impact *p = &t->s->impact[k];
-	bool known, still = interval_of(t->s, t->region, p->in[t->segment].expression) == rest_of(t->s, t->segment, p) ||
-			    ((struck >> k & 1) && mpq_sgn(p->in[t->segment].restitution) == 0);
+	const struct strike *strike = &p->in[t->segment];
+	bool rests = interval_of(t->s, t->region, strike->expression) == rest_of(t->s, t->segment, p);
+	bool known, still = rests || ((struck >> k & 1) && mpq_sgn(strike->restitution) == 0);
 	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
 	int sign = sign_of(t, (const mpq_t *)row, NULL, &known);
 	if (!known && !still)
@@ -314,7 +315,8 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 	mpq_div_2exp(brief, t->whole->h, t->whole->asked.single && !t->whole->asked.solution ? 10 : 23);
 	for (int k = 0; k < t->s->impacts && known; k++) {
 		const struct impact *p = &t->s->impact[k];
-		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 || !touches(t, p))
+		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 ||
+				!touches(t, p))
 			continue;
 		bool presses = time_left(t, p, left, &known);
 		if (!known || !presses)

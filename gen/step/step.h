@@ -899,7 +899,8 @@ struct tuned_block {                /* an independent block; x: its states, load
 struct tuned_blocks {
 	int blocks;
 	struct tuned_block *block;  /* in the order of groups */
-	struct tuned_part others;   /* outputs and frequencies that depend on params, and what accelerations these read */
+	/* outputs and frequencies that depend on params, and what accelerations these read */
+	struct tuned_part others;
 	int first_output;           /* row there of the first output that does; the others follow */
 	int *frequency;             /* per load: its row there, or -1 */
 	int increment, work;        /* numbers of two words: for e^{A h} - I of a block, and for computing it */

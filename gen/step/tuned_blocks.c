@@ -309,7 +309,8 @@ static void check_size(const struct step *step, const struct tuned_block *b)
 /* Numbers that an instance has of a group: those that hold no place for nothing */
 static int numbers_of(const struct step *step, const struct group *g)
 {
-	return g->tuned ? g->blocks * g->states * (g->states + step->branch->system.segments * g->loads + g->inputs) : 0;
+	int columns = g->states + step->branch->system.segments * g->loads + g->inputs;
+	return g->tuned ? g->blocks * g->states * columns : 0;
 }
 
 void plan_tuned_blocks(struct step *step)

@@ -161,7 +161,8 @@ static enum fmu_result fmu_retune(fmu_instance *i)
         return fmu_say(i, FMU_ERROR, "with these params the mass matrix has no inverse, or something is divided by 0");
     }
     if (status & PL_OUT_OF_RANGE) {
-        return fmu_say(i, FMU_ERROR, "with these params the regions are others: a restitution not within 0 and 1, a gap "
+        return fmu_say(i, FMU_ERROR,
+            "with these params the regions are others: a restitution not within 0 and 1, a gap "
                                      "or a force of friction below 0, breakpoints in another order");
     }
     if (status & PL_NO_RATE) {

@@ -374,7 +374,8 @@ static void print_options(FILE *to)
 			    "s/d(t - 0.02)/d_late/; s/^# whole: //\n", curves ? "kinked" : "piecewise");
 	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
-		fputs(has("smooth") || has("kinked") || has("loads") || has("piecewise") || has("friction") || has("impact") ||
+		fputs(has("smooth") || has("kinked") || has("loads") || has("piecewise") || has("friction") ||
+				has("impact") ||
 		      expands() || moves()
 			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
 }

@@ -33,7 +33,8 @@ static struct motion ramped(wide t)
 		return (struct motion){ ((t - 2) * (t - 2) * (t - 2) - 0.027L) / 6 / m - 0.09L / 2 / m * (t - 2.3L),
 					((t - 2) * (t - 2) - 0.09L) / 2 / m, F, (load - F) / m };
 	if (t < 3.2L)
-		return (struct motion){ x3 + v3 * (t - 3) + (t - 3) * (t - 3) / 2 / m, v3 + (t - 3) / m, F, (load - F) / m };
+		return (struct motion){ x3 + v3 * (t - 3) + (t - 3) * (t - 3) / 2 / m, v3 + (t - 3) / m, F,
+				(load - F) / m };
 	if (t < 3.2L + stops)
 		return (struct motion){ x4 + v4 * (t - 3.2L) - F / m / 2 * (t - 3.2L) * (t - 3.2L),
 					v4 - F / m * (t - 3.2L), F, -F / m };

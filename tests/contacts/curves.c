@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Impacts and friction beside curves: a pendulum at a stop against elliptic integrals, where a spring that stiffens turns
- * and stays on ground that rubs by its energy; and that neither friction nor impacts add any. */
+/* Impacts and friction beside curves: a pendulum at a stop against elliptic integrals, where a spring that stiffens
+ * turns and stays on ground that rubs by its energy; and that neither friction nor impacts add any. */
 #include "caged.h"
 #include "pendulum.h"
 #include "pendulum_float.h"
@@ -66,7 +66,8 @@ static void compare_strikes(const char *name, int found, const double *time, dou
 		v *= e;
 		due += there_and_back(w, a, v);
 	}
-	ok(found == STRIKES && worst <= tolerance, "%s: %d strikes of %d, times off by %.3g s at most (%g)", name, found,
+	ok(found == STRIKES && worst <= tolerance, "%s: %d strikes of %d, times off by %.3g s at most (%g)", name,
+			found,
 	   STRIKES, worst, tolerance);
 }
 

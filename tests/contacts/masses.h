@@ -18,7 +18,8 @@ struct contact {
 	long side;              /* of stop and impact: 1 or -1 */
 	struct law gap;         /* of stop and impact: met where p comes to it; that of an impact jumps only to open */
 	long stiffness;         /* of a stop: it pushes back with stiffness (p - gap) */
-	struct law force;       /* of friction: at most this while it slides, and `more` above it while it sticks; beyond that */
+	/* of friction: at most this while it slides, and `more` above it while it sticks; beyond that */
+	struct law force;
 	long more, swing, pad;  /* swing cos(w t), and pad times the position of mass pad_at */
 	int pad_at;
 	struct law belt;        /* of friction: it slides with v - belt */
@@ -28,7 +29,8 @@ struct scene {
 	int n, contacts;
 	long mass[MOST_MASSES];
 	long spring[MOST_MASSES], damper[MOST_MASSES];  /* to the mass before, of the first to the ground */
-	struct law constant[MOST_MASSES], cosine[MOST_MASSES], sine[MOST_MASSES]; /* loads; the last two without slope */
+	/* loads; the last two without slope */
+	struct law constant[MOST_MASSES], cosine[MOST_MASSES], sine[MOST_MASSES];
 	long frequency;
 	int segments;           /* of time, */
 	long change[MOST_SEGMENTS - 1]; /* and where they end [1e-3 s] */
@@ -45,7 +47,8 @@ struct scene {
  * are higher at rest or zero, restitutions of 0 and 1, masses at rest, without springs, several that do the same at one
  * instant, other units of time; without changes of the loads. */
 struct scene scene_random(unsigned seed, const int most[4], bool wild);
-void scene_leave(struct scene *s);      /* to one that is neither wild nor changes: forces that are not piecewise linear */
+/* to one that is neither wild nor changes: forces that are not piecewise linear */
+void scene_leave(struct scene *s);
 void scene_write(const struct scene *s, const char *step, FILE *to);    /* as a spec, whose model is called scene */
 
 #endif

@@ -43,7 +43,8 @@ order() {
 		: >errors
 		for n in $steps; do
 			state "taylor $p" "$n" >found
-			cat exact found | awk -v n="$n" 'NR == 1 { for (i = 1; i < NF - 1; i++) x[i] = $i; events = $(NF - 1) }
+			cat exact found | awk -v n="$n" 'NR == 1 { events = $(NF - 1) }
+				NR == 1 { for (i = 1; i < NF - 1; i++) x[i] = $i }
 				NR == 2 { for (i = 1; i < NF - 1; i++) { d = $i - x[i]; e = d*d > e ? d*d : e }
 					print n, sqrt(e), $(NF - 1) == events, $NF == 0 }' >>errors
 		done

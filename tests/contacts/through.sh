@@ -21,8 +21,10 @@ tested() {
 		grep -q 'finds no start\|the step has' log && echo none
 		return
 	fi
-	printf '#include "scene.h"\n#include <stdio.h>\nint main(void) { printf("%%g\\n", (double)scene_selftest()); }\n' \
-		>main.c
+	{
+		printf '#include "scene.h"\n#include <stdio.h>\n'
+		printf 'int main(void) { printf("%%g\\n", (double)scene_selftest()); }\n'
+	} >main.c
 	${CC:-cc} -O1 -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* x = q, v, 1, cos w t, sin w t, t, and where forces are left q^3, q^2 v, sin q. In each segment of time and mode of the
- * contacts x' = A x for all but these, whose series follow from those of q and v; A and forces of contact as rows over
- * x. */
+/* x = q, v, 1, cos w t, sin w t, t, and where forces are left q^3, q^2 v, sin q. In each segment of time and mode of
+ * the contacts x' = A x for all but these, whose series follow from those of q and v; A and forces of contact as rows
+ * over x. */
 #include "truth.h"
 
 #include "polynomial.h"
@@ -387,7 +387,8 @@ static void check_limits(struct moving *m)
 	row_start(r, MOST);
 	for (int i = 0; i < m->s->contacts; i++) {
 		const struct contact *c = &m->s->contact[i];
-		if (c->kind != FRICTION || (c->force.at[m->segment] == 0 && c->force.slope[m->segment] == 0 && c->swing == 0 && c->pad == 0))
+		if (c->kind != FRICTION || (c->force.at[m->segment] == 0 && c->force.slope[m->segment] == 0 &&
+				c->swing == 0 && c->pad == 0))
 			continue;
 		zero(r, MOST);
 		add_limit(m, c, false, 1, r);
@@ -780,7 +781,8 @@ void truth_run(const struct scene *s, double until, double brief, double nudge, 
 	start(m, nudge);
 	bool any = false;
 	for (int i = 0; i < s->contacts; i++)
-		any = any || s->contact[i].kind != FRICTION || s->segments > 1 || s->contact[i].force.at[0] + s->contact[i].more > 0;
+		any = any || s->contact[i].kind != FRICTION || s->segments > 1 ||
+				s->contact[i].force.at[0] + s->contact[i].more > 0;
 	if (!any)
 		doubt(m, "nothing touches");
 	mpfr_inits2(BITS, width, left, end, change, (mpfr_ptr)0);

@@ -22,8 +22,8 @@ function swapped(text,  result, number, before, after)
 		number = substr(text, RSTART, RLENGTH)
 		after = substr(text, RSTART + RLENGTH)
 		result = result substr(text, 1, RSTART - 1)
-		result = result (before ~ /[a-z\/]/ || after ~ /^(\*t|\/)/ || (masses && after ~ /^\*q[0-9]''/) ? number \
-			: param(number, number * 1.25))
+		result = result (before ~ /[a-z\/]/ || after ~ /^(\*t|\/)/ || (masses && after ~ /^\*q[0-9]''/) \
+			? number : param(number, number * 1.25))
 		text = after
 	}
 	return result text

@@ -19,13 +19,16 @@ for spec in "$@"; do
 	grep -v '^tunable' "$spec" >plain.spec
 	awk '/^tunable/ { gsub(/,/, " "); for (i = 2; i <= NF; i++) order[i - 1] = $i; n = NF - 1 }
 		/^#there/ { for (i = 2; i <= NF; i++) { split($i, pair, "="); value[pair[1]] = pair[2] } }
-		END { printf "#define VALUES "; for (i = 1; i <= n; i++) printf "%s%s", value[order[i]], i < n ? ", " : "\n" }
+		END { printf "#define VALUES "
+			for (i = 1; i <= n; i++) printf "%s%s", value[order[i]], i < n ? ", " : "\n" }
 		' "$spec" >refused.h
 	{
-		echo 'static const struct { int count; const char *name[4]; double value[4]; int status; const char *text; }'
-		echo '    refused[] = {'
+		echo 'static const struct {'
+		echo '    int count; const char *name[4]; double value[4]; int status; const char *text;'
+		echo '} refused[] = {'
 		awk '/^#bad/ { names = values = ""; for (i = 2; i < NF; i++) { split($i, pair, "=");
-			names = names (i > 2 ? ", " : "") "\"" pair[1] "\""; values = values (i > 2 ? ", " : "") pair[2] }
+			names = names (i > 2 ? ", " : "") "\"" pair[1] "\""
+			values = values (i > 2 ? ", " : "") pair[2] }
 			printf "    {%d, {%s}, {%s}, %s, \"%s\"},\n", NF - 2, names, values, $NF, $2 }' "$spec"
 		echo '};'
 	} >>refused.h
@@ -37,8 +40,8 @@ for spec in "$@"; do
 	"$plgen" --real "$real" --prefix retuned "$spec" -o retuned.c >log 2>&1 &&
 		"$plgen" --real "$real" --prefix plain $defines plain.spec -o plain.c >>log 2>&1 &&
 		${CC:-cc} -std=c11 -O1 -g -fsanitize=undefined -fno-sanitize-recover -I. -I"$source/runtime" \
-			-I"$source/tests/emitted" $float -o regions "$source/tests/tunable/regions.c" retuned.c plain.c \
-			"$source/tests/emitted/tap.c" $PLRT -lm >>log 2>&1 &&
+			-I"$source/tests/emitted" $float -o regions "$source/tests/tunable/regions.c" retuned.c \
+			plain.c "$source/tests/emitted/tap.c" $PLRT -lm >>log 2>&1 &&
 		./regions >>log 2>&1
 	status=$?
 	grep '^not ok' log | sed 's/^/# /'

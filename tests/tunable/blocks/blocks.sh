@@ -108,8 +108,8 @@ random() {
 	# shellcheck disable=SC2086
 	"$chains" "$1" chained.spec chained.truth >>log 2>&1 &&
 		"$plgen" --real "$2" -o chained_pl.c chained.spec >>log 2>&1 &&
-		$cc $flags $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -I. "$here/stepped.c" chained_pl.c \
-			"$library" -lm -o stepped >>log 2>&1 && ./stepped chained.truth >>log 2>&1
+		$cc $flags $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -I. "$here/stepped.c" \
+			chained_pl.c "$library" -lm -o stepped >>log 2>&1 && ./stepped chained.truth >>log 2>&1
 	result $? "random $1 $2: $(sed -n 's/^# //p' chained.spec)"
 }
 
