@@ -22,11 +22,12 @@ struct work {
 
 static bool make_model(struct work *w)
 {
-	const struct request *request = &w->options.request;
+	struct request *request = &w->options.request;
+	request->find_factors = find_factors;
 	w->model = model_build(w->spec, request);
 	if (w->model && request->reduce)
 		w->model = model_reduce(w->model);
-	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
+	if (!w->model || (!request->solution && !find_all_tuning(w->model, request)))
 		return false;
 	w->model = model_shorten(w->model);
 	return w->model;

@@ -13,12 +13,6 @@ bool meets_contacts(const struct emitter *e)
 	return e->step->expansion && contacts(e);
 }
 
-int terms_of_events(const struct emitter *e)
-{
-	const struct expansion *x = e->step->expansion;
-	return x->expressions + (x->contacts ? x->contacts->watches : 0);
-}
-
 /* ---- tables ---- */
 
 static int watch_or_none(int watch)

@@ -13,31 +13,7 @@ static bool has_guards(const struct emitter *e)
 	return has_events(regions_of(e));
 }
 
-const char *search_of(const struct emitter *e)
-{
-	return has_guards(e) ? "pl_guards" : "pl_switching";
-}
-
 /* ---- tables: of the file, or where params are tunable of an instance ---- */
-
-void open_table(const struct emitter *e, const char *name, const char *shape, const char *note)
-{
-	if (e->model->retuned)
-		say(e, "    {  /* %s: %s */\n", name, note);
-	else
-		say(e, "\n"
-		       "static const double $o_%s%s = {  /* %s */\n", name, shape, note);
-}
-
-void close_table(const struct emitter *e)
-{
-	say(e, e->model->retuned ? "    },\n" : "};\n");
-}
-
-const char *prefix_of_tables(const struct emitter *e)
-{
-	return e->model->retuned ? "c->" : spell(e, "$o_");
-}
 
 /* The descriptor of the search: static, or `tables` */
 static const char *descriptor_of(const struct emitter *e)
@@ -85,11 +61,6 @@ static void emit_matrices(const struct emitter *e, const struct pieces *pieces, 
 		say(e, "  },\n");
 	}
 	close_table(e);
-}
-
-bool regions_change(const struct emitter *e)
-{
-	return regions_of(e)->segments > 1;
 }
 
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)

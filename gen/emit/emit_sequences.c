@@ -244,3 +244,9 @@ const char *is_not_finite(const struct emitter *e, const char *before, const cha
 		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
 	return format("%s != 0.0", sum);
 }
+
+int terms_of_events(const struct emitter *e)
+{
+	const struct expansion *x = e->step->expansion;
+	return x->expressions + (x->contacts ? x->contacts->watches : 0);
+}

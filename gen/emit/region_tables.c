@@ -240,3 +240,31 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 	return tree(terms, term, indent);
 }
 
+const char *search_of(const struct emitter *e)
+{
+	return has_events(e->model->switching) ? "pl_guards" : "pl_switching";
+}
+
+void open_table(const struct emitter *e, const char *name, const char *shape, const char *note)
+{
+	if (e->model->retuned)
+		say(e, "    {  /* %s: %s */\n", name, note);
+	else
+		say(e, "\n"
+		       "static const double $o_%s%s = {  /* %s */\n", name, shape, note);
+}
+
+void close_table(const struct emitter *e)
+{
+	say(e, e->model->retuned ? "    },\n" : "};\n");
+}
+
+const char *prefix_of_tables(const struct emitter *e)
+{
+	return e->model->retuned ? "c->" : spell(e, "$o_");
+}
+
+bool regions_change(const struct emitter *e)
+{
+	return e->model->switching->segments > 1;
+}

@@ -66,7 +66,8 @@ static void emit_deviation(const struct emitter *e, const struct reference *r)
 /* Crossings listed otherwise than by their order are none of these. */
 static void emit_crossings(const struct emitter *e, const struct reference *r)
 {
-	say(e, "\n/* The larger of worst and how far crossings of the last step, that after k others, are from those in\n"
+	say(e, "\n/* The larger of worst and how far crossings of the last step, that after k others, are from those "
+	       "in\n"
 	       " * closed form, in what rounding makes of their times; one that is missing or more is far off */\n"
 	       "static double $n_crossed_as(const $n *s, uint64_t k, int *crossed, double worst)\n"
 	       "{\n"

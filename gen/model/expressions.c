@@ -319,3 +319,13 @@ const char *spoken_expression(const struct model *model, int index)
 							 text_in(model, e, s));
 	return text;
 }
+
+int regions_at_once(const struct switching *s)
+{
+	return s->regions / s->segments;
+}
+
+int segment_of_region(const struct switching *s, int region)
+{
+	return region / regions_at_once(s);
+}

@@ -449,7 +449,10 @@ static void collect_intervals(struct building *b)
 /* Params that regions have as numbers, not as inputs */
 static void part_factors(struct building *b)
 {
-	const bool *factor = b->request->factor ? b->request->factor : find_factors(b);
+	const struct request *request = b->request;
+	const bool *factor = request->factor         ? request->factor
+			     : request->find_factors ? request->find_factors(b)
+						     : ARRAY(bool, (size_t)b->spec->tunables);
 	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
 		b->spec->tunable[i].symbol->factor = factor[i];
 		b->spec->tunable[i].symbol->acting = factor[i] ? acting : acting++;

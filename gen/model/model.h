@@ -104,9 +104,12 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	const struct node *singular;
 	const char *singular_where;
 };
+struct building;
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
 	const char *modes;
+	/* which tunable params regions have as numbers, not as inputs; stands on what builds a model. NULL: none */
+	const bool *(*find_factors)(struct building *b);
 	bool reduce;
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
@@ -634,6 +637,8 @@ struct holding {                    /* states of a region that follow from the o
 	struct region *region;
 	struct basis *of;
 };
+/* form without the term of a basis, which `by` gives */
+struct form *replaced_form(const struct form *form, const struct basis *basis, const struct form *by);
 const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
 void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
 void add_release(struct region *region, int expression, bool upward, struct form *form);
@@ -842,6 +847,7 @@ struct tuning {
 };
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+bool find_all_tuning(struct model *model, const struct request *request);     /* of regions too; in retuned.c */
 
 void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column);
 void add_tuned_unit(struct tuning *t, int row, int column);

@@ -351,16 +351,6 @@ static struct form *form_here(struct looking *l, const struct form *form)
 
 /* ---- all regions: in each segment of time those of all intervals ---- */
 
-int regions_at_once(const struct switching *s)
-{
-	return s->regions / s->segments;
-}
-
-int segment_of_region(const struct switching *s, int region)
-{
-	return region / regions_at_once(s);
-}
-
 static int *intervals_of(const struct switching *s, int region)
 {
 	int *interval = ARRAY(int, (size_t)s->expressions + 1);

@@ -540,3 +540,8 @@ int retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int i
 			return r->row[i].place;
 	return -1;
 }
+
+bool find_all_tuning(struct model *model, const struct request *request)
+{
+	return find_tuning(model, request) && (!model->factor || find_retuning(model, request));
+}

@@ -622,7 +622,7 @@ bool find_tuning(struct model *model, const struct request *request)
 	}
 	if (model->keeps_params) {
 		list_held(model);
-		return !model->factor || find_retuning(model, request);
+		return true;
 	}
 	struct tuning *t = NEW(struct tuning);
 	struct search s = { .tuning = t, .model = model, .request = request };

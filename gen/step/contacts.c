@@ -7,13 +7,24 @@
 
 /* ---- what divides ---- */
 
+/* By the form, which has a sequence then */
+static struct division divide_made(struct sequencing *w, const struct form *form, mpq_ptr factor)
+{
+	struct division division = divide_form(w, form, factor);
+	if (w->x->expression[division.expression].sequence == NONE) {
+		int made = sequence_of_form(w, w->x->expression[division.expression].form);
+		w->x->expression[division.expression].sequence = made;
+	}
+	return division;
+}
+
 /* The guard as it was written: where it rises or falls to its breakpoint; *factor: of the expression */
 static struct division divide_guard(struct sequencing *w, const struct impact *impact, mpq_ptr factor)
 {
 	const enum comparison comparison = impact->when->guard->comparison;
 	const bool rises = comparison == CMP_GT || comparison == CMP_GE;
 	const struct form *guard = rises ? impact->in->guard : form_difference(form_number(0), impact->in->guard);
-	struct division d = divide_form(w, guard, factor);
+	struct division d = divide_made(w, guard, factor);
 	d.above = d.above == rises;
 	mpq_abs(factor, factor);
 	return d;
@@ -202,7 +213,7 @@ static void make_hold(struct holders *all, int index)
 	mpq_t factor;
 	*hold = (struct series_hold){ .impact = h->impact, .pull = { NONE, NONE } };
 	mpq_init(factor);
-	struct division d = h->node ? divide_form(w, h->velocity, factor)
+	struct division d = h->node ? divide_made(w, h->velocity, factor)
 				    : divide_guard(w, &model->impact[h->impact], factor);
 	mpq_clear(factor);
 	for (int i = 0; i < index; i++)

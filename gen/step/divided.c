@@ -107,10 +107,6 @@ struct division divide_form(struct sequencing *w, const struct form *form, mpq_p
 	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
 	division.above = mpq_sgn(factor) > 0;
 	mpq_clear(value);
-	if (w->x->expression[division.expression].sequence == NONE) {
-		int made = sequence_of_form(w, w->x->expression[division.expression].form);
-		w->x->expression[division.expression].sequence = made;
-	}
 	return division;
 }
 

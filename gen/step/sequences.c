@@ -521,7 +521,9 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 	case FN_ATAN2:
 		b = sequence_of_form(w, atom->operand[1]);
 		return angle_sequence(w, a, b);
-	case FN_SLIDE: no_series(w, atom, "is friction of what has no mass");
+	case FN_SLIDE:
+		error(atom->node->start, "with a small mass it has one; scheme exact takes it beside what is piecewise linear",
+		      "scheme %s: friction of what has no mass has no series", scheme_name(w->step->model->scheme));
 	default: no_series(w, atom, "is not");
 	}
 }
@@ -607,3 +609,32 @@ void count_uses(struct sequencing *w, const struct form *form)
 	}
 }
 
+/* y' of a state: its row of A, loads, inputs, and what is left over, whose linear terms may cancel */
+struct sum slope_of_state(struct sequencing *w, int state)
+{
+	const struct model *model = w->step->model;
+	const struct layout *layout = &w->layout;
+	mpq_t *row = w->slopes[0] + state * layout->size;
+	struct sum sum = { 0 };
+	for (int j = 0; j < layout->states; j++)
+		if (mpq_sgn(row[j]) != 0)
+			sum_add(&sum, TERM_SEQUENCE, j, 0, row[j]);
+	for (int i = 0; i < w->system->inputs; i++) {
+		if (mpq_sgn(row[layout->input[i]]) != 0)
+			sum_add(&sum, TERM_INPUT, i, 0, row[layout->input[i]]);
+		if (w->system->input[i].hold && mpq_sgn(row[layout->input[i] + 1]) != 0)
+			sum_add(&sum, TERM_SLOPE, i, 0, row[layout->input[i] + 1]);
+	}
+	for (int l = 0, column = 0; l < w->system->loads; column += w->system->load[l++].columns)
+		for (int j = 0; j < w->system->load[l].columns && layout->load[l] >= 0; j++) {
+			mpq_srcptr factor = row[layout->load[l] + j];
+			if (mpq_sgn(factor) == 0 || w->system->segments > 1)
+				continue;
+			bool power = is_polynomial(w->system->load[l].wave);
+			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
+		}
+	for (int e = 0; e < w->system->channels; e++)
+		if (mpq_sgn(row[layout->channel + e]) != 0)
+			sum_add_form(w, &sum, model->operator[0].left[e], row[layout->channel + e]);
+	return sum;
+}

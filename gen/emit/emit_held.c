@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a model has of params that an instance holds: types, retune, its wrappers. */
+#include "emit/emit.h"
+
+static const struct tuning *held(const struct emitter *e)
+{
+	return e->model->held;
+}
+
+void emit_held_types(const struct emitter *e)
+{
+	if (!held(e))
+		return;
+	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
+	       "typedef struct $n_coeffs $n_coeffs;  /* what %s read */\n"
+	       "struct $n_coeffs {\n"
+	       "    double params[$N_PARAMS];  /* %s */\n", held(e)->params, param_list(e),
+	    e->model->retuned ? "a step and outputs" : "the equations and outputs", param_list(e));
+	if (e->model->retuned)
+		emit_retuned_members(e);
+	say(e, "};\n"
+	       "\n");
+}
+
+void emit_held_member(const struct emitter *e)
+{
+	if (held(e))
+		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+}
+
+void emit_held_start(const struct emitter *e, const char *s)
+{
+	if (held(e))
+		say(e, "    %scoeffs = $n_nominal;\n", s);
+}
+
+static bool starts_anew(const struct emitter *e)
+{
+	return e->kind->places && e->kind->places(e);
+}
+
+void emit_held_declarations(const struct emitter *e)
+{
+	if (!held(e))
+		return;
+	say(e, "\n/* Sets c to params (%s), for steps of the spec's h alone [s]. 0, or c is as it was and\n"
+	       " *     PL_NO_STEP     h is not $N_H\n", param_list(e));
+	if (e->model->retuned)
+		say(e, " *     PL_SINGULAR    a divisor is 0, as a mass is\n"
+		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is\n"
+		       " *                    below 0; "
+		       "breakpoints change their order; or a pole times h is above 2^%d\n"
+		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n",
+		       LIMIT_PIECES);
+	else
+		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
+	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
+	       "\n"
+	       "/* From now on with c. State and time stay%s. */\n"
+	       "void   $n_use($n *s, const $n_coeffs *c);\n"
+	       "\n"
+	       "/* Of the spec's values: what $n_init starts with */\n"
+	       "extern const $n_coeffs $n_nominal;\n"
+	       "\n", starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
+}
+
+void banner_held(const struct emitter *e)
+{
+	const bool acts = e->system->inputs > e->model->spec->inputs;
+	if (e->model->retuned) {
+		say(e, " * Tunable: %s. An instance has the tables of its regions, %d numbers of matrices, which\n"
+		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
+		       "correctly rounded. It\n"
+		       " * needs as much stack as they take, and some %d KB.\n", param_list(e), retuned_numbers(e),
+		    retuned_kilobytes(e));
+		return;
+	}
+	if (held(e))
+		say(e, " * Tunable: %s. %s\n", param_list(e),
+		    acts ? "They act like held inputs, with the instance's own values."
+			 : "Expressions read the instance's own values; operators, orders and choices are those of the "
+			   "spec's.");
+}
+
+void emit_held_nominal(const struct emitter *e)
+{
+	if (!held(e) || e->model->retuned)
+		return;                         /* with the tables of regions */
+	say(e, "\nconst $n_coeffs $n_nominal = {\n"
+	       "    ");
+	emit_nominal_params(e);
+	say(e, "};\n");
+}
+
+static void emit_plain_retune(const struct emitter *e)
+{
+	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    if (h != $N_H)\n"
+	       "        return PL_NO_STEP;\n"
+	       "    for (i = 0; i < $N_PARAMS; i++)\n"
+	       "        if (params[i] - params[i] != 0.0)\n"
+	       "            return PL_NOT_FINITE;\n"
+	       "    for (i = 0; i < $N_PARAMS; i++)\n"
+	       "        c->params[i] = params[i];\n"
+	       "    return 0;\n"
+	       "}\n");
+}
+
+void emit_held_retune(const struct emitter *e)
+{
+	if (!held(e))
+		return;
+	if (e->model->retuned)
+		emit_retuned(e);
+	else
+		emit_plain_retune(e);
+	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
+	       "{\n"
+	       "    s->coeffs = *c;\n"
+	       "%s}\n", starts_anew(e) ? spell(e, "    $n_place(s);\n") : "");
+}
+
+void emit_held_wrapper(const struct emitter *e)
+{
+	if (held(e))
+		emit_tuning_wrapper(e);
+}
+
+void emit_params_line(const struct emitter *e)
+{
+	if (tunables_of(e->model))
+		say(e, "    $N_PARAMS, $n_param_names, $n_nominal.params, $n_any_retune,\n");
+	else
+		say(e, "    0, NULL, NULL, NULL,\n");
+}
