@@ -531,8 +531,9 @@ static void person_reduction(FILE *to, const struct step *step)
 	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
 		model->written->system.states);
 	for (int i = 0; i < model->system.states; i++) {
-		const char *text = combination_text(model->written, (const mpq_t *)model->reduction.row +
-								    i * model->written->system.states);
+		const mpq_t *row = (const mpq_t *)model->reduction.row;
+		const char *text = row ? combination_text(model->written, row + i * model->written->system.states)
+				       : model->state_name[i];
 		bool same = strcmp(text, model->state_name[i]) == 0;
 		fprintf(to, "    state %s%s%s\n", model->state_name[i], same ? "" : " = ", same ? "" : text);
 	}
