@@ -710,7 +710,7 @@ static void start(struct moving *m, double nudge)
 {
 	const struct scene *s = m->s;
 	m->one = 2 * s->n;
-	m->left = 2 * s->n + 3;
+	m->left = 2 * s->n + 4;
 	m->size = m->left + (s->left ? 3 * s->n : 0);
 	for (int i = 0; i < MOST_MASSES; i++) {
 		row_start(m->square[i], DEGREE + 1);
