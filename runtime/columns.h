@@ -30,13 +30,17 @@ static int starts_above(const column *e, real b)
     real noise, largest = 0;
     const real off = off_start(e, b, &noise);
     int k;
-    if (off > noise || off < -noise)
+    if (off > noise || off < -noise) {
         return off > 0;
-    for (k = 1; k <= e->m->degree; k++)
+    }
+    for (k = 1; k <= e->m->degree; k++) {
         largest = larger(largest, magnitude(column_at(e, k)));
-    for (k = 1; k <= e->m->degree; k++)
-        if (magnitude(column_at(e, k)) > noise_of(largest))
+    }
+    for (k = 1; k <= e->m->degree; k++) {
+        if (magnitude(column_at(e, k)) > noise_of(largest)) {
             return column_at(e, k) > 0;
+        }
+    }
     return 0;
 }
 
@@ -54,10 +58,12 @@ static void rescale(const column *e, real end, real *coefficient)
 {
     real power = 1;
     int k;
-    for (k = 0; k <= e->m->degree; k++, power *= end)
+    for (k = 0; k <= e->m->degree; k++, power *= end) {
         coefficient[k] = column_at(e, k) * power;
-    for (; k < 4; k++)
+    }
+    for (; k < 4; k++) {
         coefficient[k] = 0;
+    }
 }
 
 #endif

@@ -57,9 +57,11 @@ static void refresh(const pl_instant *at)
 static int hold_of(const pl_events *m, int expression, int interval)
 {
     int i;
-    for (i = m->holds - 1; i >= 0; i--)
-        if (m->hold[i].expression == expression && m->hold[i].interval == interval)
+    for (i = m->holds - 1; i >= 0; i--) {
+        if (m->hold[i].expression == expression && m->hold[i].interval == interval) {
             break;
+        }
+    }
     return i;
 }
 
@@ -76,18 +78,21 @@ static int free_of(const pl_events *m, const pl_strike *p)
 static int strike_at(const pl_events *m, int expression, int breakpoint, int upward)
 {
     int i;
-    for (i = m->strikes - 1; i >= 0; i--)
+    for (i = m->strikes - 1; i >= 0; i--) {
         if (m->strike[i].expression == expression && m->strike[i].breakpoint == breakpoint &&
-            m->strike[i].upward == upward)
+            m->strike[i].upward == upward) {
             break;
+        }
+    }
     return i;
 }
 
 static int list(const pl_events *m, pl_instant *at, real time, int expression, int breakpoint, int upward)
 {
     pl_crossing *crossing = at->crossing + *at->crossings;
-    if (*at->crossings == m->max_events)
+    if (*at->crossings == m->max_events) {
         return 0;
+    }
     crossing->time = time;
     crossing->expression = expression;
     crossing->breakpoint = breakpoint;
@@ -102,11 +107,12 @@ static int list(const pl_events *m, pl_instant *at, real time, int expression, i
 static void take(const pl_instant *at, int states, const real *back, real times)
 {
     int i;
-    for (i = 0; i < states; i++)
+    for (i = 0; i < states; i++) {
         if (back[i] < 0 || back[i] > 0) {
             at->y[i] -= back[i] * times;
             at->rest[i] = 0;
         }
+    }
 }
 
 /* Puts what is held where it is held, but for rounding. */
@@ -114,9 +120,10 @@ static void put_back(const pl_events *m, pl_instant *at, int hold)
 {
     const pl_hold *h = &m->hold[hold];
     take(at, m->states, m->back + (ptrdiff_t)hold * m->states, value_of(m, at, h->velocity));
-    if (h->strike >= 0)
+    if (h->strike >= 0) {
         take(at, m->states, m->place_back + (ptrdiff_t)h->strike * m->states,
              value_of(m, at, m->strike[h->strike].place));
+    }
     refresh(at);
 }
 
@@ -126,8 +133,9 @@ static int is_slack(const pl_events *m, const pl_instant *at, int hold)
     const pl_hold *h = &m->hold[hold];
     const column velocity = watched(m, at, h->velocity);
     column place;
-    if (h->strike < 0)
+    if (h->strike < 0) {
         return !(certain(&velocity) >= 0 && certain(&velocity) <= 0);
+    }
     place = watched(m, at, m->strike[h->strike].place);
     return !(certain(&velocity) >= 0 && certain(&velocity) <= 0 && certain(&place) >= 0 && certain(&place) <= 0);
 }
@@ -135,19 +143,24 @@ static int is_slack(const pl_events *m, const pl_instant *at, int hold)
 static void keep(const pl_events *m, pl_instant *at)
 {
     int again, i;
-    for (again = 0; again < 3; again++)
-        for (i = 0; i < m->holds; i++)
-            if (holds_now(m, at, i) && is_slack(m, at, i))
+    for (again = 0; again < 3; again++) {
+        for (i = 0; i < m->holds; i++) {
+            if (holds_now(m, at, i) && is_slack(m, at, i)) {
                 put_back(m, at, i);
+            }
+        }
+    }
 }
 
 /* 1 or -1: its first derivative that is not 0 but for rounding */
 static int way_of(const column *w)
 {
     int k;
-    for (k = 1; k <= 3 && k <= w->m->degree; k++)
-        if (magnitude(column_at(w, k)) > noise_of(w->terms))
+    for (k = 1; k <= 3 && k <= w->m->degree; k++) {
+        if (magnitude(column_at(w, k)) > noise_of(w->terms)) {
             return column_at(w, k) > 0 ? 1 : -1;
+        }
+    }
     return 0;
 }
 
@@ -157,12 +170,14 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
     const int watch = up ? m->hold[hold].up : m->hold[hold].down;
     column w;
     real pull;
-    if (watch < 0)
+    if (watch < 0) {
         return -1;
+    }
     w = watched(m, at, watch);
     pull = certain(&w);
-    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * w.terms)
+    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * w.terms) {
         return 1;
+    }
     return pull > 0 ? 1 : pull < 0 ? -1 : way_of(&w);
 }
 
@@ -205,8 +220,9 @@ static int has_left(const pl_events *m, pl_instant *at)
                     return 1;
                 }
             }
-            if (hold >= 0 || k < 0 || k == d->breaks[i] || (at->last->expression == i && at->last->breakpoint == k))
+            if (hold >= 0 || k < 0 || k == d->breaks[i] || (at->last->expression == i && at->last->breakpoint == k)) {
                 continue;
+            }
             off = off_start(&e, b[k], &noise);
             if ((up ? off : -off) > noise) {
                 set_event(m, at, i, k, up);
@@ -236,18 +252,21 @@ static int look(const column *e, real b, int sign, real behind, real end, real *
     f.coefficient = work + f.degree + 1;
     rescale(e, end, work);
     look_beyond(&f, work, (real)sign, b, e->terms);
-    if (!(f.reach - f.reach == 0)) /* not finite: there is no step */
+    if (!(f.reach - f.reach == 0)) { /* not finite: there is no step */
         return 0;
+    }
     if (behind >= 0 && f.coefficient[1] < 0 &&
         magnitude(f.coefficient[0]) <= noise_of(e->terms + magnitude(b) + behind)) {
         int k;
-        for (k = 0; k <= f.degree; k++)
+        for (k = 0; k <= f.degree; k++) {
             work[k] *= (real)sign;
+        }
         look_behind(&f, work, behind);
     }
     s = first_root(&f, *first, splits);
-    if (s < 0)
+    if (s < 0) {
         return 0;
+    }
     *first = s;
     return 1;
 }
@@ -257,8 +276,9 @@ static real flight(const pl_events *m, const pl_instant *at, const pl_strike *p)
 {
     column w;
     real speed, press;
-    if (p->hold < 0)
+    if (p->hold < 0) {
         return -1;
+    }
     w = watched(m, at, p->speed);
     speed = certain(&w);
     press = column_at(&w, 1);
@@ -286,8 +306,9 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
                     set_freed(m, at, hold, up);
                 }
             }
-            if (hold >= 0 || k < 0 || k == d->breaks[i])
+            if (hold >= 0 || k < 0 || k == d->breaks[i]) {
                 continue;
+            }
             strike = strike_at(m, i, k, up);
             behind = strike >= 0 && m->strike[strike].hold >= 0 ? terms_behind(m, at, &m->strike[strike], end) : -1;
             if (look(&e, b[k], up ? 1 : -1, behind, end, &first, splits, at->work)) {
@@ -305,8 +326,9 @@ real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
     for (k = 0; k < m->strikes; k++) {
         const pl_strike *p = &m->strike[k];
         const real along = is_near(m, at, p->place) ? flight(m, at, p) : -1;
-        if (along > 0 && at->interval[p->expression] == free_of(m, p))
+        if (along > 0 && at->interval[p->expression] == free_of(m, p)) {
             *size = smaller(*size, 2 * along);
+        }
     }
     return first_event(m, at, *size, splits);
 }
@@ -344,10 +366,12 @@ static uint32_t collide(const pl_events *m, int begins, pl_instant *at)
     int k, rounds = 0;
     for (k = 0; k < m->strikes; k++) {
         const pl_strike *p = &m->strike[k];
-        if (k != begins && !(touches(m, at, p) && speed_of(m, at, p) > 0))
+        if (k != begins && !(touches(m, at, p) && speed_of(m, at, p) > 0)) {
             continue;
-        if (++rounds > MOST_AT_ONCE || !list(m, at, at->time, p->expression, p->breakpoint, p->upward))
+        }
+        if (++rounds > MOST_AT_ONCE || !list(m, at, at->time, p->expression, p->breakpoint, p->upward)) {
             break;
+        }
         assign(m, at, p->jump, p->jumps);
         if (p->hold >= 0) {
             at->interval[p->expression] = free_of(m, p);
@@ -381,8 +405,9 @@ static void follow(const pl_events *m, pl_instant *at)
                 off = off_start(&e, b[*interval - 1], &noise);
                 way = -off > noise ? -1 : 0;
             }
-            if (way != 0)
+            if (way != 0) {
                 (void)list(m, at, at->time, i, *interval - (way < 0), way > 0);
+            }
             *interval += way;
         }
     }
@@ -398,12 +423,15 @@ static int find_resting(const pl_events *m, const pl_instant *at, int *resting)
     for (i = 0; i < m->holds && count < MOST; i++) {
         const pl_hold *h = &m->hold[i];
         const int side = at->interval[h->expression] - h->interval;
-        if (side < -1 || side > 1)
+        if (side < -1 || side > 1) {
             continue;
-        if (side != 0 && i != at->freed && !is_near(m, at, h->velocity))
+        }
+        if (side != 0 && i != at->freed && !is_near(m, at, h->velocity)) {
             continue;
-        if (side != 0 && i != at->freed && h->strike >= 0 && !touches(m, at, &m->strike[h->strike]))
+        }
+        if (side != 0 && i != at->freed && h->strike >= 0 && !touches(m, at, &m->strike[h->strike])) {
             continue;
+        }
         resting[count++] = i;
     }
     return count;
@@ -413,9 +441,11 @@ static int find_resting(const pl_events *m, const pl_instant *at, int *resting)
 static int side_beside(const pl_events *m, uint32_t held, int hold)
 {
     int i;
-    for (i = 0; i < m->conflicts; i++)
-        if (m->conflict[i].hold == hold && ((held | (uint32_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set)
+    for (i = 0; i < m->conflicts; i++) {
+        if (m->conflict[i].hold == hold && ((held | (uint32_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
             return m->conflict[i].side;
+        }
+    }
     return 0;
 }
 
@@ -425,34 +455,43 @@ static int agrees(const pl_events *m, pl_instant *at, const int *resting, int co
 {
     uint32_t held = 0;
     int i, agreed = 2;
-    for (i = 0; i < m->holds; i++)
+    for (i = 0; i < m->holds; i++) {
         held |= (uint32_t)holds_now(m, at, i) << i;
-    for (i = 0; i < m->conflicts; i++)
-        if ((held & m->conflict[i].set) == m->conflict[i].set)
+    }
+    for (i = 0; i < m->conflicts; i++) {
+        if ((held & m->conflict[i].set) == m->conflict[i].set) {
             return 0;
+        }
+    }
     refresh(at);
     for (i = 0; i < count; i++) {
         const pl_hold *h = &m->hold[resting[i]];
         const int side = at->interval[h->expression] - h->interval;
         const int beside = side_beside(m, held, resting[i]);
         if (beside != 0) {
-            if (side != beside)
+            if (side != beside) {
                 return 0;
+            }
             continue;
         }
         if (h->strike >= 0 && speed_of(m, at, &m->strike[h->strike]) < 0) { /* another impact has parted it */
-            if (side == 0)
+            if (side == 0) {
                 return 0;
+            }
             continue;
         }
-        if (side == 0 && (lets_go(m, at, resting[i], 0) > 0 || lets_go(m, at, resting[i], 1) > 0))
+        if (side == 0 && (lets_go(m, at, resting[i], 0) > 0 || lets_go(m, at, resting[i], 1) > 0)) {
             return 0;
-        if (side != 0 && (side > 0 ? h->up : h->down) < 0)
+        }
+        if (side != 0 && (side > 0 ? h->up : h->down) < 0) {
             return 0;
-        if (side != 0 && lets_go(m, at, resting[i], side > 0) < 0)
+        }
+        if (side != 0 && lets_go(m, at, resting[i], side > 0) < 0) {
             return 0;
-        if (side != 0 && lets_go(m, at, resting[i], side > 0) == 0)
+        }
+        if (side != 0 && lets_go(m, at, resting[i], side > 0) == 0) {
             agreed = 1;
+        }
     }
     return agreed;
 }
@@ -473,8 +512,9 @@ static int set_combination(const pl_events *m, const pl_instant *at, const int *
 static int slipping(const pl_events *m, const pl_instant *at, const int *resting, int count)
 {
     int i, slips = 0;
-    for (i = 0; i < count; i++)
+    for (i = 0; i < count; i++) {
         slips += !holds_now(m, at, resting[i]);
+    }
     return slips;
 }
 
@@ -484,10 +524,12 @@ static void list_changes(const pl_events *m, pl_instant *at, const int *resting,
     int i, k;
     for (i = 0; i < count; i++) {
         const int expression = m->hold[resting[i]].expression, then = at->interval[expression];
-        for (k = now[i]; k < then; k++)
+        for (k = now[i]; k < then; k++) {
             (void)list(m, at, at->time, expression, k, 1);
-        for (k = now[i]; k > then; k--)
+        }
+        for (k = now[i]; k > then; k--) {
             (void)list(m, at, at->time, expression, k - 1, 0);
+        }
     }
 }
 
@@ -500,25 +542,29 @@ static void settle(const pl_events *m, pl_instant *at, int listed)
         now[i] = at->interval[m->hold[resting[i]].expression];
         all *= 3;
     }
-    if (count == 0 || agrees(m, at, resting, count) == 2)
+    if (count == 0 || agrees(m, at, resting, count) == 2) {
         return;
+    }
     for (number = 0; number < all; number++) {
         const int moved = set_combination(m, at, resting, now, count, number);
         const int score = moved * 2 * MOST + slipping(m, at, resting, count);
         const int agreed = agrees(m, at, resting, count), worth = score + (agreed == 1 ? 8 * MOST * MOST : 0);
-        if (agreed == 0 || (best >= 0 && worth >= least))
+        if (agreed == 0 || (best >= 0 && worth >= least)) {
             continue;
+        }
         best = number;
         least = worth;
     }
     if (best < 0) {
-        for (i = 0; i < count; i++)
+        for (i = 0; i < count; i++) {
             at->interval[m->hold[resting[i]].expression] = now[i];
+        }
         at->status |= PL_UNDECIDED;
     } else {
         (void)set_combination(m, at, resting, now, count, best);
-        if (listed)
+        if (listed) {
             list_changes(m, at, resting, now, count);
+        }
     }
     refresh(at);
 }
@@ -532,8 +578,9 @@ static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
         const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, at, p) : -1;
         const real left = along / (1 - e);
         const int full = *at->crossings > m->max_events - 2 * MOST;
-        if (!(left >= 0 && left <= (full ? 1 : BRIEF)) || !touches(m, at, p) || holds_now(m, at, p->hold))
+        if (!(left >= 0 && left <= (full ? 1 : BRIEF)) || !touches(m, at, p) || holds_now(m, at, p->hold)) {
             continue;
+        }
         assign(m, at, p->still, p->jumps);
         at->interval[p->expression] = m->hold[p->hold].interval;
         refresh(at);
@@ -552,10 +599,12 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     const int full = *at->crossings == m->max_events, begins = at->strike;
     int *interval = &at->interval[e.expression];
     uint32_t struck = 0;
-    if (full)
+    if (full) {
         return 0;
-    if (begins < 0)
+    }
+    if (begins < 0) {
         (void)list(m, at, at->time, e.expression, e.breakpoint, e.upward);
+    }
     if (begins < 0 || m->strike[begins].hold < 0) {
         const int hold = hold_of(m, e.expression, *interval + (e.upward ? 1 : -1));
         const int past = hold >= 0 && m->hold[hold].strike >= 0 && begins < 0 ? 2 : 1;
@@ -563,8 +612,9 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     }
     *at->last = e;
     refresh(at);
-    if (hold_of(m, e.expression, *interval) >= 0)
+    if (hold_of(m, e.expression, *interval) >= 0) {
         put_back(m, at, hold_of(m, e.expression, *interval));
+    }
     if (begins >= 0) {
         struck = collide(m, begins, at);
         follow(m, at);
@@ -581,8 +631,9 @@ int pl_events_begin(const pl_events *m, pl_instant *at)
     refresh(at);
     at->freed = -1;
     keep(m, at);
-    if (!has_left(m, at))
+    if (!has_left(m, at)) {
         return 0;
+    }
     return pl_events_pass(m, at) ? 1 : -1;
 }
 
@@ -591,11 +642,14 @@ real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
     real next;
     int i;
     at->freed = -1;
-    for (i = 0; i < m->holds; i++)
-        if (holds_now(m, at, i) && is_slack(m, at, i))
+    for (i = 0; i < m->holds; i++) {
+        if (holds_now(m, at, i) && is_slack(m, at, i)) {
             return 0;
-    if (has_left(m, at))
+        }
+    }
+    if (has_left(m, at)) {
         return 0;
+    }
     next = first_event(m, at, end, splits);
     return *splits < 0 ? 0 : next >= 0 ? next : end;
 }
@@ -611,11 +665,13 @@ static int starting_interval(const pl_events *m, const pl_instant *at, int expre
         const int hold = hold_of(m, expression, k + 1);
         real noise;
         above += starts_above(&e, b[k]);
-        if (hold < 0 || magnitude(off_start(&e, b[k], &noise)) > noise)
+        if (hold < 0 || magnitude(off_start(&e, b[k], &noise)) > noise) {
             continue;
+        }
         if (m->hold[hold].strike < 0 || !(speed_of(m, at, &m->strike[m->hold[hold].strike]) < 0 ||
-                                          speed_of(m, at, &m->strike[m->hold[hold].strike]) > 0))
+                                          speed_of(m, at, &m->strike[m->hold[hold].strike]) > 0)) {
             return k + 1;
+        }
         return free_of(m, &m->strike[m->hold[hold].strike]);
     }
     return above;
@@ -640,8 +696,9 @@ void pl_events_place(const pl_events *m, pl_instant *at)
             changed |= interval != at->interval[i];
             at->interval[i] = interval;
         }
-        if (!changed)
+        if (!changed) {
             break;
+        }
     }
     refresh(at);
     settle(m, at, 0);

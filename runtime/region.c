@@ -18,25 +18,31 @@ static real largest_turn(int n, const pl_two *A, real h, real *v, real *next)
     const real shift = 1 / (real)16, least = REAL_EPSILON * REAL_EPSILON;
     real most = 0;
     int i, j, k;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         v[i] = 1;
+    }
     for (k = 0; k < PRODUCTS; k++) {
         real largest = 0;
         most = 0;
         for (i = 0; i < n; i++) {
             real sum = shift * v[i];
-            for (j = 0; j < n; j++)
+            for (j = 0; j < n; j++) {
                 sum += magnitude(A[i * n + j].hi * h) * v[j];
+            }
             next[i] = sum;
-            if (!is_finite(sum))
+            if (!is_finite(sum)) {
                 return sum - sum;
-            if (sum > largest)
+            }
+            if (sum > largest) {
                 largest = sum;
-            if (sum / v[i] > most)
+            }
+            if (sum / v[i] > most) {
                 most = sum / v[i];
+            }
         }
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             v[i] = next[i] > least * largest ? next[i] / largest : least;
+        }
     }
     return most - shift;
 }
@@ -47,12 +53,15 @@ int pl_region_of(int size, const pl_two *A, real h, int most, int *halvings, rea
     pl_two *const D = work + PL_INCREMENT_WORK(size);
     real turn = largest_turn(size, A, h, slopes, Phi), d = h;
     int i, status;
-    if (!is_finite(turn))
+    if (!is_finite(turn)) {
         return PL_NOT_FINITE;
-    for (*halvings = 0; turn > 1 && *halvings <= most; turn /= 2, d /= 2)
+    }
+    for (*halvings = 0; turn > 1 && *halvings <= most; turn /= 2, d /= 2) {
         ++*halvings;
-    if (*halvings > most)
+    }
+    if (*halvings > most) {
         return PL_OUT_OF_RANGE;
+    }
     status = pl_increment(size, size, A, d, 1, D, work);
     for (i = 0; i < cells && status == 0; i++) {
         slopes[i] = A[i].hi;
@@ -69,21 +78,25 @@ static void exponential(int n, const real *A, real tau, int sizes, real *E, real
     enum { TERMS = 14 };
     real *term = work, *next = work + n * n, *swap;
     int i, j, k, m;
-    for (i = 0; i < n * n; i++)
+    for (i = 0; i < n * n; i++) {
         E[i] = term[i] = (real)(i % (n + 1) == 0);
+    }
     for (k = 1; k < TERMS + n; k++) {
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             for (j = 0; j < n; j++) {
                 real sum = 0;
-                for (m = 0; m < n; m++)
+                for (m = 0; m < n; m++) {
                     sum += term[i * n + m] * (sizes ? magnitude(A[m * n + j]) : A[m * n + j]);
+                }
                 next[i * n + j] = sum * tau / (real)k;
             }
+        }
         swap = term;
         term = next;
         next = swap;
-        for (i = 0; i < n * n; i++)
+        for (i = 0; i < n * n; i++) {
             E[i] += term[i];
+        }
     }
 }
 
@@ -93,11 +106,13 @@ static void times(int n, real *row, const real *A, int sizes, real *work)
     int i, j;
     for (j = 0; j < n; j++) {
         work[j] = 0;
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             work[j] += row[i] * (sizes ? magnitude(A[i * n + j]) : A[i * n + j]);
+        }
     }
-    for (j = 0; j < n; j++)
+    for (j = 0; j < n; j++) {
         row[j] = work[j];
+    }
 }
 
 /* A piece is looked at in so many parts: within one a derivative grows by e^{|A| d / PARTS} at most. */
@@ -109,16 +124,19 @@ static void bound_row(int n, const real *E, const real *most, real *row, real *l
                       real *work)
 {
     int i, j, part;
-    for (j = 0; j < n; j++)
+    for (j = 0; j < n; j++) {
         bound[j] = 0;
+    }
     for (part = 0; part < PARTS; part++) {
         for (j = 0; j < n; j++) {
             real sum = 0;
-            for (i = 0; i < n; i++)
+            for (i = 0; i < n; i++) {
                 sum += (magnitude(row[i]) + lost[i]) * most[i * n + j];
+            }
             sum *= factor * (1 + 64 * (real)n * REAL_EPSILON);
-            if (!(sum <= bound[j]))
+            if (!(sum <= bound[j])) {
                 bound[j] = sum;
+            }
         }
         times(n, row, E, 0, work);
         times(n, lost, most, 0, work);
@@ -142,18 +160,21 @@ void pl_region_bounds(int size, real d, const real *A, int rows, const real *row
         for (order = 1; order <= 4; order++) {
             times(n, gone, A, 0, more);
             times(n, sizes, A, 1, more);
-            for (j = 0; j < n && order == 1; j++)
+            for (j = 0; j < n && order == 1; j++) {
                 slope[j] = d / 3 * gone[j];
-            if (order % 2)
+            }
+            if (order % 2) {
                 continue;
+            }
             for (j = 0; j < n; j++) {
                 at[j] = gone[j];
                 lost[j] = 8 * (real)(n + order) * REAL_EPSILON * sizes[j];
             }
-            if (order == 2)
+            if (order == 2) {
                 bound_row(n, E, most, at, lost, d * d / 8, second + i * n, more);
-            else
+            } else {
                 bound_row(n, E, most, at, lost, d * d * d * d / 384, fourth + i * n, more);
+            }
         }
     }
 }
