@@ -522,7 +522,8 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 		b = sequence_of_form(w, atom->operand[1]);
 		return angle_sequence(w, a, b);
 	case FN_SLIDE:
-		error(atom->node->start, "with a small mass it has one; scheme exact takes it beside what is piecewise linear",
+		error(atom->node->start,
+		      "with a small mass it has one; scheme exact takes it beside what is piecewise linear",
 		      "scheme %s: friction of what has no mass has no series", scheme_name(w->step->model->scheme));
 	default: no_series(w, atom, "is not");
 	}
