@@ -124,12 +124,31 @@ static void series(int step)
 	run_free(&r);
 }
 
+/* Beside the same equations by Runge and Kutta's method of order 4, steps of 1e-4, events by bisection: at t = 1.5,
+ * behind a jump of what it bears, and 5 */
+static void changing(int step)
+{
+	static const double x[] = { 0.19252550863128992, 0.027190718697498926 },
+			    z[] = { 0.17068733309656522, 0.01127468202942375 }, end[] = { 1.5, 5 };
+	struct run r = run_new(variant_of(joint_closed_table, "changing_%d", step));
+	double y[3];
+	for (int k = 0; k < 2; k++) {
+		run_until(&r, end[k]);
+		run_state(&r, y);
+		is_close(y[0], x[k], 1e-11, "changing %d: x at t = %g", step, end[k]);
+		is_close(y[1], z[k], 1e-11, "changing %d: z at t = %g", step, end[k]);
+	}
+	run_free(&r);
+}
+
 int main(void)
 {
 	for (int step = 0; step < 3; step++)
 		masing(step);
 	for (int step = 0; step < 2; step++)
 		placed(step);
+	for (int step = 0; step < 3; step++)
+		changing(step);
 	for (int step = 0; step < 2; step++) {
 		record(step);
 		series(step);
