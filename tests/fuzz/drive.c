@@ -12,7 +12,8 @@
  *     run                                2 units in the last place per step; restore: to the last bit
  *     a batch                            1e-12 per step of one that steps alone
  * selftest 100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
- *                                        where all steps round alike
+ *                                        where all steps round alike, and where breakpoints are passed, each of
+ *                                        which spreads what rounding has made of the state
  * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
 #include "drive.h"
 #include "truth.h"
@@ -913,7 +914,8 @@ int main(int argc, char **argv)
 	}
 	if (of->selftest) {
 		const double ulps = of->selftest();
-		const double most = size > 1e3 ? 1000 : 100;
+		const bool crosses = is(of->class, "piecewise") || is(of->class, "sticking");
+		const double most = size > 1e3 || crosses ? 1000 : 100;
 		if (!(ulps <= most))
 			complain("selftest: %.17g units in the last place, at most %g", ulps, most);
 	}
