@@ -108,30 +108,41 @@ static void refuse_force(const struct node *node, const struct form *form)
 		      "the force of friction cannot decide a function or a condition");
 }
 
+/* The expression of which a form is factor (expression - at); -1: it is a constant, then in `at` */
+static int expression_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
+			   mpq_ptr at)
+{
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	constant_value(&l->b->collector, &plain, at);
+	if (plain.terms == form->terms) {
+		note_sign(l->b, l->s, at, false);
+		return -1;
+	}
+	mpq_t constant;
+	mpq_init(constant);
+	mpq_set(constant, at);
+	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
+	int e = find_expression(l->s, l->segment, &what, factor, at);
+	note_sign(l->b, l->s, factor, false);
+	mpq_clear(constant);
+	return e;
+}
+
 /* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple
  * of. What is compared with a constant is written as it is, on whichever side it stands. */
 static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
 {
-	struct collector *c = &l->b->collector;
 	bool turned = is_constant(a) && !is_constant(b);
 	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
-	struct form plain = { 0, form->term, 0 };
-	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
+	mpq_t factor, at;
+	mpq_inits(factor, at, NULL);
 	refuse_force(node, form);
-	mpq_t constant, factor, at;
-	mpq_inits(constant, factor, at, NULL);
-	constant_value(c, &plain, constant);
-	int sign = mpq_sgn(constant);
-	if (plain.terms == form->terms)
-		note_sign(l->b, l->s, constant, false);
-	if (plain.terms < form->terms) {
-		struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
-		int e = find_expression(l->s, l->segment, &what, factor, at);
-		note_sign(l->b, l->s, factor, false);
+	int e = expression_here(l, node, form, factor, at), sign = mpq_sgn(at);
+	if (e >= 0)
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
-	}
-	mpq_clears(constant, factor, at, NULL);
+	mpq_clears(factor, at, NULL);
 	form_free(form);
 	return turned ? -sign : sign;
 }
@@ -217,19 +228,9 @@ static int add_friction(struct looking *l, const struct atom *a)
 /* It stands for itself: what it is depends on the whole region */
 static struct form *friction_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
-	struct collector *c = &l->b->collector;
 	int index = add_friction(l, a);
-	struct form plain = { 0, x[0]->term, 0 };
-	while (plain.terms < x[0]->terms && x[0]->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
 	struct friction *f = &l->s->friction[index];
-	mpq_t constant;
-	mpq_init(constant);
-	constant_value(c, &plain, constant);
-	struct compared what = { a->node, form_sum(x[0], &plain, true), constant, order_met(l) };
-	f->expression = find_expression(l->s, l->segment, &what, f->factor, f->at);
-	note_sign(l->b, l->s, f->factor, false);
-	mpq_clear(constant);
+	f->expression = expression_here(l, a->node, x[0], f->factor, f->at);
 	add_stick(l, &l->s->expression[f->expression], f->at);
 	for (int i = 1; i < a->operands; i++)
 		refuse_force(a->node, x[i]);
@@ -241,26 +242,21 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 
-/* Whether a > b, by which expression and which way that is passed; false: it follows from no expression */
+/* Whether a > b, by which expression and which way that is passed */
 static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
 		    struct slider *slider, int side)
 {
 	struct form *form = form_difference(a, b);
-	struct form plain = { 0, form->term, 0 };
-	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
+	mpq_t factor;
+	mpq_init(factor);
 	refuse_force(node, form);
-	mpq_t constant, factor, at;
-	mpq_inits(constant, factor, at, NULL);
-	constant_value(&l->b->collector, &plain, constant);
-	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
-	int e = find_expression(l->s, l->segment, &what, factor, at);
+	int e = expression_here(l, node, form, factor, slider->at[side]);
+	if (e < 0)
+		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
 	slider->expression[side] = e;
 	slider->upward[side] = mpq_sgn(factor) > 0;
-	mpq_set(slider->at[side], at);
-	bool above = is_above(l, e, at) == slider->upward[side];
-	mpq_clears(constant, factor, at, NULL);
-	return above;
+	mpq_clear(factor);
+	return is_above(l, e, slider->at[side]) == slider->upward[side];
 }
 
 static struct slider *slider_of(struct switching *s, const struct atom *a)

@@ -124,21 +124,33 @@ static void series(int step)
 	run_free(&r);
 }
 
-/* Beside the same equations by Runge and Kutta's method of order 4, steps of 1e-4, events by bisection: at t = 1.5,
- * behind a jump of what it bears, and 5 */
-static void changing(int step)
+/* Beside the same equations by Runge and Kutta's method of order 4, steps of 1e-4 or 2e-4, events by bisection */
+static void beside_small_steps(const char *name, int step, const double *end, const double *x, const double *z)
 {
-	static const double x[] = { 0.19252550863128992, 0.027190718697498926 },
-			    z[] = { 0.17068733309656522, 0.01127468202942375 }, end[] = { 1.5, 5 };
-	struct run r = run_new(variant_of(joint_closed_table, "changing_%d", step));
+	struct run r = run_new(variant_of(joint_closed_table, "%s_%d", name, step));
 	double y[3];
 	for (int k = 0; k < 2; k++) {
 		run_until(&r, end[k]);
 		run_state(&r, y);
-		is_close(y[0], x[k], 1e-11, "changing %d: x at t = %g", step, end[k]);
-		is_close(y[1], z[k], 1e-11, "changing %d: z at t = %g", step, end[k]);
+		is_close(y[0], x[k], 1e-11, "%s %d: x at t = %g", name, step, end[k]);
+		is_close(y[1], z[k], 1e-11, "%s %d: z at t = %g", name, step, end[k]);
 	}
 	run_free(&r);
+}
+
+static void changing(int step)
+{
+	static const double x[] = { 0.19252550863128992, 0.027190718697498926 },
+			    z[] = { 0.17068733309656522, 0.01127468202942375 }, end[] = { 1.5, 5 };
+	beside_small_steps("changing", step, end, x, z);
+}
+
+/* Bounces turn the slider round, too */
+static void knock(int step)
+{
+	static const double x[] = { -0.04332399699557494, 0.007281524427625416 },
+			    z[] = { -0.023323996995574938, 0.027281524427625416 }, end[] = { 2.5, 5 };
+	beside_small_steps("knock", step, end, x, z);
 }
 
 int main(void)
@@ -147,8 +159,10 @@ int main(void)
 		masing(step);
 	for (int step = 0; step < 2; step++)
 		placed(step);
-	for (int step = 0; step < 3; step++)
+	for (int step = 0; step < 3; step++) {
 		changing(step);
+		knock(step);
+	}
 	for (int step = 0; step < 2; step++) {
 		record(step);
 		series(step);
