@@ -200,7 +200,6 @@ struct series_room {                /* x(s tau) = sum of term[m] s^m */
 };
 struct stream *stream_of(int n, const mpq_t *A, mpq_srcptr h, int precision);
 void stream_free(struct stream *f);
-mpfi_t *stream_room(const struct stream *f);                    /* n enclosures, 0 */
 /* The Taylor polynomial of x from these on, its remainder for 0 <= s <= 1.0001 in term[0]; returns its degree */
 int  stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struct series_room *room);
 void stream_sum(const struct stream *f, const struct series_room *room, int degree, mpfr_srcptr s, mpfi_t *x);

@@ -324,8 +324,3 @@ void series_room_free(int n, struct series_room *room)
 			mpfi_clear(room->term[m][i]);
 	*room = (struct series_room){ 0 };
 }
-
-mpfi_t *stream_room(const struct stream *f)
-{
-	return enclosures(f->n, f->precision);
-}

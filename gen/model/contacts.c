@@ -8,7 +8,8 @@ static bool is_friction(const struct atom *a)
 	return a->kind == ATOM_CALL && a->function == FN_FRICTION;
 }
 
-int drag_of(const struct model *model, const struct atom *atom)
+/* Its index; -1: it is none */
+static int drag_of(const struct model *model, const struct atom *atom)
 {
 	int index = model->drags - 1;
 	while (index >= 0 && model->drag[index].atom != atom)

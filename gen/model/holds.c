@@ -3,7 +3,7 @@
 #include "model/model.h"
 
 /* form without the term of a basis, which `by` gives */
-struct form *replaced_form(const struct form *form, const struct basis *basis, const struct form *by)
+static struct form *replaced(const struct form *form, const struct basis *basis, const struct form *by)
 {
 	const struct form_term *term = form_find(form, basis);
 	struct form *sum = NEW(struct form);
@@ -19,7 +19,7 @@ struct form *replaced_form(const struct form *form, const struct basis *basis, c
 const struct form *free_of_holds(const struct holding *h, const struct form *form)
 {
 	for (int i = 0; i < h->region->holds; i++)
-		form = replaced_form(form, &h->of[i], h->region->hold[i].form);
+		form = replaced(form, &h->of[i], h->region->hold[i].form);
 	return form;
 }
 
@@ -31,9 +31,9 @@ void hold_state(struct holding *h, const struct form *v, int at)
 	mpq_init(factor);
 	mpq_inv(factor, v->term[at].factor);
 	mpq_neg(factor, factor);
-	struct form *held = form_scale(replaced_form(v, &basis, NEW(struct form)), factor);
+	struct form *held = form_scale(replaced(v, &basis, NEW(struct form)), factor);
 	for (int i = 0; i < region->holds; i++)
-		region->hold[i].form = replaced_form(region->hold[i].form, &basis, held);
+		region->hold[i].form = replaced(region->hold[i].form, &basis, held);
 	h->of[region->holds] = basis;
 	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
 	region->hold[region->holds++].form = held;

@@ -637,8 +637,6 @@ struct holding {                    /* states of a region that follow from the o
 	struct region *region;
 	struct basis *of;
 };
-/* form without the term of a basis, which `by` gives */
-struct form *replaced_form(const struct form *form, const struct basis *basis, const struct form *by);
 const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
 void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
 void add_release(struct region *region, int expression, bool upward, struct form *form);
@@ -661,7 +659,6 @@ const char *slider_text(const struct switching *s, int index);      /* for a rea
 
 void find_contacts(struct building *b);                     /* of the equations for all time */
 void place_contact_loads(struct building *b);
-int  drag_of(const struct model *model, const struct atom *atom);  /* its index; -1: it is none */
 void check_contact_outputs(struct building *b);             /* says what they cannot read */
 bool has_contacts(const struct model *model);               /* without regions */
 
@@ -896,8 +893,6 @@ struct listing {                    /* retuned_rows.c: the numbers of one model'
 struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
 /* factors.c */
 const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
-/* model->retuned; false: it was said why not */
-bool find_retuning(struct model *model, const struct request *request);
 int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
 
 /* ---- params.c: tunable params that the instance has ---- */

@@ -521,7 +521,8 @@ static void find(void *context)
 	warn_of_idle(s);
 }
 
-bool find_retuning(struct model *model, const struct request *request)
+/* model->retuned; false: it was said why not */
+static bool find_retuning(struct model *model, const struct request *request)
 {
 	struct retuned *r = NEW(struct retuned);
 	struct tuning *t = NEW(struct tuning);

@@ -45,7 +45,8 @@ static double *turned(int size, const double *row, bool upward)
 	return result;
 }
 
-bool is_released(const struct region *region, int expression, bool upward)
+/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
+static bool is_released(const struct region *region, int expression, bool upward)
 {
 	bool any = false;
 	for (int k = 0; k < region->releases; k++)

@@ -502,8 +502,6 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
-/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
-bool is_released(const struct region *region, int expression, bool upward);
 double *grips_of(const struct step *step); /* what friction carries that outputs read: regions x felts x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
