@@ -56,6 +56,26 @@ static void placed(int step)
 	run_free(&r);
 }
 
+/* Inside steps of 0.5 s what steps of 0.01 s find there */
+static void inside(void)
+{
+	struct run large = run_new(variant_of(joint_closed_table, "knock_2")),
+		   small = run_new(variant_of(joint_closed_table, "knock_0"));
+	double off = 0, y[3], at[3];
+	for (int n = 0; n < 500; n++) {
+		large.of->model->at(large.state, NULL, n % 50 * 0.01, at);
+		run_state(&small, y);
+		for (int i = 0; i < 3; i++)
+			off = worse(off, fabs(at[i] - y[i]));
+		run_step(&small, NULL);
+		if (n % 50 == 49)
+			run_step(&large, NULL);
+	}
+	is_close(off, 0, 1e-12, "knock: inside long steps");
+	run_free(&large);
+	run_free(&small);
+}
+
 static double next_sample(unsigned *state, double u)
 {
 	*state = *state * 1664525u + 1013904223u;
@@ -163,6 +183,7 @@ int main(void)
 		changing(step);
 		knock(step);
 	}
+	inside();
 	for (int step = 0; step < 2; step++) {
 		record(step);
 		series(step);

@@ -9,7 +9,6 @@
 #include VARIANTS
 #include "tap.h"
 
-
 enum { STEPS = 3 };
 
 /* Places, sliders, velocities */

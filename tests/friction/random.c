@@ -9,7 +9,6 @@
 #include VARIANTS
 #include "tap.h"
 
-
 enum { STEPS = 3 };
 
 static struct sums { long events, sticks; } sums;
