@@ -61,3 +61,12 @@ const char *irrationals_text(const struct irrationals *used)
 		text = format("%s%s%s", text, *text ? ", " : "", "roots");
 	return text;
 }
+
+const char *json_text(const char *name)
+{
+	const char *text = "";
+	for (; *name; name++)
+		text = (unsigned char)*name < ' ' ? format("%s\\u%04x", text, *name)
+						  : format("%s%s%c", text, *name == '\\' ? "\\" : "", *name);
+	return text;
+}

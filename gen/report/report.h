@@ -13,11 +13,19 @@ const char *pole_row(const struct pole_report *report, int width);
 double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
+const char *json_text(const char *name);                    /* a file's name, as it is in quotes */
 
 /* ---- reach.c: what a series costs, and how far it reaches ---- */
 
 void person_reach(FILE *to, const struct step *step);
 void json_reach(FILE *to, const struct step *step);
+
+/* ---- regions.c: formulas that the state chooses ---- */
+
+void person_regions(FILE *to, const struct step *step);     /* of a model of straight pieces */
+void json_regions(FILE *to, const struct step *step);        /* members of an object */
+void person_divided(FILE *to, const struct step *step);     /* of a series */
+void json_divided(FILE *to, const struct step *step);        /* members of an object */
 
 /* ---- contacts.c: what is held beside a series, and what strikes ---- */
 
@@ -186,7 +194,7 @@ void picture_in_page(FILE *to, const struct step *step, const char *kind);   /* 
 
 void print_page(FILE *to, const struct step *step, const char *options);    /* HTML, with everything in it */
 
-/* ---- program.c, explain.c, solution.c ---- */
+/* ---- program.c, explain.c, json.c, solution.c ---- */
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 

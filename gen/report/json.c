@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What was derived, as JSON for a program. */
+#include "report/report.h"
+
+#include <math.h>
+
+static void json_name(FILE *to, const char *name)
+{
+	fprintf(to, "\"%s\"", name);       /* names are identifiers with primes: nothing to escape */
+}
+
+static void json_names(FILE *to, const char *key, int count, const char *const *name)
+{
+	fprintf(to, "  \"%s\": [", key);
+	for (int i = 0; i < count; i++) {
+		fputs(i ? ", " : "", to);
+		json_name(to, name[i]);
+	}
+	fputs("],\n", to);
+}
+
+/* JSON has no infinity: what is beyond the range of double is null. */
+static const char *json_number(double value)
+{
+	return isfinite(value) ? format("%.17g", value) : "null";
+}
+
+static void json_matrix(FILE *to, const char *key, int rows, int columns, const double *value)
+{
+	fprintf(to, "  \"%s\": [", key);
+	for (int i = 0; i < rows; i++) {
+		fputs(i ? ",\n    [" : "\n    [", to);
+		for (int j = 0; j < columns; j++)
+			fprintf(to, "%s%s", j ? ", " : "", json_number(value[i * columns + j]));
+		fputc(']', to);
+	}
+	fputs("],\n", to);
+}
+
+static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *A)
+{
+	double *value = ARRAY(double, (size_t)(n * n));
+	for (int i = 0; i < n * n; i++)
+		value[i] = nearest_double(A[i]);
+	json_matrix(to, key, n, n, value);
+}
+
+static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
+{
+	double im = mpfr_get_d(pole->im, MPFR_RNDN);
+	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",",
+		json_number(mpfr_get_d(pole->re, MPFR_RNDN)), json_number(conjugate ? -im : im), pole->multiplicity);
+}
+
+/* One mode for each pair of poles, for each real pole, and for each two poles at 0 (a rigid body). */
+static void json_modes(FILE *to, int count, const struct pole_report *pole)
+{
+	fputs("  \"modes\": [", to);
+	bool first = true;
+	for (int i = 0; i < count; i++) {
+		int modes = mpfr_zero_p(pole[i].hertz) ? (pole[i].multiplicity + 1) / 2 : pole[i].multiplicity;
+		for (int k = 0; k < modes; k++, first = false)
+			fprintf(to, "%s\n    {\"frequency_hz\": %s, \"damping_ratio\": %s}", first ? "" : ",",
+				json_number(mpfr_get_d(pole[i].hertz, MPFR_RNDN)),
+				json_number(mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN)));
+	}
+	fputs("],\n", to);
+}
+
+static void json_pole_list(FILE *to, int count, const struct pole_report *pole)
+{
+	fputs("  \"poles\": [", to);
+	for (int i = 0; i < count; i++) {
+		json_pole(to, &pole[i], false, i == 0);
+		if (pole[i].pair)
+			json_pole(to, &pole[i], true, false);
+	}
+	fputs("]", to);
+}
+
+static void json_poles(FILE *to, const struct step *step)
+{
+	int length = resolvent_determinant(step->written)->length;
+	mpq_t *B = rationals((size_t)length);
+	characteristic_polynomial(step->written, B);
+	fputs("  \"B\": [", to);
+	for (int k = 0; k < length; k++)
+		fprintf(to, "%s\"%s\"", k ? ", " : "", exact_text(B[k]));
+	fputs("],\n", to);
+	struct pole_report *pole;
+	int count = poles_of(step->model, step->written, &pole);
+	json_pole_list(to, count, pole);
+	fputs(",\n", to);
+	json_modes(to, count, pole);
+}
+
+static void json_column(FILE *to, int rows, int columns, int column, const struct coefficient *value)
+{
+	fputc('[', to);
+	for (int i = 0; i < rows; i++)
+		fprintf(to, "%s%.17g", i ? ", " : "", value[i * columns + column].value);
+	fputc(']', to);
+}
+
+/* Columns as the step applies them: to the load states at the start of the step, t^k times cos before sin. */
+static void json_loads(FILE *to, const struct step *step)
+{
+	const struct table *table = step->shown->branch->whole;
+	fputs("  \"loads\": [", to);
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++) {
+		const struct load *load = &step->branch->system.load[l];
+		int trig = oscillates(load->wave) ? 2 : 1;
+		for (int k = 0; k < load->columns; k += trig) {
+			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "",
+				column_text(load, k));
+			for (int i = 0; i < trig; i++, column++) {
+				fputs(i ? ", " : "", to);
+				json_column(to, table->states, table->columns, column, table->load);
+			}
+			fputs("]}", to);
+		}
+	}
+	fputs("],\n  \"Gamma\": [", to);
+	for (int i = 0, column = 0; i < step->branch->system.inputs; i++) {
+		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "",
+			step->branch->system.input[i].name);
+		for (int k = 0; k <= step->branch->system.input[i].hold; k++, column++) {
+			fputs(k ? ", " : "", to);
+			json_column(to, table->states, table->inputs, column, table->input);
+		}
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
+/* Operators as what multiplies q' and q, and their poles; the leftover of the first, as text */
+static void json_split(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	if (step->normal)
+		json_normal(to, step);
+	fputs("  \"operators\": [", to);
+	for (int k = 0; k < model->operators && !step->normal; k++) {
+		struct pole_report *pole;
+		int count = poles_of(model, step->shown->branch[k].resolvent, &pole);
+		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
+		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
+		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);
+		json_pole_list(to, count, pole);
+		fputs("}", to);
+	}
+	fputs("],\n  \"leftover\": [", to);
+	for (int c = 0; c < model->channels; c++)
+		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
+			model->coord_name[coordinate_of_row(model, model->channel_row[c])],
+			form_text(model, model->operator[0].left[c]));
+	fputs("],\n", to);
+}
+
+static void json_tuning(FILE *to, const struct tuning *t)
+{
+	fputs("  \"tunable\": [", to);
+	for (int k = 0; k < t->params; k++)
+		fprintf(to, "%s{\"name\": \"%s\", \"value\": %.17g}", k ? ", " : "", t->param[k].symbol->name,
+			nearest_double(t->nominal[k]));
+	fputs("],\n", to);
+}
+
+/* A step; beside it what anchors, peaks, blocks of rows and forced parts take */
+static void json_cost(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", program->multiplications,
+		program->additions);
+	if (program->calls)
+		fprintf(to, ", \"calls\": %d", program->calls);
+	if (program->wave_multiplications)
+		fprintf(to, ",\n    \"loads\": {\"every\": %d, \"multiplications\": %d, \"additions\": %d, "
+			"\"numbers\": %d}",
+			step->anchors ? step->anchors->steps : 1, program->wave_multiplications,
+			program->wave_additions, anchor_numbers(step));
+	if (peak_outputs(step->model) > 0)
+		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
+			program->peak_multiplications, program->peak_additions);
+	if (step->forced)
+		fprintf(to, ",\n    \"shown\": {\"multiplications\": %d, \"additions\": %d}",
+			step->forced->multiplications, step->forced->additions);
+	if (step->rows)
+		fprintf(to, ",\n    \"rows\": {\"count\": %d, \"numbers\": %d}", step->rows->count,
+			row_numbers(step));
+	fputs("}\n", to);
+}
+
+/* States of parts that are not modelled, then what reduction left out */
+static void json_dropped(FILE *to, const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	const char **name = ARRAY(const char *, (size_t)(spec->unseen + model->reduction.dropped));
+	for (int i = 0; i < spec->unseen; i++)
+		name[i] = spec->unseen_name[i];
+	for (int i = 0; i < model->reduction.dropped; i++)
+		name[spec->unseen + i] = model->reduction.dropped_name[i];
+	json_names(to, "dropped", spec->unseen + model->reduction.dropped, name);
+}
+
+static void json_scene(FILE *to, const struct spec *spec)
+{
+	fputs("  \"scene\": [", to);
+	for (int i = 0; i < spec->parts; i++)
+		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
+			spec->part[i]->name, json_text(spec->part[i]->file), spec->part[i]->unseen ? "false" : "true");
+	fputs("],\n", to);
+}
+
+/* Its order here, and what it goes by */
+static void json_scheme(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	static const char *const smooth[] = { "smooth", "kink", "jump" };
+	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
+		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
+		smooth[model->smooth.kind]);
+	if (step->collocation)
+		fprintf(to, "  \"stages\": %d,\n"
+			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
+			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
+			step->iteration.calls);
+	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
+		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
+	if (model->truncation.adaptive && (step->expansion || step->collocation))
+		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
+	if (step->expansion && model->truncation.over > 1)
+		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
+	if (step->expansion && step->expansion->expressions > 0)
+		json_divided(to, step);
+	if (step->expansion)
+		json_reach(to, step);
+}
+
+void explain_json(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	const char **output = ARRAY(const char *, (size_t)model->outputs);
+	double *Phi = ARRAY(double, (size_t)(model->system.states * model->system.states));
+	const char **input = ARRAY(const char *, (size_t)model->system.inputs);
+	for (int i = 0; i < model->system.inputs; i++)
+		input[i] = model->system.input[i].name;
+	for (int i = 0; i < model->outputs; i++)
+		output[i] = model->output[i].name;
+	for (int i = 0; i < model->system.states * model->system.states; i++)
+		Phi[i] = step->shown->branch->whole->Phi[i].value;
+	fprintf(to,
+		"{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  "
+		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
+		model->name, scheme_name(model->scheme), step_form_name(step->form),
+		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
+	json_names(to, "states", model->system.states, model->state_name);
+	json_names(to, "outputs", model->outputs, output);
+	json_names(to, "inputs", model->spec->inputs, input);
+	json_dropped(to, model);
+	if (model->shortened)
+		json_shortening(to, model);
+	if (model->spec->parts)
+		json_scene(to, model->spec);
+	if (tunables_of(model))
+		json_tuning(to, tunables_of(model));
+	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
+	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
+	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
+	json_poles(to, step);
+	json_linear(to, step);
+	if (!step->shown->no_phi)
+		json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
+	json_loads(to, step);
+	if (scheme_row(model->scheme)->holds_coupling)
+		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
+	json_scheme(to, step);
+	if (step->model->switching)
+		json_regions(to, step);
+	if (has_leftover(step))
+		json_split(to, step);
+	struct drift drift = drift_of(step);
+	if (drift.known)
+		fprintf(to, "  \"drift_per_step\": {\"amplitude\": %.17g, \"phase\": %.17g},\n", drift.amplitude,
+			drift.phase);
+	if (step->rounding.known)
+		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
+			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
+	if (step->choice)
+		json_needs(to, step);
+	json_cost(to, step);
+	fputs("}\n", to);
+}

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
+#include "report/report.h"
+
+/* ---- bytes and work ---- */
+
+/* Of the tables of a swift step: bounds for each matrix; for each region and expression, where it is and which are
+ * beside it */
+static long swift_bytes(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, halves = 0;
+	for (int k = 0; k < step->branches; k++)
+		halves = halves || step->branch[k].halvings > 0;
+	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
+	return 8 * s->systems *
+		       (s->expressions * (2 * size + off) + halves * size * (size + 2 * s->expressions)) +
+	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
+}
+
+/* Of cos, sin and e^{at} in the steps after an anchor */
+static long anchor_bytes(const struct step *step)
+{
+	long numbers = 0;
+	for (int l = 0; l < step->branch->system.loads && step->anchors; l++)
+		if (is_anchored(step, l))
+			numbers += step->anchors->steps * (1 + oscillates(step->branch->system.load[l].wave));
+	return 8 * numbers;
+}
+
+/* What a swift step does before it leaves it to the search, at most: in each part of the step bounds, and polynomials
+ * of x, corrected */
+static long swift_multiplications(const struct step *step)
+{
+	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
+	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
+	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
+}
+
+/* Of what regions with friction have beside these, less two of them that they do not */
+static long guard_bytes(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	struct pieces pieces = pieces_of(step);
+	struct guards g = guards_of(step, &pieces);
+	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
+	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
+		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
+	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
+}
+
+/* Of the tables of a step, or of a part that is stepped alone */
+static long bytes_of_regions(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, matrices = s->systems;
+	long rows = s->segments * s->expressions * size;
+	long bytes = 8 * (rows + matrices * (2 * size * size + 3 * s->expressions * size)) +
+		     4 * (s->regions + s->expressions + matrices);
+	return bytes + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
+}
+
+/* The most multiplications of a step: every piece of it by a Taylor polynomial, all events and splits used */
+static long most_of_regions(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, degree = step->series.degree, pieces = 1;
+	for (int k = 0; k < step->branches; k++)
+		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
+	pieces += max_events(step->model) + 1;
+	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
+	       4 * (degree + 1) *
+		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
+	       swift_multiplications(step);
+}
+
+/* ---- for a person ---- */
+
+static void person_expressions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	for (int i = 0; i < s->expressions; i++) {
+		fprintf(to, "    expression %d: %s%s breakpoints", i, spoken_expression(step->shown->model, i),
+			s->expression[i].segments > 1 ? ";" : ",");
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
+		fputc('\n', to);
+	}
+}
+
+/* What chooses formulas by the state, of a series */
+void person_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
+		    "times in a step:\n", max_events(step->model));
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		fprintf(to, "    expression %d: %s, breakpoints", i, divided_text(step, i));
+		for (int k = 0; k < d->breaks; k++)
+			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
+		fputc('\n', to);
+	}
+	person_contacts(to, step);
+}
+
+/* What rubs, and where it sticks: its expression, and the interval of that */
+static void person_frictions(FILE *to, const struct switching *s)
+{
+	for (int i = 0, shown = 0; i < s->frictions; i++) {
+		const struct node *node = s->friction[i].atom->node;
+		if (is_repeated(s, i))
+			continue;
+		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", shown++,
+			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
+	}
+	for (int i = 0; i < s->sliders; i++)
+		if (!is_repeated_slider(s, i))
+			fprintf(to, "    slider: %s\n", slider_text(s, i));
+}
+
+static void person_intervals(FILE *to, const struct switching *s, int region)
+{
+	fputs(" (intervals", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, " %d", interval_of(s, region, i));
+	fprintf(to, "%s): matrix %d\n",
+		s->segments > 1 ? format("; segment %d of time", segment_of_region(s, region) + 1) : "",
+		s->region[region].system);
+}
+
+static void person_way(FILE *to, const struct step *step, const char *of)
+{
+	if (step->swift)
+		fprintf(to,
+			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
+			"degree %d, all else by the search.\n",
+			of, MOST_SWIFT, step->swift_degree);
+	else
+		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->searches);
+}
+
+static void person_impacts(FILE *to, const struct model *model)
+{
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
+		if (impact->bounces)
+			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
+				restitution_text(model, impact), rest_of(model->switching, 0, impact),
+				impact->in->expression);
+		fputs("\n", to);
+	}
+}
+
+static void person_of_one_part(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	fprintf(to,
+		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
+		"is correctly rounded.\n",
+		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
+	person_expressions(to, step);
+	person_frictions(to, s);
+	person_impacts(to, step->shown->model);
+	if (s->sharing)
+		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
+			s->sharing);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "    region %d", r % regions_at_once(s));
+			person_intervals(to, s, r);
+		}
+	person_way(to, step, "A step");
+	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
+		bytes_of_regions(step) + anchor_bytes(step), max_events(step->model), max_splits(step->model),
+		most_of_regions(step));
+}
+
+static void person_part(FILE *to, const struct step *whole, int index)
+{
+	const struct switching *all = whole->model->switching;
+	const struct region_part *part = &all->part[index];
+	const struct switching *s = part->model->switching;
+	fprintf(to, "    part %d:", index);
+	for (int i = 0; i < part->model->n; i++)
+		fprintf(to, "%s %s", i ? "," : "", part->model->coord_name[i]);
+	if (s->expressions == 0) {
+		fputs("; linear\n", to);
+		return;
+	}
+	fputs("; expressions", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, "%s %d", i ? "," : "", part->expression[i]);
+	fprintf(to, "; %d regions, %d of them different\n", possible_regions(s), s->systems);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
+			person_intervals(to, s, r);
+		}
+	person_way(to, whole->part[index], "        A step of it");
+}
+
+static void person_parts(FILE *to, const struct step *step)
+{
+	long bytes = anchor_bytes(step), most = 0;
+	fprintf(to,
+		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
+		"approximated, every constant is correctly rounded.\n",
+		step->parts);
+	person_expressions(to, step);
+	for (int p = 0; p < step->parts; p++) {
+		person_part(to, step, p);
+		bytes += bytes_of_regions(step->part[p]);
+		most += most_of_regions(step->part[p]);
+	}
+	fprintf(to,
+		"Tables: %ld bytes. Per step of each part at most %d crossings and %d splits; of all at most %ld "
+		"multiplications.\n",
+		bytes, MAX_EVENTS, MAX_SPLITS, most);
+}
+
+void person_regions(FILE *to, const struct step *step)
+{
+	(step->parts ? person_parts : person_of_one_part)(to, step);
+}
+
+/* ---- JSON ---- */
+
+static void json_expressions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	fputs("  \"expressions\": [", to);
+	for (int i = 0; i < s->expressions; i++) {
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
+			spoken_expression(step->shown->model, i));
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
+/* Of time, where there are several */
+static const char *json_segment(const struct switching *s, int region)
+{
+	return s->segments > 1 ? format(", \"segment\": %d", segment_of_region(s, region)) : "";
+}
+
+static void json_frictions(FILE *to, const struct switching *s)
+{
+	fputs("  \"frictions\": [", to);
+	for (int i = 0; i < s->frictions; i++)
+		if (!is_repeated(s, i))
+			fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "",
+				s->friction[i].expression, stick_of(s, &s->friction[i]));
+	fputs("],\n", to);
+}
+
+static void json_sliders(FILE *to, const struct switching *s)
+{
+	fputs("  \"sliders\": [", to);
+	for (int i = 0; i < s->sliders; i++)
+		fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", i ? ", " : "",
+			s->slider[i].expression[0], s->slider[i].expression[1],
+			s->slider[i].upward[0] ? "true" : "false", s->slider[i].upward[1] ? "true" : "false");
+	fputs("],\n", to);
+}
+
+static void json_impacts(FILE *to, const struct model *model)
+{
+	fputs("  \"impacts\": [", to);
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
+			impact->in->expression, impact->in->upward ? "true" : "false");
+		if (impact->bounces)
+			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->in->restitution),
+				rest_of(model->switching, 0, impact));
+		else
+			fputs("null}", to);
+	}
+	fputs("],\n", to);
+}
+
+static void json_region_list(FILE *to, const struct switching *s)
+{
+	bool first = true;
+	fputs("  \"regions\": [", to);
+	for (int r = 0; r < s->regions; r++) {
+		if (!s->region[r].possible)
+			continue;
+		fprintf(to, "%s\n    {\"number\": %d%s, \"matrix\": %d}", first ? "" : ",", r % regions_at_once(s),
+			json_segment(s, r), s->region[r].system);
+		first = false;
+	}
+	fputs("],\n", to);
+}
+
+/* number: what a region of the part adds to that of the model */
+static void json_part(FILE *to, const struct switching *all, int index)
+{
+	const struct region_part *part = &all->part[index];
+	const struct switching *s = part->model->switching;
+	bool first = true;
+	fprintf(to, "%s\n    {\"coordinates\": [", index ? "," : "");
+	for (int i = 0; i < part->model->n; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", part->model->coord_name[i]);
+	fputs("], \"expressions\": [", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, "%s%d", i ? ", " : "", part->expression[i]);
+	fputs("],\n     \"regions\": [", to);
+	for (int r = 0; r < s->regions && s->expressions > 0; r++) {
+		if (!s->region[r].possible)
+			continue;
+		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", first ? "" : ", ",
+			share_of_region(part, all, r), json_segment(s, r), s->region[r].system);
+		first = false;
+	}
+	fputs("]}", to);
+}
+
+void json_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	json_expressions(to, step);
+	if (s->frictions > 0)
+		json_frictions(to, s);
+	if (s->sliders > 0)
+		json_sliders(to, s);
+	if (s->impacts > 0)
+		json_impacts(to, step->shown->model);
+	if (!s->parts) {
+		json_region_list(to, s);
+		return;
+	}
+	fputs("  \"parts\": [", to);
+	for (int p = 0; p < s->parts; p++)
+		json_part(to, s, p);
+	fputs("],\n", to);
+}
+void json_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fputs("  \"expressions\": [", to);
+	for (int i = 0; i < x->expressions; i++) {
+		mpq_t *rising = rising_breakpoints(&x->expression[i]);
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
+			json_text(divided_text(step, i)));
+		for (int k = 0; k < x->expression[i].breaks; k++)
+			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(rising[k]));
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+	json_contacts(to, step);
+}
