@@ -22,6 +22,19 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 
+/* ---- echelon.c: rows of rationals that come one by one ---- */
+
+struct echelon {                    /* reduced: a pivot stands alone in its column */
+	int width, rank;
+	mpq_t **row;
+	int *pivot;
+};
+
+struct echelon echelon_new(int width);
+void echelon_add(struct echelon *e, mpq_t *row);            /* `row` is used up */
+/* A basis of what all rows annihilate: one vector for each column without pivot, 1 there; returns how many */
+int  echelon_null_space(const struct echelon *e, mpq_t ***basis);
+
 /* ---- eigenvalues.c ---- */
 
 /* in double precision; false: not found */
@@ -121,6 +134,20 @@ void rectangle_real_product(mpfi_ptr re, const struct rectangle *a, const struct
 void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
 void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr tau);         /* e^{a tau} */
 void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a);     /* p(a); z is not a */
+
+/* ---- rectangles.c: vectors and matrices of them ---- */
+
+#define NO_SIZE (-(1L << 60))                               /* of what is exactly 0 */
+struct rectangle *rectangles(int count, int precision);     /* 0 */
+void rectangles_free(struct rectangle *z, int count);
+bool rectangle_is_zero(const struct rectangle *z);          /* exactly */
+long interval_size(mpfi_srcptr x);                          /* about log2 of it */
+long rectangle_size(const struct rectangle *z);
+void rectangle_add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b); /* z + a b */
+void rectangle_add_scaled(struct rectangle *z, const struct rectangle *a, mpq_srcptr factor); /* z + factor a */
+/* v of P v = 0, of an n x n matrix P of rank n - 1, destroyed; false: not enough bits */
+bool null_rectangles(int n, struct rectangle *P, struct rectangle *v);
+void scale_rectangles(int n, struct rectangle *v);          /* the largest becomes 1 */
 
 /* ---- poles.c: roots with proof ---- */
 

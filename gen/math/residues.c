@@ -163,15 +163,6 @@ bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact)
 
 /* ---- enclosures ---- */
 
-static struct rectangle *rectangles(int count, int precision)
-{
-	struct rectangle *z = ARRAY(struct rectangle, (size_t)count);
-	for (int i = 0; i < count; i++)
-		rectangle_init(&z[i], precision);
-	return z;
-}
-
-
 /* v_0 .. v_{m-1} at every pole, for this precision */
 static struct growth *denominator_series(struct spectrum *spectrum, int precision)
 {

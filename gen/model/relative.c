@@ -13,67 +13,6 @@
 
 #include <string.h>
 
-/* ---- linear algebra over rows that come one by one ---- */
-
-struct echelon {                    /* reduced: a pivot stands alone in its column */
-	int width, rank;
-	mpq_t **row;
-	int *pivot;
-};
-
-static struct echelon echelon_new(int width)
-{
-	return (struct echelon){ width, 0, ARRAY(mpq_t *, (size_t)width), ARRAY(int, (size_t)width) };
-}
-
-/* `row` is used up. */
-static void add_row(struct echelon *e, mpq_t *row)
-{
-	mpq_t factor;
-	int pivot = 0;
-	mpq_init(factor);
-	for (int r = 0; r < e->rank; r++) {
-		mpq_set(factor, row[e->pivot[r]]);
-		if (mpq_sgn(factor) != 0)
-			rational_subtract_row(e->width, row, (const mpq_t *)e->row[r], factor);
-	}
-	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
-		pivot++;
-	if (pivot < e->width) {
-		mpq_inv(factor, row[pivot]);
-		for (int j = 0; j < e->width; j++)
-			mpq_mul(row[j], row[j], factor);
-		for (int r = 0; r < e->rank; r++) {
-			mpq_set(factor, e->row[r][pivot]);
-			if (mpq_sgn(factor) != 0)
-				rational_subtract_row(e->width, e->row[r], (const mpq_t *)row, factor);
-		}
-		e->row[e->rank] = row;
-		e->pivot[e->rank++] = pivot;
-	}
-	mpq_clear(factor);
-}
-
-/* A basis of what all rows annihilate: one vector for each column without pivot, 1 there; returns how many */
-static int null_space(const struct echelon *e, mpq_t ***basis)
-{
-	int count = 0;
-	bool *pivot = ARRAY(bool, (size_t)e->width);
-	*basis = ARRAY(mpq_t *, (size_t)e->width);
-	for (int r = 0; r < e->rank; r++)
-		pivot[e->pivot[r]] = true;
-	for (int j = 0; j < e->width; j++) {
-		if (pivot[j])
-			continue;
-		mpq_t *v = rationals((size_t)e->width);
-		mpq_set_ui(v[j], 1, 1);
-		for (int r = 0; r < e->rank; r++)
-			mpq_neg(v[e->pivot[r]], e->row[r][j]);
-		(*basis)[count++] = v;
-	}
-	return count;
-}
-
 /* ---- what the equations read ---- */
 
 struct look {
@@ -134,8 +73,8 @@ static void look_at(struct look *l, const struct form *form, int own)
 			look_at(l, atom->operand[k], own);
 		l->seen[atom->index] = true;
 	}
-	add_row(&l->place, place);
-	add_row(&l->rate, rate);
+	echelon_add(&l->place, place);
+	echelon_add(&l->rate, rate);
 }
 
 static int own_coordinate(const struct model *model, int row)
@@ -230,8 +169,8 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 		}
 	}
 	for (int k = 0; k < b.bases; k++)
-		add_row(&e, b.factor[k]);
-	return null_space(&e, sum);
+		echelon_add(&e, b.factor[k]);
+	return echelon_null_space(&e, sum);
 }
 
 /* w = u W: what a sum of equations multiplies the highest derivatives with */
@@ -694,7 +633,7 @@ struct relative *relative_of(const struct model *model)
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;
 	mpq_t **place, **rate, **sum;
-	int n = model->n, count, groups = 0, centres = 0, places = null_space(&l.place, &place);
+	int n = model->n, count, groups = 0, centres = 0, places = echelon_null_space(&l.place, &place);
 	if (places == 0)
 		return NULL;
 	both.row = ARRAY(mpq_t *, (size_t)n);
@@ -706,10 +645,11 @@ struct relative *relative_of(const struct model *model)
 			mpq_t *row = rationals((size_t)n);
 			for (int j = 0; j < n; j++)
 				mpq_set(row[j], from->row[i][j]);
-			add_row(&both, row);
+			echelon_add(&both, row);
 		}
 	}
-	int rates = null_space(&both, &rate), sums = free_sums(model, &sum), *component = components_of(&l, &count);
+	int rates = echelon_null_space(&both, &rate), sums = free_sums(model, &sum);
+	int *component = components_of(&l, &count);
 	for (int s = 0, all = sums; s < all; s++) {
 		const mpq_t *u = (const mpq_t *)sum[s];
 		sum[s] = weights_of(model, u);

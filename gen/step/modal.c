@@ -69,70 +69,6 @@ static const char *modal_objection(const struct step *step)
 	return NULL;
 }
 
-/* ---- complex vectors, enclosed ---- */
-
-static struct rectangle *rectangles(int count, int precision)
-{
-	struct rectangle *z = ARRAY(struct rectangle, (size_t)count);
-	for (int i = 0; i < count; i++)
-		rectangle_init(&z[i], precision);
-	return z;
-}
-
-static void rectangles_free(struct rectangle *z, int count)
-{
-	for (int i = 0; i < count; i++)
-		rectangle_clear(&z[i]);
-	discard(z);
-}
-
-static bool exactly_zero(const struct rectangle *z)
-{
-	return mpfi_is_zero(z->re) && mpfi_is_zero(z->im);
-}
-
-#define NO_SIZE (-(1L << 60))
-
-/* About log2 of its size */
-static long part_size(mpfi_srcptr x)
-{
-	mpfr_srcptr end = mpfr_cmpabs(&x->left, &x->right) > 0 ? &x->left : &x->right;
-	return mpfr_regular_p(end) ? (long)mpfr_get_exp(end) : mpfr_zero_p(end) ? NO_SIZE : -NO_SIZE;
-}
-
-static long size_of(const struct rectangle *z)
-{
-	const long re = part_size(z->re), im = part_size(z->im);
-	return re > im ? re : im;
-}
-
-/* z + a b */
-static void add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
-{
-	struct rectangle product;
-	if (exactly_zero(a) || exactly_zero(b))
-		return;
-	rectangle_init(&product, (int)mpfi_get_prec(z->re));
-	rectangle_mul(&product, a, b);
-	mpfi_add(z->re, z->re, product.re);
-	mpfi_add(z->im, z->im, product.im);
-	rectangle_clear(&product);
-}
-
-/* z + factor a */
-static void add_scaled(struct rectangle *z, const struct rectangle *a, mpq_srcptr factor)
-{
-	mpfi_t part;
-	if (mpq_sgn(factor) == 0)
-		return;
-	mpfi_init2(part, mpfi_get_prec(z->re));
-	mpfi_mul_q(part, a->re, factor);
-	mpfi_add(z->re, z->re, part);
-	mpfi_mul_q(part, a->im, factor);
-	mpfi_add(z->im, z->im, part);
-	mpfi_clear(part);
-}
-
 /* ---- null vectors of P(p) ---- */
 
 /* M p^2 + C p + K, its transpose where wanted */
@@ -146,81 +82,11 @@ static struct rectangle *stiffness_at(const struct linear *system, const struct 
 		for (int j = 0; j < n; j++) {
 			struct rectangle *cell = &P[transposed ? j * n + i : i * n + j];
 			mpfi_set_q(cell->re, system->K[i * n + j]);
-			add_scaled(cell, p, system->C[i * n + j]);
-			add_scaled(cell, &square, system->M[i * n + j]);
+			rectangle_add_scaled(cell, p, system->C[i * n + j]);
+			rectangle_add_scaled(cell, &square, system->M[i * n + j]);
 		}
 	rectangle_clear(&square);
 	return P;
-}
-
-/* The largest that is left, to row and column k; false: there may be none */
-static bool bring_pivot(int n, struct rectangle *P, int k, int *column)
-{
-	int row = k, col = k;
-	for (int i = k; i < n; i++)
-		for (int j = k; j < n; j++)
-			if (size_of(&P[i * n + j]) > size_of(&P[row * n + col])) {
-				row = i;
-				col = j;
-			}
-	for (int j = 0; j < n; j++) {
-		struct rectangle swap = P[k * n + j];
-		P[k * n + j] = P[row * n + j];
-		P[row * n + j] = swap;
-	}
-	for (int i = 0; i < n; i++) {
-		struct rectangle swap = P[i * n + k];
-		P[i * n + k] = P[i * n + col];
-		P[i * n + col] = swap;
-	}
-	const int swap = column[k];
-	column[k] = column[col];
-	column[col] = swap;
-	return !mpfi_has_zero(P[k * n + k].re) || !mpfi_has_zero(P[k * n + k].im);
-}
-
-static void eliminate(int n, struct rectangle *P, int k)
-{
-	struct rectangle factor;
-	rectangle_init(&factor, (int)mpfi_get_prec(P->re));
-	for (int i = k + 1; i < n; i++) {
-		if (exactly_zero(&P[i * n + k]))
-			continue;
-		rectangle_div(&factor, &P[i * n + k], &P[k * n + k]);
-		mpfi_neg(factor.re, factor.re);
-		mpfi_neg(factor.im, factor.im);
-		for (int j = k + 1; j < n; j++)
-			add_product(&P[i * n + j], &factor, &P[k * n + j]);
-	}
-	rectangle_clear(&factor);
-}
-
-/* v of P v = 0, P of rank n - 1, destroyed; false: not enough bits */
-static bool null_vector(int n, struct rectangle *P, struct rectangle *v)
-{
-	int *column = ARRAY(int, (size_t)n);
-	bool good = true;
-	for (int i = 0; i < n; i++)
-		column[i] = i;
-	for (int k = 0; k < n - 1 && good; k++) {
-		good = bring_pivot(n, P, k, column);
-		if (good)
-			eliminate(n, P, k);
-	}
-	mpfi_set_ui(v[column[n - 1]].re, 1);
-	mpfi_set_ui(v[column[n - 1]].im, 0);
-	for (int k = n - 2; k >= 0 && good; k--) {
-		struct rectangle *sum = &v[column[k]];
-		mpfi_set_ui(sum->re, 0);
-		mpfi_set_ui(sum->im, 0);
-		for (int j = k + 1; j < n; j++)
-			add_product(sum, &P[k * n + j], &v[column[j]]);
-		rectangle_div(sum, sum, &P[k * n + k]);
-		mpfi_neg(sum->re, sum->re);
-		mpfi_neg(sum->im, sum->im);
-	}
-	discard(column);
-	return good;
 }
 
 static bool is_symmetric(const struct linear *system)
@@ -233,22 +99,6 @@ static bool is_symmetric(const struct linear *system)
 			       mpq_equal(system->C[i * n + j], system->C[j * n + i]) &&
 			       mpq_equal(system->K[i * n + j], system->K[j * n + i]);
 	return same;
-}
-
-/* The largest becomes 1. */
-static void scale_to_largest(int n, struct rectangle *v)
-{
-	struct rectangle largest;
-	int at = 0;
-	for (int i = 1; i < n; i++)
-		at = size_of(&v[i]) > size_of(&v[at]) ? i : at;
-	rectangle_init(&largest, (int)mpfi_get_prec(v->re));
-	rectangle_set(&largest, &v[at]);
-	for (int i = 0; i < n; i++)
-		rectangle_div(&v[i], &v[i], &largest);
-	mpfi_set_ui(v[at].re, 1);
-	mpfi_set_ui(v[at].im, 0);
-	rectangle_clear(&largest);
 }
 
 /* ---- one mode ---- */
@@ -264,18 +114,18 @@ static bool null_vectors(const struct linear *system, const struct mode_vectors 
 {
 	const int n = system->n;
 	struct rectangle *P = stiffness_at(system, &m->p, false);
-	bool good = null_vector(n, P, m->v);
+	bool good = null_rectangles(n, P, m->v);
 	rectangles_free(P, n * n);
 	if (!good)
 		return false;
-	scale_to_largest(n, m->v);
+	scale_rectangles(n, m->v);
 	if (is_symmetric(system)) {
 		for (int i = 0; i < n; i++)
 			rectangle_set(&m->u[i], &m->v[i]);
 		return true;
 	}
 	P = stiffness_at(system, &m->p, true);
-	good = null_vector(n, P, m->u);
+	good = null_rectangles(n, P, m->u);
 	rectangles_free(P, n * n);
 	return good;
 }
@@ -286,7 +136,7 @@ static void weigh(const struct linear *system, const struct mode_vectors *m, con
 	const int n = system->n;
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++)
-			add_scaled(&row[j], &m->u[i], A[i * n + j]);
+			rectangle_add_scaled(&row[j], &m->u[i], A[i * n + j]);
 }
 
 /* u over d; w; velocities of v */
@@ -299,17 +149,17 @@ static bool complete_vectors(const struct linear *system, const struct mode_vect
 	weigh(system, m, (const mpq_t *)system->C, damping);
 	for (int j = 0; j < n; j++) {
 		struct rectangle *row = &m->w[j];
-		add_product(row, &mass[j], &m->p);
+		rectangle_add_product(row, &mass[j], &m->p);
 		mpfi_add(row->re, row->re, damping[j].re);
 		mpfi_add(row->im, row->im, damping[j].im);
-		add_product(&d, row, &m->v[j]);
+		rectangle_add_product(&d, row, &m->v[j]);
 	}
 	/* d = (M p + C) v + M p v */
 	for (int j = 0; j < n; j++) {
 		struct rectangle again;
 		rectangle_init(&again, precision);
 		rectangle_mul(&again, &mass[j], &m->p);
-		add_product(&d, &again, &m->v[j]);
+		rectangle_add_product(&d, &again, &m->v[j]);
 		rectangle_clear(&again);
 	}
 	const bool good = !mpfi_has_zero(d.re) || !mpfi_has_zero(d.im);
@@ -339,8 +189,8 @@ static long add_terms(int count, const struct rectangle *part, const mpq_t *fact
 	long largest = NO_SIZE;
 	for (int i = 0; i < count; i++) {
 		mpq_srcptr q = factor[place ? place[i] : i];
-		const long size = mpq_sgn(q) ? size_of(&part[i]) + rational_size(q) : NO_SIZE;
-		add_scaled(z, &part[i], q);
+		const long size = mpq_sgn(q) ? rectangle_size(&part[i]) + rational_size(q) : NO_SIZE;
+		rectangle_add_scaled(z, &part[i], q);
 		largest = size > largest ? size : largest;
 	}
 	return largest;
@@ -394,7 +244,7 @@ static bool round_part(mpfi_srcptr x, long largest, double *value)
 	if (round_enclosure(x, value))
 		return isfinite(*value);
 	*value = 0;
-	return part_size(x) < largest - NOTHING;
+	return interval_size(x) < largest - NOTHING;
 }
 
 struct filling {                      /* being filled */
@@ -430,7 +280,7 @@ static long largest_of(const struct rectangle *z, int from, int to)
 {
 	long largest = NO_SIZE;
 	for (int i = from; i < to; i++)
-		largest = size_of(&z[i]) > largest ? size_of(&z[i]) : largest;
+		largest = rectangle_size(&z[i]) > largest ? rectangle_size(&z[i]) : largest;
 	return largest;
 }
 
@@ -480,7 +330,7 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 			mpfi_set_ui(all[i]->re, 0), mpfi_set_ui(all[i]->im, 0);
 		long largest = driven(system, m, (const mpq_t *)system->input[k].force[0], &force);
 		const long other = driven(system, m, (const mpq_t *)system->input[k].force[1], &slope);
-		largest = (other > largest ? other : largest) + size_of(&held);
+		largest = (other > largest ? other : largest) + rectangle_size(&held);
 		if (!system->input[k].hold) {
 			rectangle_mul(&z, &force, &held);
 			good = put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
@@ -488,13 +338,13 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 		}
 		/* u0 (1 - s/h) + u1 s/h, and its slope (u1 - u0)/h */
 		rectangle_mul(&z, &force, &ramp);
-		add_product(&z, &slope, &held);
+		rectangle_add_product(&z, &slope, &held);
 		mpfi_mul_q(z.re, z.re, rate);
 		mpfi_mul_q(z.im, z.im, rate);
 		good = put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column + 1);
 		mpfi_neg(z.re, z.re);
 		mpfi_neg(z.im, z.im);
-		add_product(&z, &force, &held);
+		rectangle_add_product(&z, &force, &held);
 		good = good && put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
 	}
 	for (int i = 0; i < 5; i++)
@@ -518,7 +368,7 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 	good = good && convolve(m, f->step->model->h, &q, &minus);
 	long largest = NO_SIZE;
 	for (int k = 0; k < 2; k++) {
-		const long size = driven(system, m, (const mpq_t *)load->force[k], &force[k]) + size_of(&plus);
+		const long size = driven(system, m, (const mpq_t *)load->force[k], &force[k]) + rectangle_size(&plus);
 		largest = size > largest ? size : largest;
 	}
 	if (good) {                     /* cos = (plus + minus)/2, sin = (plus - minus)/(2 i) */
@@ -531,12 +381,12 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 			mpfi_div_ui(all[i]->im, all[i]->im, 2);
 		}
 		rectangle_mul(&z, &force[0], &cosine);
-		add_product(&z, &force[1], &sine);
+		rectangle_add_product(&z, &force[1], &sine);
 		good = put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
 		rectangle_mul(&z, &force[1], &cosine);
 		mpfi_neg(sine.re, sine.re);
 		mpfi_neg(sine.im, sine.im);
-		add_product(&z, &force[0], &sine);
+		rectangle_add_product(&z, &force[0], &sine);
 		good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column + 1);
 	}
 	for (int i = 0; i < 8; i++)
@@ -557,7 +407,7 @@ static bool put_growth(const struct filling *f, const struct mode_vectors *m, co
 		convolve_ramp(m, f->step->model->h, &z, &ramp);
 	else
 		good = convolve(m, f->step->model->h, &q, &z);
-	const long largest = driven(&f->block->system, m, (const mpq_t *)load->force[0], &force) + size_of(&z);
+	const long largest = driven(&f->block->system, m, (const mpq_t *)load->force[0], &force) + rectangle_size(&z);
 	rectangle_mul(&z, &z, &force);
 	good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
 	for (int i = 0; i < 4; i++)
@@ -601,8 +451,8 @@ static void measure_drift(const struct filling *f, const struct mode_vectors *m)
 static bool put_power(const struct filling *f, const struct mode_vectors *m)
 {
 	double *turn = f->modal->turn;
-	return round_part(m->power.re, size_of(&m->power), &turn[f->re]) &&
-	       (f->im < 0 || round_part(m->power.im, size_of(&m->power), &turn[f->im]));
+	return round_part(m->power.re, rectangle_size(&m->power), &turn[f->re]) &&
+	       (f->im < 0 || round_part(m->power.im, rectangle_size(&m->power), &turn[f->im]));
 }
 
 static bool put_mode(const struct filling *f, const struct pole *pole, int precision)

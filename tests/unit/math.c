@@ -597,6 +597,96 @@ static void assert_narrow(const char *what, int n, mpfi_srcptr found, long bits)
     mpfr_clears(width, most, NULL);
 }
 
+/* What all rows annihilate, and as many of them as there are: rank and nullity add up. */
+static void echelon_against_its_rows(void **state)
+{
+    mpq_t sum, product;
+    mpq_inits(sum, product, NULL);
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        const int width = 1 + (int)draw(6), rows = (int)draw(8);
+        struct echelon e = echelon_new(width);
+        mpq_t *A = draw_matrix(8, width), **basis;
+        for (int i = 1; i < rows; i++)          /* some are sums of those before them */
+            for (int j = 0; j < width && draw(3) == 0; j++)
+                mpq_set(A[i * width + j], A[(i - 1) * width + j]);
+        for (int i = 0; i < rows; i++) {
+            mpq_t *row = rationals((size_t)width);
+            for (int j = 0; j < width; j++)
+                mpq_set(row[j], A[i * width + j]);
+            echelon_add(&e, row);
+        }
+        const int count = echelon_null_space(&e, &basis);
+        if (count + e.rank != width)
+            fail_msg("case %d: nullity %d and rank %d of width %d", n, count, e.rank, width);
+        for (int i = 0; i < rows; i++)
+            for (int k = 0; k < count; k++) {
+                mpq_set_ui(sum, 0, 1);
+                for (int j = 0; j < width; j++) {
+                    mpq_mul(product, A[i * width + j], basis[k][j]);
+                    mpq_add(sum, sum, product);
+                }
+                if (mpq_sgn(sum) != 0)
+                    fail_msg("case %d: row %d times vector %d is %g, not 0", n, i, k, mpq_get_d(sum));
+            }
+        for (int k = 0; k < count; k++) {       /* independent: each has a 1 where the others have 0 */
+            int own = 0;
+            for (int j = 0; j < width; j++) {
+                bool only = mpq_cmp_ui(basis[k][j], 1, 1) == 0;
+                for (int other = 0; other < count; other++)
+                    only = only && (other == k || mpq_sgn(basis[other][j]) == 0);
+                own += only;
+            }
+            if (own == 0)
+                fail_msg("case %d: vector %d may depend on the others", n, k);
+        }
+    }
+    mpq_clears(sum, product, NULL);
+}
+
+/* P = A with its last row a sum of the others, complex: P v encloses 0, narrowly, and v is not 0. */
+static void null_rectangles_of_sums(void **state)
+{
+    mpq_t re;
+    mpq_init(re);
+    (void)state;
+    for (int n = 0; n < CASES / 4; n++) {
+        const int order = 2 + (int)draw(4), cells = order * order, bits = 200;
+        struct rectangle *P = rectangles(cells, bits), *kept = rectangles(cells, bits), sum;
+        struct rectangle *v = rectangles(order, bits);
+        for (int i = 0; i < cells - order; i++) {
+            draw_fraction(re, 9, 5);
+            mpfi_set_q(P[i].re, re);
+            draw_fraction(re, 9, 5);
+            mpfi_set_q(P[i].im, re);
+        }
+        for (int i = 0; i < cells - order; i++) {
+            struct rectangle *last = &P[cells - order + i % order];
+            mpfi_add(last->re, last->re, P[i].re);
+            mpfi_add(last->im, last->im, P[i].im);
+        }
+        for (int i = 0; i < cells; i++)
+            rectangle_set(&kept[i], &P[i]);
+        if (!null_rectangles(order, P, v))
+            fail_msg("case %d: no null vector of a matrix of rank %d with %d bits", n, order - 1, bits);
+        scale_rectangles(order, v);
+        rectangle_init(&sum, bits);
+        for (int i = 0; i < order; i++) {
+            mpfi_set_ui(sum.re, 0);
+            mpfi_set_ui(sum.im, 0);
+            for (int j = 0; j < order; j++)
+                rectangle_add_product(&sum, &kept[i * order + j], &v[j]);
+            if (!mpfi_has_zero(sum.re) || !mpfi_has_zero(sum.im) || rectangle_size(&sum) > -100)
+                fail_msg("case %d: row %d of P v has size 2^%ld, and may not be 0", n, i, rectangle_size(&sum));
+        }
+        rectangle_clear(&sum);
+        rectangles_free(P, cells);
+        rectangles_free(kept, cells);
+        rectangles_free(v, order);
+    }
+    mpq_clear(re);
+}
+
 /* e^{(a + i b) tau} against MPFR, and times e^{-(a + i b) tau} against 1 */
 static void rectangle_exponential(void **state)
 {
@@ -1377,7 +1467,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(matrix_inverse),
         cmocka_unit_test(matrix_free_column),
         cmocka_unit_test(matrix_of_a_state),
+        cmocka_unit_test(echelon_against_its_rows),
         cmocka_unit_test(rectangle_exponential),
+        cmocka_unit_test(null_rectangles_of_sums),
         cmocka_unit_test(roots_multiplied_back),
         cmocka_unit_test(residues_of_double_pairs),
         cmocka_unit_test(residues_of_powers_of_time),

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of rationals that come one by one, reduced as they come (Gauss and Jordan), and what all of them annihilate. */
+#include "math/math.h"
+
+struct echelon echelon_new(int width)
+{
+	return (struct echelon){ width, 0, ARRAY(mpq_t *, (size_t)width), ARRAY(int, (size_t)width) };
+}
+
+void echelon_add(struct echelon *e, mpq_t *row)
+{
+	mpq_t factor;
+	int pivot = 0;
+	mpq_init(factor);
+	for (int r = 0; r < e->rank; r++) {
+		mpq_set(factor, row[e->pivot[r]]);
+		if (mpq_sgn(factor) != 0)
+			rational_subtract_row(e->width, row, (const mpq_t *)e->row[r], factor);
+	}
+	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
+		pivot++;
+	if (pivot < e->width) {
+		mpq_inv(factor, row[pivot]);
+		for (int j = 0; j < e->width; j++)
+			mpq_mul(row[j], row[j], factor);
+		for (int r = 0; r < e->rank; r++) {
+			mpq_set(factor, e->row[r][pivot]);
+			if (mpq_sgn(factor) != 0)
+				rational_subtract_row(e->width, e->row[r], (const mpq_t *)row, factor);
+		}
+		e->row[e->rank] = row;
+		e->pivot[e->rank++] = pivot;
+	}
+	mpq_clear(factor);
+}
+
+int echelon_null_space(const struct echelon *e, mpq_t ***basis)
+{
+	int count = 0;
+	bool *pivot = ARRAY(bool, (size_t)e->width);
+	*basis = ARRAY(mpq_t *, (size_t)e->width);
+	for (int r = 0; r < e->rank; r++)
+		pivot[e->pivot[r]] = true;
+	for (int j = 0; j < e->width; j++) {
+		if (pivot[j])
+			continue;
+		mpq_t *v = rationals((size_t)e->width);
+		mpq_set_ui(v[j], 1, 1);
+		for (int r = 0; r < e->rank; r++)
+			mpq_neg(v[e->pivot[r]], e->row[r][j]);
+		(*basis)[count++] = v;
+	}
+	return count;
+}
