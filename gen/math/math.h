@@ -55,7 +55,7 @@ struct eigenpairs {
 /* Residuals below 2^-precision of what they are sums of; false: M is not positive definite. n x n, symmetric */
 bool symmetric_eigenpairs(int n, const mpq_t *M, const mpq_t *K, int precision, struct eigenpairs *pairs);
 
-/* ---- invariant.c: the smallest real invariant subspaces, right and left ---- */
+/* ---- invariant.c, subspace.c: the smallest real invariant subspaces, right and left ---- */
 
 struct invariants;
 struct invariant {                  /* of eigenvalues that lie together, with their conjugates */
