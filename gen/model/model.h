@@ -730,7 +730,7 @@ struct model *model_reduce(struct model *model);             /* itself where not
 /* Are the states of both the same combinations of the same written ones? */
 bool same_reduction(const struct model *a, const struct model *b);
 
-/* ---- modes.c: the modes of a linear model, and what each of them gives to the outputs ---- */
+/* ---- modes.c, survey.c: the modes of a linear model, and what each of them gives to the outputs ---- */
 
 /* A mode is an invariant part of y' = A y that is real and as small as it can be: z = left y, z' = block z + left b u,
  * and right z is its share of y; left right = 1. It has the two states of a pair of poles, or the one of a real pole;
