@@ -62,7 +62,7 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 /* its value, rational or the nearest of 256 bits */
 void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
 
-/* ---- coefficients.c: numbers of the step, each rounded once ---- */
+/* ---- numbers.c, coefficients.c: numbers of the step, each rounded once ---- */
 
 struct coefficient {
 	/* of the target's type; value + low is the number in two words (low only where asked for) */
