@@ -57,7 +57,7 @@ static void emit_rates(const struct emitter *e)
 	       "}\n");
 }
 
-/* (tolerance / last term)^(1 / order), and the same of the one before; where they are 0, or nearly, of what stands in
+/* (tolerance / last term)^(1 / order), less what comes after it, more of it where crossings follow from the end; and the same of the one before; where they are 0, or nearly, of what stands in
  * for them */
 static void emit_length(const struct emitter *e)
 {
@@ -83,8 +83,8 @@ static void emit_length(const struct emitter *e)
 	       "        other = pl_root(%s / (((before[0] * square + before[1]) * square + before[2]) + %s), %d);\n"
 	       "        length = other < length ? other : length;\n"
 	       "    }\n"
-	       "    return 0.94 * length;\n"
-	       "}\n", tol, tiny, order - 4, tol, tiny, order - 5);
+	       "    return %s * length;\n"
+	       "}\n", tol, tiny, order - 4, tol, tiny, order - 5, is_divided(e) ? "0.8" : "0.94");
 }
 
 /* Up to the first crossing, where there is one */
