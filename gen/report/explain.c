@@ -298,9 +298,10 @@ static void person_expressions(FILE *to, const struct step *step)
 /* What chooses formulas by the state, of a series */
 static void person_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
-	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
-		    "times in a step:\n", max_events(step->model));
+	const struct expansion *x = step->divided;
+	fprintf(to, "The state chooses formulas; %s ends where an expression passes a breakpoint, at most %d "
+		    "times in a step:\n", !step->collocation ? "a series" : "an internal step",
+		max_events(step->model));
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -494,7 +495,7 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
-	if (step->expansion && step->expansion->expressions > 0)
+	if (step->divided)
 		person_divided(to, step);
 	if (step->expansion)
 		person_reach(to, step);
@@ -959,7 +960,7 @@ static void json_scene(FILE *to, const struct spec *spec)
 
 static void json_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = step->divided;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < x->expressions; i++) {
 		mpq_t *rising = rising_breakpoints(&x->expression[i]);
@@ -992,7 +993,7 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
-	if (step->expansion && step->expansion->expressions > 0)
+	if (step->divided)
 		json_divided(to, step);
 	if (step->expansion)
 		json_reach(to, step);
