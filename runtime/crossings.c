@@ -291,6 +291,30 @@ int pl_divided_place(const pl_divided *m, const real *c, const real *terms, int 
     return changed;
 }
 
+int pl_divided_rises(const pl_divided *m, const real *c, const real *terms, int *interval)
+{
+    const real *at = m->at;
+    int i, k, changed = 0;
+    for (i = 0; i < m->expressions; at += m->breaks[i++]) {
+        const column e = column_of(m, c, terms, i);
+        real sum = column_at(&e, m->degree), size = magnitude(sum), noise, off;
+        if (interval[i] == m->breaks[i]) {
+            continue;
+        }
+        for (k = m->degree - 1; k > 0; k--) {
+            sum = sum * SOON + column_at(&e, k);
+            size += magnitude(column_at(&e, k));
+        }
+        off = off_start(&e, at[interval[i]], &noise);
+        noise += noise_of(size);
+        if (off >= -noise && off + sum * SOON > noise) {
+            interval[i]++;
+            changed = 1;
+        }
+    }
+    return changed;
+}
+
 static void set_crossing(pl_crossing *crossing, int expression, int breakpoint, int upward)
 {
     crossing->expression = expression;

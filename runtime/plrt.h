@@ -536,6 +536,10 @@ typedef struct pl_divided {
  * rests there counts as below.  1: some are others than before, and c may be another one. */
 int pl_divided_place(const pl_divided *m, const double *c, const double *terms, int *interval);
 
+/* What starts on the breakpoint above its interval and soon is beyond it by more than rounding, along c of which the
+ * unit of time is the step, goes there: 1, some does */
+int pl_divided_rises(const pl_divided *m, const double *c, const double *terms, int *interval);
+
 /* Whether an expression is outside of its interval by more than rounding: crossing receives which, and where; before
  * that the last crossing, expression -1: none, which need not be left behind yet. */
 int pl_divided_left(const pl_divided *m, const double *c, const double *terms, const int *interval,
@@ -553,6 +557,7 @@ typedef struct pl_dividedf {
 } pl_dividedf;
 
 int pl_dividedf_place(const pl_dividedf *m, const float *c, const float *terms, int *interval);
+int pl_dividedf_rises(const pl_dividedf *m, const float *c, const float *terms, int *interval);
 int pl_dividedf_left(const pl_dividedf *m, const float *c, const float *terms, const int *interval,
                      pl_crossingf *crossing);
 float pl_dividedf_next(const pl_dividedf *m, const float *c, const float *terms, const int *interval, float end,

@@ -39,6 +39,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_advance pl_switchingf_advance
 #define pl_divided pl_dividedf
 #define pl_divided_place pl_dividedf_place
+#define pl_divided_rises pl_dividedf_rises
 #define pl_divided_left pl_dividedf_left
 #define pl_divided_next pl_dividedf_next
 #define pl_impact pl_impactf

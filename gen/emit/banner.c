@@ -176,7 +176,7 @@ static void banner_impacts(const struct emitter *e)
 /* What is held beside a series, and what strikes */
 static void banner_contacts(const struct emitter *e)
 {
-	const struct contacts *c = e->step->expansion->contacts;
+	const struct contacts *c = e->step->divided->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			say(e, " *     friction %d: %s\n", friction++, printable(contact_text(e->step, i)));
@@ -188,12 +188,20 @@ static void banner_contacts(const struct emitter *e)
 /* What chooses formulas by the state */
 static void banner_divided(const struct emitter *e)
 {
-	const struct expansion *x = e->step->expansion;
-	if (!x || x->expressions == 0)
+	const struct expansion *x = e->step->divided;
+	if (!x)
 		return;
-	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an "
-			   "expression passes a breakpoint is the first root of its own series, found before it is "
-			   "stepped over; there the series ends, and the next one begins.");
+	banner_sentence(e, !e->step->collocation
+		? "The state chooses formulas: a series is of those between two crossings. Where an expression passes "
+		  "a breakpoint is the first root of its own series, found before it is stepped over; there the series "
+		  "ends, and the next one begins."
+		: format("The state chooses formulas: an internal step is of those between two crossings. Where an "
+			 "expression passes a breakpoint is the first root of its %s, found before it is stepped over; "
+			 "there the step ends%s, and the next one begins.",
+			 e->step->expansion ? "own series, or of its polynomial through the nodes"
+					    : "polynomial through the start and the nodes",
+			 e->step->expansion ? ", one of the collocation made anew with that length"
+					    : ", made anew with that length"));
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -206,7 +214,9 @@ static void banner_divided(const struct emitter *e)
 	if (regions_of_series(x))
 		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
 				   "numbers of intervals before it.");
-	banner_sentence(e, "Costs below are of one series, without the search on it; a crossing takes another one.");
+	banner_sentence(e, !e->step->collocation
+		? "Costs below are of one series, without the search on it; a crossing takes another one."
+		: "Costs below are without the search; a crossing takes another internal step, of the collocation two.");
 }
 
 void banner_expanded(const struct emitter *e)
@@ -256,6 +266,7 @@ void banner_collocated(const struct emitter *e)
 	if (e->step->expansion)
 		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
 		    e->step->iteration.multiplications, e->step->iteration.additions, e->step->iteration.calls);
+	banner_divided(e);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }

@@ -26,7 +26,7 @@ struct identifiers {
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
 	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope",
-	"excess", "now", "first", "turn", "turned", "samples", "cell", "clear",
+	"interval", "excess", "now", "first", "turn", "turned", "samples", "cell", "clear",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 

@@ -130,6 +130,8 @@ struct writer;                      /* declares locals for what several places u
 typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
 struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
 const char *write_form(struct writer *w, const struct form *form, int indent);
+/* What the state chooses as interval[] says, the intervals of the step's expressions; else as the state is */
+void write_by_intervals(struct writer *w);
 void write_conditions_at(struct writer *w, const char *when);     /* those on time alone: C of a time; else each at t */
 const char *time_text(const struct emitter *e, const struct form *form, const char *when);
 
@@ -353,6 +355,13 @@ void emit_divided_functions(const struct emitter *e);             /* tables, NAM
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
+void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
+void emit_pass_breakpoint(const struct emitter *e);              /* NAME_cross */
+void emit_locate(const struct emitter *e);                       /* NAME_locate, by the series */
+
+/* ---- emit_passage.c: from one crossing to the next by collocation ---- */
+
+void emit_passage(const struct emitter *e);                      /* NAME_left, NAME_pass, ...; nothing without them */
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 
 bool meets_contacts(const struct emitter *e);
@@ -385,6 +394,13 @@ const char *known_call(const struct emitter *e, const char *tau, const char *ins
 const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left);
 const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
 			   const char *slope);
+/* $n_watch: what chooses formulas into value, the sizes of what is added up there into terms */
+const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms);
+bool watch_reads_known(const struct emitter *e);                 /* more than the state */
+/* The intervals of the expressions, where there are some: a parameter, an argument, a local */
+const char *interval_parameter(const struct emitter *e);
+const char *interval_argument(const struct emitter *e);
+const char *current_intervals(const struct emitter *e);
 /* Samples at the start and slopes, as the functions of an internal step take them and are handed them */
 const char *samples_parameter(const struct emitter *e);
 const char *samples_argument(const struct emitter *e);

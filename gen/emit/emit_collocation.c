@@ -50,22 +50,27 @@ static const char *jacobian_parameter(const struct emitter *e)
 	return splits(e) ? format("const double slope_of[%d], ", entries ? entries : 1) : "";
 }
 
+static const char *samples_of_step(const struct emitter *e)
+{
+	return e->system->inputs ? ", u, slope" : "";
+}
+
 /* ---- members ---- */
 
 void emit_collocation_members(const struct emitter *e)
 {
-	say(e, "    double start[$N_STATES], poly[%d][$N_STATES];  /* of an internal step; its polynomial, from "
+	say(e, "    double start[$N_STATES], poly[%d][$c];  /* of an internal step; its polynomial, from "
 	       "time^1 on in "
 	       "row 1 */\n"
 	       "    double gain[$N_STATES];  /* over all of it */\n"
 	       "    double at, at_low;  /* where it starts, in h since the step k - back */\n"
 	       "    double size, per;     /* its length in h; 1 over the unit of the polynomial */\n"
 	       "    double want;          /* the length that the next may have */\n"
-	       "    double scale[$N_STATES], unit[$N_STATES];  /* the largest size of each state so far; 1 over it */\n"
+	       "    double scale[$c], unit[$c];  /* the largest size of each state so far; 1 over it */\n"
 	       "    int back;             /* steps of h since then */\n"
-	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads; it may be "
+	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
 	       "extrapolated */\n",
-	    rows(e));
+	    rows(e), is_divided(e) ? ", 3: a crossing" : "");
 	if (changes(e))
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
 	if (switches(e))
@@ -76,6 +81,8 @@ void emit_collocation_members(const struct emitter *e)
 		       "    int bounds, patience, run;  /* series in a row that stability bounds; how many may be; "
 		       "steps of the "
 		       "collocation */\n");
+	if (is_divided(e))
+		emit_divided_members(e);
 }
 
 bool collocation_places(const struct emitter *e)
@@ -135,7 +142,7 @@ void emit_collocation_place(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n"
 	       "    $n_anew(s);\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "    for (i = 0; i < $c; i++)\n"
 	       "        s->scale[i] = s->unit[i] = 0.0;\n"
 	       "    $n_measure(s);\n"
 	       "    s->want = 0.0;\n");
@@ -143,6 +150,9 @@ void emit_collocation_place(const struct emitter *e)
 		say(e, "    s->product = 0.0;\n"
 		       "    s->series = s->stiff = s->bounds = s->run = 0;\n"
 		       "    s->patience = 2;\n");
+	if (is_divided(e))
+		say(e, "    s->contact.placed = s->contact.crossings = 0;\n"
+		       "    s->contact.total = 0;\n");
 	say(e, "}\n");
 }
 
@@ -151,7 +161,7 @@ void emit_collocation_place(const struct emitter *e)
 static void emit_within(const struct emitter *e)
 {
 	say(e, "\n/* What the polynomial of a collocation gains from its start, theta of the step later */\n");
-	emit_polynomial(e, "within", rows(e), stages(e));
+	emit_polynomial(e, "within", stages(e) + 1, stages(e));
 }
 
 static void emit_inside(const struct emitter *e)
@@ -183,15 +193,23 @@ static void emit_inside(const struct emitter *e)
 static void emit_prediction(const struct emitter *e)
 {
 	int s = stages(e), n = e->system->n;
-	say(e, "    for (i = 0; i < %d; i++) {\n"
-	       "        const double theta = 1.0 + $n_node[i] * size * s->per;\n"
+	say(e, "\n/* The highest derivatives of a polynomial, of which the unit of time is 1/per, at the nodes of a step "
+	       "that is\n * so long and begins there */\n"
+	       "static void $n_continue(const double poly[%d][$c], double from, double size, double per, double "
+	       "k[%d])\n"
+	       "{\n"
+	       "    int i, j, m;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double theta = from + $n_node[i] * size;\n"
 	       "        for (j = 0; j < %d; j++) {\n"
-	       "            double sum = %s * s->poly[%d][%s];\n"
+	       "            double sum = %s * poly[%d][%s];\n"
 	       "            for (m = %d; m > 0; m--)\n"
-	       "                sum = sum * theta + (double)m * s->poly[m][%s];\n"
-	       "            k[i * %d + j] = s->ready ? sum * s->per / $N_H : 0.0;\n"
+	       "                sum = sum * theta + (double)m * poly[m][%s];\n"
+	       "            k[i * %d + j] = sum * per;\n"
 	       "        }\n"
-	       "    }\n", s, n, shortest(s), s, highest_text(e, "j"), s - 1, highest_text(e, "j"), n);
+	       "    }\n"
+	       "}\n", s + 1, unknowns_of_stages(e), s, n, shortest(s), s, highest_text(e, "j"), s - 1,
+	    highest_text(e, "j"), n);
 }
 
 /* Where nothing is known of a state's size yet, that at the nodes counts, or after h if it went on so. */
@@ -222,9 +240,8 @@ static void emit_solve(const struct emitter *e)
 {
 	int s = stages(e), known = known_values(e);
 	const double bound = fmax(0.05 * tolerance(e), 4 * (e->model->asked.single ? FLT_EPSILON : DBL_EPSILON));
-	say(e, "\n/* The highest derivatives k at the nodes of a step of `size` h: 1, or 0 where Newton's method does "
-	       "not "
-	       "find them */\n"
+	say(e, "\n/* The highest derivatives k at the nodes of a step of `size` h, from those that are given: 1, or 0 "
+	       "where\n * Newton's method does not find them */\n"
 	       "static int $n_solve(const $n *s%s, %sdouble size, double unit[$N_STATES], double k[%d])\n"
 	       "{\n"
 	       "    const double dt = size * $N_H;\n"
@@ -233,7 +250,8 @@ static void emit_solve(const struct emitter *e)
 		say(e, "    $n_factors factors;\n");
 	if (known)
 		say(e, "    double node[%d][%d];\n", s, known);
-	say(e, "    int i, j, m;\n");
+	say(e, "%s"
+	       "    int i;\n", current_intervals(e));
 	if (known) {
 		struct emitter here = *e;
 		here.ramps = false;             /* samples are called u here */
@@ -242,14 +260,13 @@ static void emit_solve(const struct emitter *e)
 		    known_call(&here, spell(e, "((s->at - (double)s->back) + $n_node[i] * size) * $N_H"),
 			       spell(e, "((s->at - (double)s->back) + 0.5 * size) * $N_H"), "node[i]"));
 	}
-	emit_prediction(e);
 	if (splits(e))
 		say(e, "    if (!$n_factorize(slope_of, dt, &factors))\n"
 		       "        return 0;\n");
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        double change;\n"
 	       "        $n_sizes(s, dt, k, unit);\n"
-	       "        change = $n_iterate(s->start, %sdt, unit, %sk);\n"
+	       "        change = $n_iterate(s->start, %s%sdt, unit, %sk);\n"
 	       "        if (!(change < 1e10)%s)\n"
 	       "            return 0;\n"
 	       "        if (i > 0 && (change <= %s || (change < previous && change * change <= %s * (previous - "
@@ -260,7 +277,7 @@ static void emit_solve(const struct emitter *e)
 	       "        previous = change;\n"
 	       "    }\n"
 	       "    return 0;\n"
-	       "}\n", ITERATIONS, nodes_argument(e), splits(e) ? "&factors, " : "",
+	       "}\n", ITERATIONS, nodes_argument(e), interval_argument(e), splits(e) ? "&factors, " : "",
 	    splits(e) ? " || (i > 0 && change >= previous)" : "", shortest(bound), shortest(bound),
 	    shortest(e->model->asked.single ? 1e-12 : 1e-17));
 }
@@ -272,7 +289,7 @@ static void emit_finish(const struct emitter *e)
 	int s = stages(e), n = e->system->n;
 	say(e, "\n/* The polynomial through the nodes; returns its last term as an error, relative to the sizes */\n"
 	       "static double $n_finish(const double y[$N_STATES], double dt, const double unit[$N_STATES],\n"
-	       "    const double k[%d], double poly[%d][$N_STATES], double gain[$N_STATES])\n"
+	       "    const double k[%d], double poly[%d][$c], double gain[$N_STATES])\n"
 	       "{\n"
 	       "    double most = 0.0;\n"
 	       "    int i, j, m;\n", unknowns_of_stages(e), s + 1);
@@ -371,10 +388,10 @@ static void emit_collocate(const struct emitter *e)
 	       "static int $n_collocate($n *s%s, double limit, %sint *steps)\n"
 	       "{\n"
 	       "    const int stop = s->stop;\n"
-	       "    int rejected = 0, i, j;\n"
+	       "    int rejected = 0, %si, j;\n"
 	       "%s"
 	       "    for (;;) {\n"
-	       "        double k[%d], poly[%d][$N_STATES], unit[$N_STATES], error, factor = rejected < 3 ? 0.25 : "
+	       "        double k[%d], poly[%d][$c], unit[$N_STATES], error, factor = rejected < 3 ? 0.25 : "
 	       "0.0625;\n"
 	       "        const double size = s->want < limit ? s->want : limit;\n"
 	       "        int good;\n"
@@ -384,8 +401,14 @@ static void emit_collocate(const struct emitter *e)
 	       "            return PL_NOT_FINITE;\n",
 	    switches(e) ? "; -1: a series should do it" : "", samples_parameter(e),
 	    switches(e) ? "const double rates[2], "
-			  "" : "", splits(e) ? start_jacobian(e) : "", unknowns_of_stages(e), s + 1,
+			  "" : "", is_divided(e) ? "wrong, " : "", splits(e) ? start_jacobian(e) : "",
+	    unknowns_of_stages(e), s + 1,
 	    e->model->truncation.substeps, e->model->asked.single ? "1e-12" : "1e-18");
+	say(e, "        for (i = 0; i < %d && !s->ready; i++)\n"
+	       "            k[i] = 0.0;\n"
+	       "        if (s->ready)\n"
+	       "            $n_continue((const double (*)[$c])s->poly, 1.0, size * s->per, s->per / $N_H, k);\n",
+	    unknowns_of_stages(e));
 	say(e, "        good = $n_solve(s%s%s, size, unit, k);\n"
 	       "        if (good) {\n"
 	       "            error = $n_finish(s->start, size * $N_H, unit, k, poly, s->gain) + %s;\n"
@@ -399,8 +422,7 @@ static void emit_collocate(const struct emitter *e)
 	       "%s"
 	       "            continue;\n"
 	       "        }\n", e->system->inputs ? ", u, slope" : "", splits(e) ? ", slope_of" : "", single,
-	    shortest(2 * tolerance(e)),
-	    shortest(tolerance(e)), s + 1,
+	    shortest(2 * tolerance(e)), shortest(tolerance(e)), s + 1,
 	    !switches(e) ? "" : spell(e, "            if ($n_product(rates, s->want) < 0.5)\n"
 					 "                return -1;\n"));
 	say(e, "        s->want = size < limit || s->want < size * factor ? size * factor : s->want;\n"
@@ -408,13 +430,16 @@ static void emit_collocate(const struct emitter *e)
 	       "        s->size = size;\n"
 	       "        s->per = 1.0 / size;\n"
 	       "        s->ready = 1;\n"
-	       "%s"
-	       "        for (i = 1; i <= %d; i++)\n"
+	       "%s", switches(e) ? "        s->series = 0;\n        s->run++;\n" : "");
+	if (is_divided(e))
+		say(e, "        wrong = $n_pass(s%s%s, limit, unit, poly);\n", samples_of_step(e),
+		    splits(e) ? ", slope_of" : "");
+	say(e, "        for (i = 1; i <= %d; i++)\n"
 	       "            for (j = 0; j < $N_STATES; j++)\n"
 	       "                s->poly[i][j] = poly[i][j];\n"
-	       "        return 0;\n"
+	       "        return %s;\n"
 	       "    }\n"
-	       "}\n", switches(e) ? "        s->series = 0;\n        s->run++;\n" : "", s);
+	       "}\n", s, is_divided(e) ? "wrong" : "0");
 }
 
 static void emit_samples_now(const struct emitter *e)
@@ -449,27 +474,60 @@ static void emit_first_length(const struct emitter *e)
 	       "}\n", samples_parameter(e), start_jacobian(e), speed_text(e, "i"));
 }
 
+/* How the internal step goes that starts now */
+static void emit_advance_text(const struct emitter *e, const char *indent)
+{
+	say(e, "%slimit = $n_limit(s);\n", indent);
+	if (is_divided(e))
+		say(e, "%sif (!s->contact.placed)\n"
+		       "%s    $n_locate(s%s);\n"
+		       "%sif ($n_left(s%s)) {\n"
+		       "%s    if (!$n_pass_here(s))\n"
+		       "%s        return PL_TOO_MANY_EVENTS;\n"
+		       "%s    continue;\n"
+		       "%s}\n", indent, indent,
+		    !switches(e) ? samples_argument(e) : e->system->inputs ? ", u, &s->contact" : ", &s->contact",
+		    indent, samples_argument(e), indent, indent, indent, indent);
+	say(e, "%sif (s->want == 0.0)\n"
+	       "%s    s->want = $n_first(s%s);\n", indent, indent, samples_argument(e));
+	if (switches(e))
+		say(e, "%s$n_rates(s%s, rates);\n"
+		       "%swrong = $n_choose(s%s, limit, rates, steps);\n", indent, samples_argument(e), indent,
+		    samples_argument(e));
+	else
+		say(e, "%swrong = $n_collocate(s%s, limit, steps);\n", indent, samples_argument(e));
+}
+
 static void emit_advance(const struct emitter *e)
 {
+	if (switches(e))
+		emit_choice(e);
 	say(e, "\n/* The next internal step, from the end of the last: 0, or what went wrong; *steps of them were "
 	       "tried */\n"
 	       "static int $n_advance(%s, int *steps)\n"
 	       "{\n", step_parameters(e));
 	emit_samples_now(e);
 	say(e, "    double limit%s;\n"
-	       "%s"
-	       "    $n_commit(s);\n"
-	       "    limit = $n_limit(s);\n"
-	       "    if (s->want == 0.0)\n"
-	       "        s->want = $n_first(s%s);\n", switches(e) ? ", rates[2]" : "",
-	    switches(e) ? "    int wrong;\n" : "", samples_argument(e));
-	if (switches(e)) {
-		say(e, "    $n_rates(s%s, rates);\n", samples_argument(e));
-		emit_choice(e);
+	       "    int wrong;\n", switches(e) ? ", rates[2]" : "");
+	if (!is_divided(e)) {
+		say(e, "    $n_commit(s);\n");
+		emit_advance_text(e, "    ");
+		say(e, "    return wrong;\n"
+		       "}\n");
 		return;
 	}
-	say(e, "    return $n_collocate(s%s, limit, steps);\n"
-	       "}\n", samples_argument(e));
+	say(e, "    const int met = s->size > 0.0 && s->stop == 3;\n"
+	       "    $n_commit(s);\n"
+	       "    if (met && !$n_pass_here(s))\n"
+	       "        return PL_TOO_MANY_EVENTS;\n"
+	       "    for (;;) {\n");
+	emit_advance_text(e, "        ");
+	say(e, "        if (wrong != -2)\n"
+	       "            return wrong;\n"
+	       "        if (s->contact.last.expression >= 0 && !$n_pass_here(s))\n"
+	       "            return PL_TOO_MANY_EVENTS;\n"
+	       "    }\n"
+	       "}\n");
 }
 
 /* ---- the step ---- */
@@ -505,8 +563,10 @@ static void emit_step_function(const struct emitter *e)
 {
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
-	       "    const int wrong = $n_reach(s, %s1.0, s->y);\n"
-	       "    s->back++;\n", step_parameters(e), u_argument(e));
+	       "%s"
+	       "    wrong = $n_reach(s, %s1.0, s->y);\n"
+	       "    s->back++;\n", step_parameters(e),
+	    is_divided(e) ? "    int wrong;\n    s->contact.crossings = 0;\n" : "    int wrong;\n", u_argument(e));
 	emit_step_end(e);
 	if (changes(e))
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
@@ -525,21 +585,28 @@ void emit_collocation_step(const struct emitter *e)
 	emit_stage_tables(e);
 	emit_motion(e);
 	emit_newton(e);
-	if (switches(e)) {
-		emit_series_steps(e);
+	if (is_divided(e)) {
+		emit_divided_tables(e);
+		emit_pass_breakpoint(e);
 	}
+	if (switches(e))
+		emit_series_steps(e);
 	emit_within(e);
 	emit_inside(e);
 	emit_sizes(e);
+	emit_prediction(e);
 	emit_solve(e);
 	emit_finish(e);
 	emit_commit(e);
 	emit_limit(e);
+	emit_passage(e);
 	emit_first_length(e);
 	emit_collocate(e);
 	emit_advance(e);
 	emit_reach(e);
 	emit_step_function(e);
+	if (is_divided(e))
+		emit_divided_questions(e);
 }
 
 /* ---- between steps ---- */

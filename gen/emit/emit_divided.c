@@ -4,7 +4,7 @@
 
 static const struct expansion *expansion(const struct emitter *e)
 {
-	return e->step->expansion;
+	return e->step->divided;
 }
 
 /* ---- the header ---- */
@@ -16,12 +16,13 @@ void emit_divided_types(const struct emitter *e)
 	say(e, "typedef struct $n_contact {  /* by which formulas the model goes, and what it has crossed */\n"
 	       "    uint64_t total;       /* crossings since init or set */\n"
 	       "    int crossings;        /* in the last step */\n"
-	       "    int placed;           /* 0: a state was set, its intervals are not known */\n"
+	       "    int placed;           /* 0: a state was set, its intervals are not known%s */\n"
 	       "%s"
 	       "    int interval[%d];      /* of each expression */\n"
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
 	       "} $n_contact;\n\n",
+	    e->step->expansion ? "" : "; below 0: nor where that goes which is on a breakpoint",
 	    meets_contacts(e) ? "    int rested;           /* contacts by infinitely many bounces, since then */\n"
 	    : "",
 	    expansion(e)->expressions);
@@ -49,7 +50,7 @@ void emit_divided_declarations(const struct emitter *e)
 
 /* ---- tables ---- */
 
-static void emit_divided_tables(const struct emitter *e)
+void emit_divided_tables(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	const char *column = "", *breaks = "", *at = "";
@@ -63,6 +64,12 @@ static void emit_divided_tables(const struct emitter *e)
 			row = format("%s%s%s", row, k ? ", " : "", shortest(round_rational(rising[k])));
 		at = format("%s%s%s", at, i ? ",\n    " : "", row);
 	}
+	if (!e->step->expansion) {
+		say(e, "\n/* Of the expressions that choose formulas: the breakpoints */\n"
+		       "static const int $n_breaks[] = {%s};\n"
+		       "static const double $n_breakpoint[] = {\n    %s\n};\n", breaks, at);
+		return;
+	}
 	say(e, "\n/* Of the expressions that choose formulas: the column of each, its breakpoints */\n"
 	       "static const int $n_column[] = {%s}, $n_breaks[] = {%s};\n"
 	       "static const double $n_breakpoint[] = {\n    %s\n};\n"
@@ -73,7 +80,7 @@ static void emit_divided_tables(const struct emitter *e)
 
 /* ---- functions ---- */
 
-static void emit_pass_breakpoint(const struct emitter *e)
+void emit_pass_breakpoint(const struct emitter *e)
 {
 	say(e, "\n/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too "
 	       "many */\n"
@@ -98,7 +105,7 @@ static int most_changes(const struct expansion *x)
 	return most;
 }
 
-static void emit_locate(const struct emitter *e)
+void emit_locate(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	bool changes = e->system->segments > 1;

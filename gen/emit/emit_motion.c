@@ -3,6 +3,9 @@
  * rest for a state. */
 #include "emit/emit.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static const struct motion *motion(const struct emitter *e)
 {
 	return e->step->motion;
@@ -13,15 +16,39 @@ bool splits(const struct emitter *e)
 	return motion(e)->apart;
 }
 
-static struct reads reads_of_motion(const struct emitter *e)
+/* What chooses formulas: forms without their constants */
+static const struct form **dividing_forms(const struct emitter *e, int *count)
+{
+	const struct expansion *x = e->step->divided;
+	const struct form **form = ARRAY(const struct form *, x ? (size_t)x->expressions : 1);
+	*count = x ? x->expressions : 0;
+	for (int i = 0; i < *count; i++)
+		form[i] = x->expression[i].form;
+	return form;
+}
+
+/* The forces and their slopes, then what chooses formulas */
+static const struct form **all_forms(const struct emitter *e, int *count)
 {
 	const struct motion *m = motion(e);
-	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries));
+	int dividing;
+	const struct form **choosing = dividing_forms(e, &dividing);
+	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries + dividing));
 	for (int i = 0; i < m->coords; i++)
 		form[i] = m->force[i];
 	for (int k = 0; k < m->entries; k++)
 		form[m->coords + k] = m->entry[k].slope;
-	return reads_of(e->model, m->coords + m->entries, form);
+	for (int i = 0; i < dividing; i++)
+		form[m->coords + m->entries + i] = choosing[i];
+	*count = m->coords + m->entries + dividing;
+	return form;
+}
+
+static struct reads reads_of_motion(const struct emitter *e)
+{
+	int count;
+	const struct form **form = all_forms(e, &count);
+	return reads_of(e->model, count, form);
 }
 
 /* Is a column of the loads in the linear part of some coordinate? */
@@ -145,12 +172,11 @@ static bool form_decides(const struct form *form, bool *seen)
 
 static bool decides(const struct emitter *e)
 {
-	const struct motion *m = motion(e);
+	int count;
+	const struct form **form = all_forms(e, &count);
 	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
-	for (int i = 0; i < m->coords; i++)
-		any = form_decides(m->force[i], seen) || any;
-	for (int k = 0; k < m->entries; k++)
-		any = form_decides(m->entry[k].slope, seen) || any;
+	for (int i = 0; i < count; i++)
+		any = form_decides(form[i], seen) || any;
 	return any;
 }
 
@@ -316,39 +342,106 @@ static void emit_known(const struct emitter *e, const struct reads *r)
 
 /* ---- the highest derivatives, and their Jacobian ---- */
 
-/* Of what is known under the names that forms read */
-static void emit_motion_locals(const struct emitter *e, const struct reads *r)
+/* Of what is known under the names that forms read, those of `read` */
+static void emit_motion_locals(const struct emitter *e, const struct reads *r, const struct reads *read)
 {
 	struct place_of_known p = known_places(e, r);
 	int inputs = e->system->inputs;
-	emit_locals_of(e, r->state, "y");
-	if (r->time)
+	emit_locals_of(e, read->state, "y");
+	if (read->time)
 		say(e, "    const double t = node[%d];\n", p.time);
 	for (int l = 0; l < e->system->loads; l++)
 		if (r->load[l]) {
-			say(e, "    const double *const load%d = node + %d;\n", l + 1, p.load);
+			if (read->load[l])
+				say(e, "    const double *const load%d = node + %d;\n", l + 1, p.load);
 			p.load += e->system->load[l].columns;
 		}
-	for (int i = 0; i < inputs; i++)
+	for (int i = 0; i < 2 * inputs; i++) {
+		bool slope = i >= inputs;
+		if (read->input[i])
+			say(e, "    const double %s = node[%d];\n", input_name(e, slope ? i - inputs : i, slope),
+			    slope ? p.slope : p.value);
 		if (r->input[i])
-			say(e, "    const double %s = node[%d];\n", input_name(e, i, 0), p.value++);
-	for (int i = 0; i < inputs; i++)
-		if (r->input[inputs + i])
-			say(e, "    const double %s = node[%d];\n", input_name(e, i, 1), p.slope++);
+			(*(slope ? &p.slope : &p.value))++;
+	}
 	for (int k = 0; k < e->model->spec->tunables; k++)
-		if (r->param[k])
-			say(e, "    const double %s = node[%d];\n", param_local(e, k), p.param++);
+		if (r->param[k]) {
+			if (read->param[k])
+				say(e, "    const double %s = node[%d];\n", param_local(e, k), p.param);
+			p.param++;
+		}
+}
+
+static bool any_known(const struct emitter *e, const struct reads *read)
+{
+	return read->time || any_of(read->load, e->system->loads) || any_of(read->input, 2 * e->system->inputs) ||
+	       any_of(read->param, e->model->spec->tunables);
+}
+
+const char *interval_parameter(const struct emitter *e)
+{
+	return is_divided(e) ? format("const int interval[%d], ", e->step->divided->expressions) : "";
+}
+
+const char *interval_argument(const struct emitter *e)
+{
+	return is_divided(e) ? "interval, " : "";
+}
+
+const char *current_intervals(const struct emitter *e)
+{
+	return is_divided(e) ? "    const int *const interval = s->contact.interval;\n" : "";
+}
+
+static const char *known_argument(const struct emitter *e, const char *node)
+{
+	return known_values(e) ? format("%s, ", node) : "";
+}
+
+static const char *known_parameter(const struct emitter *e)
+{
+	int known = known_values(e);
+	return known ? format("const double node[%d], ", known) : "";
 }
 
 const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
 			   const char *slope)
 {
-	return spell(e, "$n_linearize(%s%s, %s, %s);", known_values(e) ? format("%s, ", node) : "", y, left, slope);
+	return spell(e, "$n_linearize(%s%s%s, %s, %s);", known_argument(e, node), interval_argument(e), y, left,
+		     slope);
 }
 
 const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left)
 {
-	return spell(e, "$n_forces(%s%s, %s);", known_values(e) ? format("%s, ", node) : "", y, left);
+	return spell(e, "$n_forces(%s%s%s, %s);", known_argument(e, node), interval_argument(e), y, left);
+}
+
+bool watch_reads_known(const struct emitter *e)
+{
+	int count;
+	const struct form **form = dividing_forms(e, &count);
+	struct reads read = reads_of(e->model, count, form);
+	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
+	for (int i = 0; i < count; i++)
+		any = form_decides(form[i], seen) || any;
+	return any;
+}
+
+const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms)
+{
+	return spell(e, "$n_watch(%s%s%s, %s, %s);", watch_reads_known(e) ? known_argument(e, node) : "",
+		     interval_argument(e), y, value, terms);
+}
+
+static struct writer *motion_writer(const struct emitter *e, const struct reads *r, int count,
+				    const struct form *const *form)
+{
+	struct writer *writer = writer_new(e, basis_now, count, form);
+	if (decides(e))
+		write_conditions_at(writer, format("node[%d]", known_places(e, r).when));
+	if (is_divided(e))
+		write_by_intervals(writer);
+	return writer;
 }
 
 /* The highest derivatives, and where they are wanted the entries of their Jacobian */
@@ -361,9 +454,7 @@ static void emit_motion_forms(const struct emitter *e, const struct reads *r, in
 		form[i] = m->force[i];
 	for (int k = 0; k < entries; k++)
 		form[m->coords + k] = m->entry[k].slope;
-	struct writer *writer = writer_new(e, basis_now, m->coords + entries, form);
-	if (decides(e))
-		write_conditions_at(writer, format("node[%d]", known_places(e, r).when));
+	struct writer *writer = motion_writer(e, r, m->coords + entries, form);
 	for (int i = 0; i < m->coords; i++) {
 		const char *text = write_form(writer, form[i], 15);
 		say(e, "    left[%d] = %s%s;  /* %s */\n", i, text,
@@ -375,47 +466,115 @@ static void emit_motion_forms(const struct emitter *e, const struct reads *r, in
 	}
 }
 
-/* What only the Jacobian reads is not read by the forces. */
-static void emit_unread_locals(const struct emitter *e, const struct reads *r)
+/* The expressions that choose formulas, and the sizes of what they are summed from */
+static void emit_watched_forms(const struct emitter *e, const struct reads *r)
 {
-	for (int i = 0; i < e->system->states; i++)
-		if (r->state[i])
-			say(e, "    (void)%s;\n", e->local[i]);
+	int count;
+	const struct form **form = dividing_forms(e, &count);
+	struct writer *writer = motion_writer(e, r, count, form);
+	for (int i = 0; i < count; i++) {
+		const char **size = ARRAY(const char *, (size_t)form[i]->terms);
+		say(e, "    left[%d] = %s;\n", i, write_form(writer, form[i], 15));
+		for (int k = 0; k < form[i]->terms; k++)
+			size[k] = format("pl_magnitude(%s)",
+					 write_form(writer, &(struct form){ 1, form[i]->term + k, 0 }, 15));
+		say(e, "    excess[%d] = %s;\n", i, tree(form[i]->terms, size, 16));
+	}
+}
+
+/* ---- functions of them: their text first, since what an interval decides is not read ---- */
+
+static bool mentions(const char *text, const char *name)
+{
+	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+	size_t length = strlen(name);
+	bool found = false;
+	for (const char *at = text; !found && (at = strstr(at, name)); at += length)
+		found = (at == text || !strchr(letters, at[-1])) && (!at[length] || !strchr(letters, at[length]));
+	return found;
+}
+
+/* Blanks in place of comments, which name coordinates */
+static void blank_comments(char *text)
+{
+	for (char *at = text; (at = strstr(at, "/*"));)
+		for (char *end = strstr(at, "*/") + 2; at < end; at++)
+			*at = ' ';
+}
+
+static struct reads named_reads(const struct emitter *e, const char *text)
+{
+	int states = e->system->states, inputs = e->system->inputs;
+	struct reads r = reads_of(e->model, 0, NULL);
+	for (int i = 0; i < states; i++)
+		r.state[i] = mentions(text, e->local[i]);
+	for (int i = 0; i < 2 * inputs; i++)
+		r.input[i] = mentions(text, input_name(e, i % inputs, i >= inputs));
+	for (int l = 0; l < e->system->loads; l++)
+		r.load[l] = mentions(text, format("load%d", l + 1));
+	for (int k = 0; k < e->model->spec->tunables; k++)
+		r.param[k] = mentions(text, param_local(e, k));
+	r.time = mentions(text, "t");
+	return r;
+}
+
+enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS };
+
+static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
+{
+	char *text = NULL;
+	size_t length = 0;
+	struct emitter aside = *e;
+	aside.to = need_memory(open_memstream(&text, &length));
+	if (part == THE_EXPRESSIONS)
+		emit_watched_forms(&aside, r);
+	else
+		emit_motion_forms(&aside, r, part == THE_SLOPES_TOO ? motion(e)->entries : 0);
+	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
+		say(&aside, "    slope[0] = 0.0;\n");
+	fclose(aside.to);
+	char *plain = ARRAY(char, length + 1);
+	strcpy(plain, text);
+	blank_comments(plain);
+	struct reads read = named_reads(e, plain);
+	emit_motion_locals(e, r, &read);
+	put(e->to, text, length);
+	if ((part == THE_EXPRESSIONS ? watch_reads_known(e) : known_values(e) > 0) && !any_known(e, &read) && !mentions(plain, "node"))
+		say(e, "    (void)node;\n");
+	if (is_divided(e) && !mentions(plain, "interval"))
+		say(e, "    (void)interval;\n");
+	if (!any_of(read.state, e->system->states))
+		say(e, "    (void)y;\n");
+	say(e, "}\n");
+	discard(plain);
+	free(text);
 }
 
 static void emit_force_function(const struct emitter *e, const struct reads *r)
 {
-	int known = known_places(e, r).count;
-	const struct motion *m = motion(e);
-	struct reads forces = reads_of(e->model, m->coords, m->force);
 	say(e, "\n/* The highest derivatives at state y */\n"
-	       "static void $n_forces(%sconst double y[$N_STATES], double left[%d])\n"
-	       "{\n", known ? format("const double node[%d], ", known) : "", m->coords);
-	emit_motion_locals(e, r);
-	emit_motion_forms(e, r, 0);
-	for (int i = 0; i < e->system->states; i++)
-		r->state[i] = r->state[i] && !forces.state[i];
-	emit_unread_locals(e, r);
-	say(e, "    (void)y;\n"
-	       "}\n");
+	       "static void $n_forces(%s%sconst double y[$N_STATES], double left[%d])\n"
+	       "{\n", known_parameter(e), interval_parameter(e), motion(e)->coords);
+	emit_motion_body(e, r, THE_FORCES);
 }
 
 static void emit_linearize(const struct emitter *e, const struct reads *r)
 {
-	int known = known_places(e, r).count, entries = motion(e)->entries;
+	int entries = motion(e)->entries;
 	say(e, "\n/* The highest derivatives at state y, and their Jacobian where it is not 0 */\n"
-	       "static %svoid $n_linearize(%sconst double y[$N_STATES], double left[%d], double slope[%d])\n"
-	       "{\n", splits(e) ? "" : "inline ", known ? format("const double node[%d], ", known) : "",
-	    motion(e)->coords, entries ? entries : 1);
-	emit_motion_locals(e, r);
-	emit_motion_forms(e, r, entries);
-	if (!any_of(r->state, e->system->states))
-		say(e, "    (void)y;\n");
-	if (r->time && decides(e))
-		say(e, "    (void)t;\n");
-	if (entries == 0)
-		say(e, "    slope[0] = 0.0;\n");
-	say(e, "}\n");
+	       "static %svoid $n_linearize(%s%sconst double y[$N_STATES], double left[%d], double slope[%d])\n"
+	       "{\n", splits(e) ? "" : "inline ", known_parameter(e), interval_parameter(e), motion(e)->coords,
+	    entries ? entries : 1);
+	emit_motion_body(e, r, THE_SLOPES_TOO);
+}
+
+static void emit_watch(const struct emitter *e, const struct reads *r)
+{
+	int expressions = e->step->divided->expressions;
+	say(e, "\n/* The expressions that choose formulas, at state y, and the size of what they are summed from */\n"
+	       "static void $n_watch(%s%sconst double y[$N_STATES], double left[%d], double excess[%d])\n"
+	       "{\n", watch_reads_known(e) ? known_parameter(e) : "", interval_parameter(e), expressions, expressions);
+	emit_motion_body(e, r, THE_EXPRESSIONS);
 }
 
 void emit_motion(const struct emitter *e)
@@ -426,6 +585,8 @@ void emit_motion(const struct emitter *e)
 	emit_linearize(e, &r);
 	if (splits(e))
 		emit_force_function(e, &r);
+	if (is_divided(e))
+		emit_watch(e, &r);
 }
 
 /* ---- for an internal step ---- */
@@ -450,5 +611,6 @@ const char *start_jacobian(const struct emitter *e)
 		declared = format("%s    double node[%d];\n    %s\n", declared, known,
 				  known_call(&here, spell(e, "(s->at - (double)s->back) * $N_H"),
 					     spell(e, "((s->at - (double)s->back) + 1e-9) * $N_H"), "node"));
-	return format("%s    %s\n", declared, linearize_call(e, "node", "s->start", "left", "slope_of"));
+	return format("%s%s    %s\n", declared, current_intervals(e),
+		      linearize_call(e, "node", "s->start", "left", "slope_of"));
 }

@@ -172,9 +172,10 @@ static void emit_written_iteration(const struct emitter *e)
 	say(e, "\n/* One iteration of Newton's method on the highest derivatives k at the nodes of a step of dt [s]: "
 	       "the "
 	       "largest\n * change that it makes of the states, relative to their sizes */\n"
-	       "static double $n_iterate(const double y[$N_STATES], %sdouble dt, const double unit[$N_STATES],\n"
+	       "static double $n_iterate(const double y[$N_STATES], %s%sdouble dt, const double unit[$N_STATES],\n"
 	       "    double k[%d])\n"
-	       "{\n", known ? format("const double node[%d][%d], ", collocation(e)->stages, known) : "", n);
+	       "{\n", known ? format("const double node[%d][%d], ", collocation(e)->stages, known) : "",
+	    interval_parameter(e), n);
 	if (e->system->states > e->system->n)
 		say(e, "    const double square = dt * dt;\n");
 	say(e, "    double change = 0.0, size, weight[%d];\n", motion(e)->coords);
@@ -254,10 +255,10 @@ static void emit_iteration_head(const struct emitter *e, const char *further)
 	say(e, "\n/* One iteration of Newton's method on the highest derivatives k at the nodes of a step of dt [s]: "
 	       "the "
 	       "largest\n * change that it makes of the states, relative to their sizes */\n"
-	       "static double $n_iterate(const double y[$N_STATES], %sdouble dt, const double unit[$N_STATES],\n"
+	       "static double $n_iterate(const double y[$N_STATES], %s%sdouble dt, const double unit[$N_STATES],\n"
 	       "    %sdouble k[%d])\n"
-	       "{\n", known ? format("const double node[%d][%d], ", collocation(e)->stages, known) : "", further,
-	    unknowns_of_stages(e));
+	       "{\n", known ? format("const double node[%d][%d], ", collocation(e)->stages, known) : "",
+	    interval_parameter(e), further, unknowns_of_stages(e));
 }
 
 static void emit_looped_iteration(const struct emitter *e)

@@ -16,7 +16,7 @@ static bool changes(const struct emitter *e)
 
 bool is_divided(const struct emitter *e)
 {
-	return expansion(e)->expressions > 0;
+	return e->step->divided != NULL;
 }
 
 bool has_offset(const struct emitter *e)

@@ -644,9 +644,9 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 	if (s->kind == SEQUENCE_CHOICE)
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
 			  s->choice == CHOICE_BY_STATE
-				  ? format("interval[%d] > %d", s->expression, breakpoint_rank(expansion(e), s))
+				  ? format("interval[%d] > %d", s->expression, breakpoint_rank(expansion(e), s->expression, s->breakpoint))
 			  : s->choice == CHOICE_BY_HOLD
-				  ? format("interval[%d] == %d", s->expression, breakpoint_rank(expansion(e), s) + 1)
+				  ? format("interval[%d] == %d", s->expression, breakpoint_rank(expansion(e), s->expression, s->breakpoint) + 1)
 			  : s->choice == CHOICE_BY_SEQUENCE
 				  ? format("%s != 0.0", coefficient(e, s->test, 0))
 				  : format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],

@@ -57,7 +57,7 @@ static void emit_rates(const struct emitter *e)
 	       "}\n");
 }
 
-/* (tolerance / last term)^(1 / order), and the same of the one before; where they are 0, or nearly, of what stands in
+/* (tolerance / last term)^(1 / order), less what comes after it, more of it where crossings follow from the end; and the same of the one before; where they are 0, or nearly, of what stands in
  * for them */
 static void emit_length(const struct emitter *e)
 {
@@ -83,11 +83,31 @@ static void emit_length(const struct emitter *e)
 	       "        other = pl_root(%s / (((before[0] * square + before[1]) * square + before[2]) + %s), %d);\n"
 	       "        length = other < length ? other : length;\n"
 	       "    }\n"
-	       "    return 0.94 * length;\n"
-	       "}\n", tol, tiny, order - 4, tol, tiny, order - 5);
+	       "    return %s * length;\n"
+	       "}\n", tol, tiny, order - 4, tol, tiny, order - 5, is_divided(e) ? "0.8" : "0.94");
 }
 
-/* A series in s->poly: 1, or 0 where it is not finite */
+/* Up to the first crossing, where there is one */
+static void emit_series_end(const struct emitter *e)
+{
+	const char *tiny = e->model->asked.single ? "1e-8" : "1e-15";
+	say(e, "    crossing = s->contact.last;\n"
+	       "    next = pl_divided_next(&$n_divided, s->poly[0], terms, s->contact.interval, length, &splits,\n"
+	       "        &crossing, work);\n"
+	       "    if (splits < 0)\n"
+	       "        return PL_TOO_MANY_EVENTS;\n"
+	       "    if (next >= 0.0) {\n"
+	       "        s->contact.last = crossing;\n"
+	       "        s->stop = 3;\n"
+	       "        length = next;\n"
+	       "    } else {\n"
+	       "        s->contact.last.expression = -1;\n"
+	       "    }\n"
+	       "    if (length < %s && next >= 0.0)\n"
+	       "        return -2;\n", tiny);
+}
+
+/* A series in s->poly, up to where it serves or an expression passes a breakpoint */
 static void emit_series_step(const struct emitter *e)
 {
 	const double most = 0.8 + 0.1 * e->model->truncation.order;
@@ -95,18 +115,29 @@ static void emit_series_step(const struct emitter *e)
 	const char *when = spell(e, "$n_time(s) + ((s->at - (double)s->back) + 1e-9) * $N_H");
 	struct emitter here = *e;
 	here.ramps = false;
-	say(e, "\n/* An internal step by the series: 1, or 0 where that is not finite. Where stability bounds several "
-	       "in a row, "
-	       "the\n * collocation is next. */\n"
+	say(e, "\n/* An internal step by the series: 0, or what went wrong: PL_NOT_FINITE, it is of no use%s. Where\n * stability bounds several "
+	       "in a row, the collocation is next. */\n"
 	       "static int $n_expand_step($n *s%s, double limit, const double rates[2])\n"
 	       "{\n"
-	       "    double length, product;\n"
-	       "    %s\n"
-	       "%s"
-	       "    length = $n_length(s);\n"
+	       "    double length, product;\n", is_divided(e) ? ", what went wrong; -2: nothing moves" : "",
+	    samples_parameter(e));
+	if (is_divided(e))
+		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], next;\n"
+		       "    pl_crossing crossing;\n"
+		       "    int splits = %d;\n", e->step->divided->expressions, e->step->expansion->order, MAX_SPLITS);
+	say(e, "    %s\n"
+	       "%s", expand_call(&here, start, when, "s->leg", "s->contact.", "s->start", "s->poly"),
+	    e->system->inputs ? "    (void)u;\n    (void)slope;\n" : "");
+	if (e->step->expansion->columns)
+		say(e, "    for (splits = $N_STATES; splits < $c; splits++)\n"
+		       "        if (pl_magnitude(s->poly[0][splits]) > s->scale[splits]) {\n"
+		       "            s->scale[splits] = pl_magnitude(s->poly[0][splits]);\n"
+		       "            s->unit[splits] = 1.0 / s->scale[splits];\n"
+		       "        }\n"
+		       "    splits = %d;\n", MAX_SPLITS);
+	say(e, "    length = $n_length(s);\n"
 	       "    if (length == 0.0)\n"
-	       "        return 0;\n", samples_parameter(e), expand_call(&here, start, when, "s->leg", "", "s->start",
-	    "s->poly"), e->system->inputs ? "    (void)u;\n    (void)slope;\n" : "");
+	       "        return PL_NOT_FINITE;\n");
 	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
 	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n"
 	       "    s->want = length;\n"
@@ -120,13 +151,15 @@ static void emit_series_step(const struct emitter *e)
 	       "        s->stiff = 1;\n"
 	       "        s->product = product;\n"
 	       "        s->run = s->bounds = 0;\n"
-	       "    }\n"
-	       "    $n_ahead((const double (*)[$N_STATES])s->poly, length, s->gain);\n"
+	       "    }\n", shortest(most));
+	if (is_divided(e))
+		emit_series_end(e);
+	say(e, "    $n_ahead((const double (*)[$c])s->poly, length, s->gain);\n"
 	       "    s->size = length;\n"
 	       "    s->series = 1;\n"
 	       "    s->ready = 0;\n"
-	       "    return 1;\n"
-	       "}\n", shortest(most));
+	       "    return 0;\n"
+	       "}\n");
 }
 
 void emit_series_steps(const struct emitter *e)
@@ -155,8 +188,12 @@ static double worth(const struct emitter *e)
 void emit_choice(const struct emitter *e)
 {
 	const double most = 0.8 + 0.1 * e->model->truncation.order;
-	const char *samples = samples_argument(e);
-	say(e, "    for (;;) {\n"
+	const char *samples = e->system->inputs ? ", u, slope" : "";
+	say(e, "\n/* An internal step by one of the two: 0, or what went wrong%s */\n"
+	       "static int $n_choose($n *s%s, double limit, const double rates[2], int *steps)\n"
+	       "{\n"
+	       "    int wrong;\n"
+	       "    for (;;) {\n"
 	       "        const double dear = %s * s->product, most = s->run >= 3 && dear > %s ? dear : %s;\n"
 	       "        if (s->stiff && $n_product(rates, s->want < limit ? s->want : limit) < most) {\n"
 	       "            s->stiff = 0;  /* and where that was so soon, the series is given more time */\n"
@@ -165,15 +202,16 @@ void emit_choice(const struct emitter *e)
 	       "        if (!s->stiff) {\n"
 	       "            if ((*steps)++ == %d)\n"
 	       "                return PL_TOO_MANY_STEPS;\n"
-	       "            if ($n_expand_step(s%s, limit, rates))\n"
-	       "                return 0;\n"
+	       "            wrong = $n_expand_step(s%s, limit, rates);\n"
+	       "            if (wrong != PL_NOT_FINITE)\n"
+	       "                return wrong;\n"
 	       "            s->stiff = 1;\n"
 	       "            s->run = s->ready = 0;\n"
 	       "            s->product = 0.0;\n"
 	       "        "
-	       "}\n", shortest(worth(e)), shortest(most), shortest(most), e->model->truncation.substeps, samples);
+	       "}\n", is_divided(e) ? "; -2: nothing moves" : "", samples_parameter(e), shortest(worth(e)), shortest(most), shortest(most), e->model->truncation.substeps, samples);
 	say(e, "        wrong = $n_collocate(s%s, limit, rates, steps);\n"
-	       "        if (wrong >= 0)\n"
+	       "        if (wrong != -1)\n"
 	       "            return wrong;\n"
 	       "    }\n"
 	       "}\n", samples);

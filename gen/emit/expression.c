@@ -22,6 +22,7 @@ struct writer {
 	struct part *part;
 	int locals;                 /* declared so far */
 	const char *when;           /* conditions on time alone hold as they do at this time; NULL: as at any other */
+	bool by_intervals;          /* what the state chooses is as interval[] says */
 };
 
 static struct part *part_of(const struct writer *w, const struct form *form)
@@ -93,6 +94,11 @@ struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int
 void write_conditions_at(struct writer *w, const char *when)
 {
 	w->when = when;
+}
+
+void write_by_intervals(struct writer *w)
+{
+	w->by_intervals = true;
 }
 
 /* ---- text ---- */
@@ -191,6 +197,70 @@ static const char *product_text(struct writer *w, const struct atom *a)
 	return format("%s%s", *above ? above : "1.0", below);
 }
 
+/* ---- what interval[] says ---- */
+
+static const char *condition_text(struct writer *w, const struct form *condition);
+
+static bool is_decided_by_state(const struct writer *w, const struct form *left, const struct form *right)
+{
+	return w->by_intervals && !(is_linear_in_time(left) && is_linear_in_time(right));
+}
+
+static const struct atom *choice_in(const struct form *form)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	bool plain = atom && atom->kind == ATOM_CHOOSE && mpq_cmp_ui(form->term[0].factor, 1, 1) == 0;
+	return plain ? atom : NULL;
+}
+
+/* Is a - b above 0? Of what is itself chosen on the right, as the best so far of min and max, by that choice. */
+static const char *above_text(struct writer *w, const struct form *a, const struct form *b)
+{
+	const struct expansion *x = w->e->step->divided;
+	const struct atom *chosen = choice_in(b);
+	struct division d;
+	if (x && find_division(x, a, b, &d))
+		return d.expression == NONE ? (d.above ? "1" : "0")
+					    : format("interval[%d] %s %d", d.expression, d.above ? ">" : "<=",
+						     breakpoint_rank(x, d.expression, d.breakpoint));
+	if (!chosen)
+		internal_error(w->e->step, "a choice by the state that no expression stands for");
+	const char *first = above_text(w, a, chosen->operand[1]), *second = above_text(w, a, chosen->operand[2]);
+	return format("(%s ? %s : %s)", condition_text(w, chosen->operand[0]), first, second);
+}
+
+static const char *decided_text(struct writer *w, const struct form *left, enum comparison comparison,
+				const struct form *right)
+{
+	const char *text = above_text(w, left, right);
+	return comparison <= CMP_LE ? format("!(%s)", text) : text;
+}
+
+/* ---- functions with kinks ---- */
+
+static const char *const comparison_sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+
+/* Whether the first of two arguments is below or above the other; on either side at once the function is the same */
+static const char *side_text(struct writer *w, const struct form *left, enum comparison comparison,
+			      const struct form *right, const char *x, const char *y)
+{
+	if (is_decided_by_state(w, left, right))
+		return decided_text(w, left, comparison, right);
+	return format("%s %s %s", x, comparison_sign[comparison], y);
+}
+
+/* min, max where their order is known: each with each other; word: their text */
+static const char *best_text(struct writer *w, const struct atom *a, const char *const *word, int next, int champion)
+{
+	const struct form *x = a->operand[next], *y = a->operand[champion];
+	if (next == a->operands)
+		return word[champion];
+	const char *other = best_text(w, a, word, next + 1, next), *same = best_text(w, a, word, next + 1, champion);
+	return format("(%s ? %s : %s)",
+		      side_text(w, x, a->function == FN_MIN ? CMP_LT : CMP_GT, y, word[next], word[champion]), other,
+		      same);
+}
+
 /* (x < x1 ? y0 + slope*(x - x0) : ...): one piece between each two points, the end ones extended */
 static const char *table_text(struct writer *w, const struct atom *a)
 {
@@ -198,7 +268,9 @@ static const char *table_text(struct writer *w, const struct atom *a)
 	struct straight *piece;
 	int pieces = pieces_of_atom(a, &piece);
 	for (const struct straight *p = piece; p < piece + pieces; p++) {
-		const char *condition = p->end ? format("%s < %s ? ", x, shortest(finite_number(w->e, p->end))) : "";
+		const char *end = p->end ? shortest(finite_number(w->e, p->end)) : "";
+		const char *condition = p->end ? format("%s ? ", side_text(w, a->operand[0], CMP_LT,
+									    form_constant(p->end), x, end)) : "";
 		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition,
 			      shortest(finite_number(w->e, p->y)), shortest(finite_number(w->e, p->slope)), x,
 			      shortest(finite_number(w->e, p->x)));
@@ -209,6 +281,11 @@ static const char *table_text(struct writer *w, const struct atom *a)
 /* Without libm, which a target may not have: comparisons */
 static const char *extreme_text(struct writer *w, const struct atom *a)
 {
+	const char **word = ARRAY(const char *, (size_t)a->operands);
+	for (int i = 0; w->by_intervals && i < a->operands; i++)
+		word[i] = word_of(w, a->operand[i]);
+	if (w->by_intervals)
+		return best_text(w, a, word, 1, 0);
 	const char *best = word_of(w, a->operand[0]), *text = best;
 	for (int i = 1; i < a->operands; i++) {
 		const char *x = word_of(w, a->operand[i]);
@@ -242,7 +319,7 @@ static bool is_decided_in_time(const struct writer *w, const struct atom *a)
 
 static const char *call_text(struct writer *w, const struct atom *a)
 {
-	const char *x, *low, *high;
+	const char *x, *low, *high, *below, *above;
 	switch (a->function) {
 	case FN_TABLE: return table_text(w, a);
 	case FN_FRICTION:
@@ -253,8 +330,10 @@ static const char *call_text(struct writer *w, const struct atom *a)
 	case FN_ATAN2: return format("atan2(%s, %s)", argument_text(w, a->operand[0]), argument_text(w, a->operand[1]));
 	case FN_ABS:
 		x = word_of(w, a->operand[0]);
-		return format("(%s < 0.0 ? -%s : %s)", x, x, x);
+		return format("(%s ? -%s : %s)", side_text(w, a->operand[0], CMP_LT, form_number(0), x, "0.0"), x, x);
 	case FN_SGN:
+		if (is_decided_by_state(w, a->operand[0], form_number(0)))
+			return format("(%s ? 1.0 : -1.0)", above_text(w, a->operand[0], form_number(0)));
 		x = is_decided_in_time(w, a) ? declare(w, NULL, time_text(w->e, a->operand[0], w->when))
 					     : word_of(w, a->operand[0]);
 		return format("(double)((%s > 0.0) - (%s < 0.0))", x, x);
@@ -263,21 +342,24 @@ static const char *call_text(struct writer *w, const struct atom *a)
 		x = word_of(w, a->operand[0]);
 		low = word_of(w, a->operand[1]);
 		high = word_of(w, a->operand[2]);
+		below = side_text(w, a->operand[0], CMP_LT, a->operand[1], x, low);
+		above = side_text(w, a->operand[0], CMP_GT, a->operand[2], x, high);
 		if (a->function == FN_CLIP)
-			return format("(%s < %s ? %s : %s > %s ? %s : %s)", x, low, low, x, high, high, x);
-		return format("(%s < %s ? %s - %s : %s > %s ? %s - %s : 0.0)", x, low, x, low, x, high, x, high);
+			return format("(%s ? %s : %s ? %s : %s)", below, low, above, high, x);
+		return format("(%s ? %s - %s : %s ? %s - %s : 0.0)", below, x, low, above, x, high);
 	default: return format("%s(%s)", function_name(a->function), argument_text(w, a->operand[0]));
 	}
 }
 
 static const char *comparison_text(struct writer *w, const struct atom *a)
 {
-	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	if (is_decided_by_state(w, a->operand[0], a->operand[1]))
+		return decided_text(w, a->operand[0], a->comparison, a->operand[1]);
 	if (is_decided_in_time(w, a))
-		return format("%s %s %s", time_text(w->e, a->operand[0], w->when), sign[a->comparison],
+		return format("%s %s %s", time_text(w->e, a->operand[0], w->when), comparison_sign[a->comparison],
 			      time_text(w->e, a->operand[1], w->when));
 	const char *left = argument_text(w, a->operand[0]);
-	return format("%s %s %s", left, sign[a->comparison], argument_text(w, a->operand[1]));
+	return format("%s %s %s", left, comparison_sign[a->comparison], argument_text(w, a->operand[1]));
 }
 
 static const char *condition_text(struct writer *w, const struct form *condition)

@@ -789,7 +789,7 @@ bool loses_order(const struct model *model)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	if ((row->expands || row->modes) && model->smooth.timed)
 		return false;                   /* a step ends where formulas change in time */
-	if (row->expands && !row->collocates)
+	if (row->expands)
 		return false;                   /* and where the state chooses others */
 	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
 }

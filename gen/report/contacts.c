@@ -4,7 +4,7 @@
 
 static int rank_of(const struct step *step, int expression, int breakpoint)
 {
-	return step->expansion->expression[expression].rank[breakpoint];
+	return step->divided->expression[expression].rank[breakpoint];
 }
 
 /* The interval of its expression in which it is held */
@@ -15,7 +15,7 @@ static int held_in(const struct step *step, const struct series_hold *hold)
 
 const char *contact_text(const struct step *step, int hold)
 {
-	const struct contacts *c = step->expansion->contacts;
+	const struct contacts *c = step->divided->contacts;
 	const struct model *model = step->model;
 	const struct node *node = NULL;
 	for (int i = 0, drag = 0; i <= hold; i++)
@@ -27,7 +27,7 @@ const char *contact_text(const struct step *step, int hold)
 
 static const char *rest_text(const struct step *step, const struct series_strike *strike)
 {
-	const struct contacts *c = step->expansion->contacts;
+	const struct contacts *c = step->divided->contacts;
 	return strike->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
 						  "expression %d",
 						  shortest(strike->restitution),
@@ -36,7 +36,7 @@ static const char *rest_text(const struct step *step, const struct series_strike
 
 void person_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->expansion->contacts;
+	const struct contacts *c = step->divided->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
@@ -49,7 +49,7 @@ void person_contacts(FILE *to, const struct step *step)
 
 void json_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->expansion->contacts;
+	const struct contacts *c = step->divided->contacts;
 	bool first = true;
 	if (c && step->model->drags > 0)
 		fputs("  \"frictions\": [", to);

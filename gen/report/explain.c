@@ -274,7 +274,7 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
-	if (step->expansion && step->expansion->expressions > 0)
+	if (step->divided)
 		person_divided(to, step);
 	if (step->expansion)
 		person_reach(to, step);

@@ -371,7 +371,7 @@ static const char *sequence_sum(const struct step *step, const struct sequence *
 /* By what it is chosen */
 static const char *chooser_text(const struct step *step, const struct sequence *s)
 {
-	const struct divided *d = &step->expansion->expression[s->expression];
+	const struct divided *d = &step->divided->expression[s->expression];
 	switch (s->choice) {
 	case CHOICE_BY_STATE:    return format("%s above %s", sequence_text(step, d->sequence),
 					       readable_text(d->at[s->breakpoint]));

@@ -91,9 +91,10 @@ static void person_expressions(FILE *to, const struct step *step)
 /* What chooses formulas by the state, of a series */
 void person_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
-	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
-		    "times in a step:\n", max_events(step->model));
+	const struct expansion *x = step->divided;
+	fprintf(to, "The state chooses formulas; %s ends where an expression passes a breakpoint, at most %d "
+		    "times in a step:\n", !step->collocation ? "a series" : "an internal step",
+		max_events(step->model));
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -342,7 +343,7 @@ void json_regions(FILE *to, const struct step *step)
 }
 void json_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = step->divided;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < x->expressions; i++) {
 		mpq_t *rising = rising_breakpoints(&x->expression[i]);

@@ -1,18 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas that the state chooses: each comparison is of an expression, smooth until the next event, with a breakpoint.
- * The series is that of the formulas between two events; where an expression passes a breakpoint it ends. */
+ * A series, or a step of a collocation, is of the formulas between two events; where an expression passes a breakpoint
+ * it ends. */
 #include "step/step.h"
 
 #include <limits.h>
 
 /* ---- expressions and breakpoints ---- */
 
-static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr of)
+static int known_expression(const struct expansion *x, const struct form *form, mpq_ptr of)
 {
-	struct expansion *x = w->x;
 	for (int i = 0; i < x->expressions; i++)
 		if (is_form_multiple(form, x->expression[i].form, of))
 			return i;
+	return NONE;
+}
+
+static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr of)
+{
+	struct expansion *x = w->x;
+	int known = known_expression(x, form, of);
+	if (known != NONE)
+		return known;
 	ENLARGE(x->expression, (size_t)x->expressions + 1);
 	x->expression[x->expressions] = (struct divided){ .form = form, .sequence = NONE };
 	mpq_set_ui(of, 1, 1);
@@ -28,11 +37,19 @@ void add_twin(struct divided *d, int breakpoint)
 	d->at = all;
 }
 
-static int find_breakpoint(struct divided *d, mpq_srcptr at)
+static int known_breakpoint(const struct divided *d, mpq_srcptr at)
 {
 	for (int i = 0; i < d->breaks; i++)
 		if (mpq_equal(d->at[i], at))
 			return i;
+	return NONE;
+}
+
+static int find_breakpoint(struct divided *d, mpq_srcptr at)
+{
+	int known = known_breakpoint(d, at);
+	if (known != NONE)
+		return known;
 	mpq_t *all = rationals((size_t)d->breaks + 1);
 	for (int i = 0; i < d->breaks; i++)
 		mpq_set(all[i], d->at[i]);
@@ -50,37 +67,38 @@ static int constant_terms(const struct form *form)
 	return count;
 }
 
-static void value_of_constants(const struct sequencing *w, const struct form *form, int count, mpq_ptr value)
+static void value_of_constants(const struct form *form, int count, mpq_ptr value)
 {
-	mpq_t part;
-	mpq_init(part);
+	mpq_t part, pi;
+	mpq_inits(part, pi, NULL);
+	constant_pi(pi);
 	mpq_set_ui(value, 0, 1);
 	for (int i = 0; i < count; i++) {
 		mpq_set(part, form->term[i].factor);
 		if (form->term[i].basis.kind == BASIS_PI)
-			mpq_mul(part, part, w->pi);
+			mpq_mul(part, part, pi);
 		mpq_add(value, value, part);
 	}
-	mpq_clear(part);
+	mpq_clears(part, pi, NULL);
 }
 
-struct division divide_forms(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b)
+/* a - b, or what stands beside a constant as it was written: b - a */
+static const struct form *difference_of(const struct form *a, const struct form *b, bool *turned)
 {
-	bool turned = is_constant(a) && !is_constant(b);        /* what stands beside a constant is as it was written */
-	const struct form *d = turned ? form_difference(b, a) : form_difference(a, b);
+	*turned = is_constant(a) && !is_constant(b);
+	return *turned ? form_difference(b, a) : form_difference(a, b);
+}
+
+struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b)
+{
+	bool turned;
+	const struct form *d = difference_of(a, b, &turned);
 	int constants = constant_terms(d);
 	struct form plain = { constants, d->term, 0 };
 	struct division division = { .expression = NONE };
 	mpq_t value, factor;
-	if (scheme_row(w->step->model->scheme)->collocates)
-		error(atom->node->start,
-		      "scheme taylor goes from one such place to the next; etdrk4 and the schemes like it step "
-		      "across, of lower order there",
-		      "scheme %s needs what is smooth between the changes of the loads: '%s' changes its formula where "
-		      "the state decides",
-		      scheme_name(w->step->model->scheme), text_between(atom->node->start, atom->node->end));
 	mpq_inits(value, factor, NULL);
-	value_of_constants(w, d, constants, value);
+	value_of_constants(d, constants, value);
 	division.above = (mpq_sgn(value) > 0) != turned;
 	if (constants < d->terms) {
 		division.expression = find_divided(w, form_sum(d, &plain, true), factor);
@@ -93,6 +111,29 @@ struct division divide_forms(struct sequencing *w, const struct atom *atom, cons
 	return division;
 }
 
+bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division)
+{
+	bool turned;
+	const struct form *d = difference_of(a, b, &turned);
+	int constants = constant_terms(d);
+	struct form plain = { constants, d->term, 0 };
+	mpq_t value, factor;
+	mpq_inits(value, factor, NULL);
+	value_of_constants(d, constants, value);
+	*division = (struct division){ .expression = NONE, .breakpoint = 0, .above = (mpq_sgn(value) > 0) != turned };
+	if (constants < d->terms) {
+		division->expression = known_expression(x, form_sum(d, &plain, true), factor);
+		if (division->expression != NONE) {
+			mpq_div(value, value, factor);
+			mpq_neg(value, value);
+			division->breakpoint = known_breakpoint(&x->expression[division->expression], value);
+			division->above = (mpq_sgn(factor) > 0) != turned;
+		}
+	}
+	mpq_clears(value, factor, NULL);
+	return constants == d->terms || (division->expression != NONE && division->breakpoint != NONE);
+}
+
 struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
 {
 	int constants = constant_terms(form);
@@ -100,7 +141,7 @@ struct division divide_form(struct sequencing *w, const struct form *form, mpq_p
 	struct division division = { .expression = NONE };
 	mpq_t value;
 	mpq_init(value);
-	value_of_constants(w, form, constants, value);
+	value_of_constants(form, constants, value);
 	division.expression = find_divided(w, form_sum(form, &plain, true), factor);
 	mpq_div(value, value, factor);
 	mpq_neg(value, value);
@@ -148,9 +189,9 @@ void rank_breakpoints(struct expansion *x)
 	}
 }
 
-int breakpoint_rank(const struct expansion *x, const struct sequence *choice)
+int breakpoint_rank(const struct expansion *x, int expression, int breakpoint)
 {
-	return x->expression[choice->expression].rank[choice->breakpoint];
+	return x->expression[expression].rank[breakpoint];
 }
 
 mpq_t *rising_breakpoints(const struct divided *d)
@@ -164,9 +205,9 @@ mpq_t *rising_breakpoints(const struct divided *d)
 const char *divided_text(const struct step *step, int expression)
 {
 	const struct step *shown = step->shown;
-	bool same = shown->expansion && shown->expansion->expressions == step->expansion->expressions;
+	bool same = shown->divided && shown->divided->expressions == step->divided->expressions;
 	shown = same ? shown : step;
-	return form_text(shown->model, shown->expansion->expression[expression].form);
+	return form_text(shown->model, shown->divided->expression[expression].form);
 }
 
 int regions_of_series(const struct expansion *x)
@@ -182,10 +223,10 @@ int regions_of_series(const struct expansion *x)
 
 void check_divided(const struct step *step)
 {
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = step->divided;
 	const struct model *model = step->model;
 	const struct smoothness *smooth = &model->smooth;
-	if (!x || x->expressions == 0)
+	if (!x)
 		return;
 	if (model->truncation.over > 1)
 		error(model->asked.scheme_over->start, "over 1",

@@ -231,6 +231,12 @@ static void need_all_known(const struct step *step)
 		      "one expansion is over several steps: a load or a condition on t changes its formula inside");
 }
 
+static void divide_step(struct step *step)
+{
+	step->divided = step->expansion->expressions > 0 ? step->expansion : NULL;
+	check_divided(step);
+}
+
 static void build_expanded_step(struct step *step)
 {
 	need_all_known(step);
@@ -238,7 +244,7 @@ static void build_expanded_step(struct step *step)
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step);
-	check_divided(step);
+	divide_step(step);
 	count_series(step);
 }
 
@@ -256,6 +262,7 @@ static void build_collocated_step(struct step *step)
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step);
+	divide_step(step);
 	step->collocation = collocation_of(step);
 	step->motion = motion_of(step);
 	if (switches)

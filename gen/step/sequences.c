@@ -391,10 +391,9 @@ static _Noreturn void no_series(const struct sequencing *w, const struct atom *a
 /* ---- what has a formula in each interval, of time or of an expression of the state ---- */
 
 /* `above` where a - b > 0, else `below` */
-static int choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
-			   int above, int below)
+static int choice_by_state(struct sequencing *w, const struct form *a, const struct form *b, int above, int below)
 {
-	struct division d = divide_forms(w, atom, a, b);
+	struct division d = divide_forms(w, a, b);
 	if (d.expression == NONE)
 		return d.above ? above : below;
 	if (w->x->expression[d.expression].sequence == NONE) {
@@ -414,8 +413,8 @@ static int choice(struct sequencing *w, const struct atom *atom, const struct fo
 							  .right = right, .comparison = comparison, .a = a, .b = b });
 	if (comparison >= CMP_EQ)
 		no_series(w, atom, "asks whether things are equal that are so at single times");
-	return comparison <= CMP_LE ? choice_by_state(w, atom, left, right, b, a)
-				    : choice_by_state(w, atom, left, right, a, b);
+	return comparison <= CMP_LE ? choice_by_state(w, left, right, b, a)
+				    : choice_by_state(w, left, right, a, b);
 }
 
 int positive_sequence(struct sequencing *w, const struct atom *atom, const struct form *form, int a)

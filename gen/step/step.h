@@ -303,6 +303,7 @@ struct step {                       /* everything that is emitted for one model 
 	const char *searches;       /* why it is not */
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
+	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
@@ -1118,14 +1119,15 @@ struct division {                   /* the sign of a difference */
 	int expression, breakpoint; /* it changes where that passes this; NONE: it is constant, */
 	bool above;                 /* and this its sign; else: is it positive above the breakpoint? */
 };
-/* Of a - b; `atom`: what compares them. Leaves the statement where the scheme is none of events. The sequence of an
- * expression that is new is to be made. */
-struct division divide_forms(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b);
+/* Of a - b. The sequence of an expression that is new is to be made. */
+struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b);
+/* The same of what is known by then; false: it is not */
+bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division);
 /* Of the state, by 0: factor times its expression less the breakpoint; with its sequence */
 struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor);
 void add_twin(struct divided *d, int breakpoint);            /* a second breakpoint there */
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
-int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
+int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
 mpq_t *rising_breakpoints(const struct divided *d);
 const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
 /* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */
