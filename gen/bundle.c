@@ -62,8 +62,8 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 		return name;
 	for (int header = 0; header < 2; header++)
 		for (int i = 0; i < r->pieces; i++)
-			if (!r->piece[i].shared && is_seen(r, &r->piece[i], from, header) &&
-			    has_name(&r->piece[i], word, length))
+			if (!r->piece[i].shared && has_name(&r->piece[i], word, length) &&
+			    is_seen(r, &r->piece[i], from, header))
 				return own_name(&r->piece[i], name);
 	return name;
 }
