@@ -31,7 +31,7 @@ static const char *own_name(const struct piece *p, const char *name)
 static bool has_name(const struct piece *p, const char *word, size_t length)
 {
 	for (int i = 0; i < p->names; i++)
-		if (is_word(word, length, p->name[i]))
+		if (p->name[i][0] == *word && is_word(word, length, p->name[i]))
 			return true;
 	return false;
 }
