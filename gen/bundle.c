@@ -31,7 +31,7 @@ static const char *own_name(const struct piece *p, const char *name)
 static bool has_name(const struct piece *p, const char *word, size_t length)
 {
 	for (int i = 0; i < p->names; i++)
-		if (is_word(word, length, p->name[i]))
+		if (p->name[i][0] == *word && is_word(word, length, p->name[i]))
 			return true;
 	return false;
 }
@@ -62,8 +62,8 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 		return name;
 	for (int header = 0; header < 2; header++)
 		for (int i = 0; i < r->pieces; i++)
-			if (!r->piece[i].shared && is_seen(r, &r->piece[i], from, header) &&
-			    has_name(&r->piece[i], word, length))
+			if (!r->piece[i].shared && has_name(&r->piece[i], word, length) &&
+			    is_seen(r, &r->piece[i], from, header))
 				return own_name(&r->piece[i], name);
 	return name;
 }

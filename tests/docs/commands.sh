@@ -3,7 +3,10 @@
 # What the pages tell a reader to type is typed: every block of every page, as TAP, each page in an empty folder that
 # has but `runtime`, `models`, `tests`, `build/plgen` and `build/plrun`, as a clone has.
 #
-#     commands.sh PLGEN SOURCE_ROOT PLRUN
+#     commands.sh PLGEN SOURCE_ROOT PLRUN RUNTIME_M4F.a
+#
+# The runtime's sources, most of the work of a compiler, are compiled as typed the first time; commands after that, and
+# that for the board, get them compiled before: PLRT, and the runtime for Cortex-M4F.
 #
 # ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it; elsewhere, of pages that are typed from their first
 #               line on: what they need of it they have to make themselves
@@ -17,8 +20,10 @@ set -u
 plgen=$1
 root=$2
 plrun=$3
+board=$4
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
+case $board in /*) ;; *) board=$PWD/$board ;; esac
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
@@ -31,6 +36,34 @@ ln -s "$plgen" bin/plgen
 ln -s "$plrun" bin/plrun
 XDG_CACHE_HOME=$work/cache
 export XDG_CACHE_HOME
+runtime_archive "$root/runtime"
+cp "$archive" runtime.a || exit 99
+
+# sparing COMPILER ARCHIVE [TYPED]: bin/COMPILER, which takes the archive for the runtime's sources where it is given
+# all of them; TYPED: not the first time
+sparing() {
+	real=$(command -v "$1") || return 0
+	sources=$(cd "$root" && echo runtime/*.c)
+	cat >"bin/$1" <<END
+#!/bin/sh
+case "\$*" in
+	*" $sources "*) [ -z "${3-}" ] || [ -e "$work/typed" ] || { : >"$work/typed"; exec "$real" "\$@"; } ;;
+	*) exec "$real" "\$@" ;;
+esac
+for one; do
+	shift
+	case \$one in
+		${sources%% *}) set -- "\$@" "$2" ;;
+		runtime/*.c) ;;
+		*) set -- "\$@" "\$one" ;;
+	esac
+done
+exec "$real" "\$@"
+END
+	chmod +x "bin/$1"
+}
+sparing cc "$work/runtime.a" typed
+sparing arm-none-eabi-gcc "$board"
 PATH=$PWD/bin:$PATH
 
 # In the folder of the page, with PAGE, NUMBER and KIND of a block:
@@ -116,8 +149,6 @@ try() {
 }
 
 mkdir made
-runtime_archive "$root/runtime"
-cp "$archive" runtime.a || exit 99
 
 for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/accuracy.md \
 	doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do

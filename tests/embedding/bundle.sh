@@ -197,10 +197,15 @@ result $? '--bundle goes with C alone'
 
 : >log
 mkdir small
-for file in "$root"/runtime/*.c; do
-    ${CC:-cc} -Os -I"$root/runtime" -c "$file" -o "small/$(basename "$file" .c).o" 2>>log
-done
-ar rcs plrt.a small/*.o
+# small_runtime: into plrt.a what the linker takes of the runtime's sources for model.o, compiled when it is first taken
+small_runtime() {
+    for name in $(${CC:-cc} -r -nostdlib -Wl,-t,-t model.o "$archive" -o linked.o 2>>log |
+        sed -n 's/^(.*)\(runtime_\)*\(.*\)\.c\.o$/\2/p'); do
+        [ -e "small/$name.o" ] || ${CC:-cc} -Os -I"$root/runtime" -c "$root/runtime/$name.c" -o "small/$name.o" 2>>log
+    done
+    rm -f plrt.a
+    ar rcs plrt.a small/*.o
+}
 for spec in sdcsf pendulum quarter_car_bumps; do
     for real in double float; do
         "$plgen" --real $real --bundle --prefix scene -o model.c "$root/models/$spec.spec" 2>>log
@@ -208,6 +213,7 @@ for spec in sdcsf pendulum quarter_car_bumps; do
         lines=$(cat model.c model.h | wc -l)
         "$plgen" --real $real --prefix scene -o model.c "$root/models/$spec.spec" 2>>log
         ${CC:-cc} -Os -I"$root/runtime" -c model.c -o model.o 2>>log
+        small_runtime
         # all that the linker takes of the library
         ${CC:-cc} -r -nostdlib model.o plrt.a -o linked.o 2>>log
         inside=$(size inside.o | awk 'NR == 2 { print $1 + $2 }')
