@@ -92,6 +92,7 @@ void *need_memory(void *block);                            /* of a library: NULL
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
+mpq_t *rationals_copied(size_t count, const mpq_t *q);
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
 /* from the budget of LIMIT_TERMS; gives up when it is spent */

@@ -281,3 +281,11 @@ mpq_t *rationals(size_t count)
 		mpq_init(q[i]);
 	return q;
 }
+
+mpq_t *rationals_copied(size_t count, const mpq_t *q)
+{
+	mpq_t *copy = rationals(count);
+	for (size_t i = 0; i < count; i++)
+		mpq_set(copy[i], q[i]);
+	return copy;
+}

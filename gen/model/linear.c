@@ -46,14 +46,6 @@ static bool same_rationals(size_t count, const mpq_t *a, const mpq_t *b)
 	return true;
 }
 
-static mpq_t *copied(size_t count, const mpq_t *q)
-{
-	mpq_t *copy = rationals(count);
-	for (size_t i = 0; i < count; i++)
-		mpq_set(copy[i], q[i]);
-	return copy;
-}
-
 static mpq_t *leading_matrix(const struct linear *system)
 {
 	size_t n = (size_t)system->n;
@@ -86,7 +78,7 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 	}
 	last.n = system->n;
 	last.W = W;
-	last.inverse = copied(cells, (const mpq_t *)inverse);
+	last.inverse = rationals_copied(cells, (const mpq_t *)inverse);
 	return true;
 }
 

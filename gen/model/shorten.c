@@ -276,14 +276,6 @@ static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct 
 
 /* ---- the model ---- */
 
-static mpq_t *copied(size_t count, const mpq_t *q)
-{
-	mpq_t *copy = rationals(count);
-	for (size_t i = 0; i < count; i++)
-		mpq_set(copy[i], q[i]);
-	return copy;
-}
-
 /* Rows over the states of the selection; of loads and inputs as they are, or 0 */
 static struct output *rows_over(const struct selection *s, bool direct)
 {
@@ -305,10 +297,10 @@ static struct output *rows_over(const struct selection *s, bool direct)
 		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
 		for (int l = 0; l < system->loads; l++) {
 			const size_t cells = (size_t)(system->load[l].columns * system->segments);
-			output[o].load[l] = direct ? copied(cells, (const mpq_t *)of->load[l]) : rationals(cells);
+			output[o].load[l] = direct ? rationals_copied(cells, (const mpq_t *)of->load[l]) : rationals(cells);
 		}
 		for (int k = 0; k < 2; k++)
-			output[o].input[k] = direct ? copied((size_t)system->inputs, (const mpq_t *)of->input[k])
+			output[o].input[k] = direct ? rationals_copied((size_t)system->inputs, (const mpq_t *)of->input[k])
 						    : rationals((size_t)system->inputs);
 	}
 	return output;
