@@ -210,7 +210,8 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 			     expression);
 		emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
 	}
-	emit_within(e, p);
+	if (!keeps_rest(e) || is_cleared_by_tables(e->step))
+		emit_within(e, p);
 	if (!keeps_rest(e))
 		emit_neighbours(e);
 }
