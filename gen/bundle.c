@@ -243,9 +243,9 @@ static void print_bundled(FILE *to, const char *text, const void *context)
 	print_with(to, b->runtime, text, b->header);
 }
 
-void bundle(struct file *code, struct file *header, const char *more, bool single)
+void bundle(struct file *code, struct file *header, const char *more, bool single, bool kept)
 {
-	struct runtime *r = runtime_read(single);
+	struct runtime *r = runtime_read(single, kept);
 	rename_all(r);
 	/* what a program asks of a model */
 	if (header) {

@@ -87,6 +87,7 @@ struct piece {                  /* a declaration, a definition, or lines of the 
 struct include { const char *file, *header; };      /* both without the ending */
 struct runtime {
 	bool single;            /* for models in float */
+	bool kept;              /* for piecewise-linear ones whose state has two words */
 	struct piece *piece;
 	int pieces;
 	struct include *include;
@@ -94,13 +95,14 @@ struct runtime {
 	const char **from, **to; /* names that stand for others in float */
 	int aliases;
 };
-struct runtime *runtime_read(bool single);
+struct runtime *runtime_read(bool single, bool kept);
 const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */
 bool is_word(const char *word, size_t length, const char *name);
 
 /* ---- bundle.c: a model with the runtime inside ---- */
 
-/* Header NULL: the C has all. `more`: C that includes the header and finds there what it uses; NULL: none is known */
-void bundle(struct file *code, struct file *header, const char *more, bool single);
+/* Header NULL: the C has all. `more`: C that includes the header and finds there what it uses; NULL: none is known;
+ * kept: of two words an entry of the state */
+void bundle(struct file *code, struct file *header, const char *more, bool single, bool kept);
 
 #endif

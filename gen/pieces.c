@@ -185,6 +185,8 @@ static int decided(const struct runtime *r, const char *name)
 	size_t length = strlen(name);
 	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0)
 		return r->single;
+	if (strcmp(name, "REST_IS_KEPT") == 0)
+		return r->kept;
 	if (strcmp(name, "__cplusplus") == 0)
 		return 0;
 	return length > 2 && strncmp(name, "PL", 2) == 0 && strcmp(name + length - 2, "_H") == 0 ? 0 : -1;
@@ -266,20 +268,26 @@ static void read_file(struct runtime *r, const char *name)
 
 /* ---- all of it ---- */
 
-/* Files of one type: growthf.c beside growth.c is of floats. Not those of FMUs: they have a model inside. */
+/* Files of one type: growthf.c beside growth.c is of floats, guards_kept.c beside guards.c of states in two words. Not
+ * those of FMUs: they have a model inside. */
 static bool serves(const struct runtime *r, const char *name)
 {
 	size_t length = strlen(name);
 	if (length < 3 || strcmp(name + length - 2, ".c") != 0 || strncmp(name, "fmi", 3) == 0)
 		return false;
-	bool single = name[length - 3] == 'f' && runtime_text(format("%.*s.c", (int)length - 3, name));
-	return single == r->single;
+	int stem = (int)length - 2;
+	bool single = name[stem - 1] == 'f' && runtime_text(format("%.*s.c", stem - 1, name));
+	stem -= single;
+	bool kept = stem > 5 && strncmp(name + stem - 5, "_kept", 5) == 0;
+	bool both = kept || runtime_text(format("%.*s_kept.c", stem, name));
+	return single == r->single && (kept == r->kept || !both);
 }
 
-struct runtime *runtime_read(bool single)
+struct runtime *runtime_read(bool single, bool kept)
 {
 	struct runtime *r = NEW(struct runtime);
 	r->single = single;
+	r->kept = kept;
 	read_file(r, "plrt.h");
 	for (int i = 0; runtime_name(i); i++)
 		if (serves(r, runtime_name(i)))

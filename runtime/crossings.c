@@ -2,13 +2,16 @@
 /* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of
  * every breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated
  * before it is computed, so none is stepped over. */
+#ifndef REST_IS_KEPT
 #include "columns.h"
+#endif
+#include "kept.h"
 #include "regions.h"
 #include "roots.h"
 
 static const real *matrix_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
-    return all + (ptrdiff_t)c->matrix * m->size * m->size;
+    return all + WORDS * (ptrdiff_t)c->matrix * m->size * m->size;
 }
 
 static const real *rows_of(const real *all, const pl_switching *m, const pl_contact *c)
@@ -203,25 +206,26 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
 static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
 {
     found first = nothing;
+    real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
     int i;
-    expand(m->size, m->degree, matrix_of(m->A, m, c), dt, x, work);
-    if (pl_not_finite(work, (m->degree + 1) * m->size)) {
-        sum_up(m->size, m->degree, work, 1, x);
+    expand_piece(m->size, m->degree, matrix_of(m->A, m, c), dt, x, coefficients, low);
+    if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
+        part_of_piece(m->size, m->degree, coefficients, low, 1, x);
         return nothing;
     }
     if (*splits >= 0) {
-        first = first_crossing(m, c->region, work, splits);
+        first = first_crossing(m, c->region, coefficients, splits);
     }
     if (*splits < 0) {
         c->status = PL_TOO_MANY_EVENTS;
         first = nothing;
     }
     if (y && first.expression < 0) {
-        for (i = 0; i < m->size; i++) {
+        for (i = 0; i < WORDS * m->size; i++) {
             x[i] = y[i];
         }
     } else {
-        sum_up(m->size, m->degree, work, first.s, x);
+        part_of_piece(m->size, m->degree, coefficients, low, first.s, x);
     }
     return first;
 }
@@ -229,7 +233,7 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
 void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *rest = work + n;
+    real left = tau, *y = work, *room = work + WORDS * n;
     int splits = m->max_splits, fresh = 1, i;
     c->crossings = 0;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
@@ -238,9 +242,9 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
         const real dt = whole ? longest : left;
         found first;
         if (whole) {
-            pl_multiply(n, n, matrix_of(m->Phi, m, c), x, y);
-            if (stays_clear(m, c, x, y, rest)) {
-                for (i = 0; i < n; i++) {
+            whole_piece(n, m->Phi, c->matrix, x, y);
+            if (stays_clear(m, c, x, y, room)) {
+                for (i = 0; i < WORDS * n; i++) {
                     x[i] = y[i];
                 }
                 left -= dt;
@@ -253,7 +257,7 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             follow_jumps(m, x, c, crossing);
             continue;
         }
-        first = move(m, c, dt, whole ? y : NULL, &splits, x, rest);
+        first = move(m, c, dt, whole ? y : NULL, &splits, x, room);
         if (splits < 0) {
             break; /* x is held: this region may not be the one, and may be unstable */
         }
@@ -272,6 +276,8 @@ void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossin
 {
     pl_switching_advance(m, m->h, x, c, crossing, work);
 }
+
+#ifndef REST_IS_KEPT
 
 /* ---- events of a series ---- */
 
@@ -378,3 +384,5 @@ real pl_divided_next(const pl_divided *m, const real *c, const real *terms, cons
     }
     return any ? first * end : -1;
 }
+
+#endif

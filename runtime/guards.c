@@ -2,6 +2,7 @@
 /* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
  * guard of their region go by e^{A d}; the others by Taylor polynomials, on which the first event is isolated.  What is
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
+#include "kept.h"
 #include "regions.h"
 #include "roots.h"
 
@@ -24,7 +25,7 @@ enum { MOST = 6, MOST_AT_ONCE = 1000, LISTED_AT_ONCE = 12 };
 
 static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
 {
-    return all + (ptrdiff_t)matrix * m->size * m->size;
+    return all + WORDS * (ptrdiff_t)matrix * m->size * m->size;
 }
 
 /* ---- regions ---- */
@@ -38,10 +39,10 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
         return;
     }
     for (k = m->set[set]; k < m->set[set + 1]; k++) {
-        pl_multiply(1, n, m->value + (ptrdiff_t)k * n, x, work + (k - m->set[set]));
+        value_of(n, m->value, k, x, work + WORDS * (k - m->set[set]));
     }
     for (k = m->set[set]; k < m->set[set + 1]; k++) {
-        x[m->state[k]] = work[k - m->set[set]];
+        put_value(n, m->state[k], work + WORDS * (k - m->set[set]), x);
     }
 }
 
@@ -135,7 +136,7 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
     const real e = excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
     int i;
     for (i = 0; i < m->size; i++) {
-        x[i] -= back[i] * e;
+        take_from(m->size, i, back[i] * e, x);
     }
 }
 
@@ -563,25 +564,26 @@ static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int
 {
     const event none = {1, -1};
     event first = none;
+    real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
     int i;
-    expand(m->size, m->degree, matrix_of(m->A, m, c->matrix), dt, x, work);
-    if (pl_not_finite(work, (m->degree + 1) * m->size)) {
-        sum_up(m->size, m->degree, work, 1, x);
+    expand_piece(m->size, m->degree, matrix_of(m->A, m, c->matrix), dt, x, coefficients, low);
+    if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
+        part_of_piece(m->size, m->degree, coefficients, low, 1, x);
         return none;
     }
     if (*splits >= 0 && m->matrix[c->region] >= 0) {
-        first = first_event(m, c->region, work, splits);
+        first = first_event(m, c->region, coefficients, splits);
     }
     if (*splits < 0) {
         c->status |= PL_TOO_MANY_EVENTS;
         first = none;
     }
     if (y && first.guard < 0) {
-        for (i = 0; i < m->size; i++) {
+        for (i = 0; i < WORDS * m->size; i++) {
             x[i] = y[i];
         }
     } else {
-        sum_up(m->size, m->degree, work, first.s, x);
+        part_of_piece(m->size, m->degree, coefficients, low, first.s, x);
     }
     return first;
 }
@@ -653,24 +655,24 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *rest = work + n;
+    real left = tau, *y = work, *room = work + WORDS * n;
     int splits = m->max_splits, fresh = 1, i;
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
-        take_up(m, x, c, crossing, 0, rest);
+        take_up(m, x, c, crossing, 0, room);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
         const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
         int whole = left > longest * (1 - REST);
-        const real dt = shortened(m, c, x, whole ? longest : left, rest);
+        const real dt = shortened(m, c, x, whole ? longest : left, room);
         event first;
         whole = whole && dt >= longest;
         if (whole) {
-            pl_multiply(n, n, matrix_of(m->Phi, m, c->matrix), x, y);
-            assign(m, m->hold[c->region], y, rest);
-            if (m->matrix[c->region] >= 0 && stays_clear(m, c, x, y, rest)) {
-                for (i = 0; i < n; i++) {
+            whole_piece(n, m->Phi, c->matrix, x, y);
+            assign(m, m->hold[c->region], y, room);
+            if (m->matrix[c->region] >= 0 && stays_clear(m, c, x, y, room)) {
+                for (i = 0; i < WORDS * n; i++) {
                     x[i] = y[i];
                 }
                 left -= dt;
@@ -680,11 +682,11 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
         if (fresh) { /* the region may be another one now */
             fresh = 0;
-            take_up(m, x, c, crossing, tau - left, rest);
+            take_up(m, x, c, crossing, tau - left, room);
             continue;
         }
-        first = move(m, c, dt, whole ? y : (real *)0, &splits, x, rest);
-        assign(m, m->hold[c->region], x, rest);
+        first = move(m, c, dt, whole ? y : (real *)0, &splits, x, room);
+        assign(m, m->hold[c->region], x, room);
         if (splits < 0) {
             break; /* x is held: this region may not be the one, and may be unstable */
         }
@@ -692,7 +694,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         if (first.guard < 0) {
             continue;
         }
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest)) {
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, room)) {
             if (m->guard[first.guard].impact >= 0) {
                 break; /* x is held on the guard: beyond it the impact would not come any more */
             }

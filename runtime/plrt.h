@@ -13,6 +13,8 @@
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     guards.c    the same with dry friction and jumps: events that each region has its own of
+ *     crossings_kept.c, guards_kept.c
+ *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     blocks.c    the same of one independent block of a large model
  *     rate.c      the rate of a load's phase from another frequency
@@ -494,6 +496,15 @@ void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_cross
 void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
                           double *work);
 
+/* The same with what rounding takes from x kept: x is `size` entries and then their rests, so that x + rest is what is
+ * meant.  m->A and m->Phi, which is e^{A d} - I, have two words: of each matrix size x size first ones and then as many
+ * second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of x. */
+#define PL_SWITCHING_KEPT_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
+void pl_switching_kept_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
+void pl_switching_kept_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+void pl_switching_kept_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
+                               double *work);
+
 /* The same for floats; rounding errors are taken to be 8 FLT_EPSILON (...).  A pl_contact serves both. */
 typedef struct pl_switchingf {
     int size;
@@ -516,6 +527,10 @@ void pl_switchingf_start(const pl_switchingf *m, const float *x, pl_contact *c, 
 void pl_switchingf_step(const pl_switchingf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
                            float *work);
+void pl_switchingf_kept_start(const pl_switchingf *m, const float *x, pl_contact *c, float *work);
+void pl_switchingf_kept_step(const pl_switchingf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_switchingf_kept_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
+                                float *work);
 
 /* Formulas that the state chooses beside a Taylor series: expressions e_i, each with breakpoints as above, whose series
  * stand in columns of its coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the
@@ -776,6 +791,16 @@ void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c,
  * no impact begins there; then what touches and comes closer bounces, and what is at rest is decided anew. */
 void pl_guards_change(const pl_guards *m, double time, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
+/* The same with what rounding takes from x kept, as pl_switching_kept_step: m->value is of each assignment `size` first
+ * words and then as many second ones. */
+#define PL_GUARDS_KEPT_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
+void pl_guards_kept_start(const pl_guards *m, const double *x, pl_contact *c, double *work);
+void pl_guards_kept_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+void pl_guards_kept_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
+                            double *work);
+void pl_guards_kept_change(const pl_guards *m, double time, double *x, pl_contact *c, pl_crossing *crossing,
+                           double *work);
+
 typedef struct pl_impactf {
     int expression, breakpoint, upward;
     int rest, jump, still;
@@ -808,6 +833,12 @@ void pl_guardsf_start(const pl_guardsf *m, const float *x, pl_contact *c, float 
 void pl_guardsf_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_change(const pl_guardsf *m, float time, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_guardsf_kept_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
+void pl_guardsf_kept_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_guardsf_kept_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
+                             float *work);
+void pl_guardsf_kept_change(const pl_guardsf *m, float time, float *x, pl_contact *c, pl_crossingf *crossing,
+                            float *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 

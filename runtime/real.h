@@ -29,14 +29,12 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_two pl_twof
 #define pl_power_apply pl_powerf_apply
 #define pl_until pl_untilf
+#define pl_accumulate pl_accumulatef
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add
 #define pl_not_finite pl_not_finitef
 #define pl_switching pl_switchingf
 #define pl_crossing pl_crossingf
-#define pl_switching_start pl_switchingf_start
-#define pl_switching_step pl_switchingf_step
-#define pl_switching_advance pl_switchingf_advance
 #define pl_divided pl_dividedf
 #define pl_divided_place pl_dividedf_place
 #define pl_divided_rises pl_dividedf_rises
@@ -44,10 +42,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_divided_next pl_dividedf_next
 #define pl_impact pl_impactf
 #define pl_guards pl_guardsf
-#define pl_guards_start pl_guardsf_start
-#define pl_guards_step pl_guardsf_step
-#define pl_guards_advance pl_guardsf_advance
-#define pl_guards_change pl_guardsf_change
 #define pl_strike pl_strikef
 #define pl_instant pl_instantf
 #define pl_events pl_eventsf
@@ -76,7 +70,35 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_peak pl_peakf
 #define pl_peak_bend pl_peakf_bend
 
+#ifdef REST_IS_KEPT
+#define pl_switching_start pl_switchingf_kept_start
+#define pl_switching_step pl_switchingf_kept_step
+#define pl_switching_advance pl_switchingf_kept_advance
+#define pl_guards_start pl_guardsf_kept_start
+#define pl_guards_step pl_guardsf_kept_step
+#define pl_guards_advance pl_guardsf_kept_advance
+#define pl_guards_change pl_guardsf_kept_change
 #else
+#define pl_switching_start pl_switchingf_start
+#define pl_switching_step pl_switchingf_step
+#define pl_switching_advance pl_switchingf_advance
+#define pl_guards_start pl_guardsf_start
+#define pl_guards_step pl_guardsf_step
+#define pl_guards_advance pl_guardsf_advance
+#define pl_guards_change pl_guardsf_change
+#endif
+
+#else
+
+#ifdef REST_IS_KEPT
+#define pl_switching_start pl_switching_kept_start
+#define pl_switching_step pl_switching_kept_step
+#define pl_switching_advance pl_switching_kept_advance
+#define pl_guards_start pl_guards_kept_start
+#define pl_guards_step pl_guards_kept_step
+#define pl_guards_advance pl_guards_kept_advance
+#define pl_guards_change pl_guards_kept_change
+#endif
 
 typedef double real;
 typedef uint64_t real_bits;

@@ -549,6 +549,7 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 				       double *(*of)(const struct region_piece *));
 struct region_tables of_branch(struct region_tables t, int branch);
 double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
+double *whole_gain_of_piece(const struct region_piece *piece);    /* the same less I, in two words */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
 bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
@@ -652,6 +653,11 @@ void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
 const char *search_of(const struct emitter *e);                    /* of the runtime: pl_switching, pl_guards */
+const char *search_by(const struct emitter *e);                    /* the functions of that: pl_switching_kept, ... */
+bool keeps_rest(const struct emitter *e);                         /* the state has two words: x is behind it its rests */
+int size_of_vector(const struct emitter *e);                      /* of x, with them */
+const char **twice(int count, const char *const *text);           /* one list behind itself: of first and second words */
+void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
 

@@ -35,6 +35,43 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 
 /* ---- by tables of all regions, or region by region ---- */
 
+/* e^{A h}; of a state in two words the same less I, second words behind the first */
+static struct region_tables steps_of(const struct emitter *e, const struct pieces *p, const char *text)
+{
+	int size = e->step->layout.size;
+	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, whole_gain_of_piece)
+			     : tables_of_regions(e, p, text, size, whole_of);
+}
+
+/* What a row's second words add, and its first ones of what rounding has taken */
+static const char *small_text(const struct emitter *e, const struct region_tables *whole, int row,
+			      const char *const *x, int indent)
+{
+	const char **rest = ARRAY(const char *, (size_t)whole->columns);
+	for (int i = 0; i < e->system->states; i++)
+		rest[i] = format("s->rest[%d]", place_of_state(e, i));
+	const char *of_rest = row_text(whole, row, rest, NULL, indent + 1), *further = NULL;
+	if (strcmp(of_rest, "0.0") != 0)
+		further = format("(%s)", of_rest);
+	return row_text(whole, e->step->layout.size + row, x, further, indent);
+}
+
+static void emit_end(const struct emitter *e, const struct region_tables *whole, int row, const char *const *x,
+		     const char *before, const char *name)
+{
+	int indent = 24 + (int)strlen(before);
+	if (!keeps_rest(e))
+		say(e, "    %send%d = %s;  /* %s */\n", before, row, row_text(whole, row, x, NULL, 22), name);
+	else if (row >= e->system->states)
+		say(e, "    %send%d = %s + (%s);  /* %s */\n", before, row, *x[row] ? x[row] : "1.0",
+		    row_text(whole, row, x, NULL, indent), name);
+	else
+		say(e, "    %send%d = pl_accumulate(%s,  /* %s */\n"
+		       "%*s%s,\n"
+		       "%*s%s, &rest%d);\n", before, row, x[row], name, indent, "",
+		    row_text(whole, row, x, NULL, indent), indent, "", small_text(e, whole, row, x, indent), row);
+}
+
 static void emit_ends(const struct emitter *e, const struct pieces *p, const struct region_tables *whole,
 		      const char *const *x, const char *before)
 {
@@ -42,7 +79,7 @@ static void emit_ends(const struct emitter *e, const struct pieces *p, const str
 	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	for (int i = 0; i < size; i++)
 		if (i < e->system->states || is_read_at_end(p, size, expressions_of(e), i))
-			say(e, "    %send%d = %s;  /* %s */\n", before, i, row_text(whole, i, x, NULL, 22), name[i]);
+			emit_end(e, whole, i, x, before, name[i]);
 }
 
 static const char **magnitudes(const struct emitter *e, const char *const *x)
@@ -71,7 +108,7 @@ static void emit_chords(const struct emitter *e, const struct pieces *p, const c
 
 static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
-	struct region_tables whole = tables_of_regions(e, p, "factor", e->step->layout.size, whole_of);
+	struct region_tables whole = steps_of(e, p, "factor");
 	say(e, "    const int which = s->contact$p.matrix;\n"
 	       "    const double (*const factor)[%d] = $o_%s[which];\n", e->step->layout.size,
 	    any_pieces(e) ? "whole" : "pieces");
@@ -120,7 +157,7 @@ static void emit_inside(const struct emitter *e, const struct pieces *p, const c
 static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
 {
 	int branch = e->model->switching->region[region].system, n = expressions_of(e);
-	struct region_tables whole = of_branch(tables_of_regions(e, p, "", e->step->layout.size, whole_of), branch);
+	struct region_tables whole = of_branch(steps_of(e, p, ""), branch);
 	const char **end = entries(e, "end%d");
 	say(e, "    case %d:\n", region);
 	emit_ends(e, p, &whole, x, "    ");
@@ -174,6 +211,8 @@ void emit_clear_step(const struct emitter *e)
 		if (e->system->input[i].hold)
 			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", of, of, of);
 	}
+	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
 	if (is_cleared_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
@@ -181,12 +220,19 @@ void emit_clear_step(const struct emitter *e)
 	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, x), 12), shortest(pieces.large));
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
+	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+		say(e, "        s->rest[%d] = rest%d;\n", place_of_state(e, i), i);
 	say(e, "        s->contact$p.crossings = 0;\n"
 	       "    } else {\n"
-	       "        double now[%d];\n", layout->size);
+	       "        double now[%d];\n", size_of_vector(e));
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
-	say(e, "        if (!$o_cross(s, now))\n"
-	       "            $o_seek(s, now);\n"
-	       "    }\n");
+	for (int j = 0; j < layout->size && keeps_rest(e); j++)
+		say(e, "        now[%d] = %s;\n", layout->size + j,
+		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
+	say(e, keeps_rest(e) ? "        $o_seek(s, now);\n"
+			       "    }\n"
+			     : "        if (!$o_cross(s, now))\n"
+			       "            $o_seek(s, now);\n"
+			       "    }\n");
 }

@@ -109,7 +109,7 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 
 static void emit_values(const struct emitter *e, const struct guards *g)
 {
-	int count = g->assignments > 0 ? g->assignments : 1, size = e->step->layout.size;
+	int count = g->assignments > 0 ? g->assignments : 1, size = size_of_vector(e);
 	double *value = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
@@ -118,7 +118,8 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 		for (int j = 0; j < size; j++)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
-	open_table(e, "value", format("[%d][%d]", count, size), "x[held] = value . x");
+	open_table(e, "value", format("[%d][%d]", count, size),
+		   keeps_rest(e) ? "x[held] = value . x; second words behind the first ones" : "x[held] = value . x");
 	emit_number_rows(e, count, size, value, note);
 	close_table(e);
 }

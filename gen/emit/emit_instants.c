@@ -22,7 +22,6 @@ static bool has_guards(const struct emitter *e)
 /* The region of x in a segment of time */
 static void emit_start(const struct emitter *e)
 {
-	const char *search = search_of(e);
 	bool own = e->model->retuned;
 	say(e, "\n"
 	       "/* The region of x in a segment of time */\n"
@@ -30,7 +29,7 @@ static void emit_start(const struct emitter *e)
 	       "{\n"
 	       "    %s here = $o_switching%s;\n"
 	       "    here.matrix += segment * %d;\n",
-	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, search,
+	    own ? spell(e, "const $n_coeffs *c, ") : "", size_of_vector(e), search_of(e),
 	    own ? "(c, segment)" : "[segment]",
 	    regions_in_one(e));
 	if (has_guards(e))
@@ -38,7 +37,7 @@ static void emit_start(const struct emitter *e)
 		       "    here.hold += segment * %d;\n", regions_in_one(e), regions_in_one(e));
 	say(e, "    %s_start(&here, x, contact, work);\n"
 	       "    contact->region += segment * %d;\n"
-	       "}\n", search, regions_in_one(e));
+	       "}\n", search_by(e), regions_in_one(e));
 }
 
 /* Whether a region can occur before a change and, by its inequalities, not after it */
@@ -61,7 +60,7 @@ static void emit_change(const struct emitter *e)
 	       "{\n"
 	       "    contact->region += %d;\n",
 	    lost ? "; where they cannot be then, the equations of the region where x is" : "",
-	    lost ? format("const double x[%d], ", e->step->layout.size) : "", lost ? ", double *work" : "",
+	    lost ? format("const double x[%d], ", size_of_vector(e)) : "", lost ? ", double *work" : "",
 	    regions_in_one(e));
 	if (lost)
 		say(e, "    if ($o_matrix[contact->region] < 0) {\n"
@@ -79,8 +78,8 @@ static void emit_decided_change(const struct emitter *e)
 {
 	say(e, "        here = $o_switching[segment + 1];\n"
 	       "        here.max_events -= count;\n"
-	       "        pl_guards_change(&here, done, x, contact, crossing + count, work);\n"
-	       "        count += contact->crossings;\n");
+	       "        %s_change(&here, done, x, contact, crossing + count, work);\n"
+	       "        count += contact->crossings;\n", search_by(e));
 }
 
 void emit_region_changes(const struct emitter *e)
@@ -103,9 +102,9 @@ void emit_region_changes(const struct emitter *e)
 	       "        %s here = $o_switching%s;\n"
 	       "        here.max_events -= count;\n"
 	       "        %s_advance(&here, to - done, x, contact, crossing + count, work);\n",
-	    guards ? "; one at its end too" : "", e->step->layout.size, regions_in_one(e), segments_of(e) - 1,
+	    guards ? "; one at its end too" : "", size_of_vector(e), regions_in_one(e), segments_of(e) - 1,
 	    guards ? spell(e, "2.0 * $N_H") : "tau", search_of(e),
-	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]", search_of(e));
+	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]", search_by(e));
 	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
 	       "            crossing[i].time += done;\n"
 	       "        count += contact->crossings;\n"

@@ -82,12 +82,30 @@ static void emit_shares(const struct emitter *part, const struct switching *whol
 	emit_indices(part, "number", s->expressions, part->part->expression, "of its expressions");
 }
 
+/* Of a state in two words each matrix has second ones behind the first */
+static const char **names_of_rows(const struct emitter *part)
+{
+	const char **name = layout_names(&part->step->layout, part->system, part->model);
+	return keeps_rest(part) ? twice(part->step->layout.size, name) : name;
+}
+
+static const char *note_of_slopes(const struct emitter *part)
+{
+	return keeps_rest(part) ? "x' = A x in two words; x = states, load states, inputs"
+				: "x' = A x; x = states, load states, inputs";
+}
+
+static const char *note_of_pieces(const struct emitter *part)
+{
+	return keeps_rest(part) ? "e^{A d} - I in two words, d = h 2^-halvings" : "e^{A d}, d = h 2^-halvings";
+}
+
 static void emit_matrix(const struct emitter *part, const char *name, const char *note, const double *value)
 {
-	int size = part->step->layout.size;
+	int size = part->step->layout.size, rows = size_of_vector(part);
 	say(part, "\n"
-		  "static const double $o_%s[%d][%d] = {  /* %s */\n", name, size, size, note);
-	emit_number_rows(part, size, size, value, layout_names(&part->step->layout, part->system, part->model));
+		  "static const double $o_%s[%d][%d] = {  /* %s */\n", name, rows, size, note);
+	emit_number_rows(part, rows, size, value, names_of_rows(part));
 	say(part, "};\n");
 }
 
@@ -95,14 +113,13 @@ static void emit_matrices_of_linear(const struct emitter *part, const char *name
 				    double *(*of)(const struct region_piece *piece))
 {
 	struct pieces pieces = pieces_of(part->step);
-	int size = part->step->layout.size;
+	int size = part->step->layout.size, rows = size_of_vector(part);
 	say(part, "\n"
 		  "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
-	    name, part->step->branches, size, size, note);
+	    name, part->step->branches, rows, size, note);
 	for (int k = 0; k < part->step->branches; k++) {
 		say(part, "  {\n");
-		emit_number_rows(part, size, size, of(&pieces.piece[k]),
-				 layout_names(&part->step->layout, part->system, part->model));
+		emit_number_rows(part, rows, size, of(&pieces.piece[k]), names_of_rows(part));
 		say(part, "  },\n");
 	}
 	say(part, "};\n");
@@ -110,13 +127,14 @@ static void emit_matrices_of_linear(const struct emitter *part, const char *name
 
 static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
 static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
+static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
 
 /* The same in each segment of time */
 static void emit_changing_tables(const struct emitter *part)
 {
 	const struct switching *s = regions_of(part);
-	emit_matrices_of_linear(part, "slopes", "x' = A x; x = states, load states, inputs", slopes_of_piece);
-	emit_matrices_of_linear(part, "pieces", "e^{A d}, d = h 2^-halvings", Phi_of_piece);
+	emit_matrices_of_linear(part, "slopes", note_of_slopes(part), slopes_of_piece);
+	emit_matrices_of_linear(part, "pieces", note_of_pieces(part), keeps_rest(part) ? gain_of_piece : Phi_of_piece);
 	say(part, "\n");
 	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)part->step->branches);
 	for (int k = 0; k < s->segments; k++)
@@ -147,8 +165,9 @@ static void emit_linear_tables(const struct emitter *part)
 		return;
 	}
 	struct pieces pieces = pieces_of(part->step);
-	emit_matrix(part, "slopes", "x' = A x; x = states, load states, inputs", pieces.piece->slopes);
-	emit_matrix(part, "pieces", "e^{A d}, d = h 2^-halvings", pieces.piece->Phi);
+	emit_matrix(part, "slopes", note_of_slopes(part), pieces.piece->slopes);
+	emit_matrix(part, "pieces", note_of_pieces(part),
+		    keeps_rest(part) ? pieces.piece->gain : pieces.piece->Phi);
 	say(part, "\n"
 		  "static const int $o_matrix[1] = {0};\n"
 		  "static const int $o_halvings[1] = {%d};\n"
@@ -425,7 +444,8 @@ static const char *linear_contact(const struct emitter *part)
 				    : "{0, 0, 0, 0, 0, 0}";
 }
 
-static void emit_changing_linear(const struct emitter *part, const double *whole)
+/* By the pieces of the search, which has nothing to look for */
+static void emit_linear_by_pieces(const struct emitter *part, const double *whole)
 {
 	(void)whole;
 	say(part, "\n"
@@ -436,9 +456,11 @@ static void emit_changing_linear(const struct emitter *part, const double *whole
 		  "    int i;\n", given_text(part, true), linear_contact(part));
 	declare_region_room(part);
 	emit_region_vector(part, true);
-	say(part, "    $o_pass_changes(s, $N_H, x, &contact, crossing, work);\n"
-		  "    for (i = 0; i < %d; i++)\n"
-		  "        s->y[$o_state[i]] = x[i];\n", part->system->states);
+	if (regions_change(part))
+		say(part, "    $o_pass_changes(s, $N_H, x, &contact, crossing, work);\n");
+	else
+		say(part, "    %s_step(&$o_switching, x, &contact, crossing, work);\n", search_by(part));
+	emit_state_of_x(part);
 }
 
 static void emit_linear_step(const struct emitter *part)
@@ -446,7 +468,8 @@ static void emit_linear_step(const struct emitter *part)
 	enum { TERMS = 400 };
 	const double *whole = whole_step_of(part->step, 0);
 	const char **size = ARRAY(const char *, (size_t)part->system->states);
-	(regions_change(part)                   ? emit_changing_linear
+	bool pieces = regions_change(part) || keeps_rest(part);
+	(pieces                                ? emit_linear_by_pieces
 	 : acting_entries(part, whole) > TERMS ? emit_linear_loop
 					       : emit_linear_rows)(part, whole);
 	for (int i = 0; i < part->system->states; i++)
@@ -495,7 +518,7 @@ void emit_parts_step(const struct emitter *e)
 	bool swift = false;
 	for (int p = 0; p < e->step->parts; p++)
 		swift = swift || e->step->part[p]->swift;
-	if (swift)
+	if (swift && !keeps_rest(e))
 		emit_crossing_scalars(e);
 	for_parts(e, e->step->parts, emit_step_of_part);
 	say(e, "\n"

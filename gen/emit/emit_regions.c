@@ -47,6 +47,7 @@ struct matrices {
 
 static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
 static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
+static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
 static double *slope_of_piece(const struct region_piece *piece)  { return piece->slope; }
 static double *second_of_piece(const struct region_piece *piece) { return piece->second; }
 static double *fourth_of_piece(const struct region_piece *piece) { return piece->fourth; }
@@ -165,9 +166,15 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 {
 	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
 	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
+	const bool rest = keeps_rest(e);
+	const char *words = rest ? " in two words" : "";
+	if (rest)
+		entry = twice(size, entry);
 	const struct matrices all[] = {
-		{ "slopes", "x' = A x; x = states, load states, inputs", size, entry, slopes_of_piece },
-		{ "pieces", "e^{A d}, d = h 2^-halvings", size, entry, Phi_of_piece },
+		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
+		  slopes_of_piece },
+		{ "pieces", format("e^{A d}%s%s, d = h 2^-halvings", rest ? " - I" : "", words), size_of_vector(e),
+		  entry, rest ? gain_of_piece : Phi_of_piece },
 		{ "lean", "d/3 times the slope of each expression", expressions, expression, slope_of_piece },
 		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, second_of_piece },
 		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, fourth_of_piece }
@@ -258,6 +265,17 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 	}
 }
 
+/* Behind x what rounding has taken from it */
+static void emit_rests_in_x(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	say(e, "    for (i = 0; i < %s; i++)\n"
+	       "        x[%d + i] = s->rest[%s];\n", own_states(e), size, place_in_loop(e));
+	if (size > e->system->states)
+		say(e, "    for (i = %d; i < %d; i++)\n"
+		       "        x[%d + i] = 0.0;\n", e->system->states, size, size);
+}
+
 void emit_region_vector(const struct emitter *e, bool step)
 {
 	const struct layout *layout = &e->step->layout;
@@ -269,18 +287,21 @@ void emit_region_vector(const struct emitter *e, bool step)
 			say(e, "    x[%d] = %s;\n", layout->load[l] + k, operand ? operand : "1.0");
 		}
 	emit_inputs_in_x(e, step);
+	if (keeps_rest(e))
+		emit_rests_in_x(e);
 }
 
 void declare_region_room(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
+	const char *kept = keeps_rest(e) ? "KEPT_" : "";
 	if (has_guards(e))
-		say(e, "    double x[%d], work[PL_GUARDS_WORK(%d, %d)];\n", layout->size, layout->size,
+		say(e, "    double x[%d], work[PL_GUARDS_%sWORK(%d, %d)];\n", size_of_vector(e), kept, layout->size,
 		    series->degree);
 	else
-		say(e, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", layout->size, layout->size,
-		    regions_of(e)->expressions, series->degree);
+		say(e, "    double x[%d], work[PL_SWITCHING_%sWORK(%d, %d, %d)];\n", size_of_vector(e), kept,
+		    layout->size, regions_of(e)->expressions, series->degree);
 }
 
 /* What friction carries now */
@@ -323,7 +344,7 @@ void emit_region_start_call(const struct emitter *e)
 		say(e, "    $o_start(%ss->segment, x, &s->contact$p, work);\n",
 		    e->model->retuned ? "&s->coeffs, " : "");
 	else
-		say(e, "    %s_start(%s, x, &s->contact$p, work);\n", search_of(e), descriptor_of(e));
+		say(e, "    %s_start(%s, x, &s->contact$p, work);\n", search_by(e), descriptor_of(e));
 }
 
 static void emit_region_questions(const struct emitter *e)
@@ -355,15 +376,24 @@ static void emit_region_questions(const struct emitter *e)
 		       "}\n");
 }
 
+void emit_state_of_x(const struct emitter *e)
+{
+	bool rest = keeps_rest(e);
+	say(e, "    for (i = 0; i < %s; i++)%s\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), rest ? " {" : "", place_in_loop(e));
+	if (rest)
+		say(e, "        s->rest[%s] = x[%d + i];\n"
+		       "    }\n", place_in_loop(e), e->step->layout.size);
+}
+
 /* By the search, from x; `i` is declared */
 void emit_search(const struct emitter *e)
 {
 	if (regions_change(e))
 		say(e, "    $o_pass_changes(s, $N_H, x, &s->contact$p, s->crossing$p, work);\n");
 	else
-		say(e, "    %s_step(%s, x, &s->contact$p, s->crossing$p, work);\n", search_of(e), descriptor_of(e));
-	say(e, "    for (i = 0; i < %s; i++)\n"
-	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
+		say(e, "    %s_step(%s, x, &s->contact$p, s->crossing$p, work);\n", search_by(e), descriptor_of(e));
+	emit_state_of_x(e);
 }
 
 void emit_region_status(const struct emitter *e)
@@ -399,14 +429,15 @@ static void emit_searched_step(const struct emitter *e)
 /* What is not seen to be clear, or to cross once */
 void emit_region_search(const struct emitter *e)
 {
-	int size = e->step->layout.size;
-	emit_crossing(e);
+	if (!keeps_rest(e))
+		emit_crossing(e);
 	say(e, "\n"
 	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
 	       "{\n"
-	       "    double work[PL_SWITCHING_WORK(%d, %d, %d)];\n"
+	       "    double work[PL_SWITCHING_%sWORK(%d, %d, %d)];\n"
 	       "    int i;\n",
-	    size, size, regions_of(e)->expressions, e->step->series.degree);
+	    size_of_vector(e), keeps_rest(e) ? "KEPT_" : "", e->step->layout.size, regions_of(e)->expressions,
+	    e->step->series.degree);
 	emit_search(e);
 	emit_region_status(e);
 	say(e, "}\n");
@@ -430,7 +461,8 @@ static void emit_whole_step(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	if (e->step->swift) {
-		emit_crossing_scalars(e);
+		if (!keeps_rest(e))
+			emit_crossing_scalars(e);
 		emit_region_search(e);
 	}
 	say(e, "\n"
@@ -451,7 +483,7 @@ void emit_region_advance_call(const struct emitter *e)
 	if (regions_change(e))
 		say(e, "    $o_pass_changes(s, tau, x, &contact, crossing, work);\n");
 	else
-		say(e, "    %s_advance(%s, tau, x, &contact, crossing, work);\n", search_of(e), descriptor_of(e));
+		say(e, "    %s_advance(%s, tau, x, &contact, crossing, work);\n", search_by(e), descriptor_of(e));
 }
 
 void emit_region_at(const struct emitter *e)

@@ -59,6 +59,7 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 }
 
 double *whole_of(const struct region_piece *piece)  { return piece->whole; }
+double *whole_gain_of_piece(const struct region_piece *piece) { return piece->whole_gain; }
 static double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
@@ -137,8 +138,8 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 	say(e, "};\n");
 }
 
-/* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
-static void emit_neighbours(const struct emitter *e, const struct pieces *p)
+/* Region by region */
+static void emit_within(const struct emitter *e, const struct pieces *p)
 {
 	const struct switching *s = e->model->switching;
 	int n = s->expressions;
@@ -149,8 +150,15 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		for (int i = 0; i < n; i++)
 			say(e, "%s{%s, %s}%s", i == 0 ? "    {" : ", ", shortest(p->low[r * n + i]),
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
-	say(e, "};\n"
-	       "\n"
+	say(e, "};\n");
+}
+
+/* Region by region: the regions below and above; -1: none that can occur */
+static void emit_neighbours(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	int n = s->expressions;
+	say(e, "\n"
 	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
@@ -179,7 +187,11 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 			     third = tables_of_regions(e, p, "", n, third_of),
 		      still = tables_of_regions(e, p, "", 1, still_of);
 	still.columns = n;
-	if (any_pieces(e)) {
+	if (any_pieces(e) && keeps_rest(e)) {
+		struct region_tables gain = tables_of_regions(e, p, "", 2 * e->step->layout.size, whole_gain_of_piece);
+		emit_of_each(e, &gain, "whole", "e^{A h} - I in two words",
+			     twice(e->step->layout.size, layout_names(&e->step->layout, e->system, e->model)));
+	} else if (any_pieces(e)) {
 		struct region_tables turn = tables_of_regions(e, p, "", n, turn_of),
 			      bend = tables_of_regions(e, p, "", n, bend_of);
 		emit_of_each(e, &whole, "whole", "e^{A h}",
@@ -193,9 +205,15 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (reads && is_table(&still))
 		emit_still(e, p);
-	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
-	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
-	emit_neighbours(e, p);
+	if (!keeps_rest(e)) {           /* else crossings are left to the search */
+		emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'",
+			     expression);
+		emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
+	}
+	if (!keeps_rest(e) || is_cleared_by_tables(e->step))
+		emit_within(e, p);
+	if (!keeps_rest(e))
+		emit_neighbours(e);
 }
 
 /* ---- sums as text ---- */
@@ -243,6 +261,29 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 const char *search_of(const struct emitter *e)
 {
 	return has_events(e->model->switching) ? "pl_guards" : "pl_switching";
+}
+
+const char *search_by(const struct emitter *e)
+{
+	return format("%s%s", search_of(e), keeps_rest(e) ? "_kept" : "");
+}
+
+bool keeps_rest(const struct emitter *e)
+{
+	return e->step->program->compensated;
+}
+
+int size_of_vector(const struct emitter *e)
+{
+	return e->step->layout.size * (keeps_rest(e) ? 2 : 1);
+}
+
+const char **twice(int count, const char *const *text)
+{
+	const char **both = ARRAY(const char *, 2 * (size_t)count);
+	for (int i = 0; i < 2 * count; i++)
+		both[i] = text[i % count];
+	return both;
 }
 
 void open_table(const struct emitter *e, const char *name, const char *shape, const char *note)

@@ -105,9 +105,9 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row,
 			   enum retuned_kind kind, int of)
 {
-	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size), kind, of,
+	struct held_state new = { state, ARRAY(double, 2 * (size_t)step->layout.size), kind, of,
 				  g->assignments - g->set[g->sets] };
-	row_over_x(step, row, 0, new.value);
+	row_in_words(step, row, 0, new.value);
 	ENLARGE(g->assignment, (size_t)g->assignments + 1);
 	g->assignment[g->assignments++] = new;
 }

@@ -2,6 +2,8 @@
 /* A of x' = A x as the target's numbers: of each operator, of each segment of time, and what a scheme holds. */
 #include "step/step.h"
 
+#include <math.h>
+
 void tell_range(const struct step *step)
 {
 	error(step->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
@@ -11,9 +13,11 @@ double *slopes_of(const struct step *step, int branch)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
 	mpq_t *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
-	double *A = ARRAY(double, cells);
-	for (size_t i = 0; i < cells; i++)
+	double *A = ARRAY(double, 2 * cells);
+	for (size_t i = 0; i < cells; i++) {
 		A[i] = round_rational(exact[i]);
+		A[cells + i] = isfinite(A[i]) ? rounding_rest(exact[i]) : 0;
+	}
 	rationals_free(exact, cells);
 	return A;
 }

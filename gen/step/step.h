@@ -386,7 +386,8 @@ struct load_slopes {                /* the columns of A that change from segment
 	double **segment;           /* states x columns [x/s]; 0 of loads that the step leaves out */
 };
 _Noreturn void tell_range(const struct step *step);          /* an error at the step: a number overflows */
-double *slopes_of(const struct step *step, int branch);      /* size x size [x/s], loads as in the first segment; */
+/* size x size [x/s], loads as in the first segment, and the second words of the same; */
+double *slopes_of(const struct step *step, int branch);
 							     /* infinite beyond the range */
 struct load_slopes load_slopes_of(const struct step *step);
 struct coefficient *held_forces_of(const struct step *step); /* n x states: what a scheme holds, as forces */
@@ -420,8 +421,9 @@ bool is_cleared_by_tables(const struct step *step);         /* a swift step look
 
 struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
 	double *row;                /* of each expression: row . x, expressions x size */
-	double *slopes;             /* A of x' = A x, size x size [x/s] */
+	double *slopes;             /* A of x' = A x, size x size [x/s]; second words behind them */
 	double *Phi;                /* e^{A d}, size x size */
+	double *gain;               /* e^{A d} - I in two words, 2 size x size: first ones, then second ones; or NULL */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
@@ -430,6 +432,7 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	 * slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
+	double *whole_gain;         /* e^{A h} - I, as gain */
 	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
@@ -453,7 +456,10 @@ double size_of_bounded(const struct step *step, const double *row);
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
 		    double *slope, double *second, double *fourth);
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
+double *whole_gain_of(const struct step *step, int branch);  /* e^{A h} - I in two words, 2 size x size; or NULL */
 void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
+/* the same in two words: 2 x size */
+void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
 
@@ -477,7 +483,7 @@ struct struck {                     /* an impact */
 };
 struct held_state {                 /* x[state] = value . x */
 	int state;
-	double *value;
+	double *value;              /* size; of a state that is kept in two words size more, the second ones */
 	enum retuned_kind kind;     /* where it comes from: a row of the regions */
 	int of, index;
 };
@@ -607,6 +613,7 @@ int anchored_term(const struct step *step, int state, int column);   /* its inde
 const char *step_form_text(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
+void choose_form_of_regions(struct step *step);             /* the same of a piecewise-linear model */
 /* before its program; none where all of the state is compensated */
 void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */

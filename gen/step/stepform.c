@@ -134,13 +134,35 @@ static const char *kick_objection(struct step *step)
 void need_direct(const struct step *step)
 {
 	const struct model *model = step->model;
-	const char *what = model->switching ? "a piecewise-linear step" : "a step with a leftover";
 	if (model->asked.form != FORM_AUTO && model->asked.form != FORM_DIRECT)
-		error(model->asked.form_at, NULL, "the form %s is of a linear step: %s has the form direct",
-		      step_form_name(model->asked.form), what);
+		error(model->asked.form_at, NULL,
+		      "the form %s is of a linear step: a step with a leftover has the form direct",
+		      step_form_name(model->asked.form));
 	if (model->asked.compensated)
 		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated is of a linear step: %s has the form direct", what);
+		      "--accuracy compensated is of a linear step: a step with a leftover has the form direct");
+}
+
+static void need_factors_in_two_words(const struct model *model)
+{
+	if (model->asked.compensated && (model->tuning || model->retuned))
+		error(model->asked.compensated_at, NULL,
+		      "--accuracy compensated needs factors in two words: those of tunable params have one");
+}
+
+/* Direct; in two words delta. */
+void choose_form_of_regions(struct step *step)
+{
+	const struct model *model = step->model;
+	step->form = model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
+	if (model->asked.form != FORM_AUTO && model->asked.form != step->form && model->asked.compensated)
+		error(model->asked.form_at, NULL,
+		      "--accuracy compensated takes the form delta of a piecewise-linear step");
+	if (model->asked.form != FORM_AUTO && model->asked.form != step->form)
+		error(model->asked.form_at, NULL,
+		      "the form %s is of a linear step: a piecewise-linear step has the form direct",
+		      step_form_name(model->asked.form));
+	need_factors_in_two_words(model);
 }
 
 /* Kick-drift-kick where it can be; delta where I is most of Phi. */
@@ -175,9 +197,7 @@ void choose_form(struct step *step)
 	if (model->asked.compensated && step->form == FORM_DIRECT)
 		error(model->asked.compensated_at, NULL,
 		      "--accuracy compensated takes the form delta or kick-drift-kick");
-	if (model->asked.compensated && model->tuning)
-		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated needs factors in two words: those of tunable params have one");
+	need_factors_in_two_words(model);
 	if (model->asked.compensated && step->branch->system.states > LIMIT_UNROLLED_STATES)
 		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states",
 		      LIMIT_UNROLLED_STATES);

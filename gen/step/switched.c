@@ -9,6 +9,7 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	struct recipe *r = NEW(struct recipe);
 	r->step = step;
 	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
+	r->table[piece].increments = r->table[piece].two_words = step->model->asked.compensated;
 	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
 	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
 	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
@@ -49,6 +50,12 @@ static void plan_whole(struct step *step, int k)
 		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
 }
 
+/* How often an entry of e^{A d} is multiplied: of two words the first with x and with its rest, the second with x */
+static int products_of_words(const struct step *step)
+{
+	return step->model->asked.compensated ? 3 : 1;
+}
+
 static void plan_swift(struct step *step)
 {
 	bool any = false;
@@ -59,7 +66,8 @@ static void plan_swift(struct step *step)
 	if (!step->swift)
 		return;
 	int expressions = step->model->switching->expressions;
-	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
+	step->program->multiplications =
+		(products_of_words(step) * step->layout.states + expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications + 2 * expressions;
 	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
@@ -94,7 +102,8 @@ static void build_divided(struct step *step)
 {
 	struct branch *first = step->branch;
 	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
-	need_direct(step);
+	int words = products_of_words(step);
+	choose_form_of_regions(step);
 	step->tables = 1;
 	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
 	first->system.channels = 0;
@@ -104,7 +113,7 @@ static void build_divided(struct step *step)
 	fill_anchors(step);
 	step->program = linear_program(step);
 	step->program->multiplications =
-		(step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
+		(words * step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications;
 	first->system.channels = channels;
 	step->series.degree = 3;
@@ -131,7 +140,6 @@ static struct step *step_of_part(const struct step *whole, const struct region_p
 	step->model = part->model;
 	step->shown = whole;
 	step->kind = KIND_REGIONS;
-	step->form = FORM_DIRECT;
 	step->no_anchors = "a part is given its load states";
 	take_operators(step);
 	step->written = step->branch->resolvent;
@@ -173,7 +181,7 @@ void build_parts_step(struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	struct branch *first = step->branch;
-	need_direct(step);
+	choose_form_of_regions(step);
 	step->tables = 1;
 	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
 	first->whole = first->table[0];

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* kept.h: x on over a piece of a step, for the runtime's own use: by crossings.c and guards.c, and with what rounding
+ * takes from x kept by crossings_kept.c and guards_kept.c, which define REST_IS_KEPT and include them. There x is `size`
+ * entries and then as many rests, so that x + rest is what is meant; breakpoints and guards see x, from which it differs
+ * by rounding. */
+#ifndef PLRT_KEPT_H
+#define PLRT_KEPT_H
+
+#include "roots.h"
+
+#ifdef REST_IS_KEPT
+
+#include "two.h"
+
+enum { WORDS = 2 }; /* of an entry of x, of A */
+
+/* y = e^{A d} x.  Phi: of each matrix the increment e^{A d} - I in two words, n x n first ones and n x n second ones. */
+static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
+{
+    const real *gain = Phi + 2 * (ptrdiff_t)matrix * n * n, *second = gain + (ptrdiff_t)n * n;
+    real *left = y + n;
+    int i;
+    pl_multiply(n, n, gain, x, y);
+    pl_multiply(n, n, second, x, left);
+    pl_multiply_add(n, n, gain, x + n, left);
+    for (i = 0; i < n; i++) {
+        const real small = left[i];
+        left[i] = x[n + i];
+        y[i] = pl_accumulate(x[i], y[i], small, &left[i]);
+    }
+}
+
+/* first . (x + rest) + second . x in two words */
+static pl_two row_times_both(int n, const real *first, const real *second, const real *x)
+{
+    real sum = 0, rest = 0, small;
+    int j;
+    pl_multiply(1, n, second, x, &small);
+    pl_multiply_add(1, n, first, x + n, &small);
+    for (j = 0; j < n; j++) {
+        const pl_two product = two_product(first[j], x[j]);
+        sum = pl_accumulate(sum, product.hi, product.lo, &rest);
+    }
+    return two_sum(sum, rest + small);
+}
+
+/* The coefficients of x(s), and the second words of the first derivatives: where x begins on a breakpoint forces that
+ * balance there would leave their rounding, in one and the same direction each time.  A: n x n first words, then as many
+ * second ones */
+static void expand_piece(int n, int degree, const real *A, real dt, const real *x, real *coefficients, real *low)
+{
+    int i;
+    expand(n, degree, A, dt, x, coefficients);
+    for (i = 0; i < n; i++) {
+        const pl_two slope = row_times_both(n, A + i * n, A + (n + i) * n, x), gain = two_product(dt, slope.hi);
+        coefficients[n + i] = gain.hi;
+        low[i] = gain.lo + dt * slope.lo;
+    }
+}
+
+/* x from where the polynomial starts on to s */
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x)
+{
+    int i, k;
+    for (i = 0; i < n; i++) {
+        real gain = 0;
+        for (k = degree; k > 0; k--) {
+            gain = (gain + coefficients[k * n + i]) * s;
+        }
+        x[i] = pl_accumulate(x[i], gain, low[i] * s, &x[n + i]);
+    }
+}
+
+/* value . x of a jump, which is linear in the state, so that the rest goes along.  all: rows of n first words and n
+ * second ones; value: two words */
+static inline void value_of(int n, const real *all, int row, const real *x, real *value)
+{
+    const real *first = all + 2 * (ptrdiff_t)row * n;
+    const pl_two product = row_times_both(n, first, first + n, x);
+    value[0] = product.hi;
+    value[1] = product.lo;
+}
+
+static inline void put_value(int n, int state, const real *value, real *x)
+{
+    x[state] = value[0];
+    x[n + state] = value[1];
+}
+
+/* What is put on a guard has no rest: it is there. */
+static inline void take_from(int n, int state, real what, real *x)
+{
+    if (what < 0 || what > 0) {
+        x[state] -= what;
+        x[n + state] = 0;
+    }
+}
+
+#else
+
+enum { WORDS = 1 };
+
+/* y = Phi x.  Phi: e^{A d} of each matrix, n x n. */
+static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
+{
+    pl_multiply(n, n, Phi + (ptrdiff_t)matrix * n * n, x, y);
+}
+
+static void expand_piece(int n, int degree, const real *A, real dt, const real *x, real *coefficients, real *low)
+{
+    (void)low;
+    expand(n, degree, A, dt, x, coefficients);
+}
+
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x)
+{
+    (void)low;
+    sum_up(n, degree, coefficients, s, x);
+}
+
+static inline void value_of(int n, const real *all, int row, const real *x, real *value)
+{
+    pl_multiply(1, n, all + (ptrdiff_t)row * n, x, value);
+}
+
+static inline void put_value(int n, int state, const real *value, real *x)
+{
+    (void)n;
+    x[state] = value[0];
+}
+
+static inline void take_from(int n, int state, real what, real *x)
+{
+    (void)n;
+    x[state] -= what;
+}
+
+#endif
+
+#endif
