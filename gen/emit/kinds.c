@@ -164,12 +164,6 @@ static const struct kind tuned_blocks = {
 	.params = emit_params_line
 };
 
-static void emit_held_pass(const struct emitter *e)
-{
-	emit_held_retune(e);
-	emit_pass_of_changes(e);
-}
-
 /* ---- regions ---- */
 
 static bool any_place(const struct emitter *e)
@@ -303,19 +297,53 @@ static bool flows_whole(const struct step *step)
 
 static const char *no_values_between(const struct step *step)
 {
-	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
+	return step->cut ? NULL : step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
 }
 
 static void emit_actions_step(const struct emitter *e)
 {
+	if (is_cut(e)) {
+		emit_cut_step(e);
+		return;
+	}
 	emit_leftover_functions(e);
 	emit_leftover_step(e);
+}
+
+static bool leftover_reads_load(const struct emitter *e, int load)
+{
+	return e->step->cut && e->step->cut->look->load[load];
 }
 
 static void emit_leftover_tables(const struct emitter *e)
 {
 	emit_held_nominal(e);
 	emit_times_of_changes(e);
+	emit_cut_place(e);
+}
+
+static void emit_leftover_constants(const struct emitter *e)
+{
+	if (is_cut(e))
+		emit_event_limit(e);
+}
+
+static void emit_leftover_types(const struct emitter *e)
+{
+	emit_cut_types(e);
+	emit_held_types(e);
+}
+
+static void emit_leftover_pass(const struct emitter *e)
+{
+	emit_held_retune(e);
+	if (!is_cut(e))
+		emit_pass_of_changes(e);
+}
+
+static void emit_leftover_at(const struct emitter *e)
+{
+	(is_cut(e) ? emit_cut_at : emit_at)(e);
 }
 
 static const struct kind leftover = {
@@ -324,23 +352,24 @@ static const struct kind leftover = {
 	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = no_values_between,
-	.constants = nothing,
-	.types = emit_held_types,
+	.constants = emit_leftover_constants,
+	.types = emit_leftover_types,
 	.coefficients = emit_held_member,
-	.members = nothing,
+	.members = emit_cut_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.declare_state = nothing,
+	.declare_state = emit_cut_declarations,
 	.declare_more = emit_held_declarations,
 	.start = emit_held_start,
-	.reads_load = no_further_load,
+	.places = is_cut,
+	.reads_load = leftover_reads_load,
 	.reads_phi = flows_whole,
 	.tables = emit_leftover_tables,
-	.pass = emit_held_pass,
+	.pass = emit_leftover_pass,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
-	.at = emit_at,
+	.at = emit_leftover_at,
 	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };

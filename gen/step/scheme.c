@@ -141,6 +141,7 @@ static void build_leftover_step(struct step *step)
 	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover);
 	build_with_leftover(step);
 	series_plan(step);
+	plan_cut(step);
 }
 
 struct reading { struct step *step; unsigned long parts; };    /* h times 0, or 1 */

@@ -304,6 +304,7 @@ struct step {                       /* everything that is emitted for one model 
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
+	struct cut *cut;            /* of a step that goes from crossing to crossing; NULL: it steps across */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
 	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
@@ -1065,6 +1066,8 @@ struct expansion {
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	struct contacts *contacts;  /* NULL: there are none */
+	int *force;                 /* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	bool forces_alone;          /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -1139,6 +1142,17 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
 
+/* ---- cut.c: a scheme with a leftover, from crossing to crossing ---- */
+
+struct cut {
+	struct expansion *look;     /* of the solution, so far as crossings are looked for */
+	struct expansion *forces;   /* what is left over, with the formulas of given intervals */
+	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
+	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
+	int multiplications, additions, calls; /* of a look, at both ends of a step */
+};
+void plan_cut(struct step *step);                           /* step->cut, where its scheme follows crossings */
+
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 
 void find_newest(struct expansion *x);
@@ -1146,6 +1160,9 @@ void find_newest(struct expansion *x);
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
+/* the same with what is left over as sequences of their own; and these alone, their values, with the same expressions */
+struct expansion *expansion_with_forces(const struct step *step, int order);
+struct expansion *forces_of_expansion(const struct step *step, const struct expansion *whole);
 struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
 /* ---- order.c: the order of a series ---- */
