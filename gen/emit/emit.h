@@ -489,6 +489,7 @@ void emit_normal_at(const struct emitter *e);
 void emit_banner(const struct emitter *e);
 void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
 void banner_leftover(const struct emitter *e);
+void banner_cut(const struct emitter *e);
 void banner_regions(const struct emitter *e);
 void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);

@@ -49,31 +49,27 @@ static const struct emitter *forcing(const struct emitter *e)
 
 void emit_cut_types(const struct emitter *e)
 {
-	if (is_cut(e))
-		emit_divided_types(looking(e));
+	emit_divided_types(looking(e));
 }
 
 void emit_cut_members(const struct emitter *e)
 {
-	if (is_cut(e))
-		emit_divided_members(looking(e));
+	emit_divided_members(looking(e));
 }
 
 void emit_cut_declarations(const struct emitter *e)
 {
-	if (is_cut(e))
-		emit_divided_declarations(looking(e));
+	emit_divided_declarations(looking(e));
 }
 
 void emit_cut_place(const struct emitter *e)
 {
-	if (is_cut(e))
-		say(e, "\n/* What follows from a state that was set */\n"
-		       "static void $n_place($n *s)\n"
-		       "{\n"
-		       "    s->contact.placed = s->contact.crossings = 0;\n"
-		       "    s->contact.total = 0;\n"
-		       "}\n");
+	say(e, "\n/* What follows from a state that was set */\n"
+	       "static void $n_place($n *s)\n"
+	       "{\n"
+	       "    s->contact.placed = s->contact.crossings = 0;\n"
+	       "    s->contact.total = 0;\n"
+	       "}\n");
 }
 
 /* ---- a part of a step ---- */
@@ -148,9 +144,9 @@ static void emit_part(const struct emitter *e)
 	       "    const $n_part *const p = (const $n_part *)from;\n"
 	       "    %s\n"
 	       "}\n", frozen_call(forcing(e), "p->s", "tau", "p->when", "p->", "y", "left"));
-	say(e, "\n/* The state so long after `tau` of the step, by the fourth order scheme with tables made here; 0, or "
-	       "what went\n"
-	       " * wrong */\n"
+	say(e, "\n/* The state so long after `tau` of the step, by the fourth order scheme with tables made here; not "
+	       "0:\n"
+	       " * it is not finite */\n"
 	       "static int $n_advance(const $n_part *p, double tau, double length, const double y[$N_STATES],\n"
 	       "    double next[$N_STATES])\n"
 	       "{\n"
@@ -158,7 +154,8 @@ static void emit_part(const struct emitter *e)
 	       "    double acting[%d], work[PL_CUT_WORK($N_STATES, %d, %d)];\n"
 	       "    pl_two room[PL_CUT_ROOM(%d)];\n", size, channels, acting ? acting : 1, size, channels, size);
 	emit_acting(e);
-	say(e, "    return pl_cut_advance(&cut, $n_flow[%s][0], acting, p, tau, length, y, next, work, room);\n"
+	say(e, "    return pl_cut_advance(&cut, $n_flow[%s][0], acting, p, tau, length, y, next, work, room)\n"
+	       "        || pl_not_finite(next, $N_STATES);\n"
 	       "}\n", changes(e) ? "p->segment" : "0");
 }
 
@@ -271,8 +268,7 @@ static void emit_fill_part(const struct emitter *e, const char *contact)
 
 static void emit_between_limit(const struct emitter *e)
 {
-	say(e, "        double limit = end, size, meets;\n"
-	       "        int status = 0;\n");
+	say(e, "        double limit = end, size, meets;\n");
 	if (changes(e))
 		say(e, "        for (; part.segment < %d; part.segment++) {\n"
 		       "            const double change = $n_until(s, part.segment) / $N_H;\n"
@@ -294,8 +290,9 @@ static void emit_between(const struct emitter *e)
 	       "static int $n_between(const $n *s, %sconst pl_crossing *first, double end, double y[$N_STATES],\n"
 	       "    $n_contact *contact)\n"
 	       "{\n"
-	       "    double c[4][$c], d[%d][$c], next[$N_STATES], terms[%d], spare[%d], done = 0.0;\n"
-	       "    int i, splits = %d;\n", driven_parameter(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
+	       "    double c[4][$c], d[%d][$c], next[$N_STATES], terms[%d], spare[%d], done = 0.0, longest = 1.0;\n"
+	       "    int i, splits = %d;\n"
+	       "    pl_crossing found;\n", driven_parameter(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
 	emit_part_of_step(e);
 	emit_fill_part(e, "contact->");
 	say(l, "    while (done < end) {\n");
@@ -306,29 +303,38 @@ static void emit_between(const struct emitter *e)
 	       "                return PL_TOO_MANY_EVENTS;\n"
 	       "            continue;\n"
 	       "        }\n"
+	       "        limit = limit - done < longest ? limit : done + longest;\n"
 	       "        size = limit - done;\n"
+	       "        found = contact->last;\n"
 	       "        if (first) {\n"
-	       "            meets = first->time;\n"
-	       "            contact->last = *first;\n"
-	       "            first = NULL;\n"
+	       "            found = *first;\n"
+	       "            meets = found.time;\n"
 	       "        } else {\n"
-	       "            status = $n_advance(&part, done * $N_H, size * $N_H, y, next);\n"
-	       "            if (status)\n"
-	       "                return status;\n"
+	       "            if ($n_advance(&part, done * $N_H, size * $N_H, y, next)) {\n"
+	       "                longest = 0.5 * size;\n"
+	       "                if (longest < 1e-9)\n"
+	       "                    return PL_NOT_FINITE;\n"
+	       "                continue;\n"
+	       "            }\n"
 	       "            $n_look(&part, limit * $N_H, next, d, spare);\n"
-	       "            meets = $n_meets(c, (const double (*)[$c])d, terms, size, contact->interval, &splits,\n"
-	       "                &contact->last);\n"
+	       "            meets = $n_meets(c, (const double (*)[$c])d, terms, size, contact->interval, &splits, &found);\n"
 	       "            if (splits < 0)\n"
 	       "                return PL_TOO_MANY_EVENTS;\n"
 	       "        }\n"
+	       "        first = NULL;\n"
 	       "        if (meets > 0.0) {\n"
-	       "            status = $n_advance(&part, done * $N_H, meets * $N_H, y, next);\n"
-	       "            if (status)\n"
-	       "                return status;\n"
-	       "            meets += $n_onto(&part, done + meets, meets, size - meets, &contact->last, next);\n"
+	       "            if ($n_advance(&part, done * $N_H, meets * $N_H, y, next)) {\n"
+	       "                longest = 0.5 * meets;\n"
+	       "                if (longest < 1e-9)\n"
+	       "                    return PL_NOT_FINITE;\n"
+	       "                continue;\n"
+	       "            }\n"
+	       "            meets += $n_onto(&part, done + meets, meets, size - meets, &found, next);\n"
 	       "        }\n"
+	       "        longest = 1.0;\n"
 	       "        for (i = 0; i < $N_STATES && meets != 0.0; i++)\n"
 	       "            y[i] = next[i];\n"
+	       "        contact->last = found;\n"
 	       "        if (meets < 0.0) {\n"
 	       "            contact->last.expression = -1;\n"
 	       "            done = limit;\n"
@@ -414,15 +420,14 @@ static void emit_step_of_parts(const struct emitter *e)
 	       "        meets = $n_meets(c, (const double (*)[$c])d, terms, 1.0, s->contact.interval, &splits, &crossing);\n"
 	       "        crossing.time = meets;\n"
 	       "    }\n"
-	       "    if (!whole || meets >= 0.0 || splits < 0) {\n", given);
+	       "    if (!whole || meets >= 0.0 || splits < 0 || pl_not_finite(s->y, $N_STATES)) {\n", given);
 	emit_restore(e);
 	say(l, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
-	       "            : $n_between(s, %swhole ? &crossing : NULL, 1.0, s->y, &s->contact);\n"
+	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n"
 	       "    } else {\n"
 	       "        s->contact.last.expression = -1;\n"
 	       "    }\n", u);
 	emit_step_end(e);
-	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	if (changes(e))
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
 		       "        s->segment++;\n", e->system->segments - 1);

@@ -164,6 +164,12 @@ static const struct kind tuned_blocks = {
 	.params = emit_params_line
 };
 
+static void emit_held_pass(const struct emitter *e)
+{
+	emit_held_retune(e);
+	emit_pass_of_changes(e);
+}
+
 /* ---- regions ---- */
 
 static bool any_place(const struct emitter *e)
@@ -302,48 +308,14 @@ static const char *no_values_between(const struct step *step)
 
 static void emit_actions_step(const struct emitter *e)
 {
-	if (is_cut(e)) {
-		emit_cut_step(e);
-		return;
-	}
 	emit_leftover_functions(e);
 	emit_leftover_step(e);
-}
-
-static bool leftover_reads_load(const struct emitter *e, int load)
-{
-	return e->step->cut && e->step->cut->look->load[load];
 }
 
 static void emit_leftover_tables(const struct emitter *e)
 {
 	emit_held_nominal(e);
 	emit_times_of_changes(e);
-	emit_cut_place(e);
-}
-
-static void emit_leftover_constants(const struct emitter *e)
-{
-	if (is_cut(e))
-		emit_event_limit(e);
-}
-
-static void emit_leftover_types(const struct emitter *e)
-{
-	emit_cut_types(e);
-	emit_held_types(e);
-}
-
-static void emit_leftover_pass(const struct emitter *e)
-{
-	emit_held_retune(e);
-	if (!is_cut(e))
-		emit_pass_of_changes(e);
-}
-
-static void emit_leftover_at(const struct emitter *e)
-{
-	(is_cut(e) ? emit_cut_at : emit_at)(e);
 }
 
 static const struct kind leftover = {
@@ -352,35 +324,82 @@ static const struct kind leftover = {
 	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = no_values_between,
-	.constants = emit_leftover_constants,
-	.types = emit_leftover_types,
+	.constants = nothing,
+	.types = emit_held_types,
 	.coefficients = emit_held_member,
-	.members = emit_cut_members,
+	.members = nothing,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.declare_state = emit_cut_declarations,
+	.declare_state = nothing,
 	.declare_more = emit_held_declarations,
 	.start = emit_held_start,
-	.places = is_cut,
-	.reads_load = leftover_reads_load,
+	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
 	.tables = emit_leftover_tables,
-	.pass = emit_leftover_pass,
+	.pass = emit_held_pass,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
-	.at = emit_leftover_at,
+	.at = emit_at,
 	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };
 
-/* ---- expanded: the Taylor series of the solution ---- */
+/* ---- cut: the same, from crossing to crossing ---- */
 
 static const char *always(const struct step *step)
 {
 	(void)step;
 	return NULL;
 }
+
+static bool look_reads_load(const struct emitter *e, int load)
+{
+	return e->step->cut->look->load[load];
+}
+
+static void emit_cut_tables(const struct emitter *e)
+{
+	emit_held_nominal(e);
+	emit_times_of_changes(e);
+	emit_cut_place(e);
+}
+
+static void emit_cut_kind_types(const struct emitter *e)
+{
+	emit_cut_types(e);
+	emit_held_types(e);
+}
+
+static const struct kind cut = {
+	.banner = banner_cut,
+	.step_note = "",
+	.banner_more = banner_held,
+	.no_jump = "what is left over is not linear in the state",
+	.no_at = always,
+	.constants = emit_event_limit,
+	.types = emit_cut_kind_types,
+	.coefficients = emit_held_member,
+	.members = emit_cut_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
+	.declare_state = emit_cut_declarations,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
+	.places = any_place,
+	.reads_load = look_reads_load,
+	.reads_phi = flows_whole,
+	.tables = emit_cut_tables,
+	.pass = emit_held_retune,
+	.step = emit_cut_step,
+	.held = nothing,
+	.at = emit_cut_at,
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
+};
+
+/* ---- expanded: the Taylor series of the solution ---- */
 
 static bool expansion_reads_load(const struct emitter *e, int load)
 {
@@ -532,7 +551,7 @@ const struct kind *row_of_kind(enum step_kind kind)
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned,
 		[KIND_TUNED_BLOCKS] = &tuned_blocks, [KIND_REGIONS] = &regions,
-		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded,
+		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_CUT] = &cut, [KIND_EXPANDED] = &expanded,
 		[KIND_COLLOCATED] = &collocated,
 		[KIND_NORMAL] = &normal_modes
 	};

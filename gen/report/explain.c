@@ -190,6 +190,8 @@ static void person_step(FILE *to, const struct step *step)
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
+	else if (step->cut)
+		fprintf(to, "%s_at: a part of a step, with every crossing on the way.\n", model->name);
 	else if (step->collocation)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)
@@ -274,7 +276,7 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
-	if (step->expansion && step->expansion->expressions > 0)
+	if (step->cut || (step->expansion && step->expansion->expressions > 0))
 		person_divided(to, step);
 	if (step->expansion)
 		person_reach(to, step);

@@ -231,7 +231,7 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
-	if (step->expansion && step->expansion->expressions > 0)
+	if (step->cut || (step->expansion && step->expansion->expressions > 0))
 		json_divided(to, step);
 	if (step->expansion)
 		json_reach(to, step);

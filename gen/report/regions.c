@@ -91,8 +91,10 @@ static void person_expressions(FILE *to, const struct step *step)
 /* What chooses formulas by the state, of a series */
 void person_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
-	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
+	const struct expansion *x = divided_series(step);
+	fprintf(to, step->cut ? "The state chooses formulas; a step goes on with others where an expression passes a "
+				"breakpoint, at most %d times:\n"
+			      : "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
 		    "times in a step:\n", max_events(step->model));
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
@@ -102,7 +104,8 @@ void person_divided(FILE *to, const struct step *step)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
 		fputc('\n', to);
 	}
-	person_contacts(to, step);
+	if (step->expansion)
+		person_contacts(to, step);
 }
 
 /* What rubs, and where it sticks: its expression, and the interval of that */
@@ -342,7 +345,7 @@ void json_regions(FILE *to, const struct step *step)
 }
 void json_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = divided_series(step);
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < x->expressions; i++) {
 		mpq_t *rising = rising_breakpoints(&x->expression[i]);
@@ -353,5 +356,6 @@ void json_divided(FILE *to, const struct step *step)
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
-	json_contacts(to, step);
+	if (step->expansion)
+		json_contacts(to, step);
 }

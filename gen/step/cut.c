@@ -4,6 +4,8 @@
  * crosses a breakpoint is made again in parts, whose tables the target makes. */
 #include "step/step.h"
 
+#include "plrt.h"
+
 #include <math.h>
 
 /* Two derivatives at the start decide where a state on a breakpoint is heading. */
@@ -45,8 +47,6 @@ static void count_looks(const struct step *step, struct cut *cut)
 void plan_cut(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	if (!follows_crossings(step->model))
-		return;
 	struct cut *cut = NEW(struct cut);
 	cut->look = expansion_with_forces(step, LOOKED);
 	cut->forces = forces_of_expansion(step, cut->look);
@@ -55,6 +55,7 @@ void plan_cut(struct step *step)
 	for (int s = 0; s < system->segments; s++)
 		cut->slopes[s] = slopes_in(step, &cut->layout, s);
 	count_looks(step, cut);
+	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
 	step->cut = cut;
 	step->series.emitted = true;
 }

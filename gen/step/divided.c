@@ -161,12 +161,16 @@ mpq_t *rising_breakpoints(const struct divided *d)
 	return rising;
 }
 
+const struct expansion *divided_series(const struct step *step)
+{
+	return step->cut ? step->cut->look : step->expansion;
+}
+
 const char *divided_text(const struct step *step, int expression)
 {
-	const struct step *shown = step->shown;
-	bool same = shown->expansion && shown->expansion->expressions == step->expansion->expressions;
-	shown = same ? shown : step;
-	return form_text(shown->model, shown->expansion->expression[expression].form);
+	const struct expansion *x = divided_series(step), *shown = divided_series(step->shown);
+	bool same = shown && shown->expressions == x->expressions;
+	return form_text(same ? step->shown->model : step->model, (same ? shown : x)->expression[expression].form);
 }
 
 int regions_of_series(const struct expansion *x)

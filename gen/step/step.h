@@ -248,6 +248,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KIND_CUT,                   /* the same, from crossing to crossing */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
 	KIND_NORMAL,                /* normal modes, and what is left over as forces on them */
@@ -304,7 +305,7 @@ struct step {                       /* everything that is emitted for one model 
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
-	struct cut *cut;            /* of a step that goes from crossing to crossing; NULL: it steps across */
+	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
 	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
@@ -1130,6 +1131,8 @@ void add_twin(struct divided *d, int breakpoint);            /* a second breakpo
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
 mpq_t *rising_breakpoints(const struct divided *d);
+/* in which expressions stand: of the step, or of the look at it; NULL: there is none */
+const struct expansion *divided_series(const struct step *step);
 const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
 /* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */
 int  regions_of_series(const struct expansion *x);
@@ -1150,8 +1153,9 @@ struct cut {
 	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of a look, at both ends of a step */
+	int kilobytes;              /* of stack for tables */
 };
-void plan_cut(struct step *step);                           /* step->cut, where its scheme follows crossings */
+void plan_cut(struct step *step);                           /* step->cut */
 
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 
