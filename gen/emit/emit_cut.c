@@ -52,9 +52,20 @@ void emit_cut_types(const struct emitter *e)
 	emit_divided_types(looking(e));
 }
 
+/* What a step ends with, the next begins with, unless inputs or formulas of time change in between. */
+static bool keeps_look(const struct emitter *e)
+{
+	return e->system->inputs == 0 && !changes(e);
+}
+
 void emit_cut_members(const struct emitter *e)
 {
-	emit_divided_members(looking(e));
+	const struct emitter *l = looking(e);
+	emit_divided_members(l);
+	if (keeps_look(e))
+		say(l, "    double look[2][$c], size[%d];  /* at the end of the last step: values, slopes; of each expression the "
+		       "sizes of its terms */\n"
+		       "    int looked;           /* they are there */\n", cut_of(e)->look->expressions);
 }
 
 void emit_cut_declarations(const struct emitter *e)
@@ -69,7 +80,8 @@ void emit_cut_place(const struct emitter *e)
 	       "{\n"
 	       "    s->contact.placed = s->contact.crossings = 0;\n"
 	       "    s->contact.total = 0;\n"
-	       "}\n");
+	       "%s"
+	       "}\n", keeps_look(e) ? "    s->looked = 0;\n" : "");
 }
 
 /* ---- a part of a step ---- */
@@ -393,6 +405,38 @@ static void emit_keep_state(const struct emitter *e)
 		       "        carry[i] = s->carry[i];\n", e->step->carries);
 }
 
+static void emit_first_look(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	if (!keeps_look(e)) {
+		say(e, "    $n_look(&part, 0.0, s->y, c, terms);\n");
+		return;
+	}
+	say(l, "    if (s->looked) {\n"
+	       "        for (i = 0; i < $c; i++) {\n"
+	       "            c[0][i] = s->look[0][i];\n"
+	       "            c[1][i] = s->look[1][i];\n"
+	       "        }\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            terms[i] = s->size[i];\n"
+	       "    } else {\n"
+	       "        $n_look(&part, 0.0, s->y, c, terms);\n"
+	       "    }\n", cut_of(e)->look->expressions);
+}
+
+static void emit_keep_look(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	if (keeps_look(e))
+		say(l, "        for (i = 0; i < $c; i++) {\n"
+		       "            s->look[0][i] = d[0][i];\n"
+		       "            s->look[1][i] = d[1][i];\n"
+		       "        }\n"
+		       "        for (i = 0; i < %d; i++)\n"
+		       "            s->size[i] = spare[i];\n"
+		       "        s->looked = 1;\n", cut_of(e)->look->expressions);
+}
+
 static void emit_step_of_parts(const struct emitter *e)
 {
 	const struct emitter *l = looking(e);
@@ -408,9 +452,9 @@ static void emit_step_of_parts(const struct emitter *e)
 	emit_part_of_step(e);
 	emit_divided_start(l, "s->contact", "    ");
 	emit_fill_part(e, "s->contact.");
-	say(l, "    crossing = s->contact.last;\n"
-	       "    $n_look(&part, 0.0, s->y, c, terms);\n"
-	       "    whole = %s!pl_divided_left(&$n_chord, c[0], terms, s->contact.interval, &crossing);\n",
+	say(l, "    crossing = s->contact.last;\n");
+	emit_first_look(e);
+	say(l, "    whole = %s!pl_divided_left(&$n_chord, c[0], terms, s->contact.interval, &crossing);\n",
 	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n        ",
 			       e->system->segments - 1) : "");
 	emit_keep_state(e);
@@ -422,11 +466,14 @@ static void emit_step_of_parts(const struct emitter *e)
 	       "    }\n"
 	       "    if (!whole || meets >= 0.0 || splits < 0 || pl_not_finite(s->y, $N_STATES)) {\n", given);
 	emit_restore(e);
+	if (keeps_look(e))
+		say(e, "        s->looked = 0;\n");
 	say(l, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
 	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n"
 	       "    } else {\n"
-	       "        s->contact.last.expression = -1;\n"
-	       "    }\n", u);
+	       "        s->contact.last.expression = -1;\n", u);
+	emit_keep_look(e);
+	say(e, "    }\n");
 	emit_step_end(e);
 	if (changes(e))
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"

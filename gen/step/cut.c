@@ -35,13 +35,15 @@ static bool *acting_loads(const struct linear *system)
 
 static void count_looks(const struct step *step, struct cut *cut)
 {
+	const struct linear *system = &step->branch->system;
 	struct program program = { .uses = ARRAY(bool, (size_t)step->branch->whole->columns) };
 	struct step view = *step;
 	view.expansion = cut->look;
 	count_expansion(&view, &program);
-	cut->multiplications = 2 * program.multiplications;
-	cut->additions = 2 * program.additions;
-	cut->calls = 2 * program.calls;
+	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
+	cut->multiplications = looks * program.multiplications;
+	cut->additions = looks * program.additions;
+	cut->calls = looks * program.calls;
 }
 
 void plan_cut(struct step *step)

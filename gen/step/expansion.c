@@ -241,6 +241,8 @@ struct expansion *expansion_with_forces(const struct step *step, int order)
 static void mark_term(const struct step *step, struct expansion *x, const struct sequence_term *t)
 {
 	int first;
+	if (t->factor && t->factor[0] == 0)
+		return;                         /* it enters later coefficients */
 	if (t->kind == TERM_LOAD)
 		x->load[load_of_column(&step->branch->system, t->a, &first)] = true;
 	if (t->kind == TERM_INPUT)

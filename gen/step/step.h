@@ -1152,7 +1152,7 @@ struct cut {
 	struct expansion *forces;   /* what is left over, with the formulas of given intervals */
 	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
-	int multiplications, additions, calls; /* of a look, at both ends of a step */
+	int multiplications, additions, calls; /* of the looks in a step */
 	int kilobytes;              /* of stack for tables */
 };
 void plan_cut(struct step *step);                           /* step->cut */
