@@ -17,6 +17,7 @@
  *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     blocks.c    the same of one independent block of a large model
+ *     cut.c       a part of a step: schemes with a leftover, from crossing to crossing
  *     rate.c      the rate of a load's phase from another frequency
  *     root.c      rough roots: the length of a step by its error
  *     dense.c     linear equations: Newton's method of implicit schemes
@@ -1015,6 +1016,42 @@ int pl_regionf_of(int size, const pl_twof *A, float h, int most, int *halvings, 
                   pl_twof *work);
 void pl_regionf_bounds(int size, float d, const float *A, int rows, const float *row, float *slope, float *second,
                        float *fourth, float *work);
+
+/* ---- cut.c: a part of a step of a scheme with a leftover ------------------------------------------------------ */
+
+/* y' = A y + what acts + forces.  x is y, then what acts (load states, inputs and their slopes), then three entries for
+ * each force: its value and its first two derivatives. */
+typedef struct pl_cut {
+    int states, size; /* entries of y, of x */
+    int forces;
+    /* those at y, this long [s] after the start of the step */
+    void (*force)(const void *from, double tau, const double *y, double *r);
+} pl_cut;
+
+/* D <- e^{A tau} - I, its first rows, states x size; A size x size [1/s], its other entries as pl_increment wants them
+ *     work  PL_CUT_ROOM(size) entries, contents of no meaning
+ * 0, or PL_NOT_FINITE */
+int pl_cut_table(const pl_cut *m, const double *A, double tau, double *D, pl_two *work);
+
+/* next <- y, tau [s] later: off by O(tau^5), by e^{A tau} and e^{A tau / 2}, which are made here, so any A is borne.
+ *     acting  what acts, at the start of the part
+ *     at      that start after the start of the step [s]
+ *     work    PL_CUT_WORK(states, size, forces) entries
+ * 0, or PL_NOT_FINITE and next has no meaning */
+int pl_cut_advance(const pl_cut *m, const double *A, const double *acting, const void *from, double at, double tau,
+                   const double *y, double *next, double *work, pl_two *room);
+
+#define PL_CUT_ROOM(size) (8 * (size) * (size))
+#define PL_CUT_WORK(states, size, forces) ((2 * (states) + 1) * (size) + 5 * (states) + 6 * (forces))
+
+typedef struct pl_cutf {
+    int states, size, forces;
+    void (*force)(const void *from, float tau, const float *y, float *r);
+} pl_cutf;
+
+int pl_cutf_table(const pl_cutf *m, const float *A, float tau, float *D, pl_twof *work);
+int pl_cutf_advance(const pl_cutf *m, const float *A, const float *acting, const void *from, float at, float tau,
+                    const float *y, float *next, float *work, pl_twof *room);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

@@ -64,6 +64,12 @@ static void emit_sum(const struct emitter *e, const struct action *a)
 	}
 }
 
+static const char *time_of(const struct emitter *e, mpq_srcptr fraction)
+{
+	bool whole = mpq_cmp_ui(fraction, 1, 1) == 0;
+	return whole ? format("%s_H", e->upper) : shortest(time_in_step(e->model, fraction));
+}
+
 /* ---- actions ---- */
 
 static void emit_prediction(const struct emitter *e, const struct action *a)
@@ -79,6 +85,12 @@ static void emit_prediction(const struct emitter *e, const struct action *a)
 static void emit_evaluation(const struct emitter *e, const struct action *a)
 {
 	const char *state = a->from == STAGE_STATE ? "s->y" : vector_name(a->from);
+	if (is_cut(e)) {
+		mpq_srcptr node = e->step->program->node[a->node];
+		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
+		say(e, "    %s\n", cut_evaluation(e, tau, state, format("left%d", a->target)));
+		return;
+	}
 	say(e, "    %s\n", leftover_call(e, format("%d", a->node), state, format("left%d", a->target), FROM_STEP));
 	if (a->target == 0 && e->step->program->predicts)
 		say(e, "    $n_slope_of(%ss->y, left0, first);\n", many_operators(e) ? "which, " : "");
@@ -172,12 +184,6 @@ static void emit_driven(const struct emitter *e)
 	}
 }
 
-static const char *time_of(const struct emitter *e, mpq_srcptr fraction)
-{
-	bool whole = mpq_cmp_ui(fraction, 1, 1) == 0;
-	return whole ? format("%s_H", e->upper) : shortest(time_in_step(e->model, fraction));
-}
-
 /* Across a change of the loads */
 static void emit_passes(const struct emitter *e)
 {
@@ -252,11 +258,27 @@ static void emit_operands_of_step(const struct emitter *e)
 	if (!loops)
 		emit_locals(e, states_read(e));
 	emit_load_states(e, acting_loads(e), false);
-	emit_samples(e);
+	(is_cut(e) ? emit_cut_samples : emit_samples)(e);
 	if (many_operators(e))
 		say(e, "    const int which = %s;\n", selection_call(e));
 	if (loops)
 		emit_operands(e);
+}
+
+/* The body of a step: s->y one h on */
+void emit_actions_of_step(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	emit_set_aside(e);
+	emit_operands_of_step(e);
+	declare_vectors(e);
+	if (flows_apart(e))
+		emit_flows_apart(e);
+	else
+		emit_driven(e);
+	for (int i = 0; i < program->actions; i++)
+		emit_action(e, &program->action[i]);
+	emit_take_back(e);
 }
 
 void emit_leftover_step(const struct emitter *e)
@@ -268,16 +290,7 @@ void emit_leftover_step(const struct emitter *e)
 		emit_predictor(e);
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n", step_parameters(e));
-	emit_set_aside(e);
-	emit_operands_of_step(e);
-	declare_vectors(e);
-	if (flows_apart(e))
-		emit_flows_apart(e);
-	else
-		emit_driven(e);
-	for (int i = 0; i < program->actions; i++)
-		emit_action(e, &program->action[i]);
-	emit_take_back(e);
+	emit_actions_of_step(e);
 	emit_step_end(e);
 	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	if (e->system->segments > 1)

@@ -151,6 +151,41 @@ void banner_leftover(const struct emitter *e)
 	banner_growth(e);
 }
 
+static void banner_breakpoints(const struct emitter *e, const struct expansion *x)
+{
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		const char *at = "";
+		for (int k = 0; k < d->breaks; k++)
+			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
+		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
+	}
+}
+
+static void banner_series_regions(const struct emitter *e, const struct expansion *x)
+{
+	if (regions_of_series(x))
+		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
+				   "numbers of intervals before it.");
+}
+
+/* From crossing to crossing */
+void banner_cut(const struct emitter *e)
+{
+	const struct cut *cut = e->step->cut;
+	banner_leftover(e);
+	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing. Where an expression passes a "
+			   "breakpoint is the first root of the cubic through its values and slopes at both ends of a "
+			   "step, found before it is stepped over; there the formulas change, and the step goes on.");
+	banner_breakpoints(e, cut->look);
+	banner_series_regions(e, cut->look);
+	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with tables that the "
+				  "target makes: some %d KB of stack.", cut->kilobytes));
+	banner_sentence(e, format("Costs below are of a step without a crossing; the look for one takes %d multiplications "
+				  "and %d additions more.", cut->multiplications, cut->additions));
+}
+
 static void tell_no_phi(const struct emitter *e)
 {
 	if (e->step->shown->no_phi)
@@ -202,18 +237,9 @@ static void banner_divided(const struct emitter *e)
 					    : "polynomial through the start and the nodes",
 			 e->step->expansion ? ", one of the collocation made anew with that length"
 					    : ", made anew with that length"));
-	for (int i = 0; i < x->expressions; i++) {
-		const struct divided *d = &x->expression[i];
-		mpq_t *rising = rising_breakpoints(d);
-		const char *at = "";
-		for (int k = 0; k < d->breaks; k++)
-			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
-		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
-	}
+	banner_breakpoints(e, x);
 	banner_contacts(e);
-	if (regions_of_series(x))
-		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
-				   "numbers of intervals before it.");
+	banner_series_regions(e, x);
 	banner_sentence(e, !e->step->collocation
 		? "Costs below are of one series, without the search on it; a crossing takes another one."
 		: "Costs below are without the search; a crossing takes another internal step, of the collocation two.");

@@ -183,6 +183,7 @@ bool adds_driven(const struct emitter *e);                        /* loads or in
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 
 void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
+void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 
@@ -346,6 +347,24 @@ void emit_expansion_at(const struct emitter *e);
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
+void emit_frozen_function(const struct emitter *e);               /* NAME_within: what is left over, alone */
+/* `from`: p->, where a part of the step has inputs and intervals; else what stands before `interval` */
+const char *frozen_call(const struct emitter *e, const char *s, const char *tau, const char *when, const char *from,
+			const char *y, const char *left);
+bool has_choices(const struct emitter *e);                        /* of formulas, by t */
+
+/* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
+
+bool is_cut(const struct emitter *e);
+void emit_cut_types(const struct emitter *e);                     /* of these nothing where it steps across */
+void emit_cut_members(const struct emitter *e);
+void emit_cut_declarations(const struct emitter *e);
+void emit_cut_place(const struct emitter *e);
+void emit_cut_samples(const struct emitter *e);
+const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
+void emit_cut_step(const struct emitter *e);
+void emit_cut_at(const struct emitter *e);
+
 /* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
 
 void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
@@ -486,6 +505,7 @@ void emit_normal_at(const struct emitter *e);
 void emit_banner(const struct emitter *e);
 void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
 void banner_leftover(const struct emitter *e);
+void banner_cut(const struct emitter *e);
 void banner_regions(const struct emitter *e);
 void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);

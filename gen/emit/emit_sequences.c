@@ -29,7 +29,7 @@ bool spans_steps(const struct emitter *e)
 	return e->step->expansion && !e->step->collocation && e->model->truncation.over > 1;
 }
 
-static bool has_choices(const struct emitter *e)
+bool has_choices(const struct emitter *e)
 {
 	for (int i = 0; i < expansion(e)->count; i++)
 		if (expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
@@ -179,6 +179,46 @@ void emit_expand_function(const struct emitter *e)
 	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
 		say(e, "    (void)slope;\n");
 	say(e, "}\n");
+}
+
+/* ---- what is left over, alone ---- */
+
+void emit_frozen_function(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	bool tau = false;
+	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each "
+	       "equation\n"
+	       " * that has some */\n"
+	       "static void $n_within(const $n *s, double tau, %s%sconst int interval[%d], const double y[$N_STATES],\n"
+	       "    double left[%d])\n"
+	       "{\n", has_choices(e) ? "double when, " : "", input_parameters(e, true), x->expressions, x->columns);
+	emit_coefficients(e);
+	for (int c = 0; c < x->columns; c++) {
+		const char *name = coefficient(e, x->column[c], 0);
+		say(e, "    left[%d] = %s;\n", c, name ? name : "0.0");
+	}
+	for (int i = 0; i < e->system->inputs; i++)
+		tau = tau || (x->input[i] && e->system->input[i].hold);
+	if (!reads_instance(e) && !x->params)
+		say(e, "    (void)s;\n");
+	if (!reads_instance(e) && !tau)
+		say(e, "    (void)tau;\n");
+	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
+		say(e, "    (void)slope;\n");
+	say(e, "}\n");
+}
+
+const char *frozen_call(const struct emitter *e, const char *s, const char *tau, const char *when, const char *from,
+			const char *y, const char *left)
+{
+	const struct expansion *x = expansion(e);
+	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
+	bool part = strcmp(from, "p->") == 0;
+	const char *u = !input ? "" : format("%s%s, ", part ? from : "", part || !e->ramps ? "u" : "start");
+	const char *rate = !slope && !(input && e->ramps) ? "" : format("%sslope, ", part ? from : "");
+	return format("%s_within(%s, %s, %s%s%s%sinterval, %s, %s);", e->name, s, tau,
+		      has_choices(e) ? format("%s, ", when) : "", u, rate, from, y, left);
 }
 
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,

@@ -303,7 +303,7 @@ static bool flows_whole(const struct step *step)
 
 static const char *no_values_between(const struct step *step)
 {
-	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
+	return step->cut ? NULL : step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
 }
 
 static void emit_actions_step(const struct emitter *e)
@@ -345,13 +345,61 @@ static const struct kind leftover = {
 	.params = emit_params_line
 };
 
-/* ---- expanded: the Taylor series of the solution ---- */
+/* ---- cut: the same, from crossing to crossing ---- */
 
 static const char *always(const struct step *step)
 {
 	(void)step;
 	return NULL;
 }
+
+static bool look_reads_load(const struct emitter *e, int load)
+{
+	return e->step->cut->look->load[load];
+}
+
+static void emit_cut_tables(const struct emitter *e)
+{
+	emit_held_nominal(e);
+	emit_times_of_changes(e);
+	emit_cut_place(e);
+}
+
+static void emit_cut_kind_types(const struct emitter *e)
+{
+	emit_cut_types(e);
+	emit_held_types(e);
+}
+
+static const struct kind cut = {
+	.banner = banner_cut,
+	.step_note = "",
+	.banner_more = banner_held,
+	.no_jump = "what is left over is not linear in the state",
+	.no_at = always,
+	.constants = emit_event_limit,
+	.types = emit_cut_kind_types,
+	.coefficients = emit_held_member,
+	.members = emit_cut_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
+	.declare_state = emit_cut_declarations,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
+	.places = any_place,
+	.reads_load = look_reads_load,
+	.reads_phi = flows_whole,
+	.tables = emit_cut_tables,
+	.pass = emit_held_retune,
+	.step = emit_cut_step,
+	.held = nothing,
+	.at = emit_cut_at,
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
+};
+
+/* ---- expanded: the Taylor series of the solution ---- */
 
 static bool expansion_reads_load(const struct emitter *e, int load)
 {
@@ -503,7 +551,7 @@ const struct kind *row_of_kind(enum step_kind kind)
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned,
 		[KIND_TUNED_BLOCKS] = &tuned_blocks, [KIND_REGIONS] = &regions,
-		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded,
+		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_CUT] = &cut, [KIND_EXPANDED] = &expanded,
 		[KIND_COLLOCATED] = &collocated,
 		[KIND_NORMAL] = &normal_modes
 	};

@@ -558,6 +558,8 @@ _Noreturn void tell_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
 int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
+/* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with breakpoints */
+bool follows_crossings(const struct model *model);
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 

@@ -791,6 +791,8 @@ bool loses_order(const struct model *model)
 		return false;                   /* a step ends where formulas change in time */
 	if (row->expands)
 		return false;                   /* and where the state chooses others */
+	if (follows_crossings(model))
+		return false;
 	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
 }
 

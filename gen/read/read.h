@@ -293,6 +293,7 @@ struct scheme_row {
 	bool by_default;            /* where exact is not possible and no scheme is asked for */
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
+	bool cuts;                  /* its steps end where the state chooses other formulas: see follows_crossings() */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
 	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
 	bool collocates;            /* or by collocation, which bears stiffness; */

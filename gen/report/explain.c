@@ -190,6 +190,8 @@ static void person_step(FILE *to, const struct step *step)
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
+	else if (step->cut)
+		fprintf(to, "%s_at: a part of a step, with every crossing on the way.\n", model->name);
 	else if (step->collocation)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)

@@ -399,11 +399,10 @@ static const char *sequence_definition(const struct step *step, const struct seq
 	}
 }
 
-static void print_expansion(FILE *to, const struct step *step)
+static void print_series(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->expansion;
 	const struct truncation *truncation = &step->model->truncation;
-	print_tables(to, step);
 	fprintf(to,
 		"Series of order %d in time over %s%s; of each sequence the coefficients that are read, factors of the "
 		"first:\n", x->order, truncation->over > 1 ? format("%d h", truncation->over) : "h",
@@ -413,6 +412,22 @@ static void print_expansion(FILE *to, const struct step *step)
 			fprintf(to, "    %s (0 to %d) = %s\n", sequence_text(step, i),
 				x->sequence[i].top < x->sequence[i].degree ? x->sequence[i].top : x->sequence[i].degree,
 				sequence_definition(step, &x->sequence[i]));
+}
+
+static void print_expansion(FILE *to, const struct step *step)
+{
+	print_tables(to, step);
+	print_series(to, step);
+}
+
+/* What a step is looked at by, with the formulas that hold */
+static void print_look(FILE *to, const struct step *step)
+{
+	struct step view = *step;
+	view.expansion = step->cut->look;
+	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a breakpoint "
+		    "in parts, e^{A tau} of %d numbers made for each:\n", step->cut->layout.size);
+	print_series(to, &view);
 }
 
 /* ---- collocation ---- */
@@ -485,6 +500,8 @@ void explain_program(FILE *to, const struct step *step)
 		print_actions(to, step);
 	else
 		print_list(to, step);
+	if (step->cut)
+		print_look(to, step);
 	print_reads(to, step);
 	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s%s\n", program->multiplications,
 		program->additions, program->calls,

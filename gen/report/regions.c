@@ -92,9 +92,11 @@ static void person_expressions(FILE *to, const struct step *step)
 void person_divided(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->divided;
-	fprintf(to, "The state chooses formulas; %s ends where an expression passes a breakpoint, at most %d "
-		    "times in a step:\n", !step->collocation ? "a series" : "an internal step",
-		max_events(step->model));
+	const char *ends = step->cut ? "a step goes on with others where an expression passes a breakpoint"
+				     : format("%s ends where an expression passes a breakpoint",
+					      step->collocation ? "an internal step" : "a series");
+	fprintf(to, "The state chooses formulas; %s, at most %d times%s:\n", ends, max_events(step->model),
+		step->cut ? "" : " in a step");
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -103,7 +105,8 @@ void person_divided(FILE *to, const struct step *step)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
 		fputc('\n', to);
 	}
-	person_contacts(to, step);
+	if (step->expansion)
+		person_contacts(to, step);
 }
 
 /* What rubs, and where it sticks: its expression, and the interval of that */
@@ -354,5 +357,6 @@ void json_divided(FILE *to, const struct step *step)
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
-	json_contacts(to, step);
+	if (step->expansion)
+		json_contacts(to, step);
 }

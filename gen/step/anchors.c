@@ -29,6 +29,7 @@ static const char *objection(const struct step *step)
 		[KIND_TUNED] = "tunable params: the target would have to make the tables",
 		[KIND_TUNED_BLOCKS] = "tunable params: the target would have to make the tables",
 		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps",
+		[KIND_CUT] = "a leftover: the scheme needs the loads between steps",
 		[KIND_EXPANDED] = "a series: its steps are no steps of h",
 		[KIND_COLLOCATED] = "a collocation: its steps are no steps of h",
 		[KIND_NORMAL] = "normal modes: loads are forces on them, at the ends of steps"

@@ -178,7 +178,16 @@ static void start_states(struct sequencing *w)
 		new_sequence(w, (struct sequence){ .kind = SEQUENCE_INTEGRAL, .state = i, .a = NONE, .b = NONE });
 }
 
-struct expansion *expansion_of(const struct step *step, int order)
+static void make_forces(struct sequencing *w)
+{
+	const struct model *model = w->step->model;
+	int *force = ARRAY(int, (size_t)model->channels);
+	for (int e = 0; e < model->channels; e++)
+		force[e] = sequence_of_form(w, model->operator[0].left[e]);
+	w->x->force = force;
+}
+
+static struct expansion *expand(const struct step *step, int order, bool with_forces)
 {
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
@@ -204,6 +213,8 @@ struct expansion *expansion_of(const struct step *step, int order)
 		count_uses(w, model->operator[0].left[e]);
 	start_states(w);
 	hold_contacts(w);
+	if (with_forces)
+		make_forces(w);
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
 	rank_breakpoints(w->x);
@@ -213,4 +224,61 @@ struct expansion *expansion_of(const struct step *step, int order)
 	find_time(w);
 	find_newest(w->x);
 	return w->x;
+}
+
+struct expansion *expansion_of(const struct step *step, int order)
+{
+	return expand(step, order, false);
+}
+
+struct expansion *expansion_with_forces(const struct step *step, int order)
+{
+	return expand(step, order, true);
+}
+
+/* ---- what is left over alone ---- */
+
+static void mark_term(const struct step *step, struct expansion *x, const struct sequence_term *t)
+{
+	int first;
+	if (t->factor && t->factor[0] == 0)
+		return;                         /* it enters later coefficients */
+	if (t->kind == TERM_LOAD)
+		x->load[load_of_column(&step->branch->system, t->a, &first)] = true;
+	if (t->kind == TERM_INPUT)
+		x->input[t->a] = true;
+	if (t->kind == TERM_SLOPE)
+		x->slope[t->a] = true;
+	x->time = x->time || (t->kind == TERM_TIME && t->a > 0);
+	x->params = x->params || t->kind == TERM_PARAM;
+}
+
+struct expansion *forces_of_expansion(const struct step *step, const struct expansion *whole)
+{
+	const struct linear *system = &step->branch->system;
+	struct expansion *x = NEW(struct expansion);
+	*x = (struct expansion){ .count = whole->count, .expressions = whole->expressions,
+				 .expression = whole->expression, .columns = system->channels, .column = whole->force,
+				 .forces_alone = true };
+	x->sequence = ARRAY(struct sequence, (size_t)x->count);
+	x->column_top = ARRAY(int, (size_t)x->columns);
+	x->load = ARRAY(bool, (size_t)system->loads);
+	x->input = ARRAY(bool, (size_t)system->inputs);
+	x->slope = ARRAY(bool, (size_t)system->inputs);
+	for (int i = 0; i < x->count; i++) {
+		x->sequence[i] = whole->sequence[i];
+		x->sequence[i].top = -1;
+	}
+	for (int c = 0; c < x->columns; c++)
+		raise(x, x->column[c], 0);
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (int i = 0; i < x->count; i++)
+			changed |= raise_operands(x, i);
+	}
+	for (int i = 0; i < x->count; i++)
+		for (int k = 0; k < x->sequence[i].terms; k++)
+			if (x->sequence[i].top >= 0 && x->sequence[i].kind == SEQUENCE_SUM)
+				mark_term(step, x, &x->sequence[i].term[k]);
+	return x;
 }

@@ -12,7 +12,7 @@ enum step_kind kind_of_step(const struct model *model)
 		return KIND_LINEAR;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	return row->modes ? KIND_NORMAL : row->collocates ? KIND_COLLOCATED
-		   : row->expands ? KIND_EXPANDED : KIND_LEFTOVER;
+		   : row->expands ? KIND_EXPANDED : follows_crossings(model) ? KIND_CUT : KIND_LEFTOVER;
 }
 
 bool is_anchored(const struct step *step, int load)
@@ -100,7 +100,7 @@ bool *loads_of_regions(const struct step *step)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED ||
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_CUT || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED ||
 	       step->kind == KIND_NORMAL;
 }
 
@@ -108,6 +108,7 @@ void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_LEFTOVER] = "what is left over has no closed form",
+		[KIND_CUT] = "what is left over has no closed form",
 		[KIND_EXPANDED] = "what is left over has no closed form",
 		[KIND_COLLOCATED] = "what is left over has no closed form",
 		[KIND_NORMAL] = "what is left over has no closed form"

@@ -143,6 +143,12 @@ static void build_leftover_step(struct step *step)
 	series_plan(step);
 }
 
+static void build_cut_step(struct step *step)
+{
+	build_leftover_step(step);
+	plan_cut(step);
+}
+
 struct reading { struct step *step; unsigned long parts; };    /* h times 0, or 1 */
 
 /* e^{A h}, for readers of the table alone */
@@ -304,7 +310,8 @@ static void build(void *context)
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
 		[KIND_TUNED_BLOCKS] = build_tuned_blocks,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
-		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step,
+		[KIND_LEFTOVER] = build_leftover_step, [KIND_CUT] = build_cut_step,
+		[KIND_EXPANDED] = build_expanded_step,
 		[KIND_COLLOCATED] = build_collocated_step,
 		[KIND_NORMAL] = build_normal_step
 	};

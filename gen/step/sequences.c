@@ -466,7 +466,6 @@ static int sequence_in_three(struct sequencing *w, const struct atom *atom, int 
 /* Of functions with kinks; NONE: of others */
 static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 {
-	enum { ARGUMENTS = 6, PIECES = 100 };
 	const struct form *x = a->operand[0], *zero = form_number(0);
 	struct straight *piece;
 	mpq_t minus;
@@ -483,7 +482,7 @@ static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 			      choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 0)));
 	case FN_MIN:
 	case FN_MAX:
-		return a->operands > ARGUMENTS ? NONE : best_from(w, a, 1, 0);
+		return a->operands > LIMIT_COMPARED ? NONE : best_from(w, a, 1, 0);
 	case FN_CLIP:
 		return sequence_in_three(w, a, sequence_of_form(w, a->operand[1]), sequence_of_form(w, x),
 					 sequence_of_form(w, a->operand[2]));
@@ -492,7 +491,7 @@ static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 					 sequence_of_constant(w, 0),
 					 sequence_of_form(w, form_difference(x, a->operand[2])));
 	case FN_TABLE:
-		return pieces_of_atom(a, &piece) > PIECES ? NONE : sequence_of_table(w, a);
+		return pieces_of_atom(a, &piece) > LIMIT_STRAIGHTS ? NONE : sequence_of_table(w, a);
 	default:
 		return NONE;
 	}
@@ -634,7 +633,9 @@ struct sum slope_of_state(struct sequencing *w, int state)
 			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
 		}
 	for (int e = 0; e < w->system->channels; e++)
-		if (mpq_sgn(row[layout->channel + e]) != 0)
+		if (mpq_sgn(row[layout->channel + e]) != 0 && w->x->force)
+			sum_add(&sum, TERM_SEQUENCE, w->x->force[e], 0, row[layout->channel + e]);
+		else if (mpq_sgn(row[layout->channel + e]) != 0)
 			sum_add_form(w, &sum, model->operator[0].left[e], row[layout->channel + e]);
 	return sum;
 }

@@ -248,6 +248,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KIND_CUT,                   /* the same, from crossing to crossing */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
 	KIND_NORMAL,                /* normal modes, and what is left over as forces on them */
@@ -305,6 +306,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
+	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
 	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
@@ -1073,6 +1075,8 @@ struct expansion {
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	struct contacts *contacts;  /* NULL: there are none */
+	int *force;                 /* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	bool forces_alone;          /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -1148,6 +1152,18 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
 
+/* ---- cut.c: a scheme with a leftover, from crossing to crossing ---- */
+
+struct cut {
+	struct expansion *look;     /* of the solution, so far as crossings are looked for */
+	struct expansion *forces;   /* what is left over, with the formulas of given intervals */
+	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
+	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
+	int multiplications, additions, calls; /* of the looks in a step */
+	int kilobytes;              /* of stack for tables */
+};
+void plan_cut(struct step *step);                           /* step->cut */
+
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 
 void find_newest(struct expansion *x);
@@ -1155,6 +1171,9 @@ void find_newest(struct expansion *x);
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
+/* the same with what is left over as sequences of their own; and these alone, their values, with the same expressions */
+struct expansion *expansion_with_forces(const struct step *step, int order);
+struct expansion *forces_of_expansion(const struct step *step, const struct expansion *whole);
 struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
 /* ---- order.c: the order of a series ---- */

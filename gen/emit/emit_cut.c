@@ -1,0 +1,526 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Schemes with a leftover from crossing to crossing: a whole step by the scheme's own tables, a look at it from both
+ * ends, and a step that crosses a breakpoint again, in parts of any length. */
+#include "emit/emit.h"
+
+static const struct cut *cut_of(const struct emitter *e)
+{
+	return e->step->cut;
+}
+
+bool is_cut(const struct emitter *e)
+{
+	return cut_of(e) != NULL;
+}
+
+static bool changes(const struct emitter *e)
+{
+	return e->system->segments > 1;
+}
+
+/* The same emitter, whose series is this one */
+struct view {
+	struct step step;
+	struct emitter e;
+};
+
+static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
+{
+	struct view *view = NEW(struct view);
+	view->step = *e->step;
+	view->step.expansion = x;
+	view->e = *e;
+	view->e.step = &view->step;
+	view->e.columns = format(x->columns && !x->forces_alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
+	return &view->e;
+}
+
+static const struct emitter *looking(const struct emitter *e)
+{
+	return look_by(e, cut_of(e)->look);
+}
+
+static const struct emitter *forcing(const struct emitter *e)
+{
+	return look_by(e, cut_of(e)->forces);
+}
+
+/* ---- the header ---- */
+
+void emit_cut_types(const struct emitter *e)
+{
+	emit_divided_types(looking(e));
+}
+
+/* What a step ends with, the next begins with, unless inputs or formulas of time change in between. */
+static bool keeps_look(const struct emitter *e)
+{
+	return e->system->inputs == 0 && !changes(e);
+}
+
+void emit_cut_members(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	emit_divided_members(l);
+	if (keeps_look(e))
+		say(l, "    double look[2][$c], size[%d];  /* at the end of the last step: values, slopes; of each expression the "
+		       "sizes of its terms */\n"
+		       "    int looked;           /* they are there */\n", cut_of(e)->look->expressions);
+}
+
+void emit_cut_declarations(const struct emitter *e)
+{
+	emit_divided_declarations(looking(e));
+}
+
+void emit_cut_place(const struct emitter *e)
+{
+	say(e, "\n/* What follows from a state that was set */\n"
+	       "static void $n_place($n *s)\n"
+	       "{\n"
+	       "    s->contact.placed = s->contact.crossings = 0;\n"
+	       "    s->contact.total = 0;\n"
+	       "%s"
+	       "}\n", keeps_look(e) ? "    s->looked = 0;\n" : "");
+}
+
+/* ---- a part of a step ---- */
+
+static void emit_flow_tables(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	const char **name = layout_names(layout, e->system, e->model);
+	for (int i = 0; i < e->system->states; i++)
+		name[i] = format("%s'", name[i]);
+	say(e, "\n/* x' = A x; x = y, then what acts on it, then each force with two derivatives%s */\n"
+	       "static const double $n_flow[%d][%d][%d] = {\n", changes(e) ? "; in each segment of time" : "",
+	    e->system->segments, layout->size, layout->size);
+	for (int k = 0; k < e->system->segments; k++) {
+		say(e, "  {\n");
+		emit_number_rows(e, layout->size, layout->size, cut_of(e)->slopes[k], name);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+static void emit_part_type(const struct emitter *e)
+{
+	say(e, "\ntypedef struct $n_part {  /* of a step */\n"
+	       "    const $n *s;\n"
+	       "%s"
+	       "    double when;          /* a time in it */\n"
+	       "%s"
+	       "    const int *interval;\n"
+	       "} $n_part;\n",
+	    e->system->inputs ? "    const double *u, *slope;  /* inputs at the start of the step, and their slopes */\n" : "",
+	    changes(e) ? "    int segment;          /* of time */\n" : "");
+}
+
+/* The load states and inputs at a time of the step */
+static void emit_acting(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads), time = false;
+	for (int l = 0; l < e->system->loads; l++) {
+		wanted[l] = layout->load[l] >= 0;
+		time = time || (wanted[l] && e->system->load[l].powers > 1);
+	}
+	say(e, "    const $n *const s = p->s;\n");
+	if (time)
+		say(e, "    const double t = $n_time(s) + tau;\n");
+	struct emitter here = *e;
+	here.after = "tau";
+	emit_load_states(&here, wanted, true);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && wanted[l]; k++) {
+			const char *value = load_operand(e, l, k);
+			say(e, "    acting[%d] = %s;\n", layout->load[l] + k - layout->states, value ? value : "1.0");
+		}
+	for (int i = 0; i < e->system->inputs; i++) {
+		int at = layout->input[i] - layout->states;
+		bool ramp = e->system->input[i].hold;
+		say(e, "    acting[%d] = p->u[%d]%s;\n", at, i, ramp ? format(" + tau * p->slope[%d]", i) : "");
+		if (ramp)
+			say(e, "    acting[%d] = p->slope[%d];\n", at + 1, i);
+	}
+	say(e, "    (void)s;\n");
+}
+
+static void emit_part(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	int size = layout->size, channels = e->model->channels, acting = size - layout->states - CUT_POWERS * channels;
+	emit_part_type(e);
+	say(e, "\nstatic void $n_forces(const void *from, double tau, const double *y, double *left)\n"
+	       "{\n"
+	       "    const $n_part *const p = (const $n_part *)from;\n"
+	       "    %s\n"
+	       "}\n", frozen_call(forcing(e), "p->s", "tau", "p->when", "p->", "y", "left"));
+	say(e, "\n/* The state so long after `tau` of the step, by the fourth order scheme with tables made here; not "
+	       "0:\n"
+	       " * it is not finite */\n"
+	       "static int $n_advance(const $n_part *p, double tau, double length, const double y[$N_STATES],\n"
+	       "    double next[$N_STATES])\n"
+	       "{\n"
+	       "    static const pl_cut cut = {$N_STATES, %d, %d, $n_forces};\n"
+	       "    double acting[%d], work[PL_CUT_WORK($N_STATES, %d, %d)];\n"
+	       "    pl_two room[PL_CUT_ROOM(%d)];\n", size, channels, acting ? acting : 1, size, channels, size);
+	emit_acting(e);
+	say(e, "    return pl_cut_advance(&cut, $n_flow[%s][0], acting, p, tau, length, y, next, work, room)\n"
+	       "        || pl_not_finite(next, $N_STATES);\n"
+	       "}\n", changes(e) ? "p->segment" : "0");
+}
+
+/* ---- where a step crosses a breakpoint ---- */
+
+static const char *segment_of(const struct emitter *e)
+{
+	return changes(e) ? "p->segment" : "";
+}
+
+/* Expands from a part: what it is given are locals here */
+static void emit_look(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	const struct expansion *x = cut_of(e)->look;
+	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
+	say(e, "\nstatic void $n_look(const $n_part *p, double tau, const double y[$N_STATES], double c[%d][%s],\n"
+	       "    double terms[%d])\n"
+	       "{\n"
+	       "    const $n *const s = p->s;\n", x->order + 1, l->columns, x->expressions);
+	if (input)
+		say(e, "    const double *const %s = p->u;\n", e->ramps ? "start" : "u");
+	if (slope || (input && e->ramps))
+		say(e, "    const double *const slope = p->slope;\n");
+	say(e, "    %s\n"
+	       "}\n", expand_call(l, "tau", "p->when", segment_of(e), "p->", "y", "c"));
+}
+
+/* The cubic with values and slopes of both ends is as exact as the step. */
+static void emit_meets(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	const struct expansion *x = cut_of(e)->look;
+	say(l, "\nstatic const pl_divided $n_chord = {%d, $c, 3, $n_column, $n_breaks, $n_breakpoint};\n"
+	       "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.  c: as at its\n"
+	       " * start, then the cubic of each expression; d: as at its end */\n"
+	       "static double $n_meets(double c[4][$c], const double d[%d][$c], const double terms[%d], double size,\n"
+	       "    const int interval[%d], int *splits, pl_crossing *crossing)\n"
+	       "{\n"
+	       "    double work[PL_DIVIDED_WORK(3)];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const int k = $n_column[i];\n"
+	       "        const double rise = (d[0][k] - c[0][k]) / size;\n"
+	       "        c[2][k] = (3.0 * rise - 2.0 * c[1][k] - d[1][k]) / size;\n"
+	       "        c[3][k] = (c[1][k] + d[1][k] - 2.0 * rise) / (size * size);\n"
+	       "    }\n"
+	       "    return pl_divided_next(&$n_chord, c[0], terms, interval, size, splits, crossing, work);\n"
+	       "}\n", x->expressions, x->order + 1, x->expressions, x->expressions, x->expressions);
+}
+
+/* What a part's own end is off the breakpoint that it was to meet is of the size of the error: a Taylor polynomial
+ * bridges it. */
+static void emit_onto(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	const struct expansion *x = cut_of(e)->look;
+	say(l, "\n/* From `at` of the step [h], onto the breakpoint of `crossing`, back by `size` or on by `left` at most;\n"
+	       " * returns by how much [h] */\n"
+	       "static double $n_onto(const $n_part *p, double at, double size, double left, const pl_crossing *crossing,\n"
+	       "    double y[$N_STATES])\n"
+	       "{\n"
+	       "    double c[%d][$c], terms[%d], moved = 0.0;\n"
+	       "    int i, again, place = crossing->breakpoint;\n"
+	       "    const int k = $n_column[crossing->expression];\n"
+	       "    for (i = 0; i < crossing->expression; i++)\n"
+	       "        place += $n_breaks[i];\n"
+	       "    for (again = 0; again < 4; again++) {\n"
+	       "        double theta, off;\n"
+	       "        $n_look(p, (at + moved) * $N_H, y, c, terms);\n"
+	       "        off = c[0][k] - $n_breakpoint[place];\n"
+	       "        if (!(crossing->upward ? c[1][k] > 0.0 : c[1][k] < 0.0))\n"
+	       "            break;\n"
+	       "        theta = -off / c[1][k];\n"
+	       "        theta -= c[2][k] / c[1][k] * theta * theta;\n"
+	       "        if (!(pl_magnitude(theta) <= 0.5 * size) || moved + theta < -0.5 * size || moved + theta > left)\n"
+	       "            break;\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            y[i] += theta * (c[1][i] + theta * c[2][i]);\n"
+	       "        moved += theta;\n"
+	       "        if (pl_magnitude(theta) <= 1e-15)\n"
+	       "            break;\n"
+	       "    }\n"
+	       "    return moved;\n"
+	       "}\n", x->order + 1, x->expressions);
+}
+
+/* ---- from crossing to crossing ---- */
+
+static void emit_part_of_step(const struct emitter *e)
+{
+	say(e, "    $n_part part;\n");
+	emit_input_samples(looking(e));
+}
+
+static void emit_fill_part(const struct emitter *e, const char *contact)
+{
+	const struct expansion *x = cut_of(e)->look;
+	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
+	say(e, "    part.s = s;\n");
+	if (e->system->inputs)
+		say(e, "    part.u = %s;\n"
+		       "    part.slope = %s;\n", input && e->ramps ? "start" : "u",
+		    slope || (input && e->ramps) ? "slope" : "NULL");
+	say(e, "    part.when = $n_time(s) + 0.5 * $N_H;\n"
+	       "    part.interval = %sinterval;\n", contact);
+	if (changes(e))
+		say(e, "    part.segment = s->segment;\n");
+}
+
+static void emit_between_limit(const struct emitter *e)
+{
+	say(e, "        double limit = end, size, meets;\n");
+	if (changes(e))
+		say(e, "        for (; part.segment < %d; part.segment++) {\n"
+		       "            const double change = $n_until(s, part.segment) / $N_H;\n"
+		       "            limit = change < end ? change : end;\n"
+		       "            if (limit > done)\n"
+		       "                break;\n"
+		       "            limit = end;\n"
+		       "        }\n"
+		       "        part.when = $n_time(s) + 0.5 * (done + limit) * $N_H;\n", e->system->segments - 1);
+}
+
+static void emit_between(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	const struct expansion *x = cut_of(e)->look;
+	say(l, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time in h; "
+	       "NULL:\n"
+	       " * not known.  0, or what went wrong, and y as far as it went */\n"
+	       "static int $n_between(const $n *s, %sconst pl_crossing *first, double end, double y[$N_STATES],\n"
+	       "    $n_contact *contact)\n"
+	       "{\n"
+	       "    double c[4][$c], d[%d][$c], next[$N_STATES], terms[%d], spare[%d], done = 0.0, longest = 1.0;\n"
+	       "    int i, splits = %d;\n"
+	       "    pl_crossing found;\n", driven_parameter(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
+	emit_part_of_step(e);
+	emit_fill_part(e, "contact->");
+	say(l, "    while (done < end) {\n");
+	emit_between_limit(e);
+	say(l, "        $n_look(&part, done * $N_H, y, c, terms);\n"
+	       "        if (pl_divided_left(&$n_chord, c[0], terms, contact->interval, &contact->last)) {\n"
+	       "            if (!$n_cross(contact, done * $N_H))\n"
+	       "                return PL_TOO_MANY_EVENTS;\n"
+	       "            continue;\n"
+	       "        }\n"
+	       "        limit = limit - done < longest ? limit : done + longest;\n"
+	       "        size = limit - done;\n"
+	       "        found = contact->last;\n"
+	       "        if (first) {\n"
+	       "            found = *first;\n"
+	       "            meets = found.time;\n"
+	       "        } else {\n"
+	       "            if ($n_advance(&part, done * $N_H, size * $N_H, y, next)) {\n"
+	       "                longest = 0.5 * size;\n"
+	       "                if (longest < 1e-9)\n"
+	       "                    return PL_NOT_FINITE;\n"
+	       "                continue;\n"
+	       "            }\n"
+	       "            $n_look(&part, limit * $N_H, next, d, spare);\n"
+	       "            meets = $n_meets(c, (const double (*)[$c])d, terms, size, contact->interval, &splits, &found);\n"
+	       "            if (splits < 0)\n"
+	       "                return PL_TOO_MANY_EVENTS;\n"
+	       "        }\n"
+	       "        first = NULL;\n"
+	       "        if (meets > 0.0) {\n"
+	       "            if ($n_advance(&part, done * $N_H, meets * $N_H, y, next)) {\n"
+	       "                longest = 0.5 * meets;\n"
+	       "                if (longest < 1e-9)\n"
+	       "                    return PL_NOT_FINITE;\n"
+	       "                continue;\n"
+	       "            }\n"
+	       "            meets += $n_onto(&part, done + meets, meets, size - meets, &found, next);\n"
+	       "        }\n"
+	       "        longest = 1.0;\n"
+	       "        for (i = 0; i < $N_STATES && meets != 0.0; i++)\n"
+	       "            y[i] = next[i];\n"
+	       "        contact->last = found;\n"
+	       "        if (meets < 0.0) {\n"
+	       "            contact->last.expression = -1;\n"
+	       "            done = limit;\n"
+	       "            continue;\n"
+	       "        }\n"
+	       "        done = meets < size ? done + meets : limit;\n"
+	       "        if (!$n_cross(contact, done * $N_H))\n"
+	       "            return PL_TOO_MANY_EVENTS;\n"
+	       "    }\n"
+	       "    return 0;\n"
+	       "}\n");
+}
+
+/* ---- the step ---- */
+
+const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left)
+{
+	return frozen_call(forcing(e), "s", tau, "when", "s->contact.", y, left);
+}
+
+/* What the actions of a whole step read beside the state */
+void emit_cut_samples(const struct emitter *e)
+{
+	const struct emitter *f = forcing(e);
+	emit_input_samples(f);
+	if (has_choices(f))
+		say(e, "    const double when = $n_time(s) + 0.5 * $N_H;\n");
+}
+
+static void emit_whole(const struct emitter *e)
+{
+	say(e, "\n/* The scheme's own step, with the formulas of the intervals that hold */\n"
+	       "static void $n_whole(%s)\n"
+	       "{\n", step_parameters(e));
+	emit_actions_of_step(e);
+	if (given_inputs(e))
+		say(e, "    (void)u;\n");
+	say(e, "}\n");
+}
+
+static void emit_restore(const struct emitter *e)
+{
+	say(e, "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            s->y[i] = y[i];\n");
+	if (e->step->carries)
+		say(e, "        for (i = 0; i < %d; i++)\n"
+		       "            s->carry[i] = carry[i];\n", e->step->carries);
+}
+
+static void emit_keep_state(const struct emitter *e)
+{
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] = s->y[i];\n");
+	if (e->step->carries)
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        carry[i] = s->carry[i];\n", e->step->carries);
+}
+
+static void emit_first_look(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	if (!keeps_look(e)) {
+		say(e, "    $n_look(&part, 0.0, s->y, c, terms);\n");
+		return;
+	}
+	say(l, "    if (s->looked) {\n"
+	       "        for (i = 0; i < $c; i++) {\n"
+	       "            c[0][i] = s->look[0][i];\n"
+	       "            c[1][i] = s->look[1][i];\n"
+	       "        }\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            terms[i] = s->size[i];\n"
+	       "    } else {\n"
+	       "        $n_look(&part, 0.0, s->y, c, terms);\n"
+	       "    }\n", cut_of(e)->look->expressions);
+}
+
+static void emit_keep_look(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	if (keeps_look(e))
+		say(l, "        for (i = 0; i < $c; i++) {\n"
+		       "            s->look[0][i] = d[0][i];\n"
+		       "            s->look[1][i] = d[1][i];\n"
+		       "        }\n"
+		       "        for (i = 0; i < %d; i++)\n"
+		       "            s->size[i] = spare[i];\n"
+		       "        s->looked = 1;\n", cut_of(e)->look->expressions);
+}
+
+static void emit_step_of_parts(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	const struct expansion *x = cut_of(e)->look;
+	const char *u = e->system->inputs ? "u, " : "", *given = given_inputs(e) ? ", u" : "";
+	say(l, "\nvoid $n_step(%s)\n"
+	       "{\n"
+	       "    double c[4][$c], d[%d][$c], terms[%d], spare[%d], y[$N_STATES], meets = -1.0;\n"
+	       "    int i, whole, splits = %d;\n"
+	       "    pl_crossing crossing;\n", step_parameters(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
+	if (e->step->carries)
+		say(e, "    double carry[%d];\n", e->step->carries);
+	emit_part_of_step(e);
+	emit_divided_start(l, "s->contact", "    ");
+	emit_fill_part(e, "s->contact.");
+	say(l, "    crossing = s->contact.last;\n");
+	emit_first_look(e);
+	say(l, "    whole = %s!pl_divided_left(&$n_chord, c[0], terms, s->contact.interval, &crossing);\n",
+	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n        ",
+			       e->system->segments - 1) : "");
+	emit_keep_state(e);
+	say(l, "    if (whole) {\n"
+	       "        $n_whole(s%s);\n"
+	       "        $n_look(&part, $N_H, s->y, d, spare);\n"
+	       "        meets = $n_meets(c, (const double (*)[$c])d, terms, 1.0, s->contact.interval, &splits, &crossing);\n"
+	       "        crossing.time = meets;\n"
+	       "    }\n"
+	       "    if (!whole || meets >= 0.0 || splits < 0 || pl_not_finite(s->y, $N_STATES)) {\n", given);
+	emit_restore(e);
+	if (keeps_look(e))
+		say(e, "        s->looked = 0;\n");
+	say(l, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
+	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n"
+	       "    } else {\n"
+	       "        s->contact.last.expression = -1;\n", u);
+	emit_keep_look(e);
+	say(e, "    }\n");
+	emit_step_end(e);
+	if (changes(e))
+		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
+		       "        s->segment++;\n", e->system->segments - 1);
+	say(e, "}\n");
+}
+
+void emit_cut_step(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	if (reads_channels(e->model))
+		emit_leftover_functions(e);
+	emit_force_table(l);
+	emit_frozen_function(forcing(e));
+	emit_expand_function(l);
+	emit_divided_functions(l);
+	emit_flow_tables(e);
+	emit_part(e);
+	emit_look(e);
+	emit_meets(e);
+	emit_onto(e);
+	emit_between(e);
+	if (e->step->program->loops)
+		emit_loop_tables(e);
+	emit_whole(e);
+	emit_step_of_parts(e);
+	emit_divided_questions(l);
+}
+
+/* ---- between steps ---- */
+
+void emit_cut_at(const struct emitter *e)
+{
+	const struct emitter *l = looking(e);
+	bool relative = e->model->relative != NULL;
+	const char *y = relative ? "x" : "y";
+	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
+	       "{\n"
+	       "    $n_contact here = s->contact;\n"
+	       "    int i;\n", driven_parameter(e));
+	if (relative)
+		say(e, "    double x[$N_STATES];\n");
+	emit_divided_start(l, "here", "    ");
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        %s[i] = s->y[i];\n"
+	       "    (void)$n_between(s, %sNULL, tau / $N_H, %s, &here);\n", y, e->system->inputs ? "u, " : "", y);
+	if (relative)
+		say(e, "    $n_written(s, x, y);\n");
+	say(e, "}\n");
+}

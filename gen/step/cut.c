@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A scheme with a leftover that goes from crossing to crossing: between two of them the formulas are those of given
+ * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
+ * crosses a breakpoint is made again in parts, whose tables the target makes. */
+#include "step/step.h"
+
+#include "plrt.h"
+
+#include <math.h>
+
+/* Two derivatives at the start decide where a state on a breakpoint is heading. */
+enum { LOOKED = 2 };
+
+static double *slopes_in(const struct step *step, const struct layout *layout, int segment)
+{
+	size_t cells = (size_t)layout->size * (size_t)layout->size;
+	mpq_t *exact = augmented_matrix(layout, &step->branch->system, segment);
+	double *A = ARRAY(double, cells);
+	for (size_t i = 0; i < cells; i++) {
+		A[i] = round_rational(exact[i]);
+		if (!isfinite(A[i]))
+			tell_range(step);
+	}
+	rationals_free(exact, cells);
+	return A;
+}
+
+static bool *acting_loads(const struct linear *system)
+{
+	bool *acting = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		acting[l] = load_acts(system, &system->load[l]);
+	return acting;
+}
+
+static void count_looks(const struct step *step, struct cut *cut)
+{
+	const struct linear *system = &step->branch->system;
+	struct program program = { .uses = ARRAY(bool, (size_t)step->branch->whole->columns) };
+	struct step view = *step;
+	view.expansion = cut->look;
+	count_expansion(&view, &program);
+	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
+	cut->multiplications = looks * program.multiplications;
+	cut->additions = looks * program.additions;
+	cut->calls = looks * program.calls;
+}
+
+void plan_cut(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct cut *cut = NEW(struct cut);
+	cut->look = expansion_with_forces(step, LOOKED);
+	cut->forces = forces_of_expansion(step, cut->look);
+	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
+	cut->slopes = ARRAY(double *, (size_t)system->segments);
+	for (int s = 0; s < system->segments; s++)
+		cut->slopes[s] = slopes_in(step, &cut->layout, s);
+	count_looks(step, cut);
+	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
+	step->cut = cut;
+	step->divided = cut->look;
+	step->series.emitted = true;
+}
