@@ -258,7 +258,8 @@ static void emit_operands_of_step(const struct emitter *e)
 	if (!loops)
 		emit_locals(e, states_read(e));
 	emit_load_states(e, acting_loads(e), false);
-	(is_cut(e) ? emit_cut_samples : emit_samples)(e);
+	if (!is_cut(e))
+		emit_samples(e);
 	if (many_operators(e))
 		say(e, "    const int which = %s;\n", selection_call(e));
 	if (loops)

@@ -348,9 +348,10 @@ void emit_expansion_at(const struct emitter *e);
 bool serves_rows(const struct emitter *e);
 
 void emit_frozen_function(const struct emitter *e);               /* NAME_within: what is left over, alone */
-/* `from`: p->, where a part of the step has inputs and intervals; else what stands before `interval` */
-const char *frozen_call(const struct emitter *e, const char *s, const char *tau, const char *when, const char *from,
-			const char *y, const char *left);
+void emit_ends_function(const struct emitter *e);                 /* NAME_end: expressions, alone */
+/* `from`: p->, of a part of a step that has inputs, times and intervals */
+const char *frozen_call(const struct emitter *e, const char *function, const char *s, const char *tau,
+			const char *from, const char *y, const char *result);
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
 
 /* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
@@ -360,7 +361,6 @@ void emit_cut_types(const struct emitter *e);                     /* of these no
 void emit_cut_members(const struct emitter *e);
 void emit_cut_declarations(const struct emitter *e);
 void emit_cut_place(const struct emitter *e);
-void emit_cut_samples(const struct emitter *e);
 const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
 void emit_cut_step(const struct emitter *e);
 void emit_cut_at(const struct emitter *e);

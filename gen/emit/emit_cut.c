@@ -31,13 +31,23 @@ static const struct emitter *look_by(const struct emitter *e, struct expansion *
 	view->step.expansion = x;
 	view->e = *e;
 	view->e.step = &view->step;
-	view->e.columns = format(x->columns && !x->forces_alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
+	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
 	return &view->e;
 }
 
 static const struct emitter *looking(const struct emitter *e)
 {
 	return look_by(e, cut_of(e)->look);
+}
+
+static const struct emitter *ending(const struct emitter *e)
+{
+	return look_by(e, cut_of(e)->ends);
+}
+
+static int expressions(const struct emitter *e)
+{
+	return cut_of(e)->look->expressions;
 }
 
 static const struct emitter *forcing(const struct emitter *e)
@@ -60,12 +70,10 @@ static bool keeps_look(const struct emitter *e)
 
 void emit_cut_members(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
-	emit_divided_members(l);
+	emit_divided_members(looking(e));
 	if (keeps_look(e))
-		say(l, "    double look[2][$c], size[%d];  /* at the end of the last step: values, slopes; of each expression the "
-		       "sizes of its terms */\n"
-		       "    int looked;           /* they are there */\n", cut_of(e)->look->expressions);
+		say(e, "    double end[2][%d], terms[%d];  /* of each expression at the end of the last step */\n"
+		       "    int ended;            /* they are there */\n", expressions(e), expressions(e));
 }
 
 void emit_cut_declarations(const struct emitter *e)
@@ -81,7 +89,7 @@ void emit_cut_place(const struct emitter *e)
 	       "    s->contact.placed = s->contact.crossings = 0;\n"
 	       "    s->contact.total = 0;\n"
 	       "%s"
-	       "}\n", keeps_look(e) ? "    s->looked = 0;\n" : "");
+	       "}\n", keeps_look(e) ? "    s->ended = 0;\n" : "");
 }
 
 /* ---- a part of a step ---- */
@@ -155,7 +163,7 @@ static void emit_part(const struct emitter *e)
 	       "{\n"
 	       "    const $n_part *const p = (const $n_part *)from;\n"
 	       "    %s\n"
-	       "}\n", frozen_call(forcing(e), "p->s", "tau", "p->when", "p->", "y", "left"));
+	       "}\n", frozen_call(forcing(e), "within", "p->s", "tau", "p->", "y", "left"));
 	say(e, "\n/* The state so long after `tau` of the step, by the fourth order scheme with tables made here; not "
 	       "0:\n"
 	       " * it is not finite */\n"
@@ -196,27 +204,56 @@ static void emit_look(const struct emitter *e)
 	       "}\n", expand_call(l, "tau", "p->when", segment_of(e), "p->", "y", "c"));
 }
 
-/* The cubic with values and slopes of both ends is as exact as the step. */
+static void emit_end_call(const struct emitter *e, const char *indent, const char *p, const char *tau, const char *y,
+			  const char *result)
+{
+	say(e, "%s%s\n", indent, spell(e, frozen_call(ending(e), "end", "s", tau, p, y, result)));
+}
+
+/* The cubic with values and slopes of both ends is as exact as the step, and lies within its Bezier points. */
 static void emit_meets(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
-	const struct expansion *x = cut_of(e)->look;
-	say(l, "\nstatic const pl_divided $n_chord = {%d, $c, 3, $n_column, $n_breaks, $n_breakpoint};\n"
-	       "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.  c: as at its\n"
-	       " * start, then the cubic of each expression; d: as at its end */\n"
-	       "static double $n_meets(double c[4][$c], const double d[%d][$c], const double terms[%d], double size,\n"
+	int count = expressions(e);
+	const char *place = "";
+	for (int i = 0; i < count; i++)
+		place = format("%s%s%d", place, i ? ", " : "", i);
+	say(e, "\nstatic const int $n_place_of[] = {%s};\n"
+	       "static const pl_divided $n_chord = {%d, %d, 3, $n_place_of, $n_breaks, $n_breakpoint};\n",
+	    place, count, count);
+	say(e, "\n/* Whether no expression comes near the end of its interval, from one end of a step to the other */\n"
+	       "static int $n_stays(const double c[4][%d], const double d[2][%d], const int interval[%d])\n"
+	       "{\n"
+	       "    const double *at = $n_breakpoint;\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < %d; at += $n_breaks[i++]) {\n"
+	       "        const double a = c[0][i], b = a + c[1][i] / 3.0, z = d[0][i], y = z - d[1][i] / 3.0;\n"
+	       "        if (interval[i] > 0) {\n"
+	       "            const double low = at[interval[i] - 1];\n"
+	       "            if (!(a > low && b > low && y > low && z > low))\n"
+	       "                return 0;\n"
+	       "        }\n"
+	       "        if (interval[i] < $n_breaks[i]) {\n"
+	       "            const double high = at[interval[i]];\n"
+	       "            if (!(a < high && b < high && y < high && z < high))\n"
+	       "                return 0;\n"
+	       "        }\n"
+	       "    }\n"
+	       "    return 1;\n"
+	       "}\n", count, count, count, count);
+	say(e, "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.  c: as at its\n"
+	       " * start, then the cubic of each; d: as at its end */\n"
+	       "static double $n_meets(double c[4][%d], const double d[2][%d], const double terms[%d], double size,\n"
 	       "    const int interval[%d], int *splits, pl_crossing *crossing)\n"
 	       "{\n"
 	       "    double work[PL_DIVIDED_WORK(3)];\n"
 	       "    int i;\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const int k = $n_column[i];\n"
-	       "        const double rise = (d[0][k] - c[0][k]) / size;\n"
-	       "        c[2][k] = (3.0 * rise - 2.0 * c[1][k] - d[1][k]) / size;\n"
-	       "        c[3][k] = (c[1][k] + d[1][k] - 2.0 * rise) / (size * size);\n"
+	       "        const double rise = (d[0][i] - c[0][i]) / size;\n"
+	       "        c[2][i] = (3.0 * rise - 2.0 * c[1][i] - d[1][i]) / size;\n"
+	       "        c[3][i] = (c[1][i] + d[1][i] - 2.0 * rise) / (size * size);\n"
 	       "    }\n"
 	       "    return pl_divided_next(&$n_chord, c[0], terms, interval, size, splits, crossing, work);\n"
-	       "}\n", x->expressions, x->order + 1, x->expressions, x->expressions, x->expressions);
+	       "}\n", count, count, count, count, count);
 }
 
 /* What a part's own end is off the breakpoint that it was to meet is of the size of the error: a Taylor polynomial
@@ -294,23 +331,22 @@ static void emit_between_limit(const struct emitter *e)
 
 static void emit_between(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
-	const struct expansion *x = cut_of(e)->look;
-	say(l, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time in h; "
+	int count = expressions(e);
+	say(e, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time in h; "
 	       "NULL:\n"
 	       " * not known.  0, or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %sconst pl_crossing *first, double end, double y[$N_STATES],\n"
 	       "    $n_contact *contact)\n"
 	       "{\n"
-	       "    double c[4][$c], d[%d][$c], next[$N_STATES], terms[%d], spare[%d], done = 0.0, longest = 1.0;\n"
+	       "    double c[4][%d], d[2][%d], next[$N_STATES], terms[%d], spare[%d], done = 0.0, longest = 1.0;\n"
 	       "    int i, splits = %d;\n"
-	       "    pl_crossing found;\n", driven_parameter(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
+	       "    pl_crossing found;\n", driven_parameter(e), count, count, count, count, MAX_SPLITS);
 	emit_part_of_step(e);
 	emit_fill_part(e, "contact->");
-	say(l, "    while (done < end) {\n");
+	say(e, "    while (done < end) {\n");
 	emit_between_limit(e);
-	say(l, "        $n_look(&part, done * $N_H, y, c, terms);\n"
-	       "        if (pl_divided_left(&$n_chord, c[0], terms, contact->interval, &contact->last)) {\n"
+	emit_end_call(e, "        ", "part.", "done * $N_H", "y", "c, terms");
+	say(e, "        if (pl_divided_left(&$n_chord, c[0], terms, contact->interval, &contact->last)) {\n"
 	       "            if (!$n_cross(contact, done * $N_H))\n"
 	       "                return PL_TOO_MANY_EVENTS;\n"
 	       "            continue;\n"
@@ -327,9 +363,9 @@ static void emit_between(const struct emitter *e)
 	       "                if (longest < 1e-9)\n"
 	       "                    return PL_NOT_FINITE;\n"
 	       "                continue;\n"
-	       "            }\n"
-	       "            $n_look(&part, limit * $N_H, next, d, spare);\n"
-	       "            meets = $n_meets(c, (const double (*)[$c])d, terms, size, contact->interval, &splits, &found);\n"
+	       "            }\n");
+	emit_end_call(e, "            ", "part.", "limit * $N_H", "next", "d, spare");
+	say(e, "            meets = $n_meets(c, (const double (*)[%d])d, terms, size, contact->interval, &splits, &found);\n"
 	       "            if (splits < 0)\n"
 	       "                return PL_TOO_MANY_EVENTS;\n"
 	       "        }\n"
@@ -357,34 +393,26 @@ static void emit_between(const struct emitter *e)
 	       "            return PL_TOO_MANY_EVENTS;\n"
 	       "    }\n"
 	       "    return 0;\n"
-	       "}\n");
+	       "}\n", count);
 }
 
 /* ---- the step ---- */
 
 const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left)
 {
-	return frozen_call(forcing(e), "s", tau, "when", "s->contact.", y, left);
-}
-
-/* What the actions of a whole step read beside the state */
-void emit_cut_samples(const struct emitter *e)
-{
-	const struct emitter *f = forcing(e);
-	emit_input_samples(f);
-	if (has_choices(f))
-		say(e, "    const double when = $n_time(s) + 0.5 * $N_H;\n");
+	return frozen_call(forcing(e), "within", "s", tau, "p->", y, left);
 }
 
 static void emit_whole(const struct emitter *e)
 {
 	say(e, "\n/* The scheme's own step, with the formulas of the intervals that hold */\n"
-	       "static void $n_whole(%s)\n"
+	       "static void $n_whole(%s, const $n_part *p)\n"
 	       "{\n", step_parameters(e));
 	emit_actions_of_step(e);
 	if (given_inputs(e))
 		say(e, "    (void)u;\n");
-	say(e, "}\n");
+	say(e, "    (void)p;\n"
+	       "}\n");
 }
 
 static void emit_restore(const struct emitter *e)
@@ -407,72 +435,79 @@ static void emit_keep_state(const struct emitter *e)
 
 static void emit_first_look(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
 	if (!keeps_look(e)) {
-		say(e, "    $n_look(&part, 0.0, s->y, c, terms);\n");
+		emit_end_call(e, "    ", "part.", "0.0", "s->y", "c, terms");
 		return;
 	}
-	say(l, "    if (s->looked) {\n"
-	       "        for (i = 0; i < $c; i++) {\n"
-	       "            c[0][i] = s->look[0][i];\n"
-	       "            c[1][i] = s->look[1][i];\n"
+	say(e, "    if (s->ended) {\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            c[0][i] = s->end[0][i];\n"
+	       "            c[1][i] = s->end[1][i];\n"
+	       "            terms[i] = s->terms[i];\n"
 	       "        }\n"
-	       "        for (i = 0; i < %d; i++)\n"
-	       "            terms[i] = s->size[i];\n"
-	       "    } else {\n"
-	       "        $n_look(&part, 0.0, s->y, c, terms);\n"
-	       "    }\n", cut_of(e)->look->expressions);
+	       "    } else {\n", expressions(e));
+	emit_end_call(e, "        ", "part.", "0.0", "s->y", "c, terms");
+	say(e, "    }\n");
 }
 
 static void emit_keep_look(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
 	if (keeps_look(e))
-		say(l, "        for (i = 0; i < $c; i++) {\n"
-		       "            s->look[0][i] = d[0][i];\n"
-		       "            s->look[1][i] = d[1][i];\n"
+		say(e, "        for (i = 0; i < %d; i++) {\n"
+		       "            s->end[0][i] = d[0][i];\n"
+		       "            s->end[1][i] = d[1][i];\n"
+		       "            s->terms[i] = spare[i];\n"
 		       "        }\n"
-		       "        for (i = 0; i < %d; i++)\n"
-		       "            s->size[i] = spare[i];\n"
-		       "        s->looked = 1;\n", cut_of(e)->look->expressions);
+		       "        s->ended = 1;\n", expressions(e));
 }
 
+/* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where one
+ * is passed. */
 static void emit_step_of_parts(const struct emitter *e)
 {
-	const struct emitter *l = looking(e);
-	const struct expansion *x = cut_of(e)->look;
-	const char *u = e->system->inputs ? "u, " : "", *given = given_inputs(e) ? ", u" : "";
-	say(l, "\nvoid $n_step(%s)\n"
+	int count = expressions(e);
+	const char *u = e->system->inputs ? "u, " : "", *given = given_inputs(e) ? "u, " : "";
+	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
-	       "    double c[4][$c], d[%d][$c], terms[%d], spare[%d], y[$N_STATES], meets = -1.0;\n"
-	       "    int i, whole, splits = %d;\n"
-	       "    pl_crossing crossing;\n", step_parameters(e), x->order + 1, x->expressions, x->expressions, MAX_SPLITS);
+	       "    double c[4][%d], d[2][%d], terms[%d], spare[%d], y[$N_STATES], meets = -1.0;\n"
+	       "    int i, whole = 1, splits = %d;\n"
+	       "    pl_crossing crossing;\n", step_parameters(e), count, count, count, count, MAX_SPLITS);
 	if (e->step->carries)
 		say(e, "    double carry[%d];\n", e->step->carries);
 	emit_part_of_step(e);
-	emit_divided_start(l, "s->contact", "    ");
+	emit_divided_start(looking(e), "s->contact", "    ");
 	emit_fill_part(e, "s->contact.");
-	say(l, "    crossing = s->contact.last;\n");
 	emit_first_look(e);
-	say(l, "    whole = %s!pl_divided_left(&$n_chord, c[0], terms, s->contact.interval, &crossing);\n",
-	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n        ",
-			       e->system->segments - 1) : "");
 	emit_keep_state(e);
-	say(l, "    if (whole) {\n"
-	       "        $n_whole(s%s);\n"
-	       "        $n_look(&part, $N_H, s->y, d, spare);\n"
-	       "        meets = $n_meets(c, (const double (*)[$c])d, terms, 1.0, s->contact.interval, &splits, &crossing);\n"
+	say(e, "    $n_whole(s, %s&part);\n", given);
+	emit_end_call(e, "    ", "part.", "$N_H", "s->y", "d, spare");
+	say(e, "    if (%s$n_stays((const double (*)[%d])c, (const double (*)[%d])d, s->contact.interval)) {\n"
+	       "        s->contact.last.expression = -1;\n"
+	       "    } else {\n"
+	       "        crossing = s->contact.last;\n"
+	       "        whole = %s!pl_divided_left(&$n_chord, c[0], terms, s->contact.interval, &crossing);\n"
+	       "        if (whole)\n"
+	       "            meets = $n_meets(c, (const double (*)[%d])d, terms, 1.0, s->contact.interval, &splits, "
+	       "&crossing);\n"
 	       "        crossing.time = meets;\n"
+	       "        whole = whole && meets < 0.0 && splits >= 0 && !pl_not_finite(s->y, $N_STATES);\n"
+	       "        if (whole)\n"
+	       "            s->contact.last.expression = -1;\n"
 	       "    }\n"
-	       "    if (!whole || meets >= 0.0 || splits < 0 || pl_not_finite(s->y, $N_STATES)) {\n", given);
+	       "    if (!whole) {\n",
+	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n        ",
+			       e->system->segments - 1) : "", count, count,
+	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n            ",
+			       e->system->segments - 1) : "", count);
 	emit_restore(e);
 	if (keeps_look(e))
-		say(e, "        s->looked = 0;\n");
-	say(l, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
-	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n"
-	       "    } else {\n"
-	       "        s->contact.last.expression = -1;\n", u);
-	emit_keep_look(e);
+		say(e, "        s->ended = 0;\n");
+	say(e, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
+	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n", u);
+	if (keeps_look(e)) {
+		say(e, "    } else {\n");
+		emit_keep_look(e);
+	}
 	say(e, "    }\n");
 	emit_step_end(e);
 	if (changes(e))
@@ -488,6 +523,7 @@ void emit_cut_step(const struct emitter *e)
 		emit_leftover_functions(e);
 	emit_force_table(l);
 	emit_frozen_function(forcing(e));
+	emit_ends_function(ending(e));
 	emit_expand_function(l);
 	emit_divided_functions(l);
 	emit_flow_tables(e);

@@ -181,23 +181,20 @@ void emit_expand_function(const struct emitter *e)
 	say(e, "}\n");
 }
 
-/* ---- what is left over, alone ---- */
+/* ---- some sequences alone: what is left over, or expressions at the ends of a step ---- */
 
-void emit_frozen_function(const struct emitter *e)
+/* Of such a function, behind the instance and tau */
+static const char *part_parameters(const struct emitter *e)
+{
+	return format("%s%s%sconst int interval[%d], const double y[%s_STATES]", has_choices(e) ? "double when, " : "",
+		      expansion(e)->slots ? "int segment, " : "", input_parameters(e, true), expansion(e)->expressions,
+		      e->upper);
+}
+
+static void emit_part_unread(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	bool tau = false;
-	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each "
-	       "equation\n"
-	       " * that has some */\n"
-	       "static void $n_within(const $n *s, double tau, %s%sconst int interval[%d], const double y[$N_STATES],\n"
-	       "    double left[%d])\n"
-	       "{\n", has_choices(e) ? "double when, " : "", input_parameters(e, true), x->expressions, x->columns);
-	emit_coefficients(e);
-	for (int c = 0; c < x->columns; c++) {
-		const char *name = coefficient(e, x->column[c], 0);
-		say(e, "    left[%d] = %s;\n", c, name ? name : "0.0");
-	}
 	for (int i = 0; i < e->system->inputs; i++)
 		tau = tau || (x->input[i] && e->system->input[i].hold);
 	if (!reads_instance(e) && !x->params)
@@ -206,19 +203,59 @@ void emit_frozen_function(const struct emitter *e)
 		say(e, "    (void)tau;\n");
 	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
 		say(e, "    (void)slope;\n");
-	say(e, "}\n");
+	say(e, "    (void)interval;\n"
+	       "}\n");
 }
 
-const char *frozen_call(const struct emitter *e, const char *s, const char *tau, const char *when, const char *from,
-			const char *y, const char *left)
+void emit_frozen_function(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each "
+	       "equation\n"
+	       " * that has some */\n"
+	       "static void $n_within(const $n *s, double tau, %s,\n"
+	       "    double left[%d])\n"
+	       "{\n", part_parameters(e), x->columns);
+	emit_coefficients(e);
+	for (int c = 0; c < x->columns; c++) {
+		const char *name = coefficient(e, x->column[c], 0);
+		say(e, "    left[%d] = %s;\n", c, name ? name : "0.0");
+	}
+	emit_part_unread(e);
+}
+
+void emit_ends_function(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the terms of\n"
+	       " * the value */\n"
+	       "static void $n_end(const $n *s, double tau, %s,\n"
+	       "    double e[][%d], double terms[%d])\n"
+	       "{\n", part_parameters(e), x->columns, x->columns);
+	emit_coefficients(e);
+	for (int k = 0; k <= 1; k++)
+		for (int c = 0; c < x->columns; c++) {
+			const char *name = coefficient(e, x->column[c], k);
+			say(e, "    e[%d][%d] = %s;\n", k, c, name ? name : "0.0");
+		}
+	for (int c = 0; c < x->columns; c++) {
+		say(e, "    ");
+		say_wrapped(e, format("terms[%d] = %s;\n", c, size_of_terms(e, x->column[c])));
+	}
+	emit_part_unread(e);
+}
+
+/* from: p->, of a part of a step */
+const char *frozen_call(const struct emitter *e, const char *function, const char *s, const char *tau,
+			const char *from, const char *y, const char *result)
 {
 	const struct expansion *x = expansion(e);
 	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
-	bool part = strcmp(from, "p->") == 0;
-	const char *u = !input ? "" : format("%s%s, ", part ? from : "", part || !e->ramps ? "u" : "start");
-	const char *rate = !slope && !(input && e->ramps) ? "" : format("%sslope, ", part ? from : "");
-	return format("%s_within(%s, %s, %s%s%s%sinterval, %s, %s);", e->name, s, tau,
-		      has_choices(e) ? format("%s, ", when) : "", u, rate, from, y, left);
+	const char *u = !input ? "" : format("%su, ", from);
+	const char *rate = !slope && !(input && e->ramps) ? "" : format("%sslope, ", from);
+	return format("%s_%s(%s, %s, %s%s%s%s%sinterval, %s, %s);", e->name, function, s, tau,
+		      has_choices(e) ? format("%swhen, ", from) : "", x->slots ? format("%ssegment, ", from) : "", u, rate,
+		      from, y, result);
 }
 
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,

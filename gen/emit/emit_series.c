@@ -717,7 +717,7 @@ void emit_series_lines(const struct emitter *e)
 	for (int i = 0; i < x->count; i++)
 		series.gain[i] = ARRAY(bool, (size_t)x->sequence[i].gains);
 	for (int k = 0; k <= x->order; k++) {
-		for (int i = 0; i < e->system->states && !x->forces_alone; i++)
+		for (int i = 0; i < e->system->states && !x->alone; i++)
 			coefficient(&writer, i, k);
 		for (int i = 0; i < x->columns; i++)
 			if (k <= x->column_top[i])

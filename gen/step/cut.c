@@ -33,12 +33,20 @@ static bool *acting_loads(const struct linear *system)
 	return acting;
 }
 
+static int *sequences_of_expressions(const struct expansion *x)
+{
+	int *sequence = ARRAY(int, (size_t)x->expressions);
+	for (int i = 0; i < x->expressions; i++)
+		sequence[i] = x->expression[i].sequence;
+	return sequence;
+}
+
 static void count_looks(const struct step *step, struct cut *cut)
 {
 	const struct linear *system = &step->branch->system;
 	struct program program = { .uses = ARRAY(bool, (size_t)step->branch->whole->columns) };
 	struct step view = *step;
-	view.expansion = cut->look;
+	view.expansion = cut->ends;
 	count_expansion(&view, &program);
 	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
 	cut->multiplications = looks * program.multiplications;
@@ -51,7 +59,8 @@ void plan_cut(struct step *step)
 	const struct linear *system = &step->branch->system;
 	struct cut *cut = NEW(struct cut);
 	cut->look = expansion_with_forces(step, LOOKED);
-	cut->forces = forces_of_expansion(step, cut->look);
+	cut->ends = part_of_expansion(step, cut->look, 1, cut->look->expressions, sequences_of_expressions(cut->look));
+	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->force);
 	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
 	cut->slopes = ARRAY(double *, (size_t)system->segments);
 	for (int s = 0; s < system->segments; s++)

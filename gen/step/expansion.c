@@ -236,13 +236,17 @@ struct expansion *expansion_with_forces(const struct step *step, int order)
 	return expand(step, order, true);
 }
 
-/* ---- what is left over alone ---- */
+/* ---- some of its sequences alone ---- */
 
-static void mark_term(const struct step *step, struct expansion *x, const struct sequence_term *t)
+/* What a term reads up to the k-th */
+static void mark_term(const struct step *step, struct expansion *x, const struct sequence_term *t, int k)
 {
 	int first;
-	if (t->factor && t->factor[0] == 0)
-		return;                         /* it enters later coefficients */
+	bool enters = !t->factor;
+	for (int i = 0; t->factor && i <= k; i++)
+		enters = enters || t->factor[i] != 0;
+	if (!enters)
+		return;
 	if (t->kind == TERM_LOAD)
 		x->load[load_of_column(&step->branch->system, t->a, &first)] = true;
 	if (t->kind == TERM_INPUT)
@@ -251,15 +255,26 @@ static void mark_term(const struct step *step, struct expansion *x, const struct
 		x->slope[t->a] = true;
 	x->time = x->time || (t->kind == TERM_TIME && t->a > 0);
 	x->params = x->params || t->kind == TERM_PARAM;
+	x->slots = !t->factor ? 1 : x->slots;
 }
 
-struct expansion *forces_of_expansion(const struct step *step, const struct expansion *whole)
+static void mark_terms(const struct step *step, struct expansion *x)
+{
+	for (int i = 0; i < x->count; i++) {
+		const struct sequence *s = &x->sequence[i];
+		int top = s->kind == SEQUENCE_INTEGRAL ? s->top - 1 : s->top;
+		for (int k = 0; k < s->terms && top >= 0; k++)
+			mark_term(step, x, &s->term[k], top);
+	}
+}
+
+struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
+				    int *column)
 {
 	const struct linear *system = &step->branch->system;
 	struct expansion *x = NEW(struct expansion);
-	*x = (struct expansion){ .count = whole->count, .expressions = whole->expressions,
-				 .expression = whole->expression, .columns = system->channels, .column = whole->force,
-				 .forces_alone = true };
+	*x = (struct expansion){ .order = order, .count = whole->count, .expressions = whole->expressions,
+				 .expression = whole->expression, .columns = columns, .column = column, .alone = true };
 	x->sequence = ARRAY(struct sequence, (size_t)x->count);
 	x->column_top = ARRAY(int, (size_t)x->columns);
 	x->load = ARRAY(bool, (size_t)system->loads);
@@ -269,16 +284,16 @@ struct expansion *forces_of_expansion(const struct step *step, const struct expa
 		x->sequence[i] = whole->sequence[i];
 		x->sequence[i].top = -1;
 	}
-	for (int c = 0; c < x->columns; c++)
-		raise(x, x->column[c], 0);
+	for (int c = 0; c < x->columns; c++) {
+		x->column_top[c] = order;
+		raise(x, x->column[c], order);
+	}
 	for (bool changed = true; changed;) {
 		changed = false;
 		for (int i = 0; i < x->count; i++)
 			changed |= raise_operands(x, i);
 	}
-	for (int i = 0; i < x->count; i++)
-		for (int k = 0; k < x->sequence[i].terms; k++)
-			if (x->sequence[i].top >= 0 && x->sequence[i].kind == SEQUENCE_SUM)
-				mark_term(step, x, &x->sequence[i].term[k]);
+	mark_terms(step, x);
+	x->slots = x->slots ? whole->slots : 0;
 	return x;
 }

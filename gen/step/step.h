@@ -1076,7 +1076,7 @@ struct expansion {
 	int *column_top;            /* up to these */
 	struct contacts *contacts;  /* NULL: there are none */
 	int *force;                 /* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
-	bool forces_alone;          /* the states' own coefficients are not wanted */
+	bool alone;                 /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -1155,8 +1155,9 @@ struct sum held_slope(struct sequencing *w, int state);
 /* ---- cut.c: a scheme with a leftover, from crossing to crossing ---- */
 
 struct cut {
-	struct expansion *look;     /* of the solution, so far as crossings are looked for */
-	struct expansion *forces;   /* what is left over, with the formulas of given intervals */
+	struct expansion *look;     /* of the solution, as far as where it is heading */
+	struct expansion *ends;     /* of it the expressions' values and slopes, */
+	struct expansion *forces;   /* and what is left over, with the formulas of given intervals */
 	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of the looks in a step */
@@ -1171,9 +1172,10 @@ void find_newest(struct expansion *x);
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
-/* the same with what is left over as sequences of their own; and these alone, their values, with the same expressions */
+/* the same with what is left over as sequences of their own; and some of its sequences alone, up to a lower order */
 struct expansion *expansion_with_forces(const struct step *step, int order);
-struct expansion *forces_of_expansion(const struct step *step, const struct expansion *whole);
+struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
+				    int *column);
 struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
 /* ---- order.c: the order of a series ---- */
