@@ -58,7 +58,8 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
     }
 }
 
-/* x from where the polynomial starts on to s */
+/* x from where the polynomial starts on to s.  An entry that its gain takes away but for the gain's own rounding is 0:
+ * what is on a breakpoint at 0 has no other size there that what remains could be held against. */
 static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x)
 {
     int i, k;
@@ -68,6 +69,9 @@ static void part_of_piece(int n, int degree, const real *coefficients, const rea
             gain = (gain + coefficients[k * n + i]) * s;
         }
         x[i] = pl_accumulate(x[i], gain, low[i] * s, &x[n + i]);
+        if (magnitude(x[i]) <= 4 * REAL_EPSILON * magnitude(gain)) {
+            x[i] = x[n + i] = 0;
+        }
     }
 }
 
