@@ -54,6 +54,16 @@ runtime_archive() {
 	ar rcs "$archive" runtime_objects/*.o || exit 99
 }
 
+# main_of NAME [OPTIONS]: sets `main` to what a compiler links as runtime/host/plmain.c of that model, which is compiled
+# once for the same options; $root is that of the sources
+main_of() {
+	main=$work/plmain$(echo "${2-}" | tr -d ' =-').o
+	# shellcheck disable=SC2086
+	[ -e "$main" ] || ${CC:-cc} ${2-} -I"$root/runtime" -DMODEL=PLMAIN -c "$root/runtime/host/plmain.c" \
+		-o "$main" || exit 99
+	main="$main -Wl,--defsym=PLMAIN_model=$1_model"
+}
+
 tap_end() {
 	if [ "$count" -eq 0 ]; then
 		echo "Bail out! no case ${CASE:-}"

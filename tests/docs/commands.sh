@@ -24,6 +24,7 @@ board=$4
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 case $board in /*) ;; *) board=$PWD/$board ;; esac
+. "${0%/*}/../sparing.sh"
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
@@ -39,31 +40,9 @@ export XDG_CACHE_HOME
 runtime_archive "$root/runtime"
 cp "$archive" runtime.a || exit 99
 
-# sparing COMPILER ARCHIVE [TYPED]: bin/COMPILER, which takes the archive for the runtime's sources where it is given
-# all of them; TYPED: not the first time
-sparing() {
-	real=$(command -v "$1") || return 0
-	sources=$(cd "$root" && echo runtime/*.c)
-	cat >"bin/$1" <<END
-#!/bin/sh
-case "\$*" in
-	*" $sources "*) [ -z "${3-}" ] || [ -e "$work/typed" ] || { : >"$work/typed"; exec "$real" "\$@"; } ;;
-	*) exec "$real" "\$@" ;;
-esac
-for one; do
-	shift
-	case \$one in
-		${sources%% *}) set -- "\$@" "$2" ;;
-		runtime/*.c) ;;
-		*) set -- "\$@" "\$one" ;;
-	esac
-done
-exec "$real" "\$@"
-END
-	chmod +x "bin/$1"
-}
-sparing cc "$work/runtime.a" typed
-sparing arm-none-eabi-gcc "$board"
+ln -s "$root/runtime" runtime
+sparing cc runtime "$work/runtime.a" "$work/typed"
+sparing arm-none-eabi-gcc runtime "$board"
 PATH=$PWD/bin:$PATH
 
 # In the folder of the page, with PAGE, NUMBER and KIND of a block:

@@ -15,9 +15,10 @@ runtime_archive "$root/runtime"
 
 # driver FILE.c NAME PROGRAM [FLAGS]
 driver() {
+    options="-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-}"
+    main_of "$2" "$options" >>log 2>&1
     # shellcheck disable=SC2086
-    ${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" \
-        "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" -lm -o "$3" >>log 2>&1
+    ${CC:-cc} $options -I"$root/runtime" $main "$1" "$archive" -lm -o "$3" >>log 2>&1
 }
 
 # 41 samples of two inputs, 0.05 s apart, neither 0 at the start

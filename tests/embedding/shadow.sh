@@ -7,7 +7,8 @@
 #
 # Every third identifier in the C of a model, with LONG=1 every one, taken as the name of that model.  The compilers are
 # those of GCCS and CLANGS (default: gcc g++, clang clang++), all four for the first model, for the others gcc's C and
-# clang's C++, with LONG=1 all; what is not installed is skipped.
+# clang's C++, with LONG=1 all; what is not installed is skipped.  gcc's C is of every name, any other of every third,
+# each of others, with LONG=1 of all.
 set -u
 plgen=$1
 root=$2
@@ -63,15 +64,20 @@ shadows() {
     echo "$names names" >>log
     [ $status -eq 0 ] && [ $names -ge "$least" ]
     result $? "$title: $least of these names or more may be its own"
+    place=0
     while read -r compiler options; do
+        place=$((place + 1))
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$title, $compiler" "$compiler is not installed"
             continue
         fi
+        files=$(echo ./*_named.c)
+        # shellcheck disable=SC2086
+        [ $place -eq 1 ] || files=$(third $((number + place)) $files)
         # shellcheck disable=SC2046,SC2086
         "$compiler" $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" ./neutral_named.c) $options \
-            ./*_named.c >log 2>&1
-        result $? "$title: under each of them it compiles without a warning, $compiler"
+            $files >log 2>&1
+        result $? "$title: under these names it compiles without a warning, $compiler"
     done <compilers
     long || { head -n 2 compilers >few && mv few compilers; }
 }
@@ -85,14 +91,20 @@ shadows 'a leftover of ramps, with nodes' 20 "$root/tests/leftover/ramped.spec" 
 # ---- they do what the model does under another name ----
 
 runtime_archive "$root/runtime"
+# runs NAME: what a model of this name says is NAME.csv
+runs() {
+    main_of "$1" -std=c99 2>>log
+    # shellcheck disable=SC2086
+    "$plgen" --prefix "$1" "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
+        ${CC:-cc} -std=c99 -I"$root/runtime" $main ran.c "$archive" -o ran 2>>log &&
+        ./ran 2 >"$1.csv" 2>>log || echo "$1" >>log
+}
+: >log
+runs neutral
+cp log neutral.log
 for name in s y x i out tau; do
-    : >log
-    for n in neutral $name; do
-        "$plgen" --prefix $n "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
-            ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$archive" \
-                -o ran 2>>log &&
-            ./ran 2 >$n.csv 2>>log || echo "$n" >>log
-    done
+    cp neutral.log log
+    runs $name
     cmp "$name.csv" neutral.csv >>log 2>&1 && [ ! -s log ]
     result $? "a model called $name runs as another"
 done

@@ -98,9 +98,9 @@ same_columns() {
 
 runtime_archive "$root/runtime"
 driver() {          # driver FILE.c NAME PROGRAM [FLAGS [LIBRARIES]]
+    main_of "$2" "${4-}" >>log 2>&1
     # shellcheck disable=SC2086
-    ${CC:-cc} ${4-} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" ${5-} \
-        -o "$3" >>log 2>&1
+    ${CC:-cc} ${4-} -I"$root/runtime" $main "$1" "$archive" ${5-} -o "$3" >>log 2>&1
 }
 
 # ---- every model ----

@@ -68,8 +68,9 @@ same_columns() {
 runtime_archive "$root/runtime"
 
 driver() {          # driver FILE.c NAME PROGRAM [LIBRARIES]
+    main_of "$2" >>log 2>&1
     # shellcheck disable=SC2086
-    ${CC:-cc} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" ${4-} -o "$3" >>log 2>&1
+    ${CC:-cc} -I"$root/runtime" $main "$1" "$archive" ${4-} -o "$3" >>log 2>&1
 }
 
 # ---- every spec ----

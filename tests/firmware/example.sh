@@ -3,10 +3,16 @@
 # The example of doc/firmware/ as its Makefile builds it, run on emulated boards; the snippet that counts cycles,
 # compiled.
 #
-#     example.sh PLGEN SOURCE_ROOT
+#     example.sh PLGEN SOURCE_ROOT RUNTIME_M4F.a RUNTIME_M0.a
+#
+# The runtime is compiled by the Makefile as it stands; elsewhere it is that of the other tests, M3 with that of M0.
 set -u
 plgen=$1
 root=$2
+m4f=$3
+m0=$4
+case $m4f in /*) ;; *) m4f=$PWD/$m4f ;; esac
+case $m0 in /*) ;; *) m0=$PWD/$m0 ;; esac
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 firmware=$root/tests/firmware
 . "$firmware/boards.sh"
@@ -34,15 +40,20 @@ result() {          # result STATUS TITLE: what was wrong is in `log`
     fi
 }
 
+. "$root/tests/sparing.sh"
+mkdir bin
 for name in m4f m3 m0; do
     board $name
+    runtime=$m0
+    [ $name != m4f ] || runtime=$m4f
+    sparing $arm-gcc "$root/runtime" "$runtime"
     clock=25000000
     [ $name != m0 ] || clock=16000000
     drivers="$firmware/start.c $firmware/semihosting.c $firmware/digits.c $firmware/example_board.c"
     drivers="$drivers -I$firmware -DBOARD_CLOCK_HZ=${clock}u -Werror"
     # Not the flags of a make that runs this test
     MAKEFLAGS= make -s firmware.elf PLGEN="$plgen" RUNTIME="$root/runtime" SPEC="$root/models/quarter_car.spec" \
-        CPU="$cpu" \
+        CPU="$cpu" CC="$work/bin/$arm-gcc" \
         BOARD="$drivers -nostartfiles -L$firmware -T $script" >log 2>&1 && [ ! -s log ]
     result $? "$name: the example builds with the lines of its Makefile, without a warning"
     # An instruction every 16 ns, whatever the host: 62500 in a millisecond.

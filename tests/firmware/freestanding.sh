@@ -6,6 +6,8 @@
 # double.
 #
 #     freestanding.sh BOARD SOURCE_ROOT MODELS_double.c MODELS_float.c ...
+#
+# LONG=1 in the environment: M0 with -O2 too, as firmware is built and as all boards compile what they run (bits.sh).
 set -u
 name=$1
 root=$2
@@ -17,6 +19,7 @@ if ! command -v $arm-gcc >/dev/null 2>&1; then
     exit 0
 fi
 board "$name"
+[ "$name" != m0 ] || [ -n "${LONG:-}" ] || optimize=$(echo "$optimize" | sed 's/-O2/-O1/')
 work=$(mktemp -d "${TMPDIR:-/tmp}/freestanding.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM

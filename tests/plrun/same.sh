@@ -46,9 +46,10 @@ one_model() {
 	fi
 	record >record.csv
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {/\1/p' model_pl.c)
+	main_of "$model" "-w -O0 $define"
 	# shellcheck disable=SC2086
-	${CC:-cc} -w -O0 -I"$root/runtime" "$root/runtime/host/plmain.c" model_pl.c "$archive" -DMODEL="$model" \
-		$define -lm -o main 2>>log && ./main "$end" $params <record.csv >main.csv 2>>log
+	${CC:-cc} -w -O0 -I"$root/runtime" $main model_pl.c "$archive" -lm -o main 2>>log &&
+		./main "$end" $params <record.csv >main.csv 2>>log
 	set -- "$spec" "$end" --real "$real"
 	[ ! -s record.csv ] || set -- "$@" --input record.csv
 	# shellcheck disable=SC2086

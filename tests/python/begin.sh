@@ -30,8 +30,9 @@ rows() {
 	# shellcheck disable=SC2086
 	"$PLGEN" $options "$spec" >"$name.c" 2>said || cat said
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {$/\1/p' "$name.c")
-	${CC:-cc} $level -w -I"$root/runtime" $single -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" \
-		"$archive" -lm -o "$name.program" || exit 99
+	main_of "$model" "$level -w $single"
+	# shellcheck disable=SC2086
+	${CC:-cc} $level -w -I"$root/runtime" $main "$name.c" "$archive" -lm -o "$name.program" || exit 99
 	"./$name.program" "$until" --raw "$@" <held.csv >"$name.rows"
 }
 
