@@ -129,10 +129,15 @@ void cantilever_slopes(real w, real dw, const real *y, real *dydt)
 {
     if (!beam.made)
         make();
+    real of_D[N], of_G[N];
+    for (int j = 0; j < N; j++) {
+        of_D[j] = w * w * y[j];
+        of_G[j] = dw * y[j] + 2 * w * y[N + j];
+    }
     for (int i = 0; i < N; i++) {
         real a = w * w * beam.fu[i] - dw * beam.fw[i] + w * w * y[i];
         for (int j = 0; j < N; j++)
-            a -= (beam.K[i][j] + w * w * beam.D[i][j] + dw * beam.G[i][j]) * y[j] + 2 * w * beam.G[i][j] * y[N + j];
+            a -= beam.K[i][j] * y[j] + beam.D[i][j] * of_D[j] + beam.G[i][j] * of_G[j];
         dydt[i] = y[N + i];
         dydt[N + i] = a;
     }

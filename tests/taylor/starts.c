@@ -202,7 +202,7 @@ static void truth_holds(const struct subject *s, const struct start *start)
 int main(void)
 {
     static struct start start[MOST_STARTS];
-    const int count = getenv("LONG") ? MOST_STARTS : 20;
+    const int count = getenv("LONG") ? MOST_STARTS : 12;
     for (int k = 0; k < SUBJECTS; k++) {
         for (int i = 0; i < count; i++)
             draw(&subjects[k], &start[i]);
