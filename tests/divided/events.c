@@ -5,6 +5,10 @@
 #define VARIANTS "events_variants.h"
 #define VARIANT_TABLE events_table
 #endif
+#ifndef SYSTEMS
+#define SYSTEMS divided_systems
+#define SYSTEM_COUNT divided_count
+#endif
 #include VARIANTS
 #include "systems.h"
 #include "tap.h"
@@ -137,8 +141,8 @@ static int check_tolerance(const struct divided_system *s, const struct truth *t
 
 int main(void)
 {
-    for (int i = 0; i < divided_count; i++) {
-        const struct divided_system *s = &divided_systems[i];
+    for (int i = 0; i < SYSTEM_COUNT; i++) {
+        const struct divided_system *s = &SYSTEMS[i];
         const struct truth truth = truth_of(s);
         for (int order = 4; order <= 8; order += 2)
             check_order(s, &truth, order);
