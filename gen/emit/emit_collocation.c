@@ -488,8 +488,10 @@ static void emit_advance_text(const struct emitter *e, const char *indent)
 		       "%s}\n", indent, indent,
 		    !switches(e) ? samples_argument(e) : e->system->inputs ? ", u, &s->contact" : ", &s->contact",
 		    indent, samples_argument(e), indent, indent, indent, indent);
+	/* of a step that says where things go its inside is looked at, where what is left out has lower powers */
+	const char *shorter = is_divided(e) && !switches(e) ? "0.0625 * " : "";
 	say(e, "%sif (s->want == 0.0)\n"
-	       "%s    s->want = $n_first(s%s);\n", indent, indent, samples_argument(e));
+	       "%s    s->want = %s$n_first(s%s);\n", indent, indent, shorter, samples_argument(e));
 	if (switches(e))
 		say(e, "%s$n_rates(s%s, rates);\n"
 		       "%swrong = $n_choose(s%s, limit, rates, steps);\n", indent, samples_argument(e), indent,

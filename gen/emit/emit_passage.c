@@ -142,19 +142,49 @@ static void emit_left(const struct emitter *e)
 
 /* ---- the first crossing in a step ---- */
 
+/* The coefficients of a polynomial of many stages have more rounding than its values at the nodes: what is on its
+ * breakpoint is the expression itself, at the state there. */
 static void emit_move_end(const struct emitter *e)
 {
-	say(e, "\n/* The gain up to theta, near 1, of the step */\n"
-	       "static void $n_move_end($n *s, const double poly[%d][$c], double theta)\n"
+	enum { CORRECTIONS = 2 };
+	int s = stages(e), n = expressions(e);
+	const char *known = known_at(e, spell(e, "(%s + theta * size) * $N_H", start_text(e)),
+				     spell(e, "(%s + 0.5 * size) * $N_H", start_text(e)), "        ");
+	say(e, "\n/* Moves the end of the step to theta, near 1, and from there to where what contact.last says passes its\n"
+	       " * breakpoint b; c: the expressions along the step */\n"
+	       "static void $n_move_end($n *s%s, const double poly[%d][$c], double c[%d][%d], double theta, double b)\n"
 	       "{\n"
-	       "    double whole[$N_STATES], part[$N_STATES];\n"
-	       "    int i;\n"
+	       "    const double size = s->size;\n"
+	       "    const int which = s->contact.last.expression;\n"
+	       "    double whole[$N_STATES], y[$N_STATES], value[%d], spare[%d];\n"
+	       "%s"
+	       "%s"
+	       "    int i, m, again;\n"
 	       "    $n_within(poly, 1.0, whole);\n"
-	       "    $n_within(poly, theta, part);\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->gain[i] += part[i] - whole[i];\n"
-	       "    s->size *= theta;\n"
-	       "}\n", stages(e) + 1);
+	       "        whole[i] = s->gain[i] - whole[i];\n", samples_parameter(e), s + 1, s + 1, n, n, n,
+	    current_intervals(e), known_local(e));
+	say(e, "    for (again = 0;; again++) {\n"
+	       "        double rate = 0.0, change;\n"
+	       "        $n_within(poly, theta, y);\n"
+	       "        for (i = 0; i < $N_STATES; i++) {\n"
+	       "            s->gain[i] = whole[i] + y[i];\n"
+	       "            y[i] = s->start[i] + s->gain[i];\n"
+	       "        }\n"
+	       "        s->size = theta * size;\n"
+	       "        if (again == %d)\n"
+	       "            return;\n"
+	       "%s"
+	       "        %s\n"
+	       "        for (m = %d; m > 0; m--)\n"
+	       "            rate = rate * theta + (double)m * c[m][which];\n"
+	       "        change = (b - value[which]) / rate;\n"
+	       "        if (!(pl_magnitude(change) < %s))\n"
+	       "            return;\n"
+	       "        theta += change;\n"
+	       "    }\n"
+	       "}\n", CORRECTIONS, known, watch_call(e, "node", "y", "value", "spare"), s,
+	    shortest(e->model->asked.single ? ldexp(1, -10) : ldexp(1, -20)));
 }
 
 static void emit_pass(const struct emitter *e)
@@ -170,7 +200,7 @@ static void emit_pass(const struct emitter *e)
 	       "{\n"
 	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, end = 1.0;\n"
 	       "    pl_crossing crossing = s->contact.last;\n"
-	       "    int splits = %d, again;\n"
+	       "    int splits = %d, again, b = 0;\n"
 	       "    for (again = 0;; again++) {\n"
 	       "        $n_along(s%s, s->size, (const double (*)[$c])poly, c, terms);\n", samples_parameter(e),
 	    splits(e) ? ", const double slope_of[]" : "", s + 1, s + 1, n, n, unknowns_of_stages(e), s, MAX_SPLITS,
@@ -210,9 +240,11 @@ static void emit_pass(const struct emitter *e)
 	       "        s->size = 0.0;\n"
 	       "        return -2;\n"
 	       "    }\n"
-	       "    $n_move_end(s, (const double (*)[$c])poly, theta);\n"
+	       "    for (again = 0; again < crossing.expression; again++)\n"
+	       "        b += $n_breaks[again];\n"
+	       "    $n_move_end(s%s, (const double (*)[$c])poly, c, theta, $n_breakpoint[b + crossing.breakpoint]);\n"
 	       "    return 0;\n"
-	       "}\n", single ? "1e-8" : "1e-15");
+	       "}\n", single ? "1e-8" : "1e-15", samples);
 }
 
 /* ---- the whole ---- */

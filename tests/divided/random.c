@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Random systems whose state chooses formulas, at steps of 1/4 and 1/32: every crossing, and the states, beside the
- * equations by hand with crossings located in long double. TABLE=1: figures. */
+/* Random systems whose state chooses formulas, each in two variants (steps of 1/4 and 1/32, or by radau and auto):
+ * every crossing, and the states, beside the equations by hand with crossings located in long double. TABLE=1:
+ * figures. */
 #include VARIANTS
 #include "random_system.h"
 #include "tap.h"
@@ -59,7 +60,7 @@ int main(void)
             memcpy(truth[k], y, sizeof truth[k]);
         }
         crossings += count;
-        for (int step = 0; step < 2; step++, v++) {
+        for (int variant = 0; variant < 2; variant++, v++) {
             const struct figures f = follow(v, &s, (const real (*)[MOST_OF_STATES])truth);
             worst = worse(worst, f.error / f.most);
             if (!ok(f.count == count && f.status == 0 && f.error < 1e-7 * f.most, "%s: %d crossings", v->model->name,

@@ -1,7 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The same models against CVODE with its root finding: it stops where an expression passes a breakpoint, and begins
- * anew with the formulas behind. */
+ * anew with the formulas behind. STIFF: by BDF, beside radau. */
+#ifdef STIFF
+#include "stiff_variants.h"
+#define VARIANT_TABLE stiff_table
+#define SUFFIX "radau11"
+#define SYSTEMS divided_stiff
+#define SYSTEM_COUNT divided_stiff_count
+#define METHOD CV_BDF
+#else
 #include "events_variants.h"
+#define VARIANT_TABLE events_table
+#define SUFFIX "by13"
+#define SYSTEMS divided_systems
+#define SYSTEM_COUNT divided_count
+#define METHOD CV_ADAMS
+#endif
 #include "systems.h"
 #include "tap.h"
 
@@ -52,7 +66,7 @@ static int solve(const struct divided_system *s, double *end)
     N_Vector y = N_VNew_Serial(s->states, context);
     SUNMatrix J = SUNDenseMatrix(s->states, s->states, context);
     SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
-    void *memory = CVodeCreate(CV_ADAMS, context);
+    void *memory = CVodeCreate(METHOD, context);
     for (int i = 0; i < s->states; i++)
         NV_Ith_S(y, i) = (double)s->start[i];
     for (int i = 0; i < s->expressions; i++)
@@ -98,8 +112,8 @@ static void check(const struct divided_system *s)
     char name[64];
     double y[MOST_STATES], end[MOST_STATES], worst = 0, most = 0;
     real start[HAND_MOST] = { 0 };
-    const struct variant *v = events_table;
-    (void)snprintf(name, sizeof name, "%s_by13_0", s->name);
+    const struct variant *v = VARIANT_TABLE;
+    (void)snprintf(name, sizeof name, "%s_" SUFFIX "_0", s->name);
     while (strcmp(v->model->name, name) != 0)
         v++;
     memcpy(start, s->start, sizeof s->start);
@@ -123,7 +137,7 @@ static void check(const struct divided_system *s)
 
 int main(void)
 {
-    for (int i = 0; i < divided_count; i++)
-        check(&divided_systems[i]);
+    for (int i = 0; i < SYSTEM_COUNT; i++)
+        check(&SYSTEMS[i]);
     return tap_end();
 }

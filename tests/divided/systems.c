@@ -173,6 +173,28 @@ FIELD(parametric)
 
 /* ---- expressions ---- */
 
+FIELD(pressed)
+{
+    UNUSED;
+    d[0] = y[1];
+    d[1] = 3 * cosl(2 * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] -
+        (I(0) ? 1e8L * (y[0] - 0.5L) + 2e4L * y[1] : 0);
+}
+
+FIELD(flipping)
+{
+    UNUSED;
+    d[0] = y[1];
+    d[1] = 1000 * (1 - SIGN(0) * y[0]) * y[1] - 1000 * y[0];
+}
+
+FIELD(braked)
+{
+    UNUSED;
+    d[0] = y[1];
+    d[1] = 5000 * cosl(2 * t) - 1e4L * SIGN(0) * y[1] * y[1] - 5000 * y[0] - 100 * y[0] * y[0] * y[0];
+}
+
 EXPRESSIONS(of_position)       { (void)t; e[0] = y[0]; }
 EXPRESSIONS(of_velocity)       { (void)t; e[0] = y[1]; }
 EXPRESSIONS(of_both)           { (void)t; e[0] = y[0]; e[1] = y[1]; }
@@ -207,6 +229,13 @@ const struct divided_system divided_systems[] = {
     {"parametric", 2, 1, {1}, parametric, of_time, {1}, {{0}}, 0, 0},
 };
 const int divided_count = sizeof divided_systems / sizeof *divided_systems;
+
+const struct divided_system divided_stiff[] = {
+    {"pressed", 2, 1, {0.4L}, pressed, of_position, {1}, {{0.5L}}, 0, 1 / 8192.0L},
+    {"flipping", 2, 1, {2}, flipping, of_position, {1}, {{0}}, 0, 1 / 2048.0L},
+    {"braked", 2, 1, {0.9L}, braked, of_velocity, {1}, {{0}}, 0, 1 / 8192.0L},
+};
+const int divided_stiff_count = sizeof divided_stiff / sizeof *divided_stiff;
 
 /* ---- from crossing to crossing ---- */
 

@@ -22,6 +22,8 @@ struct divided_system {
 
 extern const struct divided_system divided_systems[];
 extern const int divided_count;
+extern const struct divided_system divided_stiff[];     /* in pieces so short that an explicit method follows them */
+extern const int divided_stiff_count;
 extern int interval_of[MOST_EXPRESSIONS];   /* which formulas hold */
 extern int after_change;
 
