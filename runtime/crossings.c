@@ -277,7 +277,17 @@ void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossin
     pl_switching_advance(m, m->h, x, c, crossing, work);
 }
 
-#ifndef REST_IS_KEPT
+#ifdef REST_IS_KEPT
+
+void pl_switching_move(const pl_switching *m, int matrix, int degree, real dt, real *x, real *work)
+{
+    const int n = m->size;
+    real *const low = work, *const coefficients = work + n;
+    expand_piece(n, degree, m->A + WORDS * (ptrdiff_t)matrix * n * n, dt, x, coefficients, low);
+    part_of_piece(n, degree, coefficients, low, 1, x);
+}
+
+#else
 
 /* ---- events of a series ---- */
 

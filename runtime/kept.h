@@ -30,16 +30,16 @@ static void whole_piece(int n, const real *Phi, int matrix, const real *x, real 
     }
 }
 
-/* first . (x + rest) + second . x in two words */
-static pl_two row_times_both(int n, const real *first, const real *second, const real *x)
+/* row . x + small in two words */
+static pl_two row_times(int n, const real *row, const real *x, real small)
 {
-    real sum = 0, rest = 0, small;
+    real sum = 0, rest = 0;
     int j;
-    pl_multiply(1, n, second, x, &small);
-    pl_multiply_add(1, n, first, x + n, &small);
     for (j = 0; j < n; j++) {
-        const pl_two product = two_product(first[j], x[j]);
-        sum = pl_accumulate(sum, product.hi, product.lo, &rest);
+        if (row[j] < 0 || row[j] > 0) {
+            const pl_two product = two_product(row[j], x[j]);
+            sum = pl_accumulate(sum, product.hi, product.lo, &rest);
+        }
     }
     return two_sum(sum, rest + small);
 }
@@ -51,8 +51,10 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
 {
     int i;
     expand(n, degree, A, dt, x, coefficients);
+    pl_multiply(n, n, A + n * n, x, low);
+    pl_multiply_add(n, n, A, x + n, low);
     for (i = 0; i < n; i++) {
-        const pl_two slope = row_times_both(n, A + i * n, A + (n + i) * n, x), gain = two_product(dt, slope.hi);
+        const pl_two slope = row_times(n, A + i * n, x, low[i]), gain = two_product(dt, slope.hi);
         coefficients[n + i] = gain.hi;
         low[i] = gain.lo + dt * slope.lo;
     }
@@ -79,8 +81,12 @@ static void part_of_piece(int n, int degree, const real *coefficients, const rea
  * second ones; value: two words */
 static inline void value_of(int n, const real *all, int row, const real *x, real *value)
 {
-    const real *first = all + 2 * (ptrdiff_t)row * n;
-    const pl_two product = row_times_both(n, first, first + n, x);
+    const real *first = all + 2 * (ptrdiff_t)row * n, *second = first + n;
+    real small;
+    pl_two product;
+    pl_multiply(1, n, second, x, &small);
+    pl_multiply_add(1, n, first, x + n, &small);
+    product = row_times(n, first, x, small);
     value[0] = product.hi;
     value[1] = product.lo;
 }

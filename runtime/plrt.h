@@ -505,6 +505,8 @@ void pl_switching_kept_start(const pl_switching *m, const double *x, pl_contact 
 void pl_switching_kept_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_switching_kept_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
                                double *work);
+/* x on by dt, 0 <= dt <= h, with one of its matrices by a Taylor polynomial of this degree, whatever it passes. */
+void pl_switching_kept_move(const pl_switching *m, int matrix, int degree, double dt, double *x, double *work);
 
 /* The same for floats; rounding errors are taken to be 8 FLT_EPSILON (...).  A pl_contact serves both. */
 typedef struct pl_switchingf {
@@ -532,6 +534,7 @@ void pl_switchingf_kept_start(const pl_switchingf *m, const float *x, pl_contact
 void pl_switchingf_kept_step(const pl_switchingf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_switchingf_kept_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
                                 float *work);
+void pl_switchingf_kept_move(const pl_switchingf *m, int matrix, int degree, float dt, float *x, float *work);
 
 /* Formulas that the state chooses beside a Taylor series: expressions e_i, each with breakpoints as above, whose series
  * stand in columns of its coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the

@@ -77,6 +77,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_start pl_switchingf_kept_start
 #define pl_switching_step pl_switchingf_kept_step
 #define pl_switching_advance pl_switchingf_kept_advance
+#define pl_switching_move pl_switchingf_kept_move
 #define pl_guards_start pl_guardsf_kept_start
 #define pl_guards_step pl_guardsf_kept_step
 #define pl_guards_advance pl_guardsf_kept_advance
@@ -97,6 +98,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_start pl_switching_kept_start
 #define pl_switching_step pl_switching_kept_step
 #define pl_switching_advance pl_switching_kept_advance
+#define pl_switching_move pl_switching_kept_move
 #define pl_guards_start pl_guards_kept_start
 #define pl_guards_step pl_guards_kept_step
 #define pl_guards_advance pl_guards_kept_advance

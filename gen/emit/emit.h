@@ -568,8 +568,8 @@ struct region_tables {
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
 				       double *(*of)(const struct region_piece *));
 struct region_tables of_branch(struct region_tables t, int branch);
-double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
-double *whole_gain_of_piece(const struct region_piece *piece);    /* the same less I, in two words */
+/* e^{A h}; of a state in two words the same less I, second words behind the first */
+struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
 bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */

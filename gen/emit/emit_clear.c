@@ -35,14 +35,6 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 
 /* ---- by tables of all regions, or region by region ---- */
 
-/* e^{A h}; of a state in two words the same less I, second words behind the first */
-static struct region_tables steps_of(const struct emitter *e, const struct pieces *p, const char *text)
-{
-	int size = e->step->layout.size;
-	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, whole_gain_of_piece)
-			     : tables_of_regions(e, p, text, size, whole_of);
-}
-
 /* What a row's second words add, and its first ones of what rounding has taken */
 static const char *small_text(const struct emitter *e, const struct region_tables *whole, int row,
 			      const char *const *x, int indent)
@@ -108,7 +100,7 @@ static void emit_chords(const struct emitter *e, const struct pieces *p, const c
 
 static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
-	struct region_tables whole = steps_of(e, p, "factor");
+	struct region_tables whole = steps_of_regions(e, p, "factor");
 	say(e, "    const int which = s->contact$p.matrix;\n"
 	       "    const double (*const factor)[%d] = $o_%s[which];\n", e->step->layout.size,
 	    any_pieces(e) ? "whole" : "pieces");
@@ -157,7 +149,7 @@ static void emit_inside(const struct emitter *e, const struct pieces *p, const c
 static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
 {
 	int branch = e->model->switching->region[region].system, n = expressions_of(e);
-	struct region_tables whole = of_branch(steps_of(e, p, ""), branch);
+	struct region_tables whole = of_branch(steps_of_regions(e, p, ""), branch);
 	const char **end = entries(e, "end%d");
 	say(e, "    case %d:\n", region);
 	emit_ends(e, p, &whole, x, "    ");
@@ -230,9 +222,7 @@ void emit_clear_step(const struct emitter *e)
 	for (int j = 0; j < layout->size && keeps_rest(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
-	say(e, keeps_rest(e) ? "        $o_seek(s, now);\n"
-			       "    }\n"
-			     : "        if (!$o_cross(s, now))\n"
-			       "            $o_seek(s, now);\n"
-			       "    }\n");
+	say(e, "        if (!$o_cross(s, now))\n"
+	       "            $o_seek(s, now);\n"
+	       "    }\n");
 }

@@ -265,7 +265,7 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 static void emit_whole(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size;
-	struct region_tables whole = tables_of_regions(e, p, "factor", size, whole_of);
+	struct region_tables whole = steps_of_regions(e, p, "factor");
 	const char **x = entries(e, "x[%d]");
 	say(e, "\n"
 	       "static void $o_advance(int which, const double x[%d], double end[%d])\n"
@@ -273,8 +273,11 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	       "    const double (*const factor)[%d] = $o_%s[which];\n",
 	    size, size, size, any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < size; i++)
-		say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
-	say(e, is_table(&whole) ? "}\n" : "    (void)factor;\n}\n");
+		if (keeps_rest(e))
+			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));
+		else
+			say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
+	say(e, is_table(&whole) && !keeps_rest(e) ? "}\n" : "    (void)factor;\n}\n");
 }
 
 static bool moves(const struct region_tables *t, int row)
@@ -482,6 +485,24 @@ static void emit_reach(const struct emitter *e)
 
 /* ---- crossing after crossing ---- */
 
+/* x on over a part of the step, of h 1: to `end`, or by the same polynomial in two words */
+static void emit_moved(const struct emitter *e, const char *indent, const char *which, const char *part, const char *end)
+{
+	if (keeps_rest(e))
+		say(e, "%spl_switching_kept_move(&$o_switching, %s, %d, %s * $N_H, x, work);\n", indent, which,
+		    e->step->swift_degree, part);
+	else
+		say(e, "%sfor (i = 0; i < %d; i++)\n"
+		       "%s    x[i] = %s[i];\n", indent, e->step->layout.size, indent, end);
+}
+
+/* Room for that */
+static const char *room_to_move(const struct emitter *e)
+{
+	return !keeps_rest(e) ? "" : format("    double work[PL_SWITCHING_KEPT_WORK(%d, %d, %d)];\n",
+					    e->step->layout.size, expressions_of(e), e->step->swift_degree);
+}
+
 /* Which expressions may be passed: near, unclear[] */
 static void emit_candidates(const struct emitter *e)
 {
@@ -519,8 +540,10 @@ static void emit_next(const struct emitter *e)
 	       "static int $o_first($n_stretch *p, double x[%d], const double end[%d], pl_crossing *crossing)\n"
 	       "{\n"
 	       "    double off[%d], y[%d], z = 2.0;\n"
+	       "%s"
 	       "    int i, %snear = 0, first = 0, up = 0, behind, next;\n"
-	       "    $o_bounds(p->which, x, off);\n", size, size, n, size, n > 1 ? format("unclear[%d], ", n) : "");
+	       "    $o_bounds(p->which, x, off);\n", size_of_vector(e), size, n, size, room_to_move(e),
+	    n > 1 ? format("unclear[%d], ", n) : "");
 	emit_candidates(e);
 	say(e, "    next = $o_beyond[p->region][first][up];\n"
 	       "    behind = first == p->passed ? p->behind : -1;\n"
@@ -537,27 +560,46 @@ static void emit_next(const struct emitter *e)
 		       "off[other]))\n"
 		       "            return -1;\n"
 		       "    }\n");
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        x[i] = y[i];\n"
-	       "    $n_next_stretch(p, z, next, $o_matrix[next], first, !up);\n"
+	emit_moved(e, "    ", "p->which", "z", "y");
+	say(e, "    $n_next_stretch(p, z, next, $o_matrix[next], first, !up);\n"
 	       "    crossing->time = p->done * $N_H;\n"
 	       "    crossing->expression = first;\n"
 	       "    crossing->breakpoint = $o_span[next][first] - up;\n"
 	       "    crossing->upward = up;\n"
 	       "    return 1;\n"
-	       "}\n", size);
+	       "}\n");
+}
+
+/* The state behind what has been found, and that */
+static void emit_crossed(const struct emitter *e)
+{
+	if (keeps_rest(e)) {
+		emit_moved(e, "    ", "part.which", "part.length", "end");
+		emit_state_of_x(e);
+	} else {
+		say(e, "    $n_accept(&s->contact$p, s->crossing$p, &part, crossing, count);\n"
+		       "    for (i = 0; i < %s; i++)\n"
+		       "        s->y[%s] = end[i];\n"
+		       "    return 1;\n"
+		       "}\n", own_states(e), place_in_loop(e));
+		return;
+	}
+	say(e, "    $n_accept(&s->contact$p, s->crossing$p, &part, crossing, count);\n"
+	       "    return 1;\n"
+	       "}\n");
 }
 
 /* Part by part; a part that is not certain is halved. */
 static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
-	int size = e->step->layout.size;
+	int size = e->step->layout.size, all = size_of_vector(e);
 	say(e, "\n"
 	       "static PL_APART int $o_cross($n *s, const double now[%d])\n"
 	       "{\n"
 	       "    pl_crossing crossing[%d];\n"
 	       "    $n_stretch part = {0.0, 1.0, 1.0, 0, 0, -1, -1};\n"
 	       "    double x[%d], end[%d];\n"
+	       "%s"
 	       "    int i, look, count = 0;\n"
 	       "    for (i = 0; i < %d; i++)\n"
 	       "        x[i] = now[i];\n"
@@ -566,7 +608,7 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	       "    if (!(%s < %s))\n"
 	       "        return 0;\n"
 	       "    $o_advance(part.which, x, end);\n"
-	       "    for (look = 0; look < %d; look++) {\n", size, MOST_SWIFT, size, size, size,
+	       "    for (look = 0; look < %d; look++) {\n", all, MOST_SWIFT, all, size, room_to_move(e), all,
 	    size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 10), shortest(p->large), MOST_LOOKS);
 	say(e, "        int found = -2;\n"
 	       "        if (%s < %s &&\n"
@@ -581,22 +623,17 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	       "            part.length *= 0.5;\n"
 	       "        else if (found == 1)\n"
 	       "            count++;\n"
-	       "        else {\n"
-	       "            for (i = 0; i < %d; i++)\n"
-	       "                x[i] = end[i];\n"
-	       "            $n_next_stretch(&part, part.length, part.region, part.which, -1, -1);\n"
+	       "        else {\n");
+	emit_moved(e, "            ", "part.which", "part.length", "end");
+	say(e, "            $n_next_stretch(&part, part.length, part.region, part.which, -1, -1);\n"
 	       "        }\n"
 	       "        $o_move(part.which, x, part.length, end);\n"
 	       "        for (i = 0; i < %d; i++)\n"
 	       "            end[i] += x[i];\n"
 	       "    }\n"
 	       "    if (look == %d)\n"
-	       "        return 0;\n", size, size, MOST_LOOKS);
-	say(e, "    $n_accept(&s->contact$p, s->crossing$p, &part, crossing, count);\n"
-	       "    for (i = 0; i < %s; i++)\n"
-	       "        s->y[%s] = end[i];\n"
-	       "    return 1;\n"
-	       "}\n", own_states(e), place_in_loop(e));
+	       "        return 0;\n", size, MOST_LOOKS);
+	emit_crossed(e);
 }
 
 void emit_crossing(const struct emitter *e)

@@ -518,7 +518,7 @@ void emit_parts_step(const struct emitter *e)
 	bool swift = false;
 	for (int p = 0; p < e->step->parts; p++)
 		swift = swift || e->step->part[p]->swift;
-	if (swift && !keeps_rest(e))
+	if (swift)
 		emit_crossing_scalars(e);
 	for_parts(e, e->step->parts, emit_step_of_part);
 	say(e, "\n"

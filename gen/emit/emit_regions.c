@@ -429,8 +429,7 @@ static void emit_searched_step(const struct emitter *e)
 /* What is not seen to be clear, or to cross once */
 void emit_region_search(const struct emitter *e)
 {
-	if (!keeps_rest(e))
-		emit_crossing(e);
+	emit_crossing(e);
 	say(e, "\n"
 	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
 	       "{\n"
@@ -461,8 +460,7 @@ static void emit_whole_step(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	if (e->step->swift) {
-		if (!keeps_rest(e))
-			emit_crossing_scalars(e);
+		emit_crossing_scalars(e);
 		emit_region_search(e);
 	}
 	say(e, "\n"

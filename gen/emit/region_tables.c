@@ -58,14 +58,21 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 	return t;
 }
 
-double *whole_of(const struct region_piece *piece)  { return piece->whole; }
-double *whole_gain_of_piece(const struct region_piece *piece) { return piece->whole_gain; }
+static double *whole_of(const struct region_piece *piece)  { return piece->whole; }
+static double *gain_of(const struct region_piece *piece)   { return piece->whole_gain; }
 static double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
 static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
 static double *third_of(const struct region_piece *piece)  { return piece->third; }
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
+
+struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text)
+{
+	int size = e->step->layout.size;
+	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, gain_of)
+			     : tables_of_regions(e, p, text, size, whole_of);
+}
 
 bool is_table(const struct region_tables *t)
 {
@@ -138,8 +145,8 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 	say(e, "};\n");
 }
 
-/* Region by region */
-static void emit_within(const struct emitter *e, const struct pieces *p)
+/* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
+static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
 	const struct switching *s = e->model->switching;
 	int n = s->expressions;
@@ -150,15 +157,8 @@ static void emit_within(const struct emitter *e, const struct pieces *p)
 		for (int i = 0; i < n; i++)
 			say(e, "%s{%s, %s}%s", i == 0 ? "    {" : ", ", shortest(p->low[r * n + i]),
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
-	say(e, "};\n");
-}
-
-/* Region by region: the regions below and above; -1: none that can occur */
-static void emit_neighbours(const struct emitter *e)
-{
-	const struct switching *s = e->model->switching;
-	int n = s->expressions;
-	say(e, "\n"
+	say(e, "};\n"
+	       "\n"
 	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
@@ -179,23 +179,25 @@ static void emit_neighbours(const struct emitter *e)
 	say(e, "};\n");
 }
 
+static void emit_whole_steps(const struct emitter *e, const struct pieces *p)
+{
+	struct region_tables whole = steps_of_regions(e, p, "");
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
+	emit_of_each(e, &whole, "whole", keeps_rest(e) ? "e^{A h} - I in two words" : "e^{A h}",
+		     keeps_rest(e) ? twice(e->step->layout.size, name) : name);
+}
+
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
 {
 	int n = expressions_of(e);
-	struct region_tables whole = tables_of_regions(e, p, "", e->step->layout.size, whole_of),
-		      off = tables_of_regions(e, p, "", n, off_of), slack = tables_of_regions(e, p, "", n, slack_of),
+	struct region_tables off = tables_of_regions(e, p, "", n, off_of), slack = tables_of_regions(e, p, "", n, slack_of),
 			     third = tables_of_regions(e, p, "", n, third_of),
 		      still = tables_of_regions(e, p, "", 1, still_of);
 	still.columns = n;
-	if (any_pieces(e) && keeps_rest(e)) {
-		struct region_tables gain = tables_of_regions(e, p, "", 2 * e->step->layout.size, whole_gain_of_piece);
-		emit_of_each(e, &gain, "whole", "e^{A h} - I in two words",
-			     twice(e->step->layout.size, layout_names(&e->step->layout, e->system, e->model)));
-	} else if (any_pieces(e)) {
+	if (any_pieces(e)) {
 		struct region_tables turn = tables_of_regions(e, p, "", n, turn_of),
 			      bend = tables_of_regions(e, p, "", n, bend_of);
-		emit_of_each(e, &whole, "whole", "e^{A h}",
-			     layout_names(&e->step->layout, e->system, e->model));
+		emit_whole_steps(e, p);
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
@@ -205,15 +207,9 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (reads && is_table(&still))
 		emit_still(e, p);
-	if (!keeps_rest(e)) {           /* else crossings are left to the search */
-		emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'",
-			     expression);
-		emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
-	}
-	if (!keeps_rest(e) || is_cleared_by_tables(e->step))
-		emit_within(e, p);
-	if (!keeps_rest(e))
-		emit_neighbours(e);
+	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
+	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
+	emit_neighbours(e, p);
 }
 
 /* ---- sums as text ---- */

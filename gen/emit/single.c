@@ -35,7 +35,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_guards_kept_start", "pl_guards", false }, { "pl_guards_kept_step", "pl_guards", false },
 	{ "pl_guards_kept_advance", "pl_guards", false }, { "pl_guards_kept_change", "pl_guards", false },
 	{ "pl_switching_kept_start", "pl_switching", false }, { "pl_switching_kept_step", "pl_switching", false },
-	{ "pl_switching_kept_advance", "pl_switching", false },
+	{ "pl_switching_kept_advance", "pl_switching", false }, { "pl_switching_kept_move", "pl_switching", false },
 	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
 	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
 	{ "pl_crossing", "pl_crossing", false }, { "pl_divided", "pl_divided", false },
