@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { STEPS = 7 };
+enum { STEPS = 5 };
 
 /* Of log(error) over log(h), by least squares */
 static double slope_of(const double *h, const double *error)
