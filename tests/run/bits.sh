@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # bits.sh PLGEN INTERPRET SOURCE_ROOT: the C of models, run inside the generator and compiled: the same bits, of each
-# scheme and both types, in float every second by turns. With LONG=1 in the environment it is optimised, and all in float.
+# scheme and both types, in float every second by turns. With LONG=1 in the environment it is optimised, and all in
+# float.
 set -u
 plgen=$1
 interpret=$2
