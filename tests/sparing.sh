@@ -3,8 +3,8 @@
 # Sourced by tests that run command lines as a reader types them: the runtime's sources are most of what a compiler has
 # to do there, and need not be compiled by every one of them.
 
-# sparing COMPILER RUNTIME ARCHIVE [TYPED]: bin/COMPILER, which where it is given all sources of the folder RUNTIME takes
-# the archive for them; the first time as it is typed, if TYPED, a file that is then made, is given
+# sparing COMPILER RUNTIME ARCHIVE [TYPED]: bin/COMPILER, which where it is given all sources of the folder RUNTIME
+# takes the archive for them; the first time as it is typed, if TYPED, a file that is then made, is given
 sparing() {
 	real=$(command -v "$1") || return 0
 	sources=$(echo "$2"/*.c)

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # scales.sh BUILD SCALES ROOT [--quick]: the scales of every model and hard case of the charts, over their whole
-# histories or those of the quick run, held by the program scales.
+# histories or those of the quick run, held by the program scales. Not by a quick run: vanderpol_stiffer, of which it
+# takes longer to know what is true than of all others.
 set -e
 absolute() {
     case $1 in
@@ -20,9 +21,16 @@ mkdir "$work/hard"
 "$charts/precision" --list | awk -v to="$work/" 'NF == 2 { print to $1, $2 }' |
     xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$build/plgen"
 sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
+names=
+expected=24
+[ -z "$quick" ] || { names=$("$charts/precision" --names | grep -v '^vanderpol_stiffer$') expected=23; }
 {
-    "$charts/precision" --scales $quick "$work" && "$charts/hard" --scales $quick "$work/hard"
+    # shellcheck disable=SC2086
+    "$charts/precision" --scales $quick "$work" $names && "$charts/hard" --scales $quick "$work/hard"
 } >"$work/scales" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }
 models=$(awk 'END { print NR }' "$work/scales")
-[ "$models" -eq 36 ] || { echo "Bail out! $models models and cases, expected 24 and 12"; exit 1; }
+[ "$models" -eq $((expected + 12)) ] || {
+    echo "Bail out! $models models and cases, expected $expected and 12"
+    exit 1
+}
 "$program" <"$work/scales"

@@ -4,7 +4,7 @@
 #
 #     bits.sh BOARD VARIANTS_double.c VARIANTS_float.c HOST_PROGRAM RUNTIME.a SOURCE_ROOT STEPS
 #
-# RUNTIME.a is that of the board: archive.sh.
+# RUNTIME.a is that of the board: archive.sh. LONG=1 in the environment: what is emitted is optimised as firmware is.
 set -u
 name=$1
 double=$2
@@ -19,6 +19,7 @@ if ! boards_installed; then
     exit 0
 fi
 board "$name"
+optimize_less
 work=$(mktemp -d "${TMPDIR:-/tmp}/firmware.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM

@@ -3,6 +3,11 @@
 arm=arm-none-eabi
 optimize='-std=c99 -O2 -ffp-contract=off -ffunction-sections -fdata-sections'
 
+# Less of it, which takes half as long and on which bits must not depend; not with LONG=1 in the environment
+optimize_less() {
+    [ -n "${LONG:-}" ] || optimize=$(echo "$optimize" | sed 's/-O2/-O1/')
+}
+
 # board NAME: sets cpu (options of the compiler), machine and script
 board() {
     script=mps2.ld

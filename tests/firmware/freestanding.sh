@@ -7,7 +7,8 @@
 #
 #     freestanding.sh BOARD SOURCE_ROOT MODELS_double.c MODELS_float.c ...
 #
-# LONG=1 in the environment: M0 with -O2 too, as firmware is built and as all boards compile what they run (bits.sh).
+# LONG=1 in the environment: optimised as firmware is built, and all of the runtime for each board; without it for M4F
+# only what is of float.
 set -u
 name=$1
 root=$2
@@ -19,7 +20,7 @@ if ! command -v $arm-gcc >/dev/null 2>&1; then
     exit 0
 fi
 board "$name"
-[ "$name" != m0 ] || [ -n "${LONG:-}" ] || optimize=$(echo "$optimize" | sed 's/-O2/-O1/')
+optimize_less
 work=$(mktemp -d "${TMPDIR:-/tmp}/freestanding.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
@@ -91,7 +92,7 @@ for f in "$root"/runtime/*.c; do
     f=${f##*/}
     f=${f%.c}
     case $f in *f) [ -f "$root/runtime/${f%f}.c" ] && real=float || real=double ;; *) real=double ;; esac
-    builds "$root/runtime/$f.c" "$f" $real
+    [ -z "${LONG:-}" ] && [ "$name" != m0 ] && [ $real = double ] || builds "$root/runtime/$f.c" "$f" $real
 done
 for source; do
     case $source in /*) ;; *) source=$PWD/$source ;; esac
