@@ -18,16 +18,25 @@ static void stop(mpfr_t *p)
 void value_at(mpfr_t *coefficient, mpfr_srcptr s, mpfr_ptr value)
 {
 	mpfr_set(value, coefficient[DEGREE], MPFR_RNDN);
-	for (int k = DEGREE - 1; k >= 0; k--)
-		mpfr_fma(value, value, s, coefficient[k], MPFR_RNDN);
+	for (int k = DEGREE - 1; k >= 0; k--) {         /* a third of the time of mpfr_fma */
+		mpfr_mul(value, value, s, MPFR_RNDN);
+		mpfr_add(value, value, coefficient[k], MPFR_RNDN);
+	}
 }
 
 /* p(s) -> p(s + by), by Horner's scheme repeated */
 static void shift(mpfr_t *p, mpfr_srcptr by)
 {
+	mpfr_t part;
+	if (mpfr_zero_p(by))
+		return;
+	mpfr_init2(part, BITS);
 	for (int i = 0; i < DEGREE; i++)
-		for (int k = DEGREE - 1; k >= i; k--)
-			mpfr_fma(p[k], p[k + 1], by, p[k], MPFR_RNDN);
+		for (int k = DEGREE - 1; k >= i; k--) {
+			mpfr_mul(part, p[k + 1], by, MPFR_RNDN);
+			mpfr_add(p[k], p[k], part, MPFR_RNDN);
+		}
+	mpfr_clear(part);
 }
 
 /* 1, -1: the sign of sum_{k >= from} k^(from) p_k s^(k - from) for all 0 <= s <= width; 0: it is not known */

@@ -38,7 +38,7 @@ follows() {
 		grep 'more regions than the limit' log >found.txt && return 2
 		return 1
 	fi
-	${CC:-cc} -O1 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
+	${CC:-cc} -O0 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
 		-I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
 	./follow found.txt $1 $3 >>log 2>&1
 }

@@ -25,7 +25,7 @@ tested() {
 		printf '#include "scene.h"\n#include <stdio.h>\n'
 		printf 'int main(void) { printf("%%g\\n", (double)scene_selftest()); }\n'
 	} >main.c
-	${CC:-cc} -O1 -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
+	${CC:-cc} -O0 -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
 }
 
 seed=$first

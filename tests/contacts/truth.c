@@ -55,13 +55,16 @@ static void thousandths(mpfr_ptr to, long value)
 
 static void dot(int n, mpfr_t *a, mpfr_t *b, mpfr_ptr sum)
 {
-	mpfr_t total;
-	mpfr_init2(total, BITS);
+	mpfr_t total, part;
+	mpfr_inits2(BITS, total, part, (mpfr_ptr)0);
 	mpfr_set_zero(total, 1);
 	for (int i = 0; i < n; i++)
-		mpfr_fma(total, a[i], b[i], total, MPFR_RNDN);
+		if (!mpfr_zero_p(a[i]) && !mpfr_zero_p(b[i])) {         /* most are */
+			mpfr_mul(part, a[i], b[i], MPFR_RNDN);
+			mpfr_add(total, total, part, MPFR_RNDN);
+		}
 	mpfr_set(sum, total, MPFR_RNDN);
-	mpfr_clear(total);
+	mpfr_clears(total, part, (mpfr_ptr)0);
 }
 
 static void doubt(struct moving *m, const char *why)

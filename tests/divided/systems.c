@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "systems.h"
+#include "quadrant.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,7 +26,7 @@ FIELD(pushed_drag)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = cosl(1.3L * t) - 0.1L * y[1] - y[0] - 0.2L * SIGN(0) * y[1] * y[1];
+    d[1] = cos_of(1.3L * t) - 0.1L * y[1] - y[0] - 0.2L * SIGN(0) * y[1] * y[1];
 }
 
 FIELD(odd_square)
@@ -39,21 +40,21 @@ FIELD(half_square)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 0.5L * cosl(2 * t) - y[0] - (I(0) ? 5 * (y[0] - 0.3L) * (y[0] - 0.3L) : 0);
+    d[1] = 0.5L * cos_of(2 * t) - y[0] - (I(0) ? 5 * (y[0] - 0.3L) * (y[0] - 0.3L) : 0);
 }
 
 FIELD(stop_cubic)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 1.5L * cosl(1.7L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] - (I(0) ? 50 * (y[0] - 0.5L) : 0);
+    d[1] = 1.5L * cos_of(1.7L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] - (I(0) ? 50 * (y[0] - 0.5L) : 0);
 }
 
 FIELD(gap_cubic)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 2 * cosl(1.1L * t) - 0.05L * y[1] - y[0] * y[0] * y[0] -
+    d[1] = 2 * cos_of(1.1L * t) - 0.05L * y[1] - y[0] * y[0] * y[0] -
         20 * (I(0) == 0 ? y[0] + 0.1L : I(0) == 2 ? y[0] - 0.2L : 0);
 }
 
@@ -63,7 +64,7 @@ FIELD(two_gap)
     UNUSED;
     d[0] = y[2];
     d[1] = y[3];
-    d[2] = -sinl(y[0]) - force;
+    d[2] = -sin_of(y[0]) - force;
     d[3] = -2 * y[1] - 0.1L * y[1] * y[1] * y[1] + force;
 }
 
@@ -71,7 +72,7 @@ FIELD(clipped)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = cosl(t) - y[0] * y[0] * y[0] - 0.5L * (I(0) == 0 ? -1 : I(0) == 2 ? 1 : 3 * y[1]);
+    d[1] = cos_of(t) - y[0] * y[0] * y[0] - 0.5L * (I(0) == 0 ? -1 : I(0) == 2 ? 1 : 3 * y[1]);
 }
 
 FIELD(relaxing)
@@ -86,14 +87,14 @@ FIELD(table_drag)
     const real force = I(0) == 0 ? 3 * y[0] : I(0) == 1 ? y[0] : 3 * y[0] - 2;
     UNUSED;
     d[0] = y[1];
-    d[1] = 0.5L * cosl(2 * t) - force - 0.2L * SIGN(1) * y[1] * y[1];
+    d[1] = 0.5L * cos_of(2 * t) - force - 0.2L * SIGN(1) * y[1] * y[1];
 }
 
 FIELD(jumping)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 2 * cosl(1.3L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] - 0.5L * SIGN(0);
+    d[1] = 2 * cos_of(1.3L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] - 0.5L * SIGN(0);
 }
 
 FIELD(product)
@@ -110,21 +111,21 @@ FIELD(nested)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 0.3L * cosl(0.7L * t) - sinl(y[0]) - (I(1) ? 4 * (y[0] - 0.5L * SIGN(0)) : 0);
+    d[1] = 0.3L * cos_of(0.7L * t) - sin_of(y[0]) - (I(1) ? 4 * (y[0] - 0.5L * SIGN(0)) : 0);
 }
 
 FIELD(moving)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = cosl(t) - y[0] * y[0] * y[0] - (I(0) ? 20 * (y[0] - 0.5L - 0.1L * sinl(3 * t)) : 0);
+    d[1] = cos_of(t) - y[0] * y[0] * y[0] - (I(0) ? 20 * (y[0] - 0.5L - 0.1L * sin_of(3 * t)) : 0);
 }
 
 FIELD(switched_load)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = (after_change ? 0.3L : 1.5L * cosl(2 * t)) - y[0] - y[0] * y[0] * y[0] +
+    d[1] = (after_change ? 0.3L : 1.5L * cos_of(2 * t)) - y[0] - y[0] * y[0] * y[0] +
         (I(0) ? 0 : 20 * (-y[0] - 0.4L));
 }
 
@@ -141,7 +142,7 @@ FIELD(circle)
 FIELD(lagging)
 {
     UNUSED;
-    d[0] = cosl(t) - SIGN(0) * y[0] * y[0];
+    d[0] = cos_of(t) - SIGN(0) * y[0] * y[0];
 }
 
 FIELD(gated)
@@ -168,7 +169,7 @@ FIELD(parametric)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = -(1 + (I(0) ? 0.5L * sinl(3 * t) : 0)) * y[0] - 0.1L * y[0] * y[0] * y[0];
+    d[1] = -(1 + (I(0) ? 0.5L * sin_of(3 * t) : 0)) * y[0] - 0.1L * y[0] * y[0] * y[0];
 }
 
 /* ---- expressions ---- */
@@ -201,10 +202,10 @@ EXPRESSIONS(of_both)           { (void)t; e[0] = y[0]; e[1] = y[1]; }
 EXPRESSIONS(of_distance)       { (void)t; e[0] = y[1] - y[0]; }
 EXPRESSIONS(of_product)        { (void)t; e[0] = y[0] * y[1]; }
 EXPRESSIONS(of_size)           { (void)t; e[0] = y[0]; e[1] = I(0) ? y[0] : -y[0]; }
-EXPRESSIONS(of_moving)         { e[0] = y[0] - 0.1L * sinl(3 * t); }
+EXPRESSIONS(of_moving)         { e[0] = y[0] - 0.1L * sin_of(3 * t); }
 EXPRESSIONS(of_radius)         { (void)t; e[0] = y[0] * y[0] + y[1] * y[1]; }
 EXPRESSIONS(of_three)          { (void)t; e[0] = y[0] - y[1]; e[1] = y[0]; e[2] = y[1]; }
-EXPRESSIONS(of_time)           { (void)y; e[0] = sinl(3 * t); }
+EXPRESSIONS(of_time)           { (void)y; e[0] = sin_of(3 * t); }
 
 const struct divided_system divided_systems[] = {
     {"drag", 2, 1, {2}, drag, of_velocity, {1}, {{0}}, 0, 0},

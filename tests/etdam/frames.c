@@ -2,6 +2,7 @@
 #include "frames.h"
 
 #include "cantilever.h"
+#include "quadrant.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -11,18 +12,18 @@
 
 static void gyro(real t, const real *y, const real *u, real *dydt)
 {
-    const real w = 2 + sinl(0.8L * t), wp = 0.8L * cosl(0.8L * t);
+    const real w = 2 + sin_of(0.8L * t), wp = 0.8L * cos_of(0.8L * t);
     (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
-    dydt[2] = cosl(3 * t) + 0.2L * w * w - 0.3L * y[2] + 2 * w * y[3] + wp * y[1] - (40 - w * w) * y[0] + 10 * y[1];
+    dydt[2] = cos_of(3 * t) + 0.2L * w * w - 0.3L * y[2] + 2 * w * y[3] + wp * y[1] - (40 - w * w) * y[0] + 10 * y[1];
     dydt[3] = 0.5L * t / (1 + t) - 0.3L * y[3] - 2 * w * y[2] - wp * y[0] - (90 - w * w) * y[1] + 10 * y[0];
 }
 
 static void spun(real t, const real *y, const real *u, real *dydt)
 {
     const real w = t < 2 ? 1.5L * t - 0.375L * t * t : 1.5L, wp = t < 2 ? 1.5L - 0.75L * t : 0;
-    const real x = t < 0.5L ? 3 : t < 1 ? 4 * t : -1, z = t < 2 ? cosl(5 * t) : 0.3L;
+    const real x = t < 0.5L ? 3 : t < 1 ? 4 * t : -1, z = t < 2 ? cos_of(5 * t) : 0.3L;
     (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
@@ -34,17 +35,17 @@ static void spun(real t, const real *y, const real *u, real *dydt)
 static void turned(real t, const real *y, const real *u, real *dydt)
 {
     spun(t, y, u, dydt);
-    dydt[2] += 2 * cosl(40 * t + 0.3L) + expl(-t / 4);
-    dydt[3] += 2 * sinl(40 * t + 0.3L);
+    dydt[2] += 2 * cos_of(40 * t + 0.3L) + expl(-t / 4);
+    dydt[3] += 2 * sin_of(40 * t + 0.3L);
 }
 
 static void bent(real t, const real *y, const real *u, real *dydt)
 {
-    const real w = 2 + sinl(0.8L * t);
+    const real w = 2 + sin_of(0.8L * t);
     (void)u;
     for (int i = 0; i < 3; i++)
         dydt[i] = y[3 + i];
-    dydt[3] = cosl(3 * t) - 4 * cosl(t) * sinl(y[0] - y[1]) - 0.3L * y[3] + 2 * w * y[4] - (40 - w * w) * y[0] +
+    dydt[3] = cos_of(3 * t) - 4 * cos_of(t) * sin_of(y[0] - y[1]) - 0.3L * y[3] + 2 * w * y[4] - (40 - w * w) * y[0] +
         10 * y[1] - 30 * y[0] * y[0] * y[0];
     dydt[4] = -0.3L * y[4] - 2 * w * y[3] - (90 - w * w) * y[1] + 10 * y[0] - 0.5L * y[4] * y[4] * y[4];
     dydt[5] = -20 * y[2] - 0.4L * y[2] * y[2] * w;
@@ -55,8 +56,8 @@ static void rotor(real t, const real *y, const real *u, real *dydt)
     (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
-    dydt[2] = 900 * cosl(300 * t + 0.4L) + 7 * expl(-2 * t) * sinl(50 * t) + 3 * expl(-t) - 0.3L * y[2] - 40 * y[0];
-    dydt[3] = 2 * sinl(300 * t + 0.4L) - 0.3L * y[3] - (90 + 20 * sinl(t)) * y[1];
+    dydt[2] = 900 * cos_of(300 * t + 0.4L) + 7 * expl(-2 * t) * sin_of(50 * t) + 3 * expl(-t) - 0.3L * y[2] - 40 * y[0];
+    dydt[3] = 2 * sin_of(300 * t + 0.4L) - 0.3L * y[3] - (90 + 20 * sin_of(t)) * y[1];
 }
 
 static void beam(real t, const real *y, const real *u, real *dydt)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "joint.h"
+#include "quadrant.h"
 
 #include <math.h>
 #include <string.h>
@@ -119,7 +120,7 @@ struct series {
 /* u^k of cos(w (t + u)) */
 static wide cosine(wide w, wide t, int k)
 {
-	wide value = cosl(w * t + k * (acosl(-1.0L) / 2));
+	wide value = cos_of(w * t + k * (acosl(-1.0L) / 2));
 	for (int i = 1; i <= k; i++)
 		value *= w / i;
 	return value;

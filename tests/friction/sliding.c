@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "sliding.h"
+#include "quadrant.h"
 
 #include <math.h>
 #include <string.h>
@@ -164,7 +165,7 @@ struct expansion {
 /* u^k of cos(w (t + u) + p) */
 static wide cosine(wide w, wide p, wide t, int k)
 {
-	wide value = cosl(w * t + p + k * (acosl(-1.0L) / 2));
+	wide value = cos_of(w * t + p + k * (acosl(-1.0L) / 2));
 	for (int i = 1; i <= k; i++)
 		value *= w / i;
 	return value;

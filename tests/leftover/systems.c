@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "systems.h"
+#include "quadrant.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +28,7 @@ static void pendulum(real t, const real *y, const real *u, real *dydt)
 {
     (void)t, (void)u;
     dydt[0] = y[1];
-    dydt[1] = -sinl(y[0]);
+    dydt[1] = -sin_of(y[0]);
 }
 
 /* A bank at x = -1/2, 1/2. */
@@ -74,13 +75,13 @@ static void duffing(real t, const real *y, const real *u, real *dydt)
 {
     (void)u;
     dydt[0] = y[1];
-    dydt[1] = 0.5L * cosl(1.4L * t) - 0.2L * y[1] - y[0] - y[0] * y[0] * y[0];
+    dydt[1] = 0.5L * cos_of(1.4L * t) - 0.2L * y[1] - y[0] - y[0] * y[0] * y[0];
 }
 
 static void duffing_loads(real t, real *z)
 {
-    z[0] = cosl(1.4L * t);
-    z[1] = sinl(1.4L * t);
+    z[0] = cos_of(1.4L * t);
+    z[1] = sin_of(1.4L * t);
 }
 
 /* z = cos wt, sin wt behind `states` others */
@@ -101,7 +102,7 @@ static void mathieu(real t, const real *y, const real *u, real *dydt)
 {
     (void)u;
     dydt[0] = y[1];
-    dydt[1] = -0.1L * y[1] - (1 - 0.4L * cosl(2 * t)) * y[0];
+    dydt[1] = -0.1L * y[1] - (1 - 0.4L * cos_of(2 * t)) * y[0];
 }
 
 /* At t = pi/2; without an operator statement what varies in time is left over. */
@@ -156,13 +157,13 @@ static void thermal(real t, const real *y, const real *u, real *dydt)
     dydt[0] = v;
     dydt[1] = 50 * (v - f / 4 - 0.05L * f * f * f);
     dydt[2] = 0.2L + 0.1L * f * f - 0.5L * T;
-    dydt[3] = (3 * cosl(4 * t) - 30 * x - f) / 2;
+    dydt[3] = (3 * cos_of(4 * t) - 30 * x - f) / 2;
 }
 
 static void thermal_loads(real t, real *z)
 {
-    z[0] = cosl(4 * t);
-    z[1] = sinl(4 * t);
+    z[0] = cos_of(4 * t);
+    z[1] = sin_of(4 * t);
     z[2] = 1;
 }
 
@@ -179,7 +180,7 @@ static void coupled(real t, const real *y, const real *u, real *dydt)
     const real x = y[0], q = y[1], v = y[2], p = y[3];
     (void)u;
     const real spring = 5 * powl(x - q, 3), damper = 0.4L * powl(v - p, 3);
-    const real a = sinl(3 * t) - (0.1L * v + damper + 30 * x + spring),
+    const real a = sin_of(3 * t) - (0.1L * v + damper + 30 * x + spring),
         b = damper + spring - 0.2L * p - 20 * q - 0.3L * x * p;
     dydt[0] = v;
     dydt[1] = p;
@@ -189,8 +190,8 @@ static void coupled(real t, const real *y, const real *u, real *dydt)
 
 static void coupled_loads(real t, real *z)
 {
-    z[0] = cosl(3 * t);
-    z[1] = sinl(3 * t);
+    z[0] = cos_of(3 * t);
+    z[1] = sin_of(3 * t);
 }
 
 static void coupled_columns(real *A)
@@ -233,7 +234,7 @@ static void rotor_at(real w, real a, real t, const real *y, real *dydt)
     dydt[0] = y[2];
     dydt[1] = y[3];
     dydt[2] = -0.1L * y[2] - (40 - w * w) * y[0] + 2 * w * y[3] + a * y[1];
-    dydt[3] = 3 * cosl(2 * t) - 0.1L * y[3] - (60 - w * w) * y[1] - 2 * w * y[2] - a * y[0];
+    dydt[3] = 3 * cos_of(2 * t) - 0.1L * y[3] - (60 - w * w) * y[1] - 2 * w * y[2] - a * y[0];
 }
 
 static void rotor(real t, const real *y, const real *u, real *dydt)
@@ -255,8 +256,8 @@ static int rotor_choose(real t, const real *y)
 
 static void rotor_loads(real t, real *z)
 {
-    z[0] = cosl(2 * t);
-    z[1] = sinl(2 * t);
+    z[0] = cos_of(2 * t);
+    z[1] = sin_of(2 * t);
 }
 
 static void rotor_linear(const struct system *s, int which, real *A)
@@ -281,7 +282,7 @@ static void growth(real t, const real *y, const real *u, real *dydt)
     (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
-    dydt[2] = 0.3L * t * expl(-0.2L * t) * cosl(2 * t) + 0.1L * t - 0.1L * y[2] - 4 * y[0] - y[0] * y[0] * y[0];
+    dydt[2] = 0.3L * t * expl(-0.2L * t) * cos_of(2 * t) + 0.1L * t - 0.1L * y[2] - 4 * y[0] - y[0] * y[0] * y[0];
     dydt[3] = expl(0.1L * t) - 1.5L - 3 * y[1] - 0.2L * y[2] * y[1] * y[1];
 }
 
@@ -289,8 +290,8 @@ static void growth(real t, const real *y, const real *u, real *dydt)
 static void growth_loads(real t, real *z)
 {
     const real size = expl(-0.2L * t);
-    z[0] = size * cosl(2 * t);
-    z[1] = size * sinl(2 * t);
+    z[0] = size * cos_of(2 * t);
+    z[1] = size * sin_of(2 * t);
     z[2] = t * z[0];
     z[3] = t * z[1];
     z[4] = 1;
@@ -343,9 +344,9 @@ static void chain(real t, const real *y, const real *u, real *dydt)
     real *a = dydt + MASSES;
     for (int i = 0; i < MASSES; i++) {
         dydt[i] = v[i];
-        a[i] = chain_f[i] * (cosl(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) - chain_K(y,
+        a[i] = chain_f[i] * (cos_of(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) - chain_K(y,
             i) -
-               30 * (y[i] - sinl(y[i])) - t * y[i];
+               30 * (y[i] - sin_of(y[i])) - t * y[i];
     }
     chain_inverse(a);
     for (int i = 0; i < MASSES; i++)
@@ -354,8 +355,8 @@ static void chain(real t, const real *y, const real *u, real *dydt)
 
 static void chain_loads(real t, real *z)
 {
-    z[0] = cosl(3 * t);
-    z[1] = sinl(3 * t);
+    z[0] = cos_of(3 * t);
+    z[1] = sin_of(3 * t);
 }
 
 /* 30 q is a linear term as written; w = t/2 */
@@ -408,7 +409,7 @@ static void functions(real t, const real *y, const real *u, real *dydt)
     dydt[0] = y[3];
     dydt[1] = y[4];
     dydt[2] = y[5];
-    dydt[3] = -(4 * a + 0.3L * sinl(b) * cosl(a) + 0.1L * tanl(b / 2) + 0.2L * expl(-a * a) - logl(2 + b) +
+    dydt[3] = -(4 * a + 0.3L * sin_of(b) * cos_of(a) + 0.1L * tanl(b / 2) + 0.2L * expl(-a * a) - logl(2 + b) +
         0.1L * fabsl(da) * da +
                 0.1L * powl(2 + a, 1.5L));
     dydt[4] = -(9 * b + sqrtl(2 + a) + 0.3L * fabsl(b + 3) * a + 0.2L * sign(b - 3) + sinhl(0.3L * a) -

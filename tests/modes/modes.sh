@@ -22,7 +22,7 @@ made() {
 	prefix=$1
 	shift
 	"$plgen" --prefix "$prefix" -o "$prefix.c" "$@" &&
-		${CC:-cc} -std=c99 -O1 $warnings -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
+		${CC:-cc} -std=c99 -O0 $warnings -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
 }
 
 # compiled PROGRAM FLAGS AND FILES ...
@@ -51,6 +51,7 @@ closed blocks '1, 2' 3 -DBLOCKS
 closed blocks '3, 4 without static' 12 '-DBLOCKS -DWITHOUT'
 closed blocks '2,' 2 -DBLOCKS
 
+echo none >whole_is
 # against NAME MODES FLAGS OPTION ...
 against() {
 	name=$1
@@ -60,7 +61,10 @@ against() {
 	{
 		lost=$("$plgen" --modes "$modes" --explain=json "$@" "$name.spec" |
 			sed -n 's/null/HUGE_VAL/g; s/^  "lost": \[\(.*\)\],$/\1/p')
-		made whole "$@" "$name.spec" && made part --modes "$modes" "$@" "$name.spec" &&
+		# once for all modes
+		[ "$(cat whole_is)" = "$name $*" ] ||
+			{ made whole "$@" "$name.spec" && echo "$name $*" >whole_is; } || echo none >whole_is
+		made part --modes "$modes" "$@" "$name.spec" &&
 			compiled whole -DLOST="{$lost}" $flags "$here/whole.c" whole.o part.o $archive && ./whole
 	} >log 2>&1
 	result $? "$name, modes $modes${*:+, $*}: the whole model"
@@ -80,7 +84,7 @@ against repeated 2 '-DINPUTS -DSETTLES=250'
 loses() {
 	{
 		"$dropped" "$1.spec" "$2" dropped >dropped.c && "$dropped" "$1.spec" "$2" dropped header >dropped.h &&
-			${CC:-cc} -std=c99 -O1 -I"$root/runtime" -c dropped.c -o dropped.o
+			${CC:-cc} -std=c99 -O0 -I"$root/runtime" -c dropped.c -o dropped.o
 	} >log 2>&1
 	result $? "$1, modes $2: a model of what is lost"
 	archive="dropped.o $whole_archive"

@@ -27,7 +27,9 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 # their variants; with LONG=1 of all
 options_of() {
     case $1,${2##*/} in
-        *-c\ *,forms_variants.c | *-c\ *,steady_variants.c | *-fsyntax-only*) echo "${1#* }" ;;
+        *-fsyntax-only*) echo "${1#* }" ;;
+        *-c\ *,forms_variants.c | *-c\ *,steady_variants.c)
+            long && echo "${1#* }" || echo '-std=c99 -Og -c -o object.o' ;;
         *) long && echo "${1#* }" || echo '-std=c99 -fsyntax-only' ;;
     esac
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "hand.h"
+#include "quadrant.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { TERMS = 34 };
@@ -9,7 +11,7 @@ enum { TERMS = 34 };
 real hand_distance(const struct hand_system *s, int stop, const real *y, real t)
 {
 	const struct hand_stop *p = &s->stop[stop];
-	real d = -p->gap - p->rate * t - p->a * sinl(p->w * t);
+	real d = -p->gap - p->rate * t - p->a * sin_of(p->w * t);
 	for (int i = 0; i < s->n; i++)
 		d += p->row[i] * y[i];
 	return d;
@@ -21,11 +23,12 @@ static real power(int k, real constant, real rate, real t)
 }
 
 /* k-th derivative of cos(w t) or of sin(w t), over k! */
-static void wave_terms(real w, real t, real phase, real *term)
+static void wave_terms(real w, real t, bool sine, real *term)
 {
+	const real c = cos_of(w * t), s = sin_of(w * t), at_quarter[] = {c, -s, -c, s};
 	real factor = 1;
 	for (int k = 0; k < TERMS; k++) {
-		term[k] = factor * cosl(w * t + phase + k * (acosl(-1) / 2));
+		term[k] = factor * at_quarter[(k + (sine ? 3 : 0)) % 4];
 		factor *= w / (k + 1);
 	}
 }
@@ -35,9 +38,9 @@ static void flow(const struct hand_system *s, const struct hand_state *now, real
 {
 	const int n = s->n;
 	real load[TERMS], stop_load[HAND_STOPS][TERMS];
-	wave_terms(s->w, now->t, 0, load);
+	wave_terms(s->w, now->t, false, load);
 	for (int j = 0; j < s->stops; j++)
-		wave_terms(s->stop[j].w, now->t, -acosl(-1) / 2, stop_load[j]);
+		wave_terms(s->stop[j].w, now->t, true, stop_load[j]);
 	memcpy(y[0], now->y, sizeof now->y);
 	for (int k = 0; k < TERMS; k++) {
 		real force[HAND_MASSES];
@@ -141,7 +144,7 @@ void hand_step(const struct hand_system *s, struct hand_state *now, real h)
 static real approach(const struct hand_system *s, int stop, const struct hand_state *now)
 {
 	const struct hand_stop *p = &s->stop[stop];
-	real speed = -p->rate - p->a * p->w * cosl(p->w * now->t);
+	real speed = -p->rate - p->a * p->w * cos_of(p->w * now->t);
 	for (int i = 0; i < s->n; i++)
 		speed += p->row[i] * now->y[s->n + i];
 	return speed;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 #include "followed.h"
+#include "quadrant.h"
 #include "systems.h"
 
 #include <math.h>
@@ -19,19 +20,19 @@ void changing(real t, const real *y, const real *u, real *dydt)
 {
     (void)u;
     dydt[0] = y[1];
-    dydt[1] = (t < 0.37L ? 2 * cosl(3 * t) : t < 0.81L ? t * t : expl(-t)) - 0.1L * y[1] -
-        (t < 0.55L ? 1 : 2) * sinl(y[0]) - 0.5L * y[0] * y[0] * y[0] - 0.6L * fabsl(t - 0.62L) * y[0] * y[0] -
+    dydt[1] = (t < 0.37L ? 2 * cos_of(3 * t) : t < 0.81L ? t * t : expl(-t)) - 0.1L * y[1] -
+        (t < 0.55L ? 1 : 2) * sin_of(y[0]) - 0.5L * y[0] * y[0] * y[0] - 0.6L * fabsl(t - 0.62L) * y[0] * y[0] -
         fminl(t, 0.9L) * y[0] * y[1];
 }
 
 void masses(real t, const real *y, const real *u, real *dydt)
 {
-    const real force = 3 * sinl(y[1] - y[0] - 1.5L), drag = 0.1L * (y[3] - y[2]);
+    const real force = 3 * sin_of(y[1] - y[0] - 1.5L), drag = 0.1L * (y[3] - y[2]);
     (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
     dydt[2] = (drag + force) / 2;
-    dydt[3] = 0.2L * cosl(2 * t) - drag - force;
+    dydt[3] = 0.2L * cos_of(2 * t) - drag - force;
 }
 
 equations *field(const struct subject *s)

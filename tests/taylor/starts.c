@@ -3,6 +3,7 @@
  * each start's conditioning makes of a step's error. 20 starts a model; LONG=1: 400. TABLE=1: the figures as lines of
  * the table in doc/accuracy.md. */
 #include "gragg.h"
+#include "quadrant.h"
 #include "starts_variants.h"
 #include "systems.h"
 #include "tap.h"
@@ -30,8 +31,8 @@ static void pair(real t, const real *y, const real *u, real *dydt)
 /* 2 a'' + b'' cos(a - b) = right, a'' cos(a - b) + b'' = below: Lagrange's, solved by elimination */
 static void double_pendulum(real t, const real *y, const real *u, real *dydt)
 {
-    const real c = cosl(y[0] - y[1]), s = sinl(y[0] - y[1]);
-    const real right = -s * y[3] * y[3] - 2 * sinl(y[0]), below = s * y[2] * y[2] - sinl(y[1]);
+    const real c = cos_of(y[0] - y[1]), s = sin_of(y[0] - y[1]);
+    const real right = -s * y[3] * y[3] - 2 * sin_of(y[0]), below = s * y[2] * y[2] - sin_of(y[1]);
     (void)t, (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
@@ -44,7 +45,7 @@ static void spherical(real t, const real *y, const real *u, real *dydt)
     (void)t, (void)u;
     dydt[0] = y[2];
     dydt[1] = y[3];
-    dydt[2] = sinl(y[0]) * cosl(y[0]) * y[3] * y[3] - sinl(y[0]);
+    dydt[2] = sin_of(y[0]) * cos_of(y[0]) * y[3] * y[3] - sin_of(y[0]);
     dydt[3] = -2 * y[2] * y[3] / tanl(y[0]);
 }
 
