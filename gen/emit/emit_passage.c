@@ -198,9 +198,11 @@ static void emit_move_end(const struct emitter *e)
 	    shortest(e->model->asked.single ? ldexp(1, -10) : ldexp(1, -20)));
 }
 
+/* Near its start a polynomial may leave out more than what has just passed its breakpoint has moved since: that comes
+ * back only if it does so along a shorter step too. */
 static void emit_pass(const struct emitter *e)
 {
-	enum { AGAIN = 3 };
+	enum { AGAIN = 12 };
 	int s = stages(e), n = expressions(e);
 	bool single = e->model->asked.single, starts = e->step->expansion == NULL;
 	const char *samples = e->system->inputs ? ", u, slope" : "", *jacobian = splits(e) ? ", slope_of" : "";
@@ -209,9 +211,9 @@ static void emit_pass(const struct emitter *e)
 	       "-2: it is\n * at the start, so that nothing moves */\n"
 	       "static int $n_pass($n *s%s%s, double limit, double unit[$N_STATES], double poly[%d][$c])\n"
 	       "{\n"
-	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, end = 1.0;\n"
+	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, part, end = 1.0;\n"
 	       "    pl_crossing crossing = s->contact.last;\n"
-	       "    int splits = %d, again, b = 0;\n"
+	       "    int splits = %d, again, back, b = 0;\n"
 	       "    for (again = 0;; again++) {\n"
 	       "        $n_along(s%s, s->size, (const double (*)[$c])poly, c, terms);\n", samples_parameter(e),
 	    splits(e) ? ", const double slope_of[]" : "", s + 1, s + 1, n, n, unknowns_of_stages(e), s, MAX_SPLITS,
@@ -233,12 +235,15 @@ static void emit_pass(const struct emitter *e)
 	       "            s->contact.last.expression = -1;\n"
 	       "            return 0;\n"
 	       "        }\n"
-	       "        if (again == %d || theta > %s || theta * s->size < %s)\n"
+	       "        back = crossing.expression == s->contact.last.expression &&\n"
+	       "               crossing.breakpoint == s->contact.last.breakpoint && theta < 0.0625;\n"
+	       "        if (again == %d || theta > %s || (!back && theta * s->size < %s))\n"
 	       "            break;\n"
-	       "        $n_continue((const double (*)[$c])poly, 0.0, theta, 1.0 / (s->size * $N_H), k);\n"
-	       "        if (!$n_solve(s%s%s, theta * s->size, unit, k))\n"
+	       "        part = back ? 0.0625 : theta;\n"
+	       "        $n_continue((const double (*)[$c])poly, 0.0, part, 1.0 / (s->size * $N_H), k);\n"
+	       "        if (!$n_solve(s%s%s, part * s->size, unit, k))\n"
 	       "            break;\n"
-	       "        s->size *= theta;\n"
+	       "        s->size *= part;\n"
 	       "        s->per = 1.0 / s->size;\n"
 	       "        (void)$n_finish(s->start, s->size * $N_H, unit, k, poly, s->gain);\n"
 	       "        end = limit < %s * s->size ? limit / s->size : %s;\n"
