@@ -477,6 +477,7 @@ static void emit_first_length(const struct emitter *e)
 /* How the internal step goes that starts now */
 static void emit_advance_text(const struct emitter *e, const char *indent)
 {
+	const char *watched = is_divided(e) && watch_reads_known(e) ? samples_argument(e) : "";
 	say(e, "%slimit = $n_limit(s);\n", indent);
 	if (is_divided(e))
 		say(e, "%sif (!s->contact.placed)\n"
@@ -486,8 +487,8 @@ static void emit_advance_text(const struct emitter *e, const char *indent)
 		       "%s        return PL_TOO_MANY_EVENTS;\n"
 		       "%s    continue;\n"
 		       "%s}\n", indent, indent,
-		    !switches(e) ? samples_argument(e) : e->system->inputs ? ", u, &s->contact" : ", &s->contact",
-		    indent, samples_argument(e), indent, indent, indent, indent);
+		    !switches(e) ? watched : e->system->inputs ? ", u, &s->contact" : ", &s->contact",
+		    indent, watched, indent, indent, indent, indent);
 	/* of a step that says where things go its inside is looked at, where what is left out has lower powers */
 	const char *shorter = is_divided(e) && !switches(e) ? "0.0625 * " : "";
 	say(e, "%sif (s->want == 0.0)\n"

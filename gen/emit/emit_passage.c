@@ -29,6 +29,17 @@ static const char *known_at(const struct emitter *e, const char *tau, const char
 	return watch_reads_known(e) ? format("%s%s\n", indent, known_call(&here, tau, inside, "node")) : "";
 }
 
+/* Samples at the start and slopes, of those who look at expressions alone: where these read them */
+static const char *samples_of_watch(const struct emitter *e)
+{
+	return watch_reads_known(e) ? samples_parameter(e) : "";
+}
+
+static const char *samples_to_watch(const struct emitter *e)
+{
+	return watch_reads_known(e) && e->system->inputs ? ", u, slope" : "";
+}
+
 static const char *start_text(const struct emitter *e)
 {
 	(void)e;
@@ -62,7 +73,7 @@ static void emit_here(const struct emitter *e)
 	       "    for (m = 1; m <= %d; m++)\n"
 	       "        for (i = 0; i < %d; i++)\n"
 	       "            c[m][i] = 0.0;\n"
-	       "}\n", samples_parameter(e), stages(e) + 1, expressions(e), expressions(e), current_intervals(e),
+	       "}\n", samples_of_watch(e), stages(e) + 1, expressions(e), expressions(e), current_intervals(e),
 	    known_local(e), known_at(e, spell(e, "%s * $N_H", start_text(e)),
 				     spell(e, "(%s + 1e-9) * $N_H", start_text(e)), "    "),
 	    watch_call(e, "node", "s->start", "c[0]", "terms"), stages(e), expressions(e));
@@ -80,8 +91,8 @@ static void emit_along(const struct emitter *e)
 	       "%s"
 	       "    int i, k, m;\n"
 	       "    $n_here(s%s, c, terms);\n"
-	       "    for (k = 0; k < %d; k++) {\n", samples_parameter(e), s + 1, s + 1, n, n, n, n,
-	    current_intervals(e), known_local(e), e->system->inputs ? ", u, slope" : "", s);
+	       "    for (k = 0; k < %d; k++) {\n", samples_of_watch(e), s + 1, s + 1, n, n, n, n,
+	    current_intervals(e), known_local(e), samples_to_watch(e), s);
 	say(e, "%s", known_at(e, spell(e, "(%s + $n_node[k] * size) * $N_H", start_text(e)),
 			      spell(e, "(%s + 0.5 * size) * $N_H", start_text(e)), "        "));
 	say(e, "        $n_within(poly, $n_node[k], y);\n"
@@ -118,13 +129,13 @@ static void emit_place_here(const struct emitter *e)
 	       "    do {\n"
 	       "        $n_here(s%s, c, terms);\n"
 	       "    } while (pl_divided_place(&$n_passing, c[0], terms, s->contact.interval) && again-- > 0);\n"
-	       "}\n", samples_parameter(e), stages(e) + 1, expressions(e), expressions(e), most, expressions(e), most,
-	    e->system->inputs ? ", u, slope" : "");
+	       "}\n", samples_of_watch(e), stages(e) + 1, expressions(e), expressions(e), most, expressions(e), most,
+	    samples_to_watch(e));
 }
 
 static void emit_left(const struct emitter *e)
 {
-	const char *samples = e->system->inputs ? ", u, slope" : "";
+	const char *samples = samples_to_watch(e);
 	say(e, "\n/* Passes the breakpoint of contact.last, where the next internal step starts; 0: there were too many */\n"
 	       "static int $n_pass_here($n *s)\n"
 	       "{\n"
@@ -137,7 +148,7 @@ static void emit_left(const struct emitter *e)
 	       "    double c[%d][%d], terms[%d];\n"
 	       "    $n_here(s%s, c, terms);\n"
 	       "    return pl_divided_left(&$n_passing, c[0], terms, s->contact.interval, &s->contact.last);\n"
-	       "}\n", start_text(e), samples_parameter(e), stages(e) + 1, expressions(e), expressions(e), samples);
+	       "}\n", start_text(e), samples_of_watch(e), stages(e) + 1, expressions(e), expressions(e), samples);
 }
 
 /* ---- the first crossing in a step ---- */
@@ -162,7 +173,7 @@ static void emit_move_end(const struct emitter *e)
 	       "    int i, m, again;\n"
 	       "    $n_within(poly, 1.0, whole);\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        whole[i] = s->gain[i] - whole[i];\n", samples_parameter(e), s + 1, s + 1, n, n, n,
+	       "        whole[i] = s->gain[i] - whole[i];\n", samples_of_watch(e), s + 1, s + 1, n, n, n,
 	    current_intervals(e), known_local(e));
 	say(e, "    for (again = 0;; again++) {\n"
 	       "        double rate = 0.0, change;\n"
@@ -187,9 +198,11 @@ static void emit_move_end(const struct emitter *e)
 	    shortest(e->model->asked.single ? ldexp(1, -10) : ldexp(1, -20)));
 }
 
+/* Near its start a polynomial may leave out more than what has just passed its breakpoint has moved since: that comes
+ * back only if it does so along a shorter step too. */
 static void emit_pass(const struct emitter *e)
 {
-	enum { AGAIN = 3 };
+	enum { AGAIN = 12 };
 	int s = stages(e), n = expressions(e);
 	bool single = e->model->asked.single, starts = e->step->expansion == NULL;
 	const char *samples = e->system->inputs ? ", u, slope" : "", *jacobian = splits(e) ? ", slope_of" : "";
@@ -198,13 +211,13 @@ static void emit_pass(const struct emitter *e)
 	       "-2: it is\n * at the start, so that nothing moves */\n"
 	       "static int $n_pass($n *s%s%s, double limit, double unit[$N_STATES], double poly[%d][$c])\n"
 	       "{\n"
-	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, end = 1.0;\n"
+	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, part, end = 1.0;\n"
 	       "    pl_crossing crossing = s->contact.last;\n"
-	       "    int splits = %d, again, b = 0;\n"
+	       "    int splits = %d, again, back, b = 0;\n"
 	       "    for (again = 0;; again++) {\n"
 	       "        $n_along(s%s, s->size, (const double (*)[$c])poly, c, terms);\n", samples_parameter(e),
 	    splits(e) ? ", const double slope_of[]" : "", s + 1, s + 1, n, n, unknowns_of_stages(e), s, MAX_SPLITS,
-	    samples);
+	    samples_to_watch(e));
 	if (starts)
 		say(e, "        if (s->contact.placed < 0) {\n"
 		       "            if (pl_divided_rises(&$n_passing, c[0], terms, s->contact.interval)) {\n"
@@ -222,12 +235,15 @@ static void emit_pass(const struct emitter *e)
 	       "            s->contact.last.expression = -1;\n"
 	       "            return 0;\n"
 	       "        }\n"
-	       "        if (again == %d || theta > %s || theta * s->size < %s)\n"
+	       "        back = crossing.expression == s->contact.last.expression &&\n"
+	       "               crossing.breakpoint == s->contact.last.breakpoint && theta < 0.0625;\n"
+	       "        if (again == %d || theta > %s || (!back && theta * s->size < %s))\n"
 	       "            break;\n"
-	       "        $n_continue((const double (*)[$c])poly, 0.0, theta, 1.0 / (s->size * $N_H), k);\n"
-	       "        if (!$n_solve(s%s%s, theta * s->size, unit, k))\n"
+	       "        part = back ? 0.0625 : theta;\n"
+	       "        $n_continue((const double (*)[$c])poly, 0.0, part, 1.0 / (s->size * $N_H), k);\n"
+	       "        if (!$n_solve(s%s%s, part * s->size, unit, k))\n"
 	       "            break;\n"
-	       "        s->size *= theta;\n"
+	       "        s->size *= part;\n"
 	       "        s->per = 1.0 / s->size;\n"
 	       "        (void)$n_finish(s->start, s->size * $N_H, unit, k, poly, s->gain);\n"
 	       "        end = limit < %s * s->size ? limit / s->size : %s;\n"
@@ -244,7 +260,7 @@ static void emit_pass(const struct emitter *e)
 	       "        b += $n_breaks[again];\n"
 	       "    $n_move_end(s%s, (const double (*)[$c])poly, c, theta, $n_breakpoint[b + crossing.breakpoint]);\n"
 	       "    return 0;\n"
-	       "}\n", single ? "1e-8" : "1e-15", samples);
+	       "}\n", single ? "1e-8" : "1e-15", samples_to_watch(e));
 }
 
 /* ---- the whole ---- */
