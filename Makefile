@@ -81,6 +81,7 @@ bench: tests
 	$(BUILD)/bench/crossings
 	sh bench/contacts.sh $(BUILD)
 	sh bench/retune.sh $(BUILD)
+	sh bench/retuned.sh $(BUILD)
 	sh bench/retune_blocks.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 	sh bench/large.sh $(BUILD)

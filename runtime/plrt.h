@@ -1008,6 +1008,13 @@ int pl_region_of(int size, const pl_two *A, double h, int most, int *halvings, d
                  pl_two *work);
 #define PL_REGION_WORK(size) (7 * (size) * (size))
 
+/* Of a region that pl_region_of gave *halvings and Phi: whole = e^{A h}, and *large = most over the largest of its
+ * entries, or of 1.  Where there is more than one halving no step looks over the whole of h: *large is 0.
+ *     work  PL_REGION_WORK(size) entries, contents of no meaning
+ * 0; what pl_increment returns */
+int pl_region_whole(int size, const pl_two *A, double h, int halvings, const double *Phi, double most, double *whole,
+                    double *large, pl_two *work);
+
 /* Of rows over x, rows x size, in such a region: slope, second and fourth as tangent, chord_error and cubic_error of
  * pl_switching, with room for what rounding did to them.
  *     work  PL_BOUNDS_WORK(size) entries, contents of no meaning */
@@ -1017,6 +1024,8 @@ void pl_region_bounds(int size, double d, const double *A, int rows, const doubl
 
 int pl_regionf_of(int size, const pl_twof *A, float h, int most, int *halvings, float *slopes, float *Phi,
                   pl_twof *work);
+int pl_regionf_whole(int size, const pl_twof *A, float h, int halvings, const float *Phi, float most, float *whole,
+                     float *large, pl_twof *work);
 void pl_regionf_bounds(int size, float d, const float *A, int rows, const float *row, float *slope, float *second,
                        float *fourth, float *work);
 

@@ -47,6 +47,15 @@ static real largest_turn(int n, const pl_two *A, real h, real *v, real *next)
     return most - shift;
 }
 
+/* Phi = I + D, rounded once */
+static void from_increment(int n, const pl_two *D, real *Phi)
+{
+    int i;
+    for (i = 0; i < n * n; i++) {
+        Phi[i] = i % (n + 1) == 0 ? (1 + D[i].hi) + D[i].lo : D[i].hi;
+    }
+}
+
 int pl_region_of(int size, const pl_two *A, real h, int most, int *halvings, real *slopes, real *Phi, pl_two *work)
 {
     const int cells = size * size;
@@ -65,8 +74,35 @@ int pl_region_of(int size, const pl_two *A, real h, int most, int *halvings, rea
     status = pl_increment(size, size, A, d, 1, D, work);
     for (i = 0; i < cells && status == 0; i++) {
         slopes[i] = A[i].hi;
-        Phi[i] = i % (size + 1) == 0 ? (1 + D[i].hi) + D[i].lo : D[i].hi;
     }
+    if (status == 0) {
+        from_increment(size, D, Phi);
+    }
+    return status;
+}
+
+int pl_region_whole(int size, const pl_two *A, real h, int halvings, const real *Phi, real most, real *whole,
+                    real *large, pl_two *work)
+{
+    pl_two *const D = work + PL_INCREMENT_WORK(size);
+    const int cells = size * size;
+    real largest = 1;
+    int i, status = 0;
+    *large = 0;
+    for (i = 0; i < cells; i++) {
+        whole[i] = Phi[i];
+    }
+    if (halvings > 1) {
+        return 0;
+    }
+    if (halvings == 1) {
+        status = pl_increment(size, size, A, h, 1, D, work);
+        from_increment(size, D, whole);
+    }
+    for (i = 0; i < cells; i++) {
+        largest = magnitude(whole[i]) > largest ? magnitude(whole[i]) : largest;
+    }
+    *large = most / largest;
     return status;
 }
 

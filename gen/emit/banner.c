@@ -366,6 +366,9 @@ void banner_regions(const struct emitter *e)
 		       " * certain go by the model's own Taylor polynomials, of degree %d; all else by the "
 		       "search.\n",
 		    MOST_SWIFT, e->step->swift_degree);
+	else if (e->step->clears)
+		say(e, " * A step is one product where a bound shows it clear of every breakpoint; all else goes by "
+		       "the search.\n");
 	else
 		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
 	banner_region_number(e);

@@ -563,6 +563,7 @@ struct region_tables {
 	int rows, columns;
 	int from, to;               /* of branches from .. to - 1 */
 	double **value;             /* per branch */
+	const bool *own;            /* rows x columns: tunable params may change it, an instance has it; NULL: none */
 };
 /* over x, of all branches; and the same of one */
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
@@ -570,6 +571,8 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 struct region_tables of_branch(struct region_tables t, int branch);
 /* e^{A h}; of a state in two words the same less I, second words behind the first */
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
+double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
+double *off_of(const struct region_piece *piece);                 /* expressions off their chords over h */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
 bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
@@ -589,6 +592,7 @@ const char *expression_text(const struct emitter *e, const struct pieces *p, int
 /* Sum of the sizes of those that are not bounded */
 const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
 /* Of a step that is swift; `expression`: names */
+void emit_spans(const struct emitter *e);                         /* region by region: intervals of expressions */
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
 
 /* ---- emit_modal.c: a step of modes ---- */
@@ -694,7 +698,7 @@ void emit_part_members(const struct emitter *e);
 void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
-/* emit_cross.c, emit_clear.c: of a step that is swift */
+/* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
 void emit_crossing_scalars(const struct emitter *e);              /* what depends on no table: once, before those */
 void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */

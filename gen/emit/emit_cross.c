@@ -172,7 +172,7 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
-		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL };
+		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL, NULL };
 		const char **term = ARRAY(const char *, (size_t)size);
 		int terms = 0;
 		for (int j = 0; j < size; j++) {

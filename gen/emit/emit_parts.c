@@ -485,8 +485,10 @@ static void emit_divided_step(const struct emitter *part)
 	bool *all = ARRAY(bool, (size_t)part->system->states);
 	for (int i = 0; i < part->system->states; i++)
 		all[i] = true;
-	if (part->step->swift)
+	if (part->step->swift) {
+		emit_crossing(part);
 		emit_region_search(part);
+	}
 	say(part, "\n"
 		  "static void $o_step($n *s%s)\n"
 		  "{\n", given_text(part, true));

@@ -161,6 +161,46 @@ static void emit_switching(const struct emitter *e)
 		   : "};\n");
 }
 
+static double *added_of(const struct region_piece *piece) { return piece->added; }
+static double *still_of(const struct region_piece *piece) { return piece->still; }
+
+static void emit_own_rows(const struct emitter *e, const struct pieces *pieces, const char *note, int columns,
+			  double *(*of)(const struct region_piece *))
+{
+	say(e, "    {  /* %s */\n", note);
+	for (int k = 0; k < e->step->branches; k++)
+		for (int i = 0; i < columns; i++)
+			say(e, "%s%s%s", i ? ", " : "    {", shortest(of(&pieces->piece[k])[i]),
+			    i == columns - 1 ? "},\n" : "");
+	say(e, "    },\n");
+}
+
+/* By which a step sees over the whole of h that it stays clear */
+static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **entry,
+			  const char **expression)
+{
+	const struct matrices whole = { "whole", "e^{A h}", e->step->layout.size, entry, whole_of };
+	const struct matrices off = { "chord_off",
+				      "times |x|: how far each expression is off its chord over h, at most",
+				      regions_of(e)->expressions, expression, off_of };
+	emit_matrices(e, pieces, &whole);
+	emit_matrices(e, pieces, &off);
+	if (any_stays(e->step))
+		emit_own_rows(e, pieces, "added: over h to each state, by what stays of x", e->system->states,
+			      added_of);
+	if (any_still(e->step))
+		emit_own_rows(e, pieces, "still: to chord_off, by that and by what is never above 1",
+			      regions_of(e)->expressions, still_of);
+	say(e, "    {");
+	for (int i = 0; i < edges_of_regions(regions_of(e)); i++)
+		say(e, "%s%s", i ? ", " : "", shortest(pieces->edge[i]));
+	say(e, "},  /* edge: breakpoints of each expression less what stays of x, between open ends */\n"
+	       "    {");
+	for (int k = 0; k < e->step->branches; k++)
+		say(e, "%s%s", k ? ", " : "", shortest(pieces->large));
+	say(e, "},  /* large: |x| that it has to be below */\n");
+}
+
 /* All that an instance has where params are tunable, in the order of its struct; else each a table */
 static void emit_numbers_of_regions(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
 {
@@ -186,6 +226,8 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	}
 	for (size_t i = 0; i < sizeof all / sizeof *all - (g ? 2 : 0); i++)
 		emit_matrices(e, pieces, &all[i]);
+	if (e->model->retuned && e->step->clears)
+		emit_own_look(e, pieces, entry, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
 }
@@ -221,6 +263,8 @@ void emit_regions(const struct emitter *e)
 		emit_region_changes(e);
 	if (e->step->swift)
 		emit_swift_tables(e, &pieces, expression_names(e));
+	else if (e->step->clears && is_cleared_by_tables(e->step))
+		emit_spans(e);
 }
 
 /* ---- in the model's own functions ---- */
@@ -426,10 +470,9 @@ static void emit_searched_step(const struct emitter *e)
 	emit_region_status(e);
 }
 
-/* What is not seen to be clear, or to cross once */
+/* What is not seen to be clear, or to cross as little as may be */
 void emit_region_search(const struct emitter *e)
 {
-	emit_crossing(e);
 	say(e, "\n"
 	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
 	       "{\n"
@@ -437,6 +480,7 @@ void emit_region_search(const struct emitter *e)
 	       "    int i;\n",
 	    size_of_vector(e), keeps_rest(e) ? "KEPT_" : "", e->step->layout.size, regions_of(e)->expressions,
 	    e->step->series.degree);
+	declare_descriptor(e);
 	emit_search(e);
 	emit_region_status(e);
 	say(e, "}\n");
@@ -461,13 +505,15 @@ void emit_region_step(const struct emitter *e)
 {
 	if (e->step->swift) {
 		emit_crossing_scalars(e);
-		emit_region_search(e);
+		emit_crossing(e);
 	}
+	if (e->step->clears)
+		emit_region_search(e);
 	say(e, "\n"
 	       "void $n_step(%s)\n"
 	       "{\n",
 	    step_parameters(e));
-	if (e->step->swift)
+	if (e->step->clears)
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);

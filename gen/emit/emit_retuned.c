@@ -74,6 +74,19 @@ void emit_retuned_members(const struct emitter *e)
 	}
 	member(e, "double", "sag", rows, "d^2/8 times its second derivative, at most");
 	member(e, "double", "sway", rows, "d^4/384 times its fourth derivative, at most");
+	if (!e->step->clears)
+		return;
+	member(e, "double", "whole", matrices, "e^{A h}");
+	member(e, "double", "chord_off", rows, "how far each expression is off its chord over h, at most");
+	if (any_stays(e->step))
+		member(e, "double", "added", format("[%d][%d]", systems, e->system->states),
+		       "to each state, by what stays of x");
+	if (any_still(e->step))
+		member(e, "double", "still", format("[%d][%d]", systems, s->expressions),
+		       "to chord_off, by that and by what is never above 1");
+	member(e, "double", "edge", format("[%d]", edges_of_regions(s)),
+	       "breakpoints less what stays of x, between open ends");
+	member(e, "double", "large", format("[%d]", systems), "|x| below which nothing of that overflows");
 }
 
 /* ---- the equations ---- */
@@ -352,6 +365,95 @@ static void emit_play_function(const struct emitter *e)
 		       "}\n", e->step->layout.size, tree(terms, term, 11));
 }
 
+/* ---- what stays of x, gathered ---- */
+
+static void emit_added(const struct emitter *e, int stays)
+{
+	if (stays > 0)
+		say(e, "        for (i = 0; i < %d; i++) {\n"
+		       "            c->added[k][i] = 0.0;\n"
+		       "            for (j = 0; j < %d; j++)\n"
+		       "                c->added[k][i] += c->whole[k][i][stays[j]] * at[j];\n"
+		       "            if (!(pl_magnitude(c->added[k][i]) < %s))\n"
+		       "                c->large[k] = 0.0;\n"
+		       "        }\n", e->system->states, stays, shortest(LARGE_ENOUGH));
+}
+
+static void emit_still(const struct emitter *e, int stays)
+{
+	const struct linear *system = e->system;
+	if (!any_still(e->step))
+		return;
+	say(e, "        for (i = 0; i < %d; i++) {\n"
+	       "            const double *const off = c->chord_off[k][i];\n"
+	       "            double still = 0.0;\n", e->model->switching->expressions);
+	for (int l = 0; l < system->loads; l++)
+		if (is_bounded_load(e->step, l) && system->load[l].columns == 2)
+			say(e, "            still += $n_folded(off[%d], off[%d]);\n", e->step->layout.load[l],
+			    e->step->layout.load[l] + 1);
+	if (stays > 0)
+		say(e, "            for (j = 0; j < %d; j++)\n"
+		       "                still += off[stays[j]] * pl_magnitude(at[j]);\n", stays);
+	say(e, "            c->still[k][i] = still * 1.000000001;\n"
+	       "        }\n");
+}
+
+static void emit_edges(const struct emitter *e, int stays)
+{
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        double shift = 0.0;\n", e->model->switching->expressions);
+	if (stays > 0)
+		say(e, "        for (j = 0; j < %d; j++)\n"
+		       "            shift += c->row[i][stays[j]] * at[j];\n", stays);
+	say(e, "        c->edge[edge++] = -%s;\n"
+	       "        for (j = 0; j < $n_breaks[i]; j++)\n"
+	       "            c->edge[edge++] = c->breakpoint[from++] - shift;\n"
+	       "        c->edge[edge++] = %s;\n"
+	       "    }\n", shortest(OPEN_END), shortest(OPEN_END));
+}
+
+static bool any_pair(const struct emitter *e)
+{
+	bool any = false;
+	for (int l = 0; l < e->system->loads; l++)
+		any = any || (is_bounded_load(e->step, l) && e->system->load[l].columns == 2);
+	return any;
+}
+
+static void emit_gathering(const struct emitter *e)
+{
+	int stays, *column = staying_columns(e->step, &stays);
+	if (any_pair(e))
+		say(e, "\n"
+		       "/* At least the root of a^2 + b^2 */\n"
+		       "static double $n_folded(double a, double b)\n"
+		       "{\n"
+		       "    return a > b ? a + %s * b : b + %s * a;\n"
+		       "}\n", shortest(FOLDED), shortest(FOLDED));
+	say(e, "\n"
+	       "/* For steps that stay clear: what stays of x, and bounds over what is never above 1 */\n"
+	       "static void $n_gather($n_coeffs *c)\n"
+	       "{\n");
+	for (int k = 0; k < stays; k++)
+		say(e, "%s%d%s", k ? ", " : format("    static const int stays[%d] = {", stays), column[k],
+		    k == stays - 1 ? "};\n" : "");
+	if (stays > 0)
+		say(e, "    double at[%d];\n", stays);
+	say(e, "    int i, j, %sfrom = 0, edge = 0;\n", any_still(e->step) ? "k, " : "");
+	for (int k = 0; k < stays; k++) {
+		int param = param_of_column(e->step, column[k]);
+		say(e, "    at[%d] = %s;\n", k, param < 0 ? "1.0" : format("c->params[%d]", param));
+	}
+	if (any_still(e->step)) {
+		say(e, "    for (k = 0; k < %d; k++) {\n", e->step->branches);
+		emit_added(e, stays);
+		emit_still(e, stays);
+		say(e, "    }\n");
+	}
+	emit_edges(e, stays);
+	say(e, "}\n");
+}
+
 /* ---- retune ---- */
 
 static bool rows_change(const struct emitter *e)
@@ -377,10 +479,16 @@ static void emit_systems(const struct emitter *e)
 	       "        if (first[k] >= 0) {\n"
 	       "            $n_own_slopes(&value[first[k]], A);\n"
 	       "            status = pl_region_of(%d, A[0], h, %d, &made.halvings[k], made.slopes[k][0],\n"
-	       "                                  made.pieces[k][0], work);\n"
-	       "            if (status != 0)\n"
+	       "                                  made.pieces[k][0], work);\n", size, LIMIT_PIECES);
+	if (e->step->clears)
+		say(e, "            if (status == 0)\n"
+		       "                status = pl_region_whole(%d, A[0], h, made.halvings[k], made.pieces[k][0],\n"
+		       "                                         %s, made.whole[k][0],\n"
+		       "                                         &made.large[k], work);\n", size,
+		    shortest(LARGE_ENOUGH));
+	say(e, "            if (status != 0)\n"
 	       "                return status;\n"
-	       "        }\n", size, LIMIT_PIECES);
+	       "        }\n");
 	if (!rows_change(e))
 		say(e, "        if (first[k] < 0)\n"
 		       "            continue;\n");
@@ -406,6 +514,14 @@ static void emit_bounds(const struct emitter *e)
 	       indent,
 	    has_guards(e) ? "spare[0]" : "made.sag[k][0]", has_guards(e) ? "spare[1]" : "made.sway[k][0]");
 	say(e, s->segments > 1 ? "        }\n" : "");
+	if (e->step->clears)
+		say(e, "        if (made.halvings[k] == 1)\n"
+		       "            pl_region_bounds(%d, h, made.slopes[k][0], %d, made.row[0], spare[0],\n"
+		       "                             made.chord_off[k][0], spare[1], room);\n"
+		       "        for (i = 0; i < %d && made.halvings[k] == 0; i++)\n"
+		       "            for (j = 0; j < %d; j++)\n"
+		       "                made.chord_off[k][i][j] = made.sag[k][i][j];\n", size, s->expressions,
+		    s->expressions, size);
 }
 
 static void emit_gate_bounds(const struct emitter *e, const struct guards *g)
@@ -439,7 +555,7 @@ static void emit_retuning(const struct emitter *e)
 	       "    double room[PL_BOUNDS_WORK(%d)], d;\n", r->tuning->rows, size, size, size, work, size);
 	if (r->blocks)
 		say(e, "    pl_two wide[%d];\n", widest_block(e));
-	if (has_guards(e))
+	if (has_guards(e) || e->step->clears)
 		say(e, "    double spare[2][%d];\n", e->model->switching->expressions * size);
 	say(e, "    int i, %sk, status;\n"
 	       "    if (h != $N_H)\n"
@@ -451,7 +567,7 @@ static void emit_retuning(const struct emitter *e)
 	       "        made.params[i] = params[i];\n"
 	       "    status = pl_equations_at(&$n_equations, params, value[0], work);\n"
 	       "    if (status != 0)\n"
-	       "        return status;\n", has_guards(e) ? "j, " : "");
+	       "        return status;\n", has_guards(e) || e->step->clears ? "j, " : "");
 	emit_solved(e);
 	emit_checks(e);
 	emit_taken_expressions(e);
@@ -464,8 +580,10 @@ static void emit_retuning(const struct emitter *e)
 	emit_bounds(e);
 	if (has_guards(e))
 		emit_gate_bounds(e, &g);
-	say(e, "    }\n"
-	       "    *c = made;\n"
+	say(e, e->step->clears ? "    }\n"
+				 "    $n_gather(&made);\n"
+			       : "    }\n");
+	say(e, "    *c = made;\n"
 	       "    return 0;\n"
 	       "}\n");
 }
@@ -473,7 +591,7 @@ static void emit_retuning(const struct emitter *e)
 int retuned_numbers(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	return 2 * e->step->branches * size * size;
+	return (e->step->clears ? 3 : 2) * e->step->branches * size * size;
 }
 
 int retuned_kilobytes(const struct emitter *e)
@@ -490,5 +608,7 @@ void emit_retuned(const struct emitter *e)
 	emit_take(e);
 	if (has_guards(e))
 		emit_play_function(e);
+	if (e->step->clears)
+		emit_gathering(e);
 	emit_retuning(e);
 }

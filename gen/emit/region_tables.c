@@ -11,7 +11,7 @@ int expressions_of(const struct emitter *e)
 
 bool acts_at(const struct region_tables *t, int row, int column)
 {
-	bool any = false;
+	bool any = t->own && t->own[row * t->columns + column];
 	for (int k = t->from; k < t->to; k++)
 		any = any || t->value[k][row * t->columns + column] != 0;
 	return any;
@@ -20,7 +20,7 @@ bool acts_at(const struct region_tables *t, int row, int column)
 bool agree_at(const struct region_tables *t, int row, int column)
 {
 	int at = row * t->columns + column;
-	bool same = true;
+	bool same = !t->own || !t->own[at];
 	for (int k = t->from; k < t->to; k++)
 		same = same && t->value[k][at] == t->value[t->from][at];
 	return same;
@@ -52,15 +52,15 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 				      double *(*of)(const struct region_piece *))
 {
 	struct region_tables t = { text, rows, e->step->layout.size, 0, e->step->branches,
-			    ARRAY(double *, (size_t)e->step->branches) };
+			    ARRAY(double *, (size_t)e->step->branches), NULL };
 	for (int k = 0; k < e->step->branches; k++)
 		t.value[k] = of(&p->piece[k]);
 	return t;
 }
 
-static double *whole_of(const struct region_piece *piece)  { return piece->whole; }
+double *whole_of(const struct region_piece *piece)  { return piece->whole; }
 static double *gain_of(const struct region_piece *piece)   { return piece->whole_gain; }
-static double *off_of(const struct region_piece *piece)    { return piece->off; }
+double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
 static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
@@ -145,6 +145,19 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 	say(e, "};\n");
 }
 
+void emit_spans(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	int n = s->expressions;
+	say(e, "\n"
+	       "static const int $o_span[%d][%d] = {  /* of each expression, from the lowest one */\n",
+	    s->regions, n);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < n; i++)
+			say(e, "%s%d%s", i == 0 ? "    {" : ", ", interval_of(s, r, i), i == n - 1 ? "},\n" : "");
+	say(e, "};\n");
+}
+
 /* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
 static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
@@ -169,14 +182,8 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 			say(e, "%s{%d, %d}%s", i == 0 ? "    {" : ", ", below ? r - stride : -1,
 			    above ? r + stride : -1, i == n - 1 ? "},\n" : "");
 		}
-	say(e, "};\n"
-	       "\n"
-	       "static const int $o_span[%d][%d] = {  /* of each expression, from the lowest one */\n",
-	    s->regions, n);
-	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < n; i++)
-			say(e, "%s%d%s", i == 0 ? "    {" : ", ", interval_of(s, r, i), i == n - 1 ? "},\n" : "");
 	say(e, "};\n");
+	emit_spans(e);
 }
 
 static void emit_whole_steps(const struct emitter *e, const struct pieces *p)

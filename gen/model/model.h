@@ -896,6 +896,7 @@ struct listing list_rows(const struct model *model, const struct layout *x, bool
 /* factors.c */
 const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
 int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
+bool retuned_reads(const struct retuned *r, int place, int column); /* this row may have something but 0 there */
 
 /* ---- params.c: tunable params that the instance has ---- */
 

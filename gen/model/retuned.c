@@ -542,6 +542,21 @@ int retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int i
 	return -1;
 }
 
+/* What is solved reads all that any of its equations reads. */
+bool retuned_reads(const struct retuned *r, int place, int column)
+{
+	const struct tuning *t = r->tuning;
+	bool solved = false, reads = false;
+	for (int b = 0; b < r->blocks; b++)
+		if (place >= r->block[b].place && place < r->block[b].place + r->block[b].tuning->rows) {
+			t = r->block[b].tuning;
+			solved = true;
+		}
+	for (int i = 0; i < t->terms; i++)
+		reads = reads || (t->term[i].column == column && (solved || t->term[i].row == place));
+	return reads;
+}
+
 bool find_all_tuning(struct model *model, const struct request *request)
 {
 	return find_tuning(model, request) && (!model->factor || find_retuning(model, request));

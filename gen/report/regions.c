@@ -34,7 +34,7 @@ static long swift_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
 	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
-	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
+	return !step->clears ? 0 : step->swift ? size * size + MOST_LOOKS * (bounds + moves) : size * size;
 }
 
 /* Of what regions with friction have beside these, less two of them that they do not */
@@ -57,6 +57,9 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
+	if (step->clears && !step->swift)
+		bytes += 8 * (matrices * (size * size + s->expressions * (size + 1) + step->layout.states + 1) +
+			      edges_of_regions(s));
 	return bytes + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
 }
 
@@ -141,6 +144,8 @@ static void person_way(FILE *to, const struct step *step, const char *of)
 			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
 			"degree %d, all else by the search.\n",
 			of, MOST_SWIFT, step->swift_degree);
+	else if (step->clears)
+		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
 	else
 		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->searches);
 }

@@ -445,13 +445,6 @@ static void fill_intervals(const struct step *step, struct pieces *pieces)
 		}
 }
 
-/* 1, or cos and sin of one angle: never above 1 */
-bool is_bounded_load(const struct step *step, int load)
-{
-	const struct load *l = &step->branch->system.load[load];
-	return step->layout.load[load] >= 0 && l->powers == 1 && mpq_sgn(l->wave->a) == 0;
-}
-
 static bool *bounded_entries(const struct step *step)
 {
 	bool *bounded = ARRAY(bool, (size_t)step->layout.size);
@@ -552,16 +545,25 @@ static double *turns_of(const struct step *step, int branch)
 static void fill_whole(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];
-	int size = step->layout.size, expressions = step->model->switching->expressions;
 	double h = round_rational(step->model->h);
-	struct growth growth = growth_of(size, piece->slopes, h);
+	struct growth growth = growth_of(step->layout.size, piece->slopes, h);
 	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
 	piece->whole_gain = whole_gain_of(step, branch);
 	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
+	piece->still = ARRAY(double, (size_t)step->model->switching->expressions);
+	discard(growth.E);
+	discard(growth.most);
+}
+
+static void fill_crossing(const struct step *step, const struct pieces *pieces, int branch)
+{
+	struct region_piece *piece = &pieces->piece[branch];
+	int size = step->layout.size, expressions = step->model->switching->expressions;
+	double h = round_rational(step->model->h);
+	struct growth growth = growth_of(size, piece->slopes, h);
 	piece->turn = slope_rows(step, piece->row, piece->slopes, h / 3);
 	piece->third = bound_rows(step, piece->row, piece->slopes, &growth, 3, h * h * h / 24);
 	piece->bend = bound_rows(step, piece->row, piece->slopes, &growth, 4, h * h * h * h / 384);
-	piece->still = ARRAY(double, (size_t)expressions);
 	piece->turns = turns_of(step, branch);
 	piece->slack = slack_rows(step, piece->row, piece->slopes, pieces->degree);
 	for (int i = 0; i < expressions; i++) {
@@ -581,7 +583,7 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 	for (int k = 0; k < step->branches; k++)
 		for (int i = 0; i < cells; i++)
 			factor = fmax(factor, fabs(pieces->piece[k].whole[i]));
-	return ldexp(1, (step->model->asked.single ? 60 : 500) - ilogb(factor));
+	return ldexp(step->model->asked.single ? LARGE_FLOAT : LARGE_ENOUGH, -ilogb(factor));
 }
 
 /* 1/k!, k = 0 .. degree */
@@ -599,15 +601,21 @@ static double *weights_of(const struct step *step)
 	return weight;
 }
 
+static void fill_look(const struct step *step, struct pieces *pieces)
+{
+	pieces->bounded = bounded_entries(step);
+	for (int k = 0; k < step->branches; k++)
+		fill_whole(step, pieces, k);
+	pieces->large = largest_of(step, pieces);
+}
+
 static void fill_swift(const struct step *step, struct pieces *pieces)
 {
 	pieces->degree = step->swift_degree;
 	pieces->weight = weights_of(step);
-	pieces->bounded = bounded_entries(step);
 	fill_intervals(step, pieces);
 	for (int k = 0; k < step->branches; k++)
-		fill_whole(step, pieces, k);
-	pieces->large = largest_of(step, pieces);
+		fill_crossing(step, pieces, k);
 }
 
 struct pieces pieces_of(const struct step *step)
@@ -625,7 +633,11 @@ struct pieces pieces_of(const struct step *step)
 	}
 	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);
+	if (step->clears)
+		fill_look(step, &pieces);
 	if (step->swift)
 		fill_swift(step, &pieces);
+	else if (step->clears)
+		gather(step, &pieces);
 	return pieces;
 }

@@ -298,10 +298,10 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	/* of regions: a step looks over the whole of h whether it is clear, and for few crossings; by Taylor
+	/* of regions: a step looks over the whole of h whether it is clear; and for few crossings, by Taylor
 	 * polynomials of this degree */
-	bool swift;
-	const char *searches;       /* why it is not */
+	bool clears, swift;
+	const char *searches;       /* why it does not look whether it is clear */
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
@@ -416,8 +416,7 @@ void take_operators(struct step *step);
 
 void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
-bool is_bounded_load(const struct step *step, int load);    /* it has load states that are never above 1 */
-bool is_cleared_by_tables(const struct step *step);         /* a swift step looks by tables, not region by region */
+bool is_cleared_by_tables(const struct step *step);         /* a step that clears does by tables, not case by case */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
@@ -429,12 +428,13 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
-	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
-	 * rounding and what its Taylor polynomial leaves out make its value and h times its slope wrong by at most
-	 * slack . |x(0)|; turn and bend are slope and fourth
+	/* Where a step clears: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still.
+	 * Where it is swift: rounding and what its Taylor polynomial leaves out make its value and h times its slope
+	 * wrong by at most slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
 	double *whole_gain;         /* e^{A h} - I, as gain */
+	double *added;              /* of a retuned model: what stays of x adds to each state over h */
 	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
@@ -443,10 +443,12 @@ struct pieces {
 	double *row;                /* in the first */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
-	/* Where a step is swift: */
-	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
-	bool *bounded;              /* per entry of x: never above 1, and part of `still` */
+	/* Where a step clears: */
+	bool *bounded;              /* per entry of x: never above 1, and where a step is swift part of `still` */
 	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
+	double *edge;               /* of a retuned model: see gathered.c */
+	/* Where it is swift: */
+	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
@@ -457,6 +459,8 @@ double size_of_bounded(const struct step *step, const double *row);
 /* Of rows over x in one branch's system: d/3 times the slope, and bounds as in struct region_piece; rows x size each */
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
 		    double *slope, double *second, double *fourth);
+#define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
+#define LARGE_FLOAT (0x1p60)
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
 double *whole_gain_of(const struct step *step, int branch);  /* e^{A h} - I in two words, 2 size x size; or NULL */
 void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
@@ -464,6 +468,19 @@ void row_over_x(const struct step *step, const struct output *output, int segmen
 void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
+
+/* ---- gathered.c: what stays of x, in the tables of an instance ---- */
+
+bool is_bounded_load(const struct step *step, int load);    /* it has load states that are never above 1 */
+/* sqrt(a^2 + b^2) is at most the larger and so much of the smaller, 2^1/2 - 1 */
+#define FOLDED 0.41421356237309515
+int *staying_columns(const struct step *step, int *count);  /* of x: 1, and held params */
+bool any_stays(const struct step *step);
+bool any_still(const struct step *step);                    /* that, or something is never above 1 */
+int param_of_column(const struct step *step, int column);   /* of such a one; -1: it is 1 */
+int edges_of_regions(const struct switching *s);            /* breakpoints, and two open ends of each expression */
+/* Of a step that clears and is not swift: `added` and `still` of each piece, `edge` */
+void gather(const struct step *step, struct pieces *pieces);
 
 /* ---- guards.c: events of regions with dry friction ---- */
 
@@ -795,6 +812,9 @@ void plan_rest(struct step *step);                           /* step->rest */
 
 /* in its table: what vanishes at these values only is no zero */
 void mark_tuned_zeros(struct step *step);
+/* size x size: x_i follows x_j in time, in a branch's region (-1: some) and for some values of the params; of retuned
+ * models */
+bool *reached_in_regions(const struct step *step, int branch);
 
 /* ---- exact.c: exact numbers of the equations that stand in the code as they are, each rounded once ---- */
 

@@ -17,21 +17,23 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 }
 
 /* Why a step of regions does not look over the whole of h first; NULL: it does */
-static const char *no_swift(const struct step *step)
+static const char *no_look(const struct step *step)
 {
 	enum { TERMS = 400, BOUNDS = 1024 };
 	const struct switching *s = step->model->switching;
 	bool turns = false;
 	for (int k = 0; k < step->branches; k++)
 		turns = turns || step->branch[k].halvings > 1;
-	return step->model->retuned                      ? "an instance has its own tables, for tunable params"
-	       : step->model->asked.single               ? "it is smaller, for the target float"
+	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
+	return step->model->asked.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
 	       : has_events(s)                           ? "what sticks, slips and bounces has events of its own"
 	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
 	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
-									      : NULL;
+	       : step->model->retuned && matrices > LIMIT_TUNED_NUMBERS
+		       ? "an instance would have too many numbers, for tunable params"
+		       : NULL;
 }
 
 bool is_cleared_by_tables(const struct step *step)
@@ -56,14 +58,15 @@ static int products_of_words(const struct step *step)
 	return step->model->asked.compensated ? 3 : 1;
 }
 
-static void plan_swift(struct step *step)
+static void plan_look(struct step *step)
 {
 	bool any = false;
-	step->searches = no_swift(step);
-	step->swift = !step->searches;
+	step->searches = no_look(step);
+	step->clears = !step->searches;
+	step->swift = step->clears && !step->model->retuned;    /* crossings go by tables of fixed numbers */
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (!step->swift)
+	if (!step->clears)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =
@@ -122,7 +125,7 @@ static void build_divided(struct step *step)
 		plan_region(step, k);
 	if (step->model->retuned)
 		plan_retuned(step);
-	plan_swift(step);
+	plan_look(step);
 }
 
 void build_regions_step(struct step *step)

@@ -26,10 +26,8 @@ static bool *couplings(const struct step *step)
 }
 
 /* Reaching over any number of couplings */
-static bool *reach(const struct step *step)
+static bool *reach(int size, bool *reads)
 {
-	int size = step->layout.size;
-	bool *reads = couplings(step);
 	for (int k = 0; k < size; k++)
 		for (int i = 0; i < size; i++)
 			for (int j = 0; j < size; j++)
@@ -52,7 +50,7 @@ void mark_tuned_zeros(struct step *step)
 	struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
 	int n = table->states, size = step->layout.size;
-	const bool *reached = reach(step);
+	const bool *reached = reach(size, couplings(step));
 	for (int i = 0; i < n; i++) {
 		const bool *row = reached + i * size;
 		for (int j = 0; j < n; j++) {
@@ -68,4 +66,28 @@ void mark_tuned_zeros(struct step *step)
 				table->input[i * table->inputs + column].zero =
 					!reaches(row + step->layout.input[input], system->input[input].hold);
 	}
+}
+
+/* What the columns of a retuned row are, x has too, in the same places. */
+bool *reached_in_regions(const struct step *step, int branch)
+{
+	const struct retuned *r = step->model->retuned;
+	int size = step->layout.size;
+	bool *reads = ARRAY(bool, (size_t)(size * size));
+	for (int k = 0; k < step->branches; k++) {
+		if (branch >= 0 && k != branch)
+			continue;
+		const struct linear *system = &step->branch[k].system;
+		mpq_t *A = augmented_matrix(&step->layout, system, 0);
+		for (int i = 0; i < size * size; i++)
+			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
+		rationals_free(A, (size_t)(size * size));
+		for (int i = 0; i < system->n; i++) {
+			int place = retuned_place(r, RETUNED_SLOPE, k, i);
+			bool *row = reads + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
+			for (int j = 0; j < size && place >= 0; j++)
+				row[j] = row[j] || retuned_reads(r, place, j);
+		}
+	}
+	return reach(size, reads);
 }

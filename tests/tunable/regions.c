@@ -8,6 +8,7 @@
 #include "worse.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,6 +99,49 @@ static void later(retuned *a, plain *b, const retuned_coeffs *fresh)
     free(moved);
 }
 
+/* One step from each of many states as large as those of a run: among them are some that touch a breakpoint within the
+ * step, and leave it */
+static void scattered(retuned *a, plain *b)
+{
+    enum { STATES = 4000 };
+    real most[RETUNED_STATES] = {0}, y[RETUNED_STATES], z[RETUNED_STATES];
+    uint32_t random = 1;
+    int crossed = 0, twice = 0, other = 0;
+    double worst = 0;
+    for (int k = 0; k < STEPS; k++) {
+        model->step(a, sample(k));
+        model->get(a, y);
+        for (int i = 0; i < RETUNED_STATES; i++)
+            most[i] = (real)fmax((double)most[i], fabs((double)y[i]));
+    }
+    for (int k = 0; k < STATES; k++) {
+        for (int i = 0; i < RETUNED_STATES; i++) {
+            random = random * 1664525 + 1013904223;
+            y[i] = (real)(((double)random / 2147483648.0 - 1) * (double)most[i]);
+        }
+        model->set(a, 0.001 * k, y);
+        written->set(b, 0.001 * k, y);
+        if (model->hold) {
+            model->hold(a, sample(k));
+            written->hold(b, sample(k));
+        }
+        const uint64_t before = retuned_crossed(a), first = plain_crossed(b);
+        model->step(a, sample(k + 1));
+        written->step(b, sample(k + 1));
+        const int count = (int)(retuned_crossed(a) - before), expected = (int)(plain_crossed(b) - first);
+        crossed += expected > 0;
+        twice += expected > 1;
+        other += count != expected;
+        model->get(a, y);
+        written->get(b, z);
+        for (int i = 0; i < RETUNED_STATES; i++)
+            worst = worse(worst, fabs((double)y[i] - (double)z[i]) / fmax((double)most[i], fabs((double)z[i])));
+    }
+    ok(crossed > 0 && other == 0, "of %d scattered states as many cross (%d, %d of them twice or more; %d others)",
+        STATES, crossed, twice, other);
+    ok(worst <= tolerance, "and go where those with the values written go within %.0e (%.2g)", tolerance, worst);
+}
+
 static void copies(retuned *a)
 {
     retuned *saved = malloc(sizeof *saved), *again = malloc(sizeof *again);
@@ -159,6 +203,11 @@ int main(void)
     compare(a, b, "from the start", 0);
     copies(a);
     later(a, b, fresh);
+#ifndef REAL_FLOAT          /* what floats round may be a touch more or less */
+    retuned_init(a);
+    retuned_use(a, fresh);
+    scattered(a, b);
+#endif
     refusals(fresh);
     retuned_init(a);
     ok(retuned_retune(fresh, retuned_model.param_values, RETUNED_H) == 0, "and those of the spec");
