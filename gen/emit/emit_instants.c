@@ -53,22 +53,23 @@ static bool any_lost(const struct emitter *e)
 
 static void emit_change(const struct emitter *e)
 {
-	bool lost = any_lost(e);
+	bool lost = any_lost(e), own = lost && e->model->retuned;
 	say(e, "\n"
 	       "/* The same intervals after the next change%s */\n"
-	       "static void $o_next_segment(%spl_contact *contact%s)\n"
+	       "static void $o_next_segment(%s%spl_contact *contact%s)\n"
 	       "{\n"
 	       "    contact->region += %d;\n",
 	    lost ? "; where they cannot be then, the equations of the region where x is" : "",
+	    own ? spell(e, "const $n_coeffs *c, ") : "",
 	    lost ? format("const double x[%d], ", size_of_vector(e)) : "", lost ? ", double *work" : "",
 	    regions_in_one(e));
 	if (lost)
 		say(e, "    if ($o_matrix[contact->region] < 0) {\n"
 		       "        pl_contact now;\n"
-		       "        $o_start(contact->region / %d, x, &now, work);\n"
+		       "        $o_start(%scontact->region / %d, x, &now, work);\n"
 		       "        contact->matrix = now.matrix;\n"
 		       "        return;\n"
-		       "    }\n", regions_in_one(e));
+		       "    }\n", own ? "c, " : "", regions_in_one(e));
 	say(e, "    contact->matrix = $o_matrix[contact->region];\n"
 	       "}\n");
 }
@@ -76,10 +77,11 @@ static void emit_change(const struct emitter *e)
 /* Of what sticks and bounces the change is decided at once, also at a step's end, where outputs read it. */
 static void emit_decided_change(const struct emitter *e)
 {
-	say(e, "        here = $o_switching[segment + 1];\n"
+	say(e, "        here = $o_switching%s;\n"
 	       "        here.max_events -= count;\n"
 	       "        %s_change(&here, done, x, contact, crossing + count, work);\n"
-	       "        count += contact->crossings;\n", search_by(e));
+	       "        count += contact->crossings;\n",
+	    e->model->retuned ? "(&s->coeffs, segment + 1)" : "[segment + 1]", search_by(e));
 }
 
 void emit_region_changes(const struct emitter *e)
@@ -112,7 +114,9 @@ void emit_region_changes(const struct emitter *e)
 	       "            break;\n"
 	       "        if (to > done)\n"
 	       "            done = to;\n"
-	       "        $o_next_segment(%scontact%s);\n", guards ? "<=" : "<", any_lost(e) ? "x, " : "",
+	       "        $o_next_segment(%scontact%s);\n", guards ? "<=" : "<", !any_lost(e)	      ? ""
+	    : e->model->retuned ? "&s->coeffs, x, "
+				: "x, ",
 	    any_lost(e) ? ", work" : "");
 	if (guards)
 		emit_decided_change(e);

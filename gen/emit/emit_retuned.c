@@ -36,9 +36,10 @@ static void guard_members(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	const struct guards g = own_guards(e);
 	int size = e->step->layout.size;
-	int values = g.assignments > 0 ? g.assignments : 1, all = g.impacts > 0 ? g.impacts : 1;
+	int values = g.assignments > 0 ? g.assignments : 1, all = g.impacts > 0 ? s->segments * g.impacts : 1;
 	member(e, "double", "limit", format("[%d]", g.guards), "of each guard");
-	member(e, "double", "play", format("[%d]", s->expressions), "factors of cos and sin in each expression");
+	member(e, "double", "play", format("[%d]", s->segments * s->expressions),
+	       "factors of cos and sin in each expression");
 	member(e, "double", "gate_play", format("[%d]", g.rows), "in each row of guards");
 	member(e, "double", "gate", table_shape(g.rows, size), "rows of guards");
 	member(e, "double", "gate_lean", table_shape(g.rows, size), "d/3 times the slope of each");
@@ -95,6 +96,7 @@ static const char *name_of_row(const struct emitter *e, const struct retuned_row
 {
 	const struct model *model = e->model;
 	const struct switching *s = model->switching;
+	const struct strike *strike;
 	switch (row->kind) {
 	case RETUNED_SLOPE:
 		return format("system %d: %s%s", row->of, model->coord_name[row->index],
@@ -107,8 +109,9 @@ static const char *name_of_row(const struct emitter *e, const struct retuned_row
 	case RETUNED_RELEASE:     return format("region %d: release %d", row->of, row->index);
 	case RETUNED_GRIP:        return format("region %d: friction %d", row->of, row->index);
 	case RETUNED_JUMP:
-	case RETUNED_STILL:       return format("impact %d: %s", row->of,
-						model->state_name[s->impact[row->of].in[0].jump[row->index].state]);
+	case RETUNED_STILL:
+		strike = &s->impact[row->of % s->impacts].in[row->of / s->impacts];
+		return format("impact %d: %s", row->of, model->state_name[strike->jump[row->index].state]);
 	case RETUNED_SPEED:       return format("impact %d: speed", row->of);
 	case RETUNED_BACK:        return format("impact %d: back", row->of);
 	case RETUNED_RESTITUTION: return format("impact %d: restitution", row->of);
@@ -259,7 +262,7 @@ static void emit_checks(const struct emitter *e)
 				    : row->kind == RETUNED_LEAST ? format("%s < 0.0", value)
 							       : NULL;
 		if (row->kind == RETUNED_RESTITUTION)
-			wrong = e->model->impact[row->of].when->restitution
+			wrong = e->model->impact[row->of % e->model->impacts].when->restitution
 					? format("%s < 0.0 || %s > 1.0", value, value)
 									    : format("%s < 0.0", value);
 		if (row->place >= 0 && wrong)
@@ -301,7 +304,7 @@ static void emit_taken_gates(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->rows; i++) {
 		const struct gate_key *gate = &g->gate[i];
 		int place = gate->expression >= 0
-				    ? retuned_place(r, RETUNED_EXPRESSION, 0, gate->expression)
+				    ? retuned_place(r, RETUNED_EXPRESSION, gate->segment, gate->expression)
 				    : retuned_place(r, RETUNED_RELEASE, gate->region, gate->release);
 		take(e, place, format("made.gate[%d]", i), gate->expression >= 0 && !gate->upward);
 	}
@@ -320,7 +323,7 @@ static void emit_taken_jumps(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->assignments; i++)
 		take(e, retuned_place(r, g->assignment[i].kind, g->assignment[i].of, g->assignment[i].index),
 		     format("made.value[%d]", i), false);
-	for (int i = 0; i < g->impacts; i++) {
+	for (int i = 0; i < s->segments * g->impacts; i++) {
 		take_number(e, retuned_place(r, RETUNED_RESTITUTION, i, 0), format("made.impact[%d].restitution", i),
 			    false);
 		take(e, retuned_place(r, RETUNED_SPEED, i, 0), format("made.speed[%d]", i), false);
@@ -343,11 +346,13 @@ static void emit_play(const struct emitter *e, const struct guards *g)
 	int count = 1;
 	for (const char *c = list; *c; c++)
 		count += *c == ',';
+	const struct switching *s = e->model->switching;
 	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        made.play[i] = $n_play(made.row[i]);\n"
+	       "        made.play[i] = $n_play(made.row%s);\n"
 	       "    for (i = 0; i < %d; i++)\n"
-	       "        made.gate_play[i] = $n_play(made.gate[i]);\n", e->model->switching->expressions, g->rows);
-	for (int i = 0; i < g->impacts; i++)
+	       "        made.gate_play[i] = $n_play(made.gate[i]);\n", s->segments * s->expressions,
+	    s->segments > 1 ? format("[i / %d][i %% %d]", s->expressions, s->expressions) : "[i]", g->rows);
+	for (int i = 0; i < s->segments * g->impacts; i++)
 		say(e, "    made.impact[%d].play = $n_play(made.speed[%d]);\n", i, i);
 }
 

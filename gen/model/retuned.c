@@ -59,9 +59,9 @@ static bool same_region(const struct region *a, const struct region *b)
 	return same;
 }
 
-static bool same_impact(const struct impact *whole, const struct impact *other)
+static bool same_impact(const struct impact *whole, const struct impact *other, int segment)
 {
-	const struct strike *a = &whole->in[0], *b = &other->in[0];
+	const struct strike *a = &whole->in[segment], *b = &other->in[segment];
 	bool same = whole->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
 		    a->expression == b->expression;
 	for (int k = 0; k < a->jumps && same; k++)
@@ -83,8 +83,8 @@ static bool same_regions(const struct model *model, const struct model *other)
 			same = same && is_stick(&a->expression[e], k) == is_stick(&b->expression[e], k);
 	for (int r = 0; r < a->regions && same; r++)
 		same = same_region(&a->region[r], &b->region[r]);
-	for (int i = 0; i < a->impacts && same; i++)
-		same = same_impact(&a->impact[i], &b->impact[i]);
+	for (int i = 0; i < a->segments * a->impacts && same; i++)
+		same = same_impact(&a->impact[i % a->impacts], &b->impact[i % a->impacts], i / a->impacts);
 	return same;
 }
 
@@ -461,10 +461,6 @@ static void check_model(const struct model *model)
 	for (int i = 0; i < spec->elements; i++)
 		check_node(spec->element[i].value);
 	check_outputs(model);
-	if (has_events(model->switching) && model->switching->segments > 1)
-		error(spec->tunable[0].at, "the load as an input is exact beside them",
-		      "tunable params beside friction or impacts and loads that change their formula are not built "
-		      "yet");
 	if (model->switching->sliders > 0)
 		error(spec->tunable[0].at, "a small mass slides with its own inertia",
 		      "tunable params beside what slides without mass are not built yet");

@@ -141,24 +141,25 @@ static void list_times(struct listing *l, mpq_srcptr answer)
 		mpq_mul(times[j], l->entry[from + j], answer);
 }
 
-static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct jump *jump)
+static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct strike *strike,
+		       const struct jump *jump)
 {
-	const struct impact *impact = &l->model->switching->impact[index];
-	const struct strike *strike = &impact->in[0];
 	for (int k = 0; k < strike->jumps; k++) {
 		list_output(l, kind, index, k, jump[k].row, 0);
 		list_times(l, strike->answer);
 	}
 }
 
+/* One of them in a segment of time; the number of both is `index` */
 static void list_impact(struct listing *l, int index)
 {
-	const struct impact *impact = &l->model->switching->impact[index];
-	const struct strike *strike = &impact->in[0];
+	const struct switching *s = l->model->switching;
+	const struct impact *impact = &s->impact[index % s->impacts];
+	const struct strike *strike = &impact->in[index / s->impacts];
 	add_number(l, RETUNED_ANSWER, index, 0, strike->answer);
-	list_jumps(l, index, RETUNED_JUMP, strike->jump);
+	list_jumps(l, index, RETUNED_JUMP, strike, strike->jump);
 	if (impact->bounces) {
-		list_jumps(l, index, RETUNED_STILL, strike->still);
+		list_jumps(l, index, RETUNED_STILL, strike, strike->still);
 		list_output(l, RETUNED_SPEED, index, 0, strike->speed_row, 0);
 		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
 		for (int j = 0; j < l->model->n; j++)
@@ -199,7 +200,7 @@ struct listing list_rows(const struct model *model, const struct layout *x, bool
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)
 			list_region(&l, r);
-	for (int i = 0; i < s->impacts; i++)
+	for (int i = 0; i < s->segments * s->impacts; i++)
 		list_impact(&l, i);
 	if (signs)
 		list_signs(&l);

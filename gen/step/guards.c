@@ -9,7 +9,7 @@
 static bool same_gate(const struct gate_key *a, const struct gate_key *b)
 {
 	return a->expression == b->expression && a->region == b->region && a->release == b->release &&
-	       a->upward == b->upward;
+	       a->upward == b->upward && a->segment == b->segment;
 }
 
 /* The index of a row of a branch; equal ones are one, of tunable params those that are the same */
@@ -77,7 +77,7 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
 			  turned(size, pieces->rows[segment] + expression * size, upward),
-			  (struct gate_key){ .expression = expression, .upward = upward }, guard);
+			  (struct gate_key){ .expression = expression, .upward = upward, .segment = segment }, guard);
 	}
 }
 
@@ -152,13 +152,14 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 		new.breakpoint++;
 	if (impact->bounces && !strike->upward)
 		new.breakpoint++;               /* the upper of two */
-	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, number);
+	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, segment * s->impacts + number);
 	new.speed = ARRAY(double, (size_t)step->layout.size);
 	new.back = ARRAY(double, (size_t)step->layout.size);
 	mpq_t part;
 	mpq_init(part);
 	if (impact->bounces) {
-		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL, number);
+		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL,
+					 segment * s->impacts + number);
 		row_over_x(step, strike->speed_row, 0, new.speed);
 		for (int j = 0; j < step->model->n; j++) {
 			mpq_mul(part, strike->direction[j], strike->factor);

@@ -506,7 +506,7 @@ struct held_state {                 /* x[state] = value . x */
 	enum retuned_kind kind;     /* where it comes from: a row of the regions */
 	int of, index;
 };
-struct gate_key { int expression, region, release; bool upward; };  /* an expression, up or down; -1: a release */
+struct gate_key { int expression, region, release, segment; bool upward; };  /* up or down; expression -1: a release */
 struct guards {
 	bool apart;                 /* rows that are equal may become others: params are tunable */
 	int *first;                 /* per region, and one more: its guards, of those of all */
