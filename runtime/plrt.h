@@ -1036,32 +1036,31 @@ void pl_regionf_bounds(int size, float d, const float *A, int rows, const float 
 typedef struct pl_cut {
     int states, size; /* entries of y, of x */
     int forces;
+    double fastest; /* the sizes |A| have no larger pole [1/s] */
     /* those at y, this long [s] after the start of the step */
     void (*force)(const void *from, double tau, const double *y, double *r);
 } pl_cut;
 
-/* D <- e^{A tau} - I, its first rows, states x size; A size x size [1/s], its other entries as pl_increment wants them
- *     work  PL_CUT_ROOM(size) entries, contents of no meaning
- * 0, or PL_NOT_FINITE */
-int pl_cut_table(const pl_cut *m, const double *A, double tau, double *D, pl_two *work);
-
-/* next <- y, tau [s] later: off by O(tau^5), by e^{A tau} and e^{A tau / 2}, which are made here, so any A is borne.
+/* next <- y, tau [s] later: off by O(tau^5), by e^{A tau} and e^{A tau / 2}, whatever A is: by their series, or where
+ * fastest times tau is above 2 by tables that are made here.
+ *     A       size x size [1/s]: x' = A x where no force changes but by its derivatives
  *     acting  what acts, at the start of the part
  *     at      that start after the start of the step [s]
- *     work    PL_CUT_WORK(states, size, forces) entries
+ *     work    PL_CUT_WORK(size, forces) entries
+ *     room    PL_CUT_ROOM(size) entries
  * 0, or PL_NOT_FINITE and next has no meaning */
 int pl_cut_advance(const pl_cut *m, const double *A, const double *acting, const void *from, double at, double tau,
                    const double *y, double *next, double *work, pl_two *room);
 
 #define PL_CUT_ROOM(size) (8 * (size) * (size))
-#define PL_CUT_WORK(states, size, forces) ((2 * (states) + 1) * (size) + 5 * (states) + 6 * (forces))
+#define PL_CUT_WORK(size, forces) ((2 * (size) + 5) * (size) + 4 * (forces))
 
 typedef struct pl_cutf {
     int states, size, forces;
+    float fastest;
     void (*force)(const void *from, float tau, const float *y, float *r);
 } pl_cutf;
 
-int pl_cutf_table(const pl_cutf *m, const float *A, float tau, float *D, pl_twof *work);
 int pl_cutf_advance(const pl_cutf *m, const float *A, const float *acting, const void *from, float at, float tau,
                     const float *y, float *next, float *work, pl_twof *room);
 

@@ -57,7 +57,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_region_of pl_regionf_of
 #define pl_region_bounds pl_regionf_bounds
 #define pl_cut pl_cutf
-#define pl_cut_table pl_cutf_table
 #define pl_cut_advance pl_cutf_advance
 #define pl_region_whole pl_regionf_whole
 #define pl_ramp_before pl_rampf_before

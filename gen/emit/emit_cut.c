@@ -170,9 +170,10 @@ static void emit_part(const struct emitter *e)
 	       "static int $n_advance(const $n_part *p, double tau, double length, const double y[$N_STATES],\n"
 	       "    double next[$N_STATES])\n"
 	       "{\n"
-	       "    static const pl_cut cut = {$N_STATES, %d, %d, $n_forces};\n"
-	       "    double acting[%d], work[PL_CUT_WORK($N_STATES, %d, %d)];\n"
-	       "    pl_two room[PL_CUT_ROOM(%d)];\n", size, channels, acting ? acting : 1, size, channels, size);
+	       "    static const pl_cut cut = {$N_STATES, %d, %d, %s, $n_forces};\n"
+	       "    double acting[%d], work[PL_CUT_WORK(%d, %d)];\n"
+	       "    pl_two room[PL_CUT_ROOM(%d)];\n", size, channels, shortest(cut_of(e)->fastest),
+	    acting ? acting : 1, size, channels, size);
 	emit_acting(e);
 	say(e, "    return pl_cut_advance(&cut, $n_flow[%s][0], acting, p, tau, length, y, next, work, room)\n"
 	       "        || pl_not_finite(next, $N_STATES);\n"

@@ -1181,6 +1181,7 @@ struct cut {
 	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of the looks in a step */
+	double fastest;             /* above the poles of the sizes |A| [1/s] */
 	int kilobytes;              /* of stack for tables */
 };
 void plan_cut(struct step *step);                           /* step->cut */
