@@ -357,7 +357,7 @@ static void emit_grip(const struct emitter *e)
 	       "static double $n_grip(const $n *s, int which)\n"
 	       "{\n"
 	       "    double x[%d], force;\n"
-	       "    int i;\n", e->step->layout.size);
+	       "    int i;\n", size_of_vector(e));
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"

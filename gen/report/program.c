@@ -302,11 +302,14 @@ static void print_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->model->switching;
 	fprintf(to,
 		"Actions, from piece to piece d of the step:\n"
-		"    y = piece.Phi y + loads + piece.held u + piece.ramp u'\n"
+		"    y %s y + loads + piece.held u + piece.ramp u'\n"
 		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
 		"region\n",
+		step->program->compensated ? "+= (piece.Phi - I)" : "= piece.Phi",
 		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
 		step->series.degree);
+	if (step->program->compensated)
+		fprintf(to, "    factors in two words, and what rounding takes from y kept\n");
 	if (s->segments > 1)
 		fprintf(to,
 			"    at a change of the loads: as far as there, then the region with the same intervals in the "

@@ -4,6 +4,12 @@
 
 /* ---- bytes and work ---- */
 
+/* Of an entry of A, of e^{A d} and of what jumps make of a state */
+static long words_of(const struct step *step)
+{
+	return step->model->asked.compensated ? 2 : 1;
+}
+
 /* Of the tables of a swift step: bounds for each matrix; for each region and expression, where it is and which are
  * beside it */
 static long swift_bytes(const struct step *step)
@@ -14,7 +20,7 @@ static long swift_bytes(const struct step *step)
 		halves = halves || step->branch[k].halvings > 0;
 	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
 	return 8 * s->systems *
-		       (s->expressions * (2 * size + off) + halves * size * (size + 2 * s->expressions)) +
+		       (s->expressions * (2 * size + off) + halves * size * (words_of(step) * size + 2 * s->expressions)) +
 	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 
@@ -44,7 +50,7 @@ static long guard_bytes(const struct step *step)
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
 	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
-	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
+	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size + s->expressions -
 		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
 }
@@ -55,7 +61,7 @@ static long bytes_of_regions(const struct step *step)
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
 	long rows = s->segments * s->expressions * size;
-	long bytes = 8 * (rows + matrices * (2 * size * size + 3 * s->expressions * size)) +
+	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	if (step->clears && !step->swift)
 		bytes += 8 * (matrices * (size * size + s->expressions * (size + 1) + step->layout.states + 1) +
@@ -71,7 +77,8 @@ static long most_of_regions(const struct step *step)
 	for (int k = 0; k < step->branches; k++)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += max_events(step->model) + 1;
-	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
+	long two_words = (words_of(step) - 1) * (12 * size * size + 3 * size);
+	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
 		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
 	       swift_multiplications(step);

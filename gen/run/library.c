@@ -98,6 +98,13 @@ CALL(switching_advance, NOTHING, pl_switching_advance(P(0), R(1), P(2), P(3), P(
 CALL(switchingf_start, NOTHING, pl_switchingf_start(P(0), P(1), P(2), P(3)))
 CALL(switchingf_step, NOTHING, pl_switchingf_step(P(0), P(1), P(2), P(3), P(4)))
 CALL(switchingf_advance, NOTHING, pl_switchingf_advance(P(0), F(1), P(2), P(3), P(4), P(5)))
+CALL(switching_kept_start, NOTHING, pl_switching_kept_start(P(0), P(1), P(2), P(3)))
+CALL(switching_kept_step, NOTHING, pl_switching_kept_step(P(0), P(1), P(2), P(3), P(4)))
+CALL(switching_kept_advance, NOTHING, pl_switching_kept_advance(P(0), R(1), P(2), P(3), P(4), P(5)))
+CALL(switching_kept_move, NOTHING, pl_switching_kept_move(P(0), W(1), W(2), R(3), P(4), P(5)))
+CALL(switchingf_kept_start, NOTHING, pl_switchingf_kept_start(P(0), P(1), P(2), P(3)))
+CALL(switchingf_kept_step, NOTHING, pl_switchingf_kept_step(P(0), P(1), P(2), P(3), P(4)))
+CALL(switchingf_kept_advance, NOTHING, pl_switchingf_kept_advance(P(0), F(1), P(2), P(3), P(4), P(5)))
 CALL(divided_place, WHOLE, pl_divided_place(P(0), P(1), P(2), P(3)))
 CALL(divided_left, WHOLE, pl_divided_left(P(0), P(1), P(2), P(3), P(4)))
 CALL(divided_next, REAL, pl_divided_next(P(0), P(1), P(2), P(3), R(4), P(5), P(6), P(7)))
@@ -113,6 +120,7 @@ CALL(powf, REAL, powf(F(0), F(1)))
 CALL(fminf, REAL, fminf(F(0), F(1)))
 CALL(fmaxf, REAL, fmaxf(F(0), F(1)))
 CALL(work, WHOLE, PL_SWITCHING_WORK(W(0), W(1), W(2)))
+CALL(kept_work, WHOLE, PL_SWITCHING_KEPT_WORK(W(0), W(1), W(2)))
 CALL(divided_work, WHOLE, PL_DIVIDED_WORK(W(0)))
 
 #define SINGLE(name) static double single_##name(double x) { return (double)name##f((float)x); }
@@ -168,9 +176,14 @@ static const struct library_function functions[] = {
 	RUNTIME_OF(switching_advance, "vpdpppp", 0, 0, TAKES_PIECES), RUNTIME(switchingf_start, "vpppp"),
 	RUNTIME_OF(switchingf_step, "vppppp", 0, 0, TAKES_PIECES),
 	RUNTIME_OF(switchingf_advance, "vpdpppp", 0, 0, TAKES_PIECES),
+	RUNTIME(switching_kept_start, "vpppp"), RUNTIME_OF(switching_kept_step, "vppppp", 0, 0, TAKES_PIECES),
+	RUNTIME_OF(switching_kept_advance, "vpdpppp", 0, 0, TAKES_PIECES), RUNTIME(switching_kept_move, "vpiidpp"),
+	RUNTIME(switchingf_kept_start, "vpppp"), RUNTIME_OF(switchingf_kept_step, "vppppp", 0, 0, TAKES_PIECES),
+	RUNTIME_OF(switchingf_kept_advance, "vpdpppp", 0, 0, TAKES_PIECES),
 	RUNTIME(divided_place, "ipppp"), RUNTIME(divided_left, "ippppp"), RUNTIME(divided_next, "dppppdppp"),
 	RUNTIME(dividedf_place, "ipppp"), RUNTIME(dividedf_left, "ippppp"), RUNTIME(dividedf_next, "fppppdppp"),
 	{ "PL_DIVIDED_WORK", "ii", NULL, call_divided_work, NULL, 0, 0, TAKES_NO_MORE },
+	{ "PL_SWITCHING_KEPT_WORK", "iiii", NULL, call_kept_work, NULL, 0, 0, TAKES_NO_MORE },
 	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE }, MATH(sin), MATH(cos), MATH(tan),
 	MATH(exp), MATH(log), MATH(sqrt), MATH(fabs), MATH(sinh), MATH(cosh), MATH(tanh), MATH(asin), MATH(acos),
 	MATH(atan), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin), MATH_OF_TWO(fmax),
@@ -212,9 +225,10 @@ static void count_call(const struct library_function *f, const union word *a)
 		const pl_contact *contact = a[f->type[2] == 'd' ? 3 : 2].place;
 		const pl_switching *m = a[0].place;
 		bool single = strncmp(f->name, "pl_switchingf", 13) == 0;
+		uint64_t words = strstr(f->name, "_kept_") ? 3 : 1;
 		size = (uint64_t)m->size;
 		const int *halvings = single ? ((const pl_switchingf *)a[0].place)->halvings : m->halvings;
-		products = size * (size + 3) << halvings[contact->matrix];
+		products = size * (words * size + 3) << halvings[contact->matrix];
 	}
 	bool plain = f->takes <= TAKES_CALL;
 	counted.calls += f->takes == TAKES_CALL;
