@@ -11,7 +11,8 @@ for name in pressed flipping braked; do
 		scheme=${case%:*}
 		digits=${case#*:}
 		prefix=${name}_$scheme$digits
-		"$build/plgen" --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" -o "$work/${prefix}_pl.c" \
+		"$build/plgen" --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" \
+			-o "$work/${prefix}_pl.c" \
 			"tests/divided/$name.spec" 2>/dev/null
 		echo "extern const pl_model ${prefix}_model;" >>"$work/declared"
 		echo "	{\"$name\", \"$scheme\", $digits, &${prefix}_model}," >>"$work/table"
@@ -22,9 +23,9 @@ done
 	cat "$work/declared"
 	printf 'static const struct { const char *name, *scheme; int digits; const pl_model *model; } models[] = {\n'
 	cat "$work/table"
-	printf '};\n\nstatic const pl_model *stiff_model(const char *name, const char *scheme, int digits)\n{\n\tint i = 0;\n'
-	printf '\twhile (strcmp(models[i].name, name) || strcmp(models[i].scheme, scheme) || models[i].digits != digits)\n'
-	printf '\t\ti++;\n\treturn models[i].model;\n}\n'
+	printf '};\nstatic const pl_model *stiff_model(const char *name, const char *scheme, int digits)\n'
+	printf '{\n\tint i = 0;\n\twhile (strcmp(models[i].name, name) || strcmp(models[i].scheme, scheme) ||\n'
+	printf '\t       models[i].digits != digits)\n\t\ti++;\n\treturn models[i].model;\n}\n'
 } >"$work/stiff_models.h"
 gcc -std=gnu11 -O2 -Iruntime -Ibench -I"$work" bench/stiff.c "$work"/*_pl.c runtime/*.c -o "$work/stiff" \
 	-lsundials_cvode -lsundials_nvecserial -lm

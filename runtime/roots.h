@@ -6,8 +6,8 @@
 
 #include "real.h"
 
-/* SHORT: a length of s, which goes from 0 to 1 over a piece.  SOON: one in which what starts is under way.  REST: what rounding may leave of a step, in parts of it.
- * SCALE: that of expressions near the end of the range. */
+/* SHORT: a length of s, which goes from 0 to 1 over a piece.  SOON: one in which what starts is under way.  REST: what
+ * rounding may leave of a step, in parts of it.  SCALE: that of expressions near the end of the range. */
 #ifdef REAL_IS_FLOAT
 #define SHORT 0x1p-18f
 #define SOON 0x1p-7f

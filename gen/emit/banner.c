@@ -242,7 +242,8 @@ static void banner_divided(const struct emitter *e)
 	banner_series_regions(e, x);
 	banner_sentence(e, !e->step->collocation
 		? "Costs below are of one series, without the search on it; a crossing takes another one."
-		: "Costs below are without the search; a crossing takes another internal step, of the collocation two.");
+		: "Costs below are without the search; a crossing takes another internal step, of the collocation "
+		  "two.");
 }
 
 void banner_expanded(const struct emitter *e)

@@ -193,8 +193,8 @@ static void emit_inside(const struct emitter *e)
 static void emit_prediction(const struct emitter *e)
 {
 	int s = stages(e), n = e->system->n;
-	say(e, "\n/* The highest derivatives of a polynomial, of which the unit of time is 1/per, at the nodes of a step "
-	       "that is\n * so long and begins there */\n"
+	say(e, "\n/* The highest derivatives of a polynomial, of which the unit of time is 1/per, at the nodes of a "
+	       "step that is\n * so long and begins there */\n"
 	       "static void $n_continue(const double poly[%d][$c], double from, double size, double per, double "
 	       "k[%d])\n"
 	       "{\n"

@@ -539,7 +539,8 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	struct reads read = named_reads(e, plain);
 	emit_motion_locals(e, r, &read);
 	put(e->to, text, length);
-	if ((part == THE_EXPRESSIONS ? watch_reads_known(e) : known_values(e) > 0) && !any_known(e, &read) && !mentions(plain, "node"))
+	bool given = part == THE_EXPRESSIONS ? watch_reads_known(e) : known_values(e) > 0;
+	if (given && !any_known(e, &read) && !mentions(plain, "node"))
 		say(e, "    (void)node;\n");
 	if (is_divided(e) && !mentions(plain, "interval"))
 		say(e, "    (void)interval;\n");

@@ -106,7 +106,8 @@ static void emit_along(const struct emitter *e)
 	       "        }\n"
 	       "    }\n"
 	       "%s"
-	       "}\n", watch_call(e, "node", "y", "value", "spare"), n, s, watch_reads_known(e) ? "" : "    (void)size;\n");
+	       "}\n", watch_call(e, "node", "y", "value", "spare"), n, s,
+	    watch_reads_known(e) ? "" : "    (void)size;\n");
 }
 
 /* ---- between internal steps ---- */
@@ -116,8 +117,8 @@ static void emit_place_here(const struct emitter *e)
 	int most = 1;
 	for (int i = 0; i < expressions(e); i++)
 		most += e->step->divided->expression[i].breaks + 1;
-	say(e, "\n/* The intervals of a state that was set, by values; the first step then says where that goes which is on "
-	       "a\n * breakpoint. The interval of one expression may choose what another is. */\n"
+	say(e, "\n/* The intervals of a state that was set, by values; the first step then says where that goes which "
+	       "is on a\n * breakpoint. The interval of one expression may choose what another is. */\n"
 	       "static void $n_locate($n *s%s)\n"
 	       "{\n"
 	       "    double c[%d][%d], terms[%d];\n"
@@ -136,7 +137,8 @@ static void emit_place_here(const struct emitter *e)
 static void emit_left(const struct emitter *e)
 {
 	const char *samples = samples_to_watch(e);
-	say(e, "\n/* Passes the breakpoint of contact.last, where the next internal step starts; 0: there were too many */\n"
+	say(e, "\n/* Passes the breakpoint of contact.last, where the next internal step starts; 0: there were too "
+	       "many */\n"
 	       "static int $n_pass_here($n *s)\n"
 	       "{\n"
 	       "    s->ready = 0;\n"
@@ -161,8 +163,8 @@ static void emit_move_end(const struct emitter *e)
 	int s = stages(e), n = expressions(e);
 	const char *known = known_at(e, spell(e, "(%s + theta * size) * $N_H", start_text(e)),
 				     spell(e, "(%s + 0.5 * size) * $N_H", start_text(e)), "        ");
-	say(e, "\n/* Moves the end of the step to theta, near 1, and from there to where what contact.last says passes its\n"
-	       " * breakpoint b; c: the expressions along the step */\n"
+	say(e, "\n/* Moves the end of the step to theta, near 1, and from there to where what contact.last says passes "
+	       "its\n * breakpoint b; c: the expressions along the step */\n"
 	       "static void $n_move_end($n *s%s, const double poly[%d][$c], double c[%d][%d], double theta, double b)\n"
 	       "{\n"
 	       "    const double size = s->size;\n"
@@ -207,8 +209,8 @@ static void emit_pass(const struct emitter *e)
 	bool single = e->model->asked.single, starts = e->step->expansion == NULL;
 	const char *samples = e->system->inputs ? ", u, slope" : "", *jacobian = splits(e) ? ", slope_of" : "";
 	const double near = single ? ldexp(1, -7) : ldexp(1, -10);
-	say(e, "\n/* Ends the step that was found at the first crossing in it, where there is one: 0, or what went wrong; "
-	       "-2: it is\n * at the start, so that nothing moves */\n"
+	say(e, "\n/* Ends the step that was found at the first crossing in it, where there is one: 0, or what went "
+	       "wrong;\n * -2: it is at the start, so that nothing moves */\n"
 	       "static int $n_pass($n *s%s%s, double limit, double unit[$N_STATES], double poly[%d][$c])\n"
 	       "{\n"
 	       "    double c[%d][%d], terms[%d], k[%d], work[PL_DIVIDED_WORK(%d)], theta, part, end = 1.0;\n"
@@ -227,8 +229,8 @@ static void emit_pass(const struct emitter *e)
 		       "            }\n"
 		       "            s->contact.placed = 1;\n"
 		       "        }\n");
-	say(e, "        theta = pl_divided_next(&$n_passing, c[0], terms, s->contact.interval, end, &splits, &crossing, "
-	       "work);\n"
+	say(e, "        theta = pl_divided_next(&$n_passing, c[0], terms, s->contact.interval, end, &splits, "
+	       "&crossing,\n            work);\n"
 	       "        if (splits < 0)\n"
 	       "            return PL_TOO_MANY_EVENTS;\n"
 	       "        if (theta < 0.0) {\n"

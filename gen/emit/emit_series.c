@@ -630,6 +630,11 @@ static void define_power(const struct emitter *e, int sequence, const struct seq
 	define(e, name_of(e, sequence, k), format("(%s) * %s", chain(&sum), helper(e, sequence, "inverse")));
 }
 
+static int rank_of_choice(const struct emitter *e, const struct sequence *s)
+{
+	return breakpoint_rank(expansion(e), s->expression, s->breakpoint);
+}
+
 static void define_choice(const struct emitter *e, int sequence, const struct sequence *s, int k)
 {
 	const char *a = coefficient(e, s->a, k), *b = coefficient(e, s->b, k);
@@ -644,9 +649,9 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 	if (s->kind == SEQUENCE_CHOICE)
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
 			  s->choice == CHOICE_BY_STATE
-				  ? format("interval[%d] > %d", s->expression, breakpoint_rank(expansion(e), s->expression, s->breakpoint))
+				  ? format("interval[%d] > %d", s->expression, rank_of_choice(e, s))
 			  : s->choice == CHOICE_BY_HOLD
-				  ? format("interval[%d] == %d", s->expression, breakpoint_rank(expansion(e), s->expression, s->breakpoint) + 1)
+				  ? format("interval[%d] == %d", s->expression, rank_of_choice(e, s) + 1)
 			  : s->choice == CHOICE_BY_SEQUENCE
 				  ? format("%s != 0.0", coefficient(e, s->test, 0))
 				  : format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],

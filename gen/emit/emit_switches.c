@@ -57,8 +57,8 @@ static void emit_rates(const struct emitter *e)
 	       "}\n");
 }
 
-/* (tolerance / last term)^(1 / order), less what comes after it, more of it where crossings follow from the end; and the same of the one before; where they are 0, or nearly, of what stands in
- * for them */
+/* (tolerance / last term)^(1 / order), and the same of the one before; where they are 0, or nearly, of what stands in
+ * for them. Less is left for what comes after them where crossings follow from the state. */
 static void emit_length(const struct emitter *e)
 {
 	int order = e->model->truncation.order;
@@ -115,11 +115,11 @@ static void emit_series_step(const struct emitter *e)
 	const char *when = spell(e, "$n_time(s) + ((s->at - (double)s->back) + 1e-9) * $N_H");
 	struct emitter here = *e;
 	here.ramps = false;
-	say(e, "\n/* An internal step by the series: 0, or what went wrong: PL_NOT_FINITE, it is of no use%s. Where\n * stability bounds several "
-	       "in a row, the collocation is next. */\n"
+	say(e, "\n/* An internal step by the series: 0, or what went wrong: PL_NOT_FINITE, it is of no use%s. Where\n"
+	       " * stability bounds several in a row, the collocation is next. */\n"
 	       "static int $n_expand_step($n *s%s, double limit, const double rates[2])\n"
 	       "{\n"
-	       "    double length, product;\n", is_divided(e) ? ", what went wrong; -2: nothing moves" : "",
+	       "    double length, product;\n", is_divided(e) ? "; -2: nothing moves" : "",
 	    samples_parameter(e));
 	if (is_divided(e))
 		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], next;\n"
@@ -209,7 +209,8 @@ void emit_choice(const struct emitter *e)
 	       "            s->run = s->ready = 0;\n"
 	       "            s->product = 0.0;\n"
 	       "        "
-	       "}\n", is_divided(e) ? "; -2: nothing moves" : "", samples_parameter(e), shortest(worth(e)), shortest(most), shortest(most), e->model->truncation.substeps, samples);
+	       "}\n", is_divided(e) ? "; -2: nothing moves" : "", samples_parameter(e), shortest(worth(e)),
+	    shortest(most), shortest(most), e->model->truncation.substeps, samples);
 	say(e, "        wrong = $n_collocate(s%s, limit, rates, steps);\n"
 	       "        if (wrong != -1)\n"
 	       "            return wrong;\n"

@@ -60,7 +60,9 @@ static int check_tolerance(const struct divided_system *s, const struct truth *t
     if (!ok(found.error < 100 * tolerance && found.count == truth->count && found.status == 0,
             "%s, %s 1e-%d: error, %d crossings", s->name, scheme, digits, truth->count))
         note("error %.3g, %d crossings, status %d", found.error, found.count, found.status);
-    if (!ok(found.time < 1000 * tolerance, "%s, %s 1e-%d: times of crossings", s->name, scheme, digits))
+    /* beside collocation they are ends of its steps, which are more exact */
+    const bool end = SYSTEMS == divided_systems && strcmp(scheme, "radau") == 0 && digits == 11;
+    if (!ok(found.time < (end ? 1e-13 : 1000 * tolerance), "%s, %s 1e-%d: times of crossings", s->name, scheme, digits))
         note("off by %.3g s", found.time);
     if (getenv("TABLE"))
         printf("| %s | %s | 1e-%d | %.2g | %.2g | %d |\n", s->name, scheme, digits, found.error, found.time,
