@@ -146,14 +146,21 @@ few() {
 	cp "$kept/hard.csv" "$kept"/headline_*.csv "$1"
 }
 few one
+# Once more, with the known one alone
 few two
+grep -v '^new_thing,' two/precision.csv >known && mv known two/precision.csv
 for folder in one two; do
 	(cd "$root" && sh bench/charts/draw.sh "$work/$folder") >>log 2>&1 || echo "draw.sh: status $?" >>log
 done
 grep -v '^$' log >said
 [ ! -s said ]
 result $? 'few tables: drawn, without a warning'
-diff -r one two >log
+find two -name '*scs*' -o -name 'hard*' -o -name 'headline_*' | sed 's,two/,,' | sort >again_there
+: >log
+while read -r file; do
+	cmp "one/$file" "two/$file" >>log 2>&1
+done <again_there
+[ "$(grep -c 'svg$' again_there)" -ge 4 ] && [ ! -s log ]
 result $? 'few tables: the same bytes twice'
 whole "$work/one"
 result $? 'few tables: pages of what is there, no link to what is not'

@@ -12,14 +12,18 @@ root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 . "${0%/*}/../tap.sh"
 
-# long FILES: those lines, as FILE:LINE: COLUMNS
-long() {
-	for file; do
-		[ ! -f "$file" ] || expand -t 8 "$file" | tr -d '\200-\277' |
-			awk -v file="${file#"$root"/}" 'length($0) > 120 {
-				print file ":" NR ": " length($0) " columns" }'
-	done
+# Those lines, as FILE:LINE: COLUMNS; a character is a byte that continues no other
+cat >long.awk <<'END'
+{
+	gsub(/[\200-\277]/, "")
+	count = split($0, part, "\t")
+	width = 0
+	for (i = 1; i <= count; i++)
+		width += length(part[i]) + (i < count ? 8 - (width + length(part[i])) % 8 : 0)
+	if (width > 120)
+		print substr(FILENAME, length(root) + 2) ":" FNR ": " width " columns"
 }
+END
 
 # look NAME FOLDER TESTS_OF_FIND ...
 look() {
@@ -27,10 +31,7 @@ look() {
 	folder=$2
 	shift 2
 	find "$root/$folder" -type f "$@" | sort >files
-	: >log
-	while read -r file; do
-		long "$file"
-	done <files >log
+	tr '\n' '\0' <files | xargs -0 awk -v root="$root" -f long.awk >log || echo 'not all was read' >>log
 	[ -s files ] && [ ! -s log ]
 	result $? "$name: $(wc -l <files) files, $(wc -l <log) lines over 120 columns"
 }
