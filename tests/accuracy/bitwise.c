@@ -31,7 +31,7 @@ static const char *const STEPS[] = { "1e-12", "1e-9", "1e-3", "0.01", "1", "1e3"
 enum { STEP_COUNT = sizeof STEPS / sizeof *STEPS };
 
 /* With -q a model of so many states at three steps only: its own, the shortest and one in the middle */
-enum { LARGE_STATES = 6, SHORTEST = 0, MIDDLE = 3 };
+enum { LARGE_STATES = 4, SHORTEST = 0, MIDDLE = 3 };
 
 static bool verbose, quick;
 

@@ -69,14 +69,21 @@ meets() {
 	grep -q '^input' "$name.txt" && flags="$flags -DINPUTS"
 	good=0
 	: >log
-	# the choice is that of the spec: other loads are put into what it has chosen
-	"$plgen" --explain=json "$@" "$name.spec" 2>>log | tr '\n' ' ' |
-		sed 's/.*"alternatives"//; s/.*{\([^{]*"taken": true\).*/\1/' >taken
-	scheme=$(sed -n 's/.*"scheme": "\([a-z0-9]*\)".*/\1/p' taken)
-	real=$(sed -n 's/.*"real": "\([a-z]*\)".*/\1/p' taken)
+	# the choice is that of the spec: other loads are put into what it has chosen; as the C tells it, where it is told
+	# there, else, and with LONG=1, as --explain=json does
+	"$plgen" --rhs "$@" "$name.spec" >chosen.c 2>>log || good=1
+	sed -n 's/^ \*     measured [^(]*(\([^;)]*\).*/, \1,/p' chosen.c | head -n 1 >taken
+	if ! long && [ -s taken ]; then
+		scheme=$(sed 's/^, [a-z]*, \([a-z0-9]*\),.*/\1/' taken)
+	else
+		"$plgen" --explain=json "$@" "$name.spec" 2>>log | tr '\n' ' ' |
+			sed 's/.*"alternatives"//; s/.*{\([^{]*"taken": true\).*/, \1/; s/[":]//g' >taken
+		scheme=$(sed -n 's/.* scheme \([a-z0-9]*\),.*/\1/p' taken)
+	fi
+	real=$(sed -n 's/.*[ ,]\(double\|float\),.*/\1/p' taken)
 	[ "$real" != float ] || flags="$flags -DFLOAT"
-	step=$(sed -n 's/.*"step": \([0-9.e-]*\),.*/\1/p' taken)
-	tolerance=$(sed -n 's/.*"tolerance": \([0-9.e-]*\),.*/\1/p' taken)
+	step=$(sed -n 's/.*, step \([0-9.e-]*\),.*/\1/p' taken)
+	tolerance=$(sed -n 's/.*, tolerance \([0-9.e-]*\),.*/\1/p' taken)
 	step=${step:-$(sed -n 's/^step //p' "$name.txt")}
 	neighbours=2
 	[ "$loads" = no ] || neighbours=4
@@ -91,7 +98,7 @@ meets() {
 		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} \
 			${tolerance:+--tolerance "$tolerance"} ${force:+-D "F=$force*$load"} free.spec \
 			>model.c 2>>log &&
-			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
+			{ [ "$factors" != '1 1' ] || cp chosen.c model.c; } &&
 			${CC:-cc} -std=c99 $level -ffp-contract=off -w $flags -I"$root/runtime" \
 				"$root/tests/run/drive.c" model.c "$archive" -lm -o drive >>log 2>&1 &&
 			./drive "$until" "$start" >samples &&

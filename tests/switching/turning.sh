@@ -22,7 +22,7 @@ turns() {
         [ $real = float ] && define=-DFLOAT || define=
         # shellcheck disable=SC2086
         "$plgen" --real $real -o model.c "$2" >log 2>&1 &&
-            gcc -std=c99 -O2 $warnings $define -DKIND="$1" -I"$root/runtime" -I. "$here/turning.c" model.c "$archive" \
+            gcc -std=c99 -O0 $warnings $define -DKIND="$1" -I"$root/runtime" -I. "$here/turning.c" model.c "$archive" \
                 -lm -o turning >>log 2>&1 &&
             ./turning >>log 2>&1
         result $? "$3, $real"
@@ -36,7 +36,7 @@ turns 3 "$root/models/gear3.spec" 'gear3 turning at 100: its meshes as at rest, 
 
 "$plgen" -o model.c "$here/drive_free.spec" >log 2>&1 &&
     "$plgen" --prefix by_hand -o by_hand.c "$here/drive_by_hand.spec" >>log 2>&1 &&
-    gcc -std=c99 -O2 $warnings -I"$root/runtime" -I. "$here/turning_by_hand.c" model.c by_hand.c "$archive" -lm \
+    gcc -std=c99 -O0 $warnings -I"$root/runtime" -I. "$here/turning_by_hand.c" model.c by_hand.c "$archive" -lm \
         -o by_hand >>log 2>&1 &&
     ./by_hand >>log 2>&1
 result $? 'a drive with a gap: as in twist and mean by hand'

@@ -29,7 +29,7 @@ awk 'BEGIN { for (k = 0; k <= 256; k++) print k % 40 < 20 ? 1 : -0.5 }' >u
 rows() {
 	name=$1
 	shift
-	${CC:-cc} -std=c99 -O1 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
+	${CC:-cc} -std=c99 -O0 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
 		-lm -o "run_$name" >>log 2>&1 && "./run_$name" 4 "$@" <u >"$name.csv" 2>>log
 }
 

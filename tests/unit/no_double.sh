@@ -47,7 +47,11 @@ for compiler; do
             continue
             ;;
     esac
-    for level in -O0 -O2 -Os; do
+    # -O2 by each, of the others one; with LONG=1 all
+    levels='-O0 -O2'
+    case $compiler in *clang*) levels='-O2 -Os' ;; esac
+    [ -z "${LONG:-}" ] || levels='-O0 -O2 -Os'
+    for level in $levels; do
         for piece in turns growth series power until apply crossings retune rate root dense; do
             ! doubles "$compiler" "$level" "${piece}f"
             result $? "${piece}f.c, $compiler $level"
