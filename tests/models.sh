@@ -25,7 +25,8 @@ trap 'exit 99' HUP INT TERM
 for file in $files; do
 	object=$work/$(basename "$file" .c).o
 	# shellcheck disable=SC2086
-	$cc -std=gnu11 -O0 -ffp-contract=off -fPIC -w $options -MD -MQ "$archive" -MF "$object.d" -c "$file" -o "$object"
+	$cc -std=gnu11 -O0 -ffp-contract=off -fPIC -w $options -MD -MQ "$archive" -MF "$object.d" -c "$file" \
+		-o "$object"
 	cat "$object.d" >>"$depfile"
 done
 rm -f "$archive"

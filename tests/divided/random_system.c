@@ -85,7 +85,8 @@ static void equations_made(real t, const real *y, const real *u, real *d)
     (void)u;
     for (int i = 0; i < n; i++) {
         const real x = y[i];
-        real a = made.force[i] / 1000.0L * cos_of(made.frequency[i] / 1000.0L * t) - made.damping[i] / 1000.0L * y[n + i];
+        real a = made.force[i] / 1000.0L * cos_of(made.frequency[i] / 1000.0L * t);
+        a -= made.damping[i] / 1000.0L * y[n + i];
         a -= made.stiffness[i] / 1000.0L * x + made.cubic[i] / 1000.0L * x * x * x;
         if (i + 1 < n)
             a -= made.coupling[i] / 1000.0L * (x - y[i + 1]);

@@ -18,7 +18,8 @@ warnings='-Werror -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wsha
 # not optimised, which takes half as long or less; with LONG=1 in the environment as a user would
 level=-O0
 [ -z "${LONG:-}" ] || level=-O1
-# without what stops anyway at the address where it goes: null, misaligned, out of an object; they double what is compiled
+# without what stops anyway at the address where it goes: null, misaligned, out of an object; they double what is
+# compiled
 sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
 [ -n "${LONG:-}" ] || sanitizers="$sanitizers -fno-sanitize=null,alignment,object-size,pointer-overflow"
 every=1

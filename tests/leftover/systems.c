@@ -344,9 +344,8 @@ static void chain(real t, const real *y, const real *u, real *dydt)
     real *a = dydt + MASSES;
     for (int i = 0; i < MASSES; i++) {
         dydt[i] = v[i];
-        a[i] = chain_f[i] * (cos_of(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) - chain_K(y,
-            i) -
-               30 * (y[i] - sin_of(y[i])) - t * y[i];
+        a[i] = chain_f[i] * (cos_of(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) -
+               chain_K(y, i) - 30 * (y[i] - sin_of(y[i])) - t * y[i];
     }
     chain_inverse(a);
     for (int i = 0; i < MASSES; i++)

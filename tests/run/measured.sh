@@ -69,8 +69,8 @@ meets() {
 	grep -q '^input' "$name.txt" && flags="$flags -DINPUTS"
 	good=0
 	: >log
-	# the choice is that of the spec: other loads are put into what it has chosen; as the C tells it, where it is told
-	# there, else, and with LONG=1, as --explain=json does
+	# the choice is that of the spec: other loads are put into what it has chosen; as the C tells it, where it is
+	# told there, else, and with LONG=1, as --explain=json does
 	"$plgen" --rhs "$@" "$name.spec" >chosen.c 2>>log || good=1
 	sed -n 's/^ \*     measured [^(]*(\([^;)]*\).*/, \1,/p' chosen.c | head -n 1 >taken
 	if ! long && [ -s taken ]; then
