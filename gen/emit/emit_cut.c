@@ -171,9 +171,9 @@ static void emit_part(const struct emitter *e)
 	       "    double next[$N_STATES])\n"
 	       "{\n"
 	       "    static const pl_cut cut = {$N_STATES, %d, %d, %s, $n_forces};\n"
-	       "    double acting[%d], work[PL_CUT_WORK(%d, %d)];\n"
+	       "    double acting[%s, work[PL_CUT_WORK(%d, %d)];\n"
 	       "    pl_two room[PL_CUT_ROOM(%d)];\n", size, channels, shortest(cut_of(e)->fastest),
-	    acting ? acting : 1, size, channels, size);
+	    acting ? format("%d]", acting) : "1] = {0.0}", size, channels, size);
 	emit_acting(e);
 	say(e, "    return pl_cut_advance(&cut, $n_flow[%s][0], acting, p, tau, length, y, next, work, room)\n"
 	       "        || pl_not_finite(next, $N_STATES);\n"
