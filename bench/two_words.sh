@@ -34,7 +34,8 @@ for case in tests/contacts/lasting_gap:0.01 tests/contacts/lasting_pair:0.013 mo
 	for accuracy in '' '--accuracy compensated'; do
 		# shellcheck disable=SC2086
 		"$build/plgen" $accuracy --step "${case#*:}" --prefix moving -o "$work/moving_pl.c" "$spec" 2>/dev/null
-		gcc -std=gnu11 -O2 -Iruntime -I"$work" "$work/steps.c" "$work/moving_pl.c" "$build/libplrt.a" -o "$work/steps"
+		gcc -std=gnu11 -O2 -Iruntime -I"$work" "$work/steps.c" "$work/moving_pl.c" "$build/libplrt.a" \
+			-o "$work/steps"
 		few=$(instructions 10000)
 		line="$line $((($(instructions 30000) - few) / 20000))"
 	done

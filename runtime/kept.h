@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* kept.h: x on over a piece of a step, for the runtime's own use: by crossings.c and guards.c, and with what rounding
- * takes from x kept by crossings_kept.c and guards_kept.c, which define REST_IS_KEPT and include them. There x is `size`
- * entries and then as many rests, so that x + rest is what is meant; breakpoints and guards see x, from which it differs
- * by rounding. */
+ * takes from x kept by crossings_kept.c and guards_kept.c, which define REST_IS_KEPT and include them.  There x is
+ * `size` entries and then as many rests, so that x + rest is what is meant; breakpoints and guards see x, from which it
+ * differs by rounding. */
 #ifndef PLRT_KEPT_H
 #define PLRT_KEPT_H
 
@@ -14,7 +14,7 @@
 
 enum { WORDS = 2 }; /* of an entry of x, of A */
 
-/* y = e^{A d} x.  Phi: of each matrix the increment e^{A d} - I in two words, n x n first ones and n x n second ones. */
+/* y = e^{A d} x.  Phi: of each matrix e^{A d} - I in two words, n x n first ones and then n x n second ones */
 static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
 {
     const real *gain = Phi + 2 * (ptrdiff_t)matrix * n * n, *second = gain + (ptrdiff_t)n * n;
@@ -44,9 +44,9 @@ static pl_two row_times(int n, const real *row, const real *x, real small)
     return two_sum(sum, rest + small);
 }
 
-/* The coefficients of x(s), and the second words of the first derivatives: where x begins on a breakpoint forces that
- * balance there would leave their rounding, in one and the same direction each time.  A: n x n first words, then as many
- * second ones */
+/* The coefficients of x(s), and the second words of the first derivatives: where x begins on a breakpoint, forces that
+ * balance there would leave their rounding, in one and the same direction each time.  A: n x n first words, then as
+ * many second ones */
 static void expand_piece(int n, int degree, const real *A, real dt, const real *x, real *coefficients, real *low)
 {
     int i;

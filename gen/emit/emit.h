@@ -678,9 +678,9 @@ void emit_segment_end(const struct emitter *e);                   /* of a step: 
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
 const char *search_of(const struct emitter *e);                    /* of the runtime: pl_switching, pl_guards */
 const char *search_by(const struct emitter *e);                    /* the functions of that: pl_switching_kept, ... */
-bool keeps_rest(const struct emitter *e);                         /* the state has two words: x is behind it its rests */
+bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
 int size_of_vector(const struct emitter *e);                      /* of x, with them */
-const char **twice(int count, const char *const *text);           /* one list behind itself: of first and second words */
+const char **twice(int count, const char *const *text);           /* a list behind itself: first and second words */
 void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */

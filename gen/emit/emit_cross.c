@@ -486,7 +486,8 @@ static void emit_reach(const struct emitter *e)
 /* ---- crossing after crossing ---- */
 
 /* x on over a part of the step, of h 1: to `end`, or by the same polynomial in two words */
-static void emit_moved(const struct emitter *e, const char *indent, const char *which, const char *part, const char *end)
+static void emit_moved(const struct emitter *e, const char *indent, const char *which, const char *part,
+		       const char *end)
 {
 	if (keeps_rest(e))
 		say(e, "%spl_switching_kept_move(&$o_switching, %s, %d, %s * $N_H, x, work);\n", indent, which,

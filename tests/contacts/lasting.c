@@ -49,7 +49,7 @@ static void cleared(int count, mpfr_t *x)
 		mpfr_clear(x[i]);
 }
 
-/* sum += factor x y / 2 */
+/* sum += factor x x / 2 */
 static void add_square(mpfr_t sum, const char *factor, mpfr_t x)
 {
 	mpfr_t f;
@@ -348,10 +348,10 @@ static void scene(const struct scene *c, unsigned long steps)
 		const struct errors one = run(c, false, single, steps), two = run(c, true, single, steps);
 		const double energy = unit * c->energy_off * (wander + 0.05), state = unit * c->state_off *
 										      (wander * share + 0.001);
-		note("%s, %s: energy off by %.2g, two words %.2g; state by %.2g, %.2g", c->name, real[single], one.energy,
-		     two.energy, one.state, two.state);
-		ok(two.energy <= energy, "%s, %s: %.2g of the energy after %lu steps, allowed %.2g", c->name, real[single],
-		   two.energy, steps, energy);
+		note("%s, %s: energy off by %.2g, two words %.2g; state by %.2g, %.2g", c->name, real[single],
+		     one.energy, two.energy, one.state, two.state);
+		ok(two.energy <= energy, "%s, %s: %.2g of the energy after %lu steps, allowed %.2g", c->name,
+		   real[single], two.energy, steps, energy);
 		if (c->state)
 			ok(two.state <= state, "%s, %s: the state off by %.2g, allowed %.2g", c->name, real[single],
 			   two.state, state);
