@@ -420,16 +420,6 @@ static void emit_region_questions(const struct emitter *e)
 		       "}\n");
 }
 
-void emit_state_of_x(const struct emitter *e)
-{
-	bool rest = keeps_rest(e);
-	say(e, "    for (i = 0; i < %s; i++)%s\n"
-	       "        s->y[%s] = x[i];\n", own_states(e), rest ? " {" : "", place_in_loop(e));
-	if (rest)
-		say(e, "        s->rest[%s] = x[%d + i];\n"
-		       "    }\n", place_in_loop(e), e->step->layout.size);
-}
-
 /* By the search, from x; `i` is declared */
 void emit_search(const struct emitter *e)
 {

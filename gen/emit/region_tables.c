@@ -59,7 +59,7 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 }
 
 double *whole_of(const struct region_piece *piece)  { return piece->whole; }
-static double *gain_of(const struct region_piece *piece)   { return piece->whole_gain; }
+static double *gain_over_h(const struct region_piece *piece)   { return piece->whole_gain; }
 double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
@@ -70,7 +70,7 @@ static double *bend_of(const struct region_piece *piece)   { return piece->bend;
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text)
 {
 	int size = e->step->layout.size;
-	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, gain_of)
+	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, gain_over_h)
 			     : tables_of_regions(e, p, text, size, whole_of);
 }
 
@@ -279,6 +279,16 @@ bool keeps_rest(const struct emitter *e)
 int size_of_vector(const struct emitter *e)
 {
 	return e->step->layout.size * (keeps_rest(e) ? 2 : 1);
+}
+
+void emit_state_of_x(const struct emitter *e)
+{
+	bool rest = keeps_rest(e);
+	say(e, "    for (i = 0; i < %s; i++)%s\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), rest ? " {" : "", place_in_loop(e));
+	if (rest)
+		say(e, "        s->rest[%s] = x[%d + i];\n"
+		       "    }\n", place_in_loop(e), e->step->layout.size);
 }
 
 const char **twice(int count, const char *const *text)

@@ -462,7 +462,10 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 #define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
 #define LARGE_FLOAT (0x1p60)
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
-double *whole_gain_of(const struct step *step, int branch);  /* e^{A h} - I in two words, 2 size x size; or NULL */
+/* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
+ * state has one word. The same over h, of a branch */
+double *gain_of(const struct step *step, const struct table *table, int halvings);
+double *whole_gain_of(const struct step *step, int branch);
 void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
 /* the same in two words: 2 x size */
 void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
