@@ -168,6 +168,32 @@ static void check_inputs(const char *name, bool ramps, double allowed)
     free(state);
 }
 
+/* ---- thousands of crossings, beside those of the series; then too many in some steps ---- */
+
+static void check_ringing(const char *name, int steps, int status)
+{
+    const struct variant *one = variant_called("ringing_0"), *other = variant_called(name);
+    double y[2], z[2], worst = 0;
+    int apart = 0;
+    void *series = calloc(1, one->model->size), *state = calloc(1, other->model->size);
+    one->model->init(series);
+    other->model->init(state);
+    for (int k = 0; k < steps; k++) {
+        one->model->step(series, NULL);
+        other->model->step(state, NULL);
+        one->model->get(series, y);
+        other->model->get(state, z);
+        worst = worse(worst, fmax(fabs(y[0] - z[0]), fabs(y[1] - z[1])));
+        apart += one->crossed(series) != other->crossed(state);
+    }
+    is_close(worst, 0, 1e-8, "%s: %d steps", name, steps);
+    ok(apart == 0 && one->crossed(series) > 7000 && one->model->status(series) == status &&
+           other->model->status(state) == status,
+       "%s: %lu crossings", name, (unsigned long)one->crossed(series));
+    free(series);
+    free(state);
+}
+
 /* ---- float ---- */
 
 static void check_float(const pl_modelf *m, const char *name, uint64_t (*crossed)(const void *s))
@@ -232,5 +258,9 @@ int main(void)
     check_inputs("ramped_radau_0", true, 1e-11);
     check_inputs("held_auto_0", false, 1e-11);
     check_inputs("ramped_auto_0", true, 1e-11);
+    check_ringing("ringing_radau_0", 700, 0);
+    check_ringing("ringing_auto_0", 700, 0);
+    check_ringing("ringing_radau_0", 1500, PL_TOO_MANY_EVENTS);
+    check_ringing("ringing_auto_0", 1500, PL_TOO_MANY_EVENTS);
     return tap_end();
 }
