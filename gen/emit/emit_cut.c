@@ -8,51 +8,14 @@ static const struct cut *cut_of(const struct emitter *e)
 	return e->step->cut;
 }
 
-bool is_cut(const struct emitter *e)
-{
-	return cut_of(e) != NULL;
-}
-
 static bool changes(const struct emitter *e)
 {
 	return e->system->segments > 1;
 }
 
-/* The same emitter, whose series is this one */
-struct view {
-	struct step step;
-	struct emitter e;
-};
-
-static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
-{
-	struct view *view = NEW(struct view);
-	view->step = *e->step;
-	view->step.expansion = x;
-	view->e = *e;
-	view->e.step = &view->step;
-	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
-	return &view->e;
-}
-
-static const struct emitter *looking(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->look);
-}
-
-static const struct emitter *ending(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->ends);
-}
-
 static int expressions(const struct emitter *e)
 {
 	return cut_of(e)->look->expressions;
-}
-
-static const struct emitter *forcing(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->forces);
 }
 
 /* ---- the header ---- */
@@ -398,11 +361,6 @@ static void emit_between(const struct emitter *e)
 }
 
 /* ---- the step ---- */
-
-const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left)
-{
-	return frozen_call(forcing(e), "within", "s", tau, "p->", y, left);
-}
 
 static void emit_whole(const struct emitter *e)
 {
