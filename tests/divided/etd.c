@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Exponential time differencing from crossing to crossing, beside the equations by hand, located in long double: the
- * order that is stated, by a line through errors at a geometric series of steps, and every crossing. TABLE=1: figures. */
+ * order that is stated, by a line through errors at a geometric series of steps, and every crossing. TABLE=1:
+ * figures. */
 #include "etd_variants.h"
 #include "followed.h"
 #include "tap.h"
