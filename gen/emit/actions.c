@@ -85,7 +85,7 @@ static void emit_prediction(const struct emitter *e, const struct action *a)
 static void emit_evaluation(const struct emitter *e, const struct action *a)
 {
 	const char *state = a->from == STAGE_STATE ? "s->y" : vector_name(a->from);
-	if (is_cut(e)) {
+	if (e->step->cut) {
 		mpq_srcptr node = e->step->program->node[a->node];
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
 		say(e, "    %s\n", cut_evaluation(e, tau, state, format("left%d", a->target)));
@@ -258,7 +258,7 @@ static void emit_operands_of_step(const struct emitter *e)
 	if (!loops)
 		emit_locals(e, states_read(e));
 	emit_load_states(e, acting_loads(e), false);
-	if (!is_cut(e))
+	if (!e->step->cut)
 		emit_samples(e);
 	if (many_operators(e))
 		say(e, "    const int which = %s;\n", selection_call(e));

@@ -175,15 +175,15 @@ void banner_cut(const struct emitter *e)
 {
 	const struct cut *cut = e->step->cut;
 	banner_leftover(e);
-	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing. Where an expression passes a "
-			   "breakpoint is the first root of the cubic through its values and slopes at both ends of a "
-			   "step, found before it is stepped over; there the formulas change, and the step goes on.");
+	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing. Where an expression passes "
+			   "a breakpoint is the first root of the cubic through its values and slopes at both ends of "
+			   "a step, found before it is stepped over; there the formulas change, and the step goes on.");
 	banner_breakpoints(e, cut->look);
 	banner_series_regions(e, cut->look);
-	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with tables that the "
-				  "target makes: some %d KB of stack.", cut->kilobytes));
-	banner_sentence(e, format("Costs below are of a step without a crossing; the look for one takes %d multiplications "
-				  "and %d additions more.", cut->multiplications, cut->additions));
+	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with e^{A tau} of "
+				  "each part, made by the target: some %d KB of stack.", cut->kilobytes));
+	banner_sentence(e, format("Costs below are of a step without a crossing; the look for one takes %d "
+				  "multiplications and %d additions more.", cut->multiplications, cut->additions));
 }
 
 static void tell_no_phi(const struct emitter *e)

@@ -354,14 +354,20 @@ const char *frozen_call(const struct emitter *e, const char *function, const cha
 			const char *from, const char *y, const char *result);
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
 
+/* ---- emit_look.c: the series that a step is looked at by, from crossing to crossing ---- */
+
+const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
+const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
+const struct emitter *forcing(const struct emitter *e);           /* what is left over */
+/* within $n_whole: what is left over at a stage */
+const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
+
 /* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
 
-bool is_cut(const struct emitter *e);
 void emit_cut_types(const struct emitter *e);                     /* of these nothing where it steps across */
 void emit_cut_members(const struct emitter *e);
 void emit_cut_declarations(const struct emitter *e);
 void emit_cut_place(const struct emitter *e);
-const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
 void emit_cut_step(const struct emitter *e);
 void emit_cut_at(const struct emitter *e);
 

@@ -8,51 +8,14 @@ static const struct cut *cut_of(const struct emitter *e)
 	return e->step->cut;
 }
 
-bool is_cut(const struct emitter *e)
-{
-	return cut_of(e) != NULL;
-}
-
 static bool changes(const struct emitter *e)
 {
 	return e->system->segments > 1;
 }
 
-/* The same emitter, whose series is this one */
-struct view {
-	struct step step;
-	struct emitter e;
-};
-
-static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
-{
-	struct view *view = NEW(struct view);
-	view->step = *e->step;
-	view->step.expansion = x;
-	view->e = *e;
-	view->e.step = &view->step;
-	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
-	return &view->e;
-}
-
-static const struct emitter *looking(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->look);
-}
-
-static const struct emitter *ending(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->ends);
-}
-
 static int expressions(const struct emitter *e)
 {
 	return cut_of(e)->look->expressions;
-}
-
-static const struct emitter *forcing(const struct emitter *e)
-{
-	return look_by(e, cut_of(e)->forces);
 }
 
 /* ---- the header ---- */
@@ -120,7 +83,7 @@ static void emit_part_type(const struct emitter *e)
 	       "%s"
 	       "    const int *interval;\n"
 	       "} $n_part;\n",
-	    e->system->inputs ? "    const double *u, *slope;  /* inputs at the start of the step, and their slopes */\n" : "",
+	    e->system->inputs ? "    const double *u, *slope;  /* inputs at the start of the step, their slopes */\n" : "",
 	    changes(e) ? "    int segment;          /* of time */\n" : "");
 }
 
@@ -241,8 +204,8 @@ static void emit_meets(const struct emitter *e)
 	       "    }\n"
 	       "    return 1;\n"
 	       "}\n", count, count, count, count);
-	say(e, "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.  c: as at its\n"
-	       " * start, then the cubic of each; d: as at its end */\n"
+	say(e, "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.\n"
+	       " * c: as at its start, then the cubic of each; d: as at its end */\n"
 	       "static double $n_meets(double c[4][%d], const double d[2][%d], const double terms[%d], double size,\n"
 	       "    const int interval[%d], int *splits, pl_crossing *crossing)\n"
 	       "{\n"
@@ -263,10 +226,10 @@ static void emit_onto(const struct emitter *e)
 {
 	const struct emitter *l = looking(e);
 	const struct expansion *x = cut_of(e)->look;
-	say(l, "\n/* From `at` of the step [h], onto the breakpoint of `crossing`, back by `size` or on by `left` at most;\n"
-	       " * returns by how much [h] */\n"
-	       "static double $n_onto(const $n_part *p, double at, double size, double left, const pl_crossing *crossing,\n"
-	       "    double y[$N_STATES])\n"
+	say(l, "\n/* From `at` of the step [h], onto the breakpoint of `crossing`, back by half of `size` or on by `left` at\n"
+	       " * most; returns by how much [h] */\n"
+	       "static double $n_onto(const $n_part *p, double at, double size, double left,\n"
+	       "    const pl_crossing *crossing, double y[$N_STATES])\n"
 	       "{\n"
 	       "    double c[%d][$c], terms[%d], moved = 0.0;\n"
 	       "    int i, again, place = crossing->breakpoint;\n"
@@ -281,7 +244,8 @@ static void emit_onto(const struct emitter *e)
 	       "            break;\n"
 	       "        theta = -off / c[1][k];\n"
 	       "        theta -= c[2][k] / c[1][k] * theta * theta;\n"
-	       "        if (!(pl_magnitude(theta) <= 0.5 * size) || moved + theta < -0.5 * size || moved + theta > left)\n"
+	       "        if (!(pl_magnitude(theta) <= 0.5 * size) || moved + theta < -0.5 * size ||\n"
+	       "            moved + theta > left)\n"
 	       "            break;\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            y[i] += theta * (c[1][i] + theta * c[2][i]);\n"
@@ -333,9 +297,8 @@ static void emit_between_limit(const struct emitter *e)
 static void emit_between(const struct emitter *e)
 {
 	int count = expressions(e);
-	say(e, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time in h; "
-	       "NULL:\n"
-	       " * not known.  0, or what went wrong, and y as far as it went */\n"
+	say(e, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time in\n"
+	       " * h; NULL: not known.  0, or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %sconst pl_crossing *first, double end, double y[$N_STATES],\n"
 	       "    $n_contact *contact)\n"
 	       "{\n"
@@ -366,7 +329,8 @@ static void emit_between(const struct emitter *e)
 	       "                continue;\n"
 	       "            }\n");
 	emit_end_call(e, "            ", "part.", "limit * $N_H", "next", "d, spare");
-	say(e, "            meets = $n_meets(c, (const double (*)[%d])d, terms, size, contact->interval, &splits, &found);\n"
+	say(e, "            meets = $n_meets(c, (const double (*)[%d])d, terms, size, contact->interval, &splits,\n"
+	       "                &found);\n"
 	       "            if (splits < 0)\n"
 	       "                return PL_TOO_MANY_EVENTS;\n"
 	       "        }\n"
@@ -398,11 +362,6 @@ static void emit_between(const struct emitter *e)
 }
 
 /* ---- the step ---- */
-
-const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left)
-{
-	return frozen_call(forcing(e), "within", "s", tau, "p->", y, left);
-}
 
 static void emit_whole(const struct emitter *e)
 {
@@ -462,8 +421,8 @@ static void emit_keep_look(const struct emitter *e)
 		       "        s->ended = 1;\n", expressions(e));
 }
 
-/* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where one
- * is passed. */
+/* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where
+ * one is passed. */
 static void emit_step_of_parts(const struct emitter *e)
 {
 	int count = expressions(e);

@@ -210,9 +210,8 @@ static void emit_part_unread(const struct emitter *e)
 void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each "
-	       "equation\n"
-	       " * that has some */\n"
+	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each\n"
+	       " * equation that has some */\n"
 	       "static void $n_within(const $n *s, double tau, %s,\n"
 	       "    double left[%d])\n"
 	       "{\n", part_parameters(e), x->columns);
@@ -227,8 +226,8 @@ void emit_frozen_function(const struct emitter *e)
 void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the terms of\n"
-	       " * the value */\n"
+	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the terms\n"
+	       " * of the value */\n"
 	       "static void $n_end(const $n *s, double tau, %s,\n"
 	       "    double e[][%d], double terms[%d])\n"
 	       "{\n", part_parameters(e), x->columns, x->columns);
@@ -254,8 +253,8 @@ const char *frozen_call(const struct emitter *e, const char *function, const cha
 	const char *u = !input ? "" : format("%su, ", from);
 	const char *rate = !slope && !(input && e->ramps) ? "" : format("%sslope, ", from);
 	return format("%s_%s(%s, %s, %s%s%s%s%sinterval, %s, %s);", e->name, function, s, tau,
-		      has_choices(e) ? format("%swhen, ", from) : "", x->slots ? format("%ssegment, ", from) : "", u, rate,
-		      from, y, result);
+		      has_choices(e) ? format("%swhen, ", from) : "",
+		      x->slots ? format("%ssegment, ", from) : "", u, rate, from, y, result);
 }
 
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,

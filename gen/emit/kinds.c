@@ -303,7 +303,7 @@ static bool flows_whole(const struct step *step)
 
 static const char *no_values_between(const struct step *step)
 {
-	return step->cut ? NULL : step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
+	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
 }
 
 static void emit_actions_step(const struct emitter *e)

@@ -213,5 +213,5 @@ const char *vector_name(int stage)
 
 bool flows_apart(const struct emitter *e)
 {
-	return e->system->segments > 1 && !is_cut(e);
+	return e->system->segments > 1 && !e->step->cut;
 }

@@ -428,8 +428,8 @@ static void print_look(FILE *to, const struct step *step)
 {
 	struct step view = *step;
 	view.expansion = step->cut->look;
-	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a breakpoint "
-		    "in parts, e^{A tau} of %d numbers made for each:\n", step->cut->layout.size);
+	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a "
+		    "breakpoint in parts, by e^{A tau} of %d numbers:\n", step->cut->layout.size);
 	print_series(to, &view);
 }
 

@@ -8,7 +8,7 @@ static const char *objection_of_kind(const struct step *step)
 		[KIND_REGIONS] = "where an instance crosses a breakpoint is a matter of its own",
 		[KIND_PARTS] = "where an instance crosses a breakpoint is a matter of its own",
 		[KIND_LEFTOVER] = "what is left over is not linear in the state",
-		[KIND_CUT] = "where an instance crosses a breakpoint is a matter of its own",
+		[KIND_CUT] = "what is left over is not linear in the state",
 		[KIND_EXPANDED] = "what is left over is not linear in the state",
 		[KIND_COLLOCATED] = "what is left over is not linear in the state",
 		[KIND_NORMAL] = "each instance would keep the forces of its last steps"

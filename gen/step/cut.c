@@ -25,8 +25,8 @@ static double *slopes_in(const struct step *step, const struct layout *layout, i
 	return A;
 }
 
-/* Above the size of every pole of |A|, which has no entry below 0: max (|A| v)_i / v_i for any v above 0; a few products
- * bring v near to that which makes it least. */
+/* Above the size of every pole of |A|, which has no entry below 0: max (|A| v)_i / v_i for any v above 0; a few
+ * products bring v near to that which makes it least. */
 static double fastest_of(int size, const double *A)
 {
 	enum { PRODUCTS = 60 };

@@ -100,8 +100,8 @@ bool *loads_of_regions(const struct step *step)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_CUT || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED ||
-	       step->kind == KIND_NORMAL;
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_CUT || step->kind == KIND_EXPANDED ||
+	       step->kind == KIND_COLLOCATED || step->kind == KIND_NORMAL;
 }
 
 void need_closed_form(const struct step *step)

@@ -1098,7 +1098,8 @@ struct expansion {
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	struct contacts *contacts;  /* NULL: there are none */
-	int *force;                 /* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	/* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	int *force;
 	bool alone;                 /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Exponential time differencing from crossing to crossing, beside the equations by hand, located in long double: the
- * order that is stated, by a line through errors at a geometric series of steps, and every crossing. TABLE=1: figures. */
+ * order that is stated, by a line through errors at a geometric series of steps, and every crossing. TABLE=1:
+ * figures. */
 #include "etd_variants.h"
 #include "followed.h"
 #include "tap.h"
@@ -8,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { STEPS = 5 };
 
@@ -53,14 +55,53 @@ static void check_scheme(const struct divided_system *s, const struct truth *tru
                error[STEPS - 1], time, truth->count);
 }
 
+/* How far an expression is from its nearest breakpoint, but for its sign */
+static double off_breakpoints(const struct divided_system *s, double t, const double *state)
+{
+    real y[HAND_MOST] = { 0 }, e[MOST_EXPRESSIONS];
+    double least = 1;
+    for (int i = 0; i < s->states; i++)
+        y[i] = state[i];
+    s->e(t, y, e);
+    for (int i = 0; i < s->expressions; i++)
+        for (int k = 0; k < s->breaks[i]; k++)
+            least = fmin(least, (double)fabsl(fabsl(e[i]) - fabsl(s->at[i][k])));
+    return least;
+}
+
+/* Where a step first crosses a breakpoint, as NAME_at has it, an expression is on one */
+static void check_places(const struct divided_system *s, const char *name)
+{
+    const struct variant *v = variant_in(etd_table, name);
+    const pl_model *m = v->model;
+    pl_crossing crossing[MOST_EVENTS];
+    double y[MOST_STATES], worst = 0;
+    void *state = calloc(1, m->size), *before = calloc(1, m->size);
+    m->init(state);
+    for (int k = 0; k < lround(SECONDS / m->h); k++) {
+        memcpy(before, state, m->size);
+        m->step(state, NULL);
+        if (v->crossings(state, crossing) == 0)
+            continue;
+        m->at(before, NULL, crossing[0].time, y);
+        worst = worse(worst, off_breakpoints(s, k * m->h + crossing[0].time, y));
+    }
+    is_close(worst, 0, 1e-12, "%s: breakpoints at crossings", name);
+    free(state);
+    free(before);
+}
+
 int main(void)
 {
+    char name[64];
     for (int i = 0; i < divided_count; i++) {
         const struct divided_system *s = &divided_systems[i];
         const struct truth truth = truth_of(s);
         check_scheme(s, &truth, "etd1", 1);
         check_scheme(s, &truth, "etdrk2", 2);
         check_scheme(s, &truth, "etdrk4", 4);
+        (void)snprintf(name, sizeof name, "%s_etdrk4_0", s->name);
+        check_places(s, name);
     }
     return tap_end();
 }
