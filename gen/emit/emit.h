@@ -738,7 +738,8 @@ void emit_blocks_tuning(const struct emitter *e);                 /* the equatio
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 const char *two_words(struct coefficient number);
 void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
-void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed);
+/* Of a function that fills A: locals i, j and row[], of the highest derivatives; what no param changes is there */
+void emit_slopes_begin(const struct emitter *e);
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 

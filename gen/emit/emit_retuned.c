@@ -208,28 +208,15 @@ static int most_products(const struct emitter *e)
 
 static void emit_own_slopes(const struct emitter *e)
 {
-	const struct linear *system = e->system;
-	struct fixed_slope *list;
-	int size = e->step->layout.size, fixed = fixed_slopes(e->step, &list);
+	int size = e->step->layout.size;
 	say(e, "\n/* x' = A x of one system, from its rows of highest derivatives */\n"
 	       "static void $n_own_slopes(pl_two value[][%d], pl_two A[%d][%d])\n"
 	       "{\n", size, size, size);
-	emit_fixed_slopes(e, fixed, list);
-	say(e, "    static const int row[%d] = {", system->n);
-	for (int i = 0; i < system->n; i++)
-		say(e, "%s%d", i ? ", " : "", system->velocity[i] >= 0 ? system->velocity[i] : i);
-	say(e, "};  /* of the highest derivatives */\n"
-	       "    int i, j;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            A[i][j].hi = A[i][j].lo = 0.0;\n", size, size);
-	if (fixed)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        A[fixed[i].row][fixed[i].column] = fixed[i].value;\n", fixed);
+	emit_slopes_begin(e);
 	say(e, "    for (i = 0; i < %d; i++)\n"
 	       "        for (j = 0; j < %d; j++)\n"
 	       "            A[row[i]][j] = value[i][j];\n"
-	       "}\n", system->n, size);
+	       "}\n", e->system->n, size);
 }
 
 static void emit_take(const struct emitter *e)

@@ -283,7 +283,7 @@ static void emit_tuned_frequencies(const struct emitter *e)
 	}
 }
 
-void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed)
+static void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed)
 {
 	if (count == 0)
 		return;
@@ -294,6 +294,27 @@ void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_sl
 	for (int k = 0; k < count; k++)
 		say(e, "%s{%d, %d, %s}", k ? ", " : "", fixed[k].row, fixed[k].column, two_words(fixed[k].value));
 	say(e, "};\n");
+}
+
+void emit_slopes_begin(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	struct fixed_slope *list;
+	int size = e->step->layout.size, fixed = fixed_slopes(e->step, &list);
+	emit_fixed_slopes(e, fixed, list);
+	say(e, "    static const int row[%d] = {", system->n);
+	for (int i = 0; i < system->n; i++)
+		say(e, "%s%d", i ? ", " : "", system->velocity[i] >= 0 ? system->velocity[i] : i);
+	say(e, "};  /* of the highest derivatives */\n"
+	       "    int i, j;\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        for (j = 0; j < %d; j++) {\n"
+	       "            A[i][j].hi = 0.0;\n"
+	       "            A[i][j].lo = 0.0;\n"
+	       "        }\n", size, size);
+	if (fixed)
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        A[fixed[i].row][fixed[i].column] = fixed[i].value;\n", fixed);
 }
 
 /* Rows of A that are rows of the solved equations, whose load states are those of a segment of time */
@@ -317,25 +338,13 @@ static void emit_segment_rows(const struct emitter *e)
 static void emit_slopes(const struct emitter *e)
 {
 	const struct linear *system = e->system;
-	struct fixed_slope *list;
-	int size = e->step->layout.size, fixed = fixed_slopes(e->step, &list), width = workspace_of(e->step).width;
+	int size = e->step->layout.size, width = workspace_of(e->step).width;
 	bool segments = system->segments > 1;
 	say(e, "\n/* x' = A x%s */\n"
 	       "static void $n_slopes(pl_two value[%d][%d], %spl_two A[%d][%d])\n"
 	       "{\n", segments ? ", in a segment of time" : "", e->model->tuning->rows, width,
 	    segments ? "int segment, " : "", size, size);
-	emit_fixed_slopes(e, fixed, list);
-	say(e, "    static const int row[%d] = {", system->n);
-	for (int i = 0; i < system->n; i++)
-		say(e, "%s%d", i ? ", " : "", system->velocity[i] >= 0 ? system->velocity[i] : i);
-	say(e, "};  /* of the highest derivatives */\n"
-	       "    int i, j;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            A[i][j].hi = A[i][j].lo = 0.0;\n", size, size);
-	if (fixed)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        A[fixed[i].row][fixed[i].column] = fixed[i].value;\n", fixed);
+	emit_slopes_begin(e);
 	emit_tuned_frequencies(e);
 	if (segments)
 		emit_segment_rows(e);
@@ -533,7 +542,7 @@ static void emit_advance(const struct emitter *e)
 	say(e, "    double more[%s];\n"
 	       "    int i, j;\n"
 	       "    $n_slopes(value, %sA);\n"
-	       "    pl_increment(%d, %s, A[0], tau, 1, D[0], work);\n", rows, segments ? "segment, " : "", size, rows);
+	       "    (void)pl_increment(%d, %s, A[0], tau, 1, D[0], work);\n", rows, segments ? "segment, " : "", size, rows);
 	say(e, "    for (i = 0; i < %s; i++) {\n"
 	       "        more[i] = 0.0;\n"
 	       "        for (j = 0; j < %d; j++)\n"
@@ -571,7 +580,7 @@ static void emit_tuned_pass(const struct emitter *e)
 	if (changes)
 		say(e, "    int segment = s->segment;\n");
 	emit_series_vector(e);
-	say(e, "    pl_equations_at(&$n_equations, s->coeffs.params, value[0], work);\n");
+	say(e, "    (void)pl_equations_at(&$n_equations, s->coeffs.params, value[0], work);\n");
 	if (changes)
 		emit_pass_changes(e, changes);
 	say(e, "    $n_advance(value, %s, x);\n"

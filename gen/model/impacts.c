@@ -22,6 +22,10 @@ static bool is_highest(const struct building *b, const struct basis *basis)
 static void check_linear(const struct building *b, const struct node *node, const struct form *form, const char *what)
 {
 	for (int i = 0; i < form->terms; i++) {
+		const struct node *tuned = form->term[i].basis.kind == BASIS_ATOM ? first_tuned(node) : NULL;
+		if (tuned)
+			error(tuned->at, "beside a series it may stand in forces, loads and the force of friction",
+			      "%s takes no tunable param beside what is left over: '%s'", what, tuned->symbol->name);
 		if (form->term[i].basis.kind == BASIS_ATOM)
 			error(node->start, NULL, "%s is linear in states, loads and inputs, and '%s' is not", what,
 			      text_between(node->start, node->end));

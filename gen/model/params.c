@@ -41,8 +41,8 @@ static void read_by(struct reads *all, const struct model *model, int count, con
 
 static void warn_of_unread(const struct model *model)
 {
-	if (model->switching && rubs(model->switching))
-		return;         /* rows of regions may read them, too */
+	if ((model->switching && rubs(model->switching)) || model->drags > 0)
+		return;         /* rows of regions, and what holds beside a series, may read them, too */
 	const struct spec *spec = model->spec;
 	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
 	for (int k = 0; k < model->operators; k++)

@@ -612,14 +612,6 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
-	if (model->impacts > 0 && model->scheme != SCHEME_EXACT) {
-		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts of scheme taylor");
-		return false;
-	}
-	if (model->drags > 0) {
-		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside friction of scheme taylor");
-		return false;
-	}
 	if (model->keeps_params) {
 		list_held(model);
 		return true;

@@ -39,6 +39,7 @@ for spec in "$@"; do
 	# shellcheck disable=SC2086
 	"$plgen" --real "$real" --prefix retuned "$spec" -o retuned.c >log 2>&1 &&
 		"$plgen" --real "$real" --prefix plain $defines plain.spec -o plain.c >>log 2>&1 &&
+		{ ! grep -q ' slopes\[' retuned.h || echo '#define HAS_MATRICES' >>refused.h; } &&
 		${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize=null,alignment,object-size,pointer-overflow \
 			-fno-sanitize-recover -I. -I"$source/runtime" \
 			-I"$source/tests/emitted" $float -o regions "$source/tests/tunable/regions.c" retuned.c \
