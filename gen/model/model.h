@@ -659,6 +659,8 @@ bool has_slider(const struct building *b, const struct form *form, int coord);
 void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
 /* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
 void slide_sliders(struct building *b, const struct switching *s, int region);
+/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
+bool is_released(const struct region *region, int expression, bool upward);
 void hold_sliders(struct holding *h, const struct switching *s);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
 /* where it slides, of the slider that is written there; NULL: it sticks */
