@@ -52,8 +52,8 @@ errors() {
 		$(cat rows)
 		};
 	END
-	${CC:-cc} -O0 -w -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm >>log 2>&1 ||
-		return 1
+	${CC:-cc} -O0 -w -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
+		>>log 2>&1 || return 1
 	./errors
 }
 
