@@ -429,6 +429,9 @@ bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	known = known && stream_change(t->at->flow, NULL, off, t->x);
 	if (!known)
 		return t->undecided ? false : unknown(t, "when an impact is");
+	/* first what an impact sets in motion leaves where it stuck, then what still sticks is held */
+	if (!through_follow(t))
+		return false;
 	through_hold(t);
-	return through_follow(t) && through_settle(t, NULL, off) && come_to_rest(t, struck, off);
+	return through_settle(t, NULL, off) && come_to_rest(t, struck, off);
 }
