@@ -242,9 +242,20 @@ static real terms_behind(const pl_events *m, const pl_instant *at, const pl_stri
     return unit * (speed.terms + m->h * end * pull.terms);
 }
 
-/* Where a column first rises beyond b, or with sign -1 falls below it, before *first; behind: where it has just left it
- * the sizes of what its first two derivatives are summed from; else below 0 */
-static int look(const column *e, real b, int sign, real behind, real end, real *first, int *splits, real *work)
+/* What has just been let go at this breakpoint may be driven back by what the time of that is off: no sticking if it
+ * turns by itself within a part of h */
+static void pass_brief(beyond *f, real end)
+{
+    if (f->coefficient[0] <= f->noise && f->coefficient[1] > 0 && f->coefficient[2] < 0 &&
+        f->coefficient[1] * end <= -NEAR * f->coefficient[2]) {
+        f->coefficient[1] = 0;
+    }
+}
+
+/* Where a column first rises beyond b, or with sign -1 falls below it, before *first; last: that was the last event;
+ * behind: where it has just left it the sizes of what its first two derivatives are summed from; else below 0 */
+static int look(const column *e, real b, int sign, int last, real behind, real end, real *first, int *splits,
+                real *work)
 {
     beyond f;
     real s;
@@ -254,6 +265,9 @@ static int look(const column *e, real b, int sign, real behind, real end, real *
     look_beyond(&f, work, (real)sign, b, e->terms);
     if (!(f.reach - f.reach == 0)) { /* not finite: there is no step */
         return 0;
+    }
+    if (last) {
+        pass_brief(&f, end);
     }
     if (behind >= 0 && f.coefficient[1] < 0 &&
         magnitude(f.coefficient[0]) <= noise_of(e->terms + magnitude(b) + behind)) {
@@ -297,11 +311,11 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
         for (up = 0; up < 2; up++) {
             const int k = at->interval[i] - !up;
             const int watch = hold < 0 ? -1 : up ? m->hold[hold].up : m->hold[hold].down;
-            int strike;
+            int strike, last;
             real behind;
             if (watch >= 0) {
                 const column w = watched(m, at, watch);
-                if (look(&w, 0, 1, -1, end, &first, splits, at->work)) {
+                if (look(&w, 0, 1, 0, -1, end, &first, splits, at->work)) {
                     any = 1;
                     set_freed(m, at, hold, up);
                 }
@@ -311,7 +325,8 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
             }
             strike = strike_at(m, i, k, up);
             behind = strike >= 0 && m->strike[strike].hold >= 0 ? terms_behind(m, at, &m->strike[strike], end) : -1;
-            if (look(&e, b[k], up ? 1 : -1, behind, end, &first, splits, at->work)) {
+            last = at->last->expression == i && at->last->breakpoint == k;
+            if (look(&e, b[k], up ? 1 : -1, last, behind, end, &first, splits, at->work)) {
                 any = 1;
                 set_event(m, at, i, k, up);
             }

@@ -528,6 +528,27 @@ static void level(const pl_guards *m, int region, const pl_guard *g, const real 
     }
 }
 
+/* Whether a slider without mass has been turned round where this begins: the guard that lets it go, no end of its
+ * interval, is passed already, also if it comes back. */
+static int is_turned(const pl_guards *m, int region, const pl_guard *g, const beyond *f)
+{
+    const real *gate = m->gate + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
+    real apart = 0;
+    walk w;
+    int i;
+    if (g->impact >= 0 || !(f->coefficient[0] > f->noise) || !(f->coefficient[1] < 0)) {
+        return 0;
+    }
+    w = switch_of(m, region, g->expression);
+    if (w.interval > 0 && w.interval < w.breaks && !(w.at[w.interval] > w.at[w.interval - 1])) {
+        return 0; /* it sticks: what lets it go is decided with others that rest */
+    }
+    for (i = 0; i < m->size; i++) {
+        apart = larger(apart, magnitude(gate[i] - (g->upward ? row[i] : -row[i])));
+    }
+    return apart > 0;
+}
+
 /* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
 static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
 {
@@ -549,7 +570,7 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         } else if (m->guard[k].impact < 0) {
             level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
         }
-        s = first_root(&f, first.s, splits);
+        s = is_turned(m, region, &m->guard[k], &f) ? 0 : first_root(&f, first.s, splits);
         if (s < 0) {
             continue;
         }

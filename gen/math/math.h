@@ -236,6 +236,13 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
 void series_room_free(int n, struct series_room *room);
 
+/* ---- positive.c: where a sum of waves of time stays at 0 or above ---- */
+
+struct summand { mpq_srcptr factor, a, w, p; int power; bool sine; };   /* factor t^power e^{a t} cos or sin(w t + p) */
+/* From `from`, at least 0, to `to`; NULL: for good. False: it does not, or that is not seen. What is below 0 by less
+ * than 2^-80 of the sum of its factors counts as 0. */
+bool sum_stays_positive(int summands, const struct summand *summand, mpq_srcptr from, mpq_srcptr to);
+
 /* ---- rise.c: where an enclosed polynomial first rises through 0 ---- */
 
 enum rise { RISE_NONE, RISE_AT, RISE_UNKNOWN };

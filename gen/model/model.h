@@ -327,6 +327,7 @@ struct friction {                   /* in one segment of time */
 	mpq_t at;                   /* that breakpoint */
 	mpq_t factor;               /* v = factor (expression - at) */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
+	bool low;                   /* S may fall below F, and counts as F there */
 };
 struct bearing { const struct atom *atom; const struct form *borne; };
 /* Of FN_SLIDE: friction of what has no mass, by what it bears; it slides beyond a breakpoint of q - F or of -q - F */
@@ -624,7 +625,14 @@ bool has_events(const struct switching *s);                 /* each region has i
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
-bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen easily */
+/* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone moves */
+bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
+bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
+bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen */
+/* that it is above 0 at some time between; `node`: where it stands */
+void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to);
+/* What is held exceeds the force of what slides by this, where the velocity is 0 */
+struct form *less_in_velocity(const struct form *rest, const struct form *force, const struct form *velocity);
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
@@ -651,6 +659,8 @@ bool has_slider(const struct building *b, const struct form *form, int coord);
 void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
 /* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
 void slide_sliders(struct building *b, const struct switching *s, int region);
+/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
+bool is_released(const struct region *region, int expression, bool upward);
 void hold_sliders(struct holding *h, const struct switching *s);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
 /* where it slides, of the slider that is written there; NULL: it sticks */

@@ -186,30 +186,73 @@ static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
 		add_break(l, e, at);
 }
 
-/* Below 0 no force is left; what never is, from t = 0 on, needs no breakpoint there */
-static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
+/* From the start of this segment of time on; t = 0 of the first */
+static mpq_srcptr segment_start(const struct looking *l, mpq_srcptr zero)
 {
-	mpq_t least, size;
-	mpq_inits(least, size, NULL);
-	bool bounded = true;
-	for (int i = 0; i < force->terms; i++) {
-		const struct basis *basis = &force->term[i].basis;
-		mpq_abs(size, force->term[i].factor);
+	return l->segment > 0 ? l->b->model->system.change[l->segment - 1] : zero;
+}
+
+static mpq_srcptr segment_end(const struct looking *l)
+{
+	const struct linear *system = &l->b->model->system;
+	return l->segment < system->segments - 1 ? system->change[l->segment] : NULL;
+}
+
+/* As far as its size tells, which params may change; *least: by what it was decided; *bounded: that is known */
+static bool is_positive_by_size(const struct form *form, mpq_ptr least, bool *bounded)
+{
+	mpq_t size;
+	mpq_init(size);
+	*bounded = true;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		mpq_abs(size, form->term[i].factor);
 		if (basis->kind == BASIS_ONE)
-			mpq_add(least, least, force->term[i].factor);
+			mpq_add(least, least, form->term[i].factor);
 		else
 			mpq_sub(least, least, size);
-		bounded = bounded && (basis->kind == BASIS_ONE ||
-				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) <= 0));
+		*bounded = *bounded && (basis->kind == BASIS_ONE || (basis->kind == BASIS_WAVE && !basis->power &&
+								     mpq_sgn(basis->wave->a) <= 0));
 	}
-	bool positive = bounded && mpq_sgn(least) >= 0;
+	mpq_clear(size);
+	return *bounded && mpq_sgn(least) >= 0;
+}
+
+/* Never below 0 in this segment of time: it needs no breakpoint there */
+static bool is_positive_here(struct looking *l, const struct form *form)
+{
+	mpq_t least, zero;
+	bool bounded;
+	mpq_inits(least, zero, NULL);
+	bool positive = is_positive_by_size(form, least, &bounded);
 	if (bounded)
 		note_sign(l->b, l->s, least, positive);
-	mpq_clears(least, size, NULL);
-	if (positive || sign_here(l, node, force, form_number(0)) >= 0)
+	if (!positive && !l->b->factor)
+		positive = stays_above_zero(form, segment_start(l, zero), segment_end(l));
+	mpq_clears(least, zero, NULL);
+	return positive;
+}
+
+/* Below 0 no force is left */
+static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
+{
+	if (is_positive_here(l, force) || sign_here(l, node, force, form_number(0)) >= 0)
 		return force;
 	*negative = *negative || !l->grown;
 	return form_number(0);
+}
+
+/* What it can hold while it sticks: no less than its force. It is that of the regions next to where it sticks. */
+static struct form *rest_here(struct looking *l, struct friction *f, struct form *const *x, struct form *force)
+{
+	int side = l->interval[f->expression] - stick_of(l->s, f);
+	if (l->grown || (side != 1 && side != -1))
+		return x[2];
+	struct form *more = less_in_velocity(x[2], force, x[0]);
+	if (is_positive_here(l, more) || sign_here(l, f->atom->node, more, form_number(0)) >= 0)
+		return x[2];
+	f->low = f->low || !l->grown;
+	return force;
 }
 
 static int add_friction(struct looking *l, const struct atom *a)
@@ -225,20 +268,34 @@ static int add_friction(struct looking *l, const struct atom *a)
 	return s->frictions - 1;
 }
 
+/* As written, in this segment of time */
+static void check_forces_here(const struct looking *l, const struct atom *a)
+{
+	mpq_t zero;
+	if (l->b->factor)
+		return;
+	mpq_init(zero);
+	for (int i = 1; i < a->operands; i++)
+		check_force(a->node->child[i], a->operand[i], segment_start(l, zero), segment_end(l));
+	mpq_clear(zero);
+}
+
 /* It stands for itself: what it is depends on the whole region */
 static struct form *friction_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	int index = add_friction(l, a);
 	struct friction *f = &l->s->friction[index];
 	f->expression = expression_here(l, a->node, x[0], f->factor, f->at);
+	check_forces_here(l, a);
 	add_stick(l, &l->s->expression[f->expression], f->at);
 	for (int i = 1; i < a->operands; i++)
 		refuse_force(a->node, x[i]);
 	struct region *region = &l->s->region[l->region];
 	bool negative = false;
 	region->force[a->index] = force_here(l, a->node, x[1], &negative);
-	region->rest[a->index] = a->operands > 2 ? force_here(l, a->node, x[2], &negative) : region->force[a->index];
-	l->s->friction[index].negative = l->s->friction[index].negative || negative;
+	f->negative = f->negative || negative;
+	region->rest[a->index] = a->operands > 2 ? rest_here(l, f, x, region->force[a->index])
+						 : region->force[a->index];
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 
@@ -276,6 +333,7 @@ static struct form *slider_here(struct looking *l, const struct atom *a, struct 
 {
 	struct region *region = &l->s->region[l->region];
 	bool negative = false;
+	check_forces_here(l, a);
 	struct form *force = force_here(l, a->node, x[1], &negative);
 	struct slider *slider = slider_of(l->s, a);
 	bool above = exceeds(l, a->node, x[0], force, slider, 0),

@@ -29,6 +29,14 @@ const char *slider_text(const struct switching *s, int index)
 	return format("%s; slides where %s, or %s", text_between(node->start, node->end), where[0], where[1]);
 }
 
+bool is_released(const struct region *region, int expression, bool upward)
+{
+	bool any = false;
+	for (int k = 0; k < region->releases; k++)
+		any = any || (region->release[k].expression == expression && region->release[k].upward == upward);
+	return any;
+}
+
 /* q - F or q + F, which is 0 while it slides */
 static struct form *place_of(const struct region *region, const struct slider *slider)
 {

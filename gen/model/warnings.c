@@ -401,21 +401,49 @@ static const char *passed_over(const char *why)
 	return format("; %s%s", strncmp(why, "scheme ", 7) == 0 ? "" : "what would be best is refused: ", why);
 }
 
-/* The force of friction is never below 0. */
+/* Beside what is not piecewise linear a maximum over time is refused, so no note says to write it. */
+static void say_falls(const struct node *friction, bool regions)
+{
+	say_warning(friction->start, regions ? "max(F, 0) in its place says so" : NULL,
+		    "the force of friction may fall below 0: it counts as 0 there");
+}
+
+static void say_low(const struct node *friction, bool regions)
+{
+	say_warning(friction->start, regions ? "max(S, F) in the place of S says so" : NULL,
+		    "what this friction holds may fall below its force: it counts as that force there");
+}
+
+/* Is it the first friction in regions that is written there and says this? */
+static bool is_first(const struct switching *s, int index, bool low)
+{
+	const struct friction *f = s->friction;
+	for (int i = 0; i < index; i++)
+		if (f[i].atom->node == f[index].atom->node && (low ? f[i].low : f[i].negative))
+			return false;
+	return low ? f[index].low : f[index].negative;
+}
+
+/* The force of friction is never below 0, nor above what is held. */
 static void check_friction(const struct model *model)
 {
 	const struct switching *s = model->switching;
-	const struct node *told = NULL;         /* in an earlier segment of time */
-	for (int i = 0; s && i < s->frictions; i++)
-		if (s->friction[i].negative && s->friction[i].atom->node != told) {
-			told = s->friction[i].atom->node;
-			say_warning(s->friction[i].atom->node->start, "max(F, 0) in its place says so",
-				    "the force of friction may fall below 0: it counts as 0 there");
-		}
+	for (int i = 0; s && i < s->frictions; i++) {
+		if (is_first(s, i, false))
+			say_falls(s->friction[i].atom->node, true);
+		if (is_first(s, i, true))
+			say_low(s->friction[i].atom->node, true);
+	}
 	for (int i = 0; s && i < s->sliders; i++)
 		if (s->slider[i].negative && !is_repeated_slider(s, i))
-			say_warning(s->slider[i].atom->node->start, "max(F, 0) in its place says so",
-				    "the force of friction may fall below 0: it counts as 0 there");
+			say_falls(s->slider[i].atom->node, true);
+	for (int i = 0; i < model->drags; i++) {
+		const struct drag *drag = &model->drag[i];
+		if (!never_falls_below(drag->force))
+			say_falls(drag->atom->node, false);
+		if (!never_falls_below(less_in_velocity(drag->rest, drag->force, drag->velocity)))
+			say_low(drag->atom->node, false);
+	}
 }
 
 /* A guard comes true by crossing. */

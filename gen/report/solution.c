@@ -6,6 +6,15 @@
 #include <math.h>
 #include <string.h>
 
+/* The rate of what a stop, friction or another piecewise linear term acts on */
+static bool reads_channels(const struct model *model, const struct output *output)
+{
+	bool any = false;
+	for (int c = 0; c < model->channels && model->switching; c++)
+		any = any || mpq_sgn(output->channel[c]) != 0;
+	return any;
+}
+
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
@@ -16,6 +25,12 @@ static void check_outputs(const struct model *model)
 			error(model->output[j].value->start,
 			      "--solution prints outputs that are linear in states and loads",
 			      "output '%s' has no closed form", model->output[j].name);
+	for (int j = 0; j < model->outputs; j++)
+		if (reads_channels(model, &model->output[j]))
+			error(model->output[j].value ? model->output[j].value->start : model->asked.end_at,
+			      "positions, velocities and loads have one formula in all of them",
+			      "output '%s' has another formula in each region, which --solution does not print",
+			      model->output[j].name);
 }
 
 static unsigned long last_step(const struct model *model, mpq_srcptr end)
@@ -166,9 +181,6 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	check_outputs(model);
 	check_peaks_of(model);
 	unsigned long last = last_step(model, end);
-	if (model->switching && model->switching->sliders > 0)
-		error(model->asked.end_at, "plrun MODEL.spec steps it, exact to rounding",
-		      "--solution does not go through sliders without mass");
 	if (model->switching) {
 		print_through(to, model, last);
 		return;

@@ -121,7 +121,8 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 	mpq_init(limit);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks)
+		if (breakpoint < 0 || breakpoint == e->breaks ||
+		    (t->s->region[region].possible && is_released(&t->s->region[region], expression, upward)))
 			continue;
 		mpq_t *row = rationals((size_t)t->n);
 		int leads = upward ? e->stride : -e->stride;
@@ -212,7 +213,10 @@ struct area *through_area(struct through *t, int region)
 	area->growth = t->growth[system];
 	for (int e = 0; e < t->s->expressions; e++) {
 		bool held = r->possible && is_stick(&t->s->expression[e], interval_of(t->s, region, e));
-		(held ? add_releases : add_ends)(t, area, region, e);
+		if (!held)
+			add_ends(t, area, region, e);
+		if (r->possible)
+			add_releases(t, area, region, e);
 	}
 	return area;
 }
@@ -222,9 +226,10 @@ void through_enter(struct through *t, int region)
 	struct area *area = through_area(t, region);
 	t->region = region;
 	t->gridded = false;
-	t->order = 0;
-	for (int e = 0; e < t->s->expressions; e++)
+	for (int e = 0; e < t->s->expressions; e++) {
 		t->resting[e] = false;
+		t->order[e] = 0;
+	}
 	t->at = area;
 }
 
@@ -262,6 +267,31 @@ void through_loads(struct through *t)
 	for (int l = 0; l < t->system->loads; l++)
 		for (int k = 0; k < t->system->load[l].columns && t->layout.load[l] >= 0; k++)
 			wave_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
+}
+
+/* Whether one row is a positive multiple of the other */
+static bool is_multiple(int n, const mpq_t *a, const mpq_t *b)
+{
+	mpq_t ratio, part;
+	int first = 0;
+	while (first < n && mpq_sgn(a[first]) == 0)
+		first++;
+	if (first == n || mpq_sgn(b[first]) != mpq_sgn(a[first]))
+		return false;
+	bool same = true;
+	mpq_inits(ratio, part, NULL);
+	mpq_div(ratio, b[first], a[first]);
+	for (int i = 0; i < n && same; i++) {
+		mpq_mul(part, a[i], ratio);
+		same = mpq_equal(part, b[i]) != 0;
+	}
+	mpq_clears(ratio, part, NULL);
+	return same;
+}
+
+bool through_meets(const struct through *t, const struct gate *one, const struct gate *other)
+{
+	return one->release && other->release && is_multiple(t->n, (const mpq_t *)one->row, (const mpq_t *)other->row);
 }
 
 /* ---- what cannot be told ---- */

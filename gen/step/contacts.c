@@ -226,10 +226,29 @@ static void make_hold(struct holders *all, int index)
 }
 
 /* A force that may become negative counts as 0 there. */
-static int force_sequence(struct sequencing *w, const struct drag *drag, const struct form *force)
+static int force_sequence(struct sequencing *w, const struct form *force)
 {
 	int made = sequence_of_form(w, force);
-	return never_falls_below(force) ? made : positive_sequence(w, drag->atom, force, made);
+	return never_falls_below(force) ? made : positive_sequence(w, force, made);
+}
+
+/* What it can hold, no less than its force: S > F ? S : F */
+static int rest_sequence(struct sequencing *w, const struct drag *drag)
+{
+	int rest = force_sequence(w, drag->rest);
+	const struct form *more = less_in_velocity(drag->rest, drag->force, drag->velocity);
+	if (never_falls_below(more))
+		return rest;
+	const struct form *less = form_difference(form_number(0), more);
+	struct sum sum = { 0 };
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, more, rest), 0, one);
+	int force = force_sequence(w, drag->force);
+	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, less, force), 0, one);
+	mpq_clear(one);
+	return sum_sequence(w, &sum);
 }
 
 static void make_slip(struct holders *all, int index)
@@ -240,7 +259,7 @@ static void make_slip(struct holders *all, int index)
 	if (h->drag == NONE)
 		return;
 	const struct drag *drag = &w->step->model->drag[h->drag];
-	int force = force_sequence(w, drag, drag->force), back = minus_sequence(w, force);
+	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
 	h->slips = new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE,
 						      .state = NONE, .expression = hold->expression,
 						      .breakpoint = hold->breakpoint,
@@ -439,7 +458,7 @@ static void watch_hold(struct holders *all, int index)
 	for (int up = 0; up < 2 && h->drag != NONE; up++) {
 		const struct drag *drag = &w->step->model->drag[h->drag];
 		struct sum pull = needed_force(all, index, up == hold->above ? 1 : -1);
-		sum_add(&pull, TERM_SEQUENCE, force_sequence(w, drag, drag->rest), 0, minus);
+		sum_add(&pull, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
 		hold->pull[up] = watch(w, sum_sequence(w, &pull), true);
 	}
 	mpq_clear(minus);

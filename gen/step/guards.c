@@ -45,15 +45,6 @@ static double *turned(int size, const double *row, bool upward)
 	return result;
 }
 
-/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
-static bool is_released(const struct region *region, int expression, bool upward)
-{
-	bool any = false;
-	for (int k = 0; k < region->releases; k++)
-		any = any || (region->release[k].expression == expression && region->release[k].upward == upward);
-	return any;
-}
-
 /* The ends of an interval of an expression */
 static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
 			   int expression, int first)

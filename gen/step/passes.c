@@ -88,10 +88,10 @@ static void expand_gate(struct through *t, const struct gate *gate, int degree, 
 
 /* Of an expression that was let go: its polynomial has its first coefficients 0, but that it was let go `fresh_off`
  * away; it is divided by that power of s. */
-static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
+static int divide_by_power(struct through *t, int degree, int order, mpq_srcptr tau)
 {
 	mpfi_t wide;
-	int rest = degree - t->order;
+	int rest = degree - order;
 	mpfi_init2(wide, t->precision);
 	for (int m = 0; m <= degree; m++) {
 		if (m < degree) {
@@ -102,8 +102,8 @@ static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
 			mpfi_mag(t->most_off, wide);
 			mpfi_increase(t->value[m], t->most_off);
 		}
-		if (m >= t->order)
-			mpfi_set(t->value[m - t->order], t->value[m]);
+		if (m >= order)
+			mpfi_set(t->value[m - order], t->value[m]);
 	}
 	for (int m = 0; m <= rest; m++)
 		mpfi_set_ui(t->slope[m], 0);
@@ -115,7 +115,7 @@ static int divide_by_power(struct through *t, int degree, mpq_srcptr tau)
 
 static bool is_fresh(const struct through *t, const struct gate *gate)
 {
-	return t->order > 0 && gate->expression == t->fresh && gate->upward == t->back && !gate->release;
+	return t->order[gate->expression] > 0 && gate->upward == t->back[gate->expression] && !gate->release;
 }
 
 /* 1: found; -1: not known; 0: none */
@@ -129,12 +129,12 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
 	for (int k = 0; k < t->at->gates && result >= 0; k++) {
 		const struct gate *gate = &t->at->gate[k];
-		if (t->resting[gate->expression])
+		if (t->resting[gate->expression] || (result > 0 && through_meets(t, *found, gate)))
 			continue;
 		int terms = degree;
 		expand_gate(t, gate, degree, tau);
-		if (is_fresh(t, gate) && degree > t->order)
-			terms = divide_by_power(t, degree, tau);
+		if (is_fresh(t, gate) && degree > t->order[gate->expression])
+			terms = divide_by_power(t, degree, t->order[gate->expression], tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
 		if (rise == RISE_UNKNOWN) {
 			through_lost(t, gate, "it comes closer than is known");
@@ -171,10 +171,8 @@ static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	through_hold(t);
 	if (!through_settle(t, gate, off))
 		return false;
-	t->order = through_order(t, gate);
-	t->fresh = gate->expression;
-	t->back = !gate->upward;
-	t->list[t->passed - 1].faint = t->order == 3;
+	through_let_go(t, gate);
+	t->list[t->passed - 1].faint = t->order[gate->expression] == 3;
 	mpfr_set(t->fresh_off, off, MPFR_RNDU);
 	return true;
 }

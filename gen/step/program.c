@@ -116,8 +116,6 @@ void need_closed_form(const struct step *step)
 	const char *why = of_kind[step->kind];
 	if (!why && step->model->scheme != SCHEME_EXACT)
 		why = format("scheme %s approximates", scheme_name(step->model->scheme));
-	if (!why && step->model->switching && step->model->switching->sliders > 0)
-		why = "where a slider without mass stops is found by a search";
 	if (why)
 		error((struct place){ source_argument("--selftest"), 0 }, NULL,
 		      "--selftest needs a linear model and scheme exact: %s", why);

@@ -417,10 +417,10 @@ static int choice(struct sequencing *w, const struct atom *atom, const struct fo
 				    : choice_by_state(w, left, right, a, b);
 }
 
-int positive_sequence(struct sequencing *w, const struct atom *atom, const struct form *form, int a)
+int positive_sequence(struct sequencing *w, const struct form *form, int a)
 {
 	const struct form *zero = form_number(0);
-	return choice(w, atom, form, CMP_GT, zero, a, sequence_of_form(w, zero));
+	return choice_by_state(w, form, zero, a, sequence_of_form(w, zero));
 }
 
 static int sequence_of_constant(struct sequencing *w, long value)

@@ -166,7 +166,83 @@ static void note_change(struct through *t, const struct idle *idle, int count, i
 	}
 }
 
-bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+/* How often an expression that was let go has the value 0 where it is: with its slope, and for a contact, whose force
+ * was 0, with its acceleration */
+static int order_of(struct through *t, const struct gate *gate)
+{
+	bool known;
+	if (!gate->release)
+		return 0;
+	if (impact_resting(t->s, t->segment, gate->expression,
+			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
+		return 3;
+	mpq_t *row = row_of(t, t->s->expression[gate->expression].row);
+	mpq_t *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
+	int sign = sign_of(t, (const mpq_t *)slope, NULL, &known);
+	rationals_free(row, (size_t)t->n);
+	rationals_free(slope, (size_t)t->n);
+	return known && sign != 0 ? 0 : 2;
+}
+
+void through_let_go(struct through *t, const struct gate *gate)
+{
+	t->order[gate->expression] = order_of(t, gate);
+	t->back[gate->expression] = !gate->upward;
+}
+
+/* Of sliders without mass one that would slide back where it is; -1: none does, -2: not known. What is 0, as all that
+ * slides with one velocity is where it is met as 0, counts by its slope. */
+static int slides_back(const struct through *t, const struct gate *met, const struct gate **release)
+{
+	for (int k = 0; k < t->at->gates; k++) {
+		const struct gate *gate = &t->at->gate[k];
+		bool known;
+		if (!gate->release || is_stick(&t->s->expression[gate->expression],
+					       interval_of(t->s, t->region, gate->expression)))
+			continue;
+		int sign = sign_of(t, (const mpq_t *)gate->row, NULL, &known);
+		bool none = known && sign == 0;
+		if (!known && met)
+			none = through_meets(t, met, gate);
+		if (none)
+			sign = sign_of(t, (const mpq_t *)gate->slope, NULL, &known);
+		*release = gate;
+		if (!known)
+			return -2;
+		if (sign > 0)
+			return gate->expression;
+	}
+	return -1;
+}
+
+/* A slider without mass whose velocity an event has turned round sticks from there on. */
+static bool settle_sliders(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	const struct gate *release, **gone;
+	if (t->s->sliders == 0)
+		return true;
+	through_hold(t);
+	gone = ARRAY(const struct gate *, (size_t)t->s->expressions);
+	int count = 0, back = slides_back(t, gate, &release);
+	for (; back >= 0 && count < t->s->expressions; count++) {
+		gone[count] = release;
+		if (off)
+			through_note_plain(t, back, release->breakpoint, release->upward, off);
+		through_enter(t, t->region + release->leads);
+		through_hold(t);
+		back = slides_back(t, gate, &release);
+	}
+	for (int k = 0; k < count && back == -1; k++)
+		through_let_go(t, gone[k]);
+	if (off)
+		mpfr_set(t->fresh_off, off, MPFR_RNDU);
+	else
+		mpfr_set_zero(t->fresh_off, 1);
+	discard(gone);
+	return back == -1 || unknown(t, "what slides on");
+}
+
+static bool settle_idle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	struct idle idle[MOST_IDLE];
 	int count = find_idle(t, gate, idle), codes = 1, best = -1;
@@ -190,6 +266,11 @@ bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 		note_change(t, idle, count, best, off);
 	through_enter(t, best);
 	return true;
+}
+
+bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	return settle_idle(t, gate, off) && settle_sliders(t, gate, off);
 }
 
 /* ---- impacts ---- */
@@ -348,24 +429,9 @@ bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	known = known && stream_change(t->at->flow, NULL, off, t->x);
 	if (!known)
 		return t->undecided ? false : unknown(t, "when an impact is");
+	/* first what an impact sets in motion leaves where it stuck, then what still sticks is held */
+	if (!through_follow(t))
+		return false;
 	through_hold(t);
-	return through_follow(t) && through_settle(t, NULL, off) && come_to_rest(t, struck, off);
-}
-
-/* How often an expression that was let go has the value 0 where it is: with its slope, and for a contact, whose force
- * was 0, with its acceleration */
-int through_order(struct through *t, const struct gate *gate)
-{
-	bool known;
-	if (!gate->release)
-		return 0;
-	if (impact_resting(t->s, t->segment, gate->expression,
-			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
-		return 3;
-	mpq_t *row = row_of(t, t->s->expression[gate->expression].row);
-	mpq_t *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	(void)sign_of(t, (const mpq_t *)slope, NULL, &known);
-	rationals_free(row, (size_t)t->n);
-	rationals_free(slope, (size_t)t->n);
-	return known ? 0 : 2;
+	return through_settle(t, NULL, off) && come_to_rest(t, struck, off);
 }

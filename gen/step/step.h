@@ -1143,7 +1143,7 @@ int  sum_sequence(struct sequencing *w, const struct sum *sum);
 int  sequence_of_sum(struct sequencing *w, const struct sum *sum);  /* of a single one itself */
 int  sequence_of_form(struct sequencing *w, const struct form *form);
 int  minus_sequence(struct sequencing *w, int a);
-int  positive_sequence(struct sequencing *w, const struct atom *atom, const struct form *form, int a); /* or else 0 */
+int  positive_sequence(struct sequencing *w, const struct form *form, int a);  /* or else 0: the state chooses */
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);

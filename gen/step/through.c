@@ -58,7 +58,8 @@ static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *
 	mpq_add(t->base, t->base, tau);
 	t->at_once = 0;
 	t->pieces++;
-	t->order = 0;
+	for (int e = 0; e < t->s->expressions; e++)
+		t->order[e] = 0;
 	t->gridded = t->gridded && whole;
 	if (!whole)
 		through_loads(t);
@@ -185,6 +186,8 @@ static void make_room(struct through *t)
 	t->flow = ARRAY(struct stream *, (size_t)s->systems);
 	t->growth = ARRAY(double *, (size_t)s->systems);
 	t->resting = ARRAY(bool, (size_t)s->expressions);
+	t->order = ARRAY(int, (size_t)s->expressions);
+	t->back = ARRAY(bool, (size_t)s->expressions);
 	t->x = room_of(t);
 	t->y = room_of(t);
 	for (int k = 0; k <= THROUGH_SLOTS; k++)

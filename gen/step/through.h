@@ -56,9 +56,9 @@ struct through {
 	struct near near[2];
 	double *most;
 	int at_once;
-	/* an expression that was let go at base, but for so much [s]: it is 0 there with its first derivatives */
-	int fresh, order;           /* order 0: there is none */
-	bool back;                  /* which way it would come back */
+	/* expressions that were let go at base, but for so much [s]: they are 0 there with their first derivatives */
+	int *order;                 /* per expression; 0: it was not */
+	bool *back;                 /* which way it would come back */
 	mpfr_t fresh_off, most_off;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
 	int passed, most_passed;    /* most: 0: any number */
@@ -73,6 +73,8 @@ void through_row(const struct through *t, const struct output *output, mpq_t *ro
 void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum);
 mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A);        /* row A */
 struct area *through_area(struct through *t, int region);
+/* Whether both let go at the same time, always: what slides with one velocity */
+bool through_meets(const struct through *t, const struct gate *one, const struct gate *other);
 void through_enter(struct through *t, int region);
 void through_loads(struct through *t);                       /* load states at base */
 const char *through_time(mpq_srcptr time);
@@ -99,7 +101,7 @@ void through_hold(struct through *t);                        /* states that the 
 /* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
 bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
-int  through_order(struct through *t, const struct gate *gate);
+void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
 
 /* ---- begun.c ---- */
 

@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# through.sh PLGEN TRUTH FOLLOW.AWK SOURCE STOPS FRICTIONS IMPACTS FIRST COUNT
+# through.sh PLGEN TRUTH FOLLOW.AWK SOURCE STOPS FRICTIONS IMPACTS CHANGES FIRST COUNT
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind: every event and the end of
-# --solution against the same scene by a Taylor series of 192 bits; and NAME_selftest of each scene, in double and in
-# float, small. $CC compiles, $PLRT is the runtime.
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind, and changes of the loads: every
+# event and the end of --solution against the same scene by a Taylor series of 192 bits; and NAME_selftest of each scene,
+# in double and in float, small. $CC compiles, $PLRT is the runtime.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
 source=$(realpath "$4")
-kinds="$5 $6 $7 0 0"
-first=$8
+kinds="$5 $6 $7 $8 0"
 shift 8
+first=$1
+shift
 last=$((first + $1))
 . "$source/tests/tap.sh"
 

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors of scheme taylor by steps: each row of variants.h (orders.sh) beside the first one, from STARTS starts along
+ * one motion. Prints for each of the others its order, its steps, the error (root of the mean of squares over starts,
+ * states and whole seconds, over the largest state), the events from the first start, and whether all runs met those of
+ * the first row with no status. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include "variants.h"
+
+enum { MOST = 16, STARTS = 48 };
+
+struct run {
+	double y[STARTS][SECONDS][MOST];
+	unsigned long events[STARTS];
+	int status;
+};
+
+/* Start j: 11/600 s along the motion behind the one before, so that events fall elsewhere in steps */
+static void begin(const struct variant *v, void *s, int j)
+{
+	const struct variant *finest = &variant[0];
+	double start[MOST];
+	void *ahead = calloc(1, finest->size);
+	if (!ahead)
+		exit(1);
+	finest->init(ahead);
+	for (int k = 0; k < 7 * j; k++)
+		finest->step(ahead);
+	finest->get(ahead, start);
+	v->init(s);
+	v->set(s, 7.0 * j * SECONDS / finest->steps, start);
+	free(ahead);
+}
+
+static void run_from(const struct variant *v, void *s, int j, double y[SECONDS][MOST])
+{
+	begin(v, s, j);
+	for (int k = 1; k <= v->steps; k++) {
+		v->step(s);
+		if (k * SECONDS % v->steps == 0)
+			v->get(s, y[k * SECONDS / v->steps - 1]);
+	}
+}
+
+static void run_all(const struct variant *v, struct run *run)
+{
+	void *s = calloc(1, v->size);
+	if (!s || v->states > MOST)
+		exit(1);
+	for (int j = 0; j < STARTS; j++) {
+		run_from(v, s, j, run->y[j]);
+		run->events[j] = v->crossed(s);
+		run->status |= v->status(s);
+	}
+	free(s);
+}
+
+int main(void)
+{
+	static struct run exact, run, none;
+	const int states = variant[0].states;
+	double largest = 0;
+	run_all(&variant[0], &exact);
+	for (int j = 0; j < STARTS; j++)
+		for (int k = 0; k < SECONDS; k++)
+			for (int i = 0; i < states; i++)
+				largest = fmax(largest, fabs(exact.y[j][k][i]));
+	for (size_t v = 1; v < sizeof variant / sizeof *variant; v++) {
+		double sum = 0;
+		int same = 1;
+		run = none;
+		run_all(&variant[v], &run);
+		for (int j = 0; j < STARTS; j++) {
+			for (int k = 0; k < SECONDS; k++)
+				for (int i = 0; i < states; i++)
+					sum += pow((run.y[j][k][i] - exact.y[j][k][i]) / largest, 2);
+			same = same && run.events[j] == exact.events[j];
+		}
+		printf("%d %d %.4g %lu %s\n", variant[v].order, variant[v].steps,
+		       sqrt(sum / (STARTS * SECONDS * states)), exact.events[0],
+		       same && run.status == 0 && exact.status == 0 ? "yes" : "no");
+	}
+	return 0;
+}
