@@ -746,6 +746,7 @@ void emit_slopes_begin(const struct emitter *e);
 void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
 void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
 int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
+void emit_gathering(const struct emitter *e);                     /* emit_gathered.c: $n_gather */
 int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */

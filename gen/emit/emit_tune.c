@@ -542,7 +542,8 @@ static void emit_advance(const struct emitter *e)
 	say(e, "    double more[%s];\n"
 	       "    int i, j;\n"
 	       "    $n_slopes(value, %sA);\n"
-	       "    (void)pl_increment(%d, %s, A[0], tau, 1, D[0], work);\n", rows, segments ? "segment, " : "", size, rows);
+	       "    (void)pl_increment(%d, %s, A[0], tau, 1, D[0], work);\n", rows, segments ? "segment, " : "", size,
+	    rows);
 	say(e, "    for (i = 0; i < %s; i++) {\n"
 	       "        more[i] = 0.0;\n"
 	       "        for (j = 0; j < %d; j++)\n"

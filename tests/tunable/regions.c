@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model with regions, or contacts beside a series, whose tunable params take other values, beside the model with these
- * values written; and what it refuses. VALUES, INPUTS, PARAMS, bad[]: from regions.sh */
+/* A model with regions, or contacts beside a series, whose tunable params take other values, beside the model with
+ * these values written; and what it refuses. VALUES, INPUTS, PARAMS, bad[]: from regions.sh */
 #include "retuned.h"
 #include "plain.h"
 #include "refused.h"
