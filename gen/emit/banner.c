@@ -180,8 +180,8 @@ void banner_cut(const struct emitter *e)
 			   "a step, found before it is stepped over; there the formulas change, and the step goes on.");
 	banner_breakpoints(e, cut->look);
 	banner_series_regions(e, cut->look);
-	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with e^{A tau} of "
-				  "each part, made by the target: some %d KB of stack.", cut->kilobytes));
+	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with e^{A tau} "
+				  "of each part, made by the target: some %d KB of stack.", cut->kilobytes));
 	banner_sentence(e, format("Costs below are of a step without a crossing; the look for one takes %d "
 				  "multiplications and %d additions more.", cut->multiplications, cut->additions));
 }

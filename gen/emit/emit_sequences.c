@@ -210,8 +210,8 @@ static void emit_part_unread(const struct emitter *e)
 void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on each\n"
-	       " * equation that has some */\n"
+	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on\n"
+	       " * each equation that has some */\n"
 	       "static void $n_within(const $n *s, double tau, %s,\n"
 	       "    double left[%d])\n"
 	       "{\n", part_parameters(e), x->columns);
@@ -226,8 +226,8 @@ void emit_frozen_function(const struct emitter *e)
 void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the terms\n"
-	       " * of the value */\n"
+	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the\n"
+	       " * terms of the value */\n"
 	       "static void $n_end(const $n *s, double tau, %s,\n"
 	       "    double e[][%d], double terms[%d])\n"
 	       "{\n", part_parameters(e), x->columns, x->columns);

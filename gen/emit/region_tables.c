@@ -197,7 +197,8 @@ static void emit_whole_steps(const struct emitter *e, const struct pieces *p)
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
 {
 	int n = expressions_of(e);
-	struct region_tables off = tables_of_regions(e, p, "", n, off_of), slack = tables_of_regions(e, p, "", n, slack_of),
+	struct region_tables off = tables_of_regions(e, p, "", n, off_of),
+			     slack = tables_of_regions(e, p, "", n, slack_of),
 			     third = tables_of_regions(e, p, "", n, third_of),
 		      still = tables_of_regions(e, p, "", 1, still_of);
 	still.columns = n;

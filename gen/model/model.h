@@ -559,7 +559,8 @@ _Noreturn void tell_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
 int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
-/* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with breakpoints */
+/* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with
+ * breakpoints. */
 bool follows_crossings(const struct model *model);
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
@@ -625,7 +626,8 @@ bool has_events(const struct switching *s);                 /* each region has i
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
-/* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone moves */
+/* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone
+ * moves */
 bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
 bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
 bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen */

@@ -297,11 +297,13 @@ static struct output *rows_over(const struct selection *s, bool direct)
 		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
 		for (int l = 0; l < system->loads; l++) {
 			const size_t cells = (size_t)(system->load[l].columns * system->segments);
-			output[o].load[l] = direct ? rationals_copied(cells, (const mpq_t *)of->load[l]) : rationals(cells);
+			output[o].load[l] = direct ? rationals_copied(cells, (const mpq_t *)of->load[l])
+						   : rationals(cells);
 		}
 		for (int k = 0; k < 2; k++)
-			output[o].input[k] = direct ? rationals_copied((size_t)system->inputs, (const mpq_t *)of->input[k])
-						    : rationals((size_t)system->inputs);
+			output[o].input[k] =
+				direct ? rationals_copied((size_t)system->inputs, (const mpq_t *)of->input[k])
+				       : rationals((size_t)system->inputs);
 	}
 	return output;
 }
