@@ -227,8 +227,8 @@ static void emit_onto(const struct emitter *e)
 {
 	const struct emitter *l = looking(e);
 	const struct expansion *x = cut_of(e)->look;
-	say(l, "\n/* From `at` of the step [h], onto the breakpoint of `crossing`, back by half of `size` or on by `left`\n"
-	       " * at most; returns by how much [h] */\n"
+	say(l, "\n/* From `at` of the step [h], onto the breakpoint of `crossing`, back by half of `size` or on by\n"
+	       " * `left` at most; returns by how much [h] */\n"
 	       "static double $n_onto(const $n_part *p, double at, double size, double left,\n"
 	       "    const pl_crossing *crossing, double y[$N_STATES])\n"
 	       "{\n"
@@ -298,8 +298,8 @@ static void emit_between_limit(const struct emitter *e)
 static void emit_between(const struct emitter *e)
 {
 	int count = expressions(e);
-	say(e, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its time\n"
-	       " * in h; NULL: not known.  0, or what went wrong, and y as far as it went */\n"
+	say(e, "\n/* y, end h later, from crossing to crossing; first: that which a step over all of h meets, its\n"
+	       " * time in h; NULL: not known.  0, or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %sconst pl_crossing *first, double end, double y[$N_STATES],\n"
 	       "    $n_contact *contact)\n"
 	       "{\n"

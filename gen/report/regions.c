@@ -20,7 +20,8 @@ static long swift_bytes(const struct step *step)
 		halves = halves || step->branch[k].halvings > 0;
 	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
 	return 8 * s->systems *
-		       (s->expressions * (2 * size + off) + halves * size * (words_of(step) * size + 2 * s->expressions)) +
+		       (s->expressions * (2 * size + off) +
+			halves * size * (words_of(step) * size + 2 * s->expressions)) +
 	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 

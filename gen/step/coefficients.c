@@ -433,7 +433,8 @@ static void fill_row(struct filling *f, struct table *table)
 			table->kernel[j][i * system->channels + e] =
 				is_immediate(&wanted->kernel[j])
 					? immediate(f, &wanted->kernel[j], e)
-					: number_of(f, wanted->two_words, SOUGHT_KERNEL, j, e, format("leftover %d", e + 1));
+					: number_of(f, wanted->two_words, SOUGHT_KERNEL, j, e,
+						    format("leftover %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
 			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);
