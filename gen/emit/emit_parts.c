@@ -86,7 +86,7 @@ static void emit_shares(const struct emitter *part, const struct switching *whol
 static const char **names_of_rows(const struct emitter *part)
 {
 	const char **name = layout_names(&part->step->layout, part->system, part->model);
-	return keeps_rest(part) ? twice(part->step->layout.size, name) : name;
+	return keeps_rest(part) ? listed_twice(part->step->layout.size, name) : name;
 }
 
 static const char *note_of_slopes(const struct emitter *part)

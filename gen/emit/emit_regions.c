@@ -209,7 +209,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	const bool rest = keeps_rest(e);
 	const char *words = rest ? " in two words" : "";
 	if (rest)
-		entry = twice(size, entry);
+		entry = listed_twice(size, entry);
 	const struct matrices all[] = {
 		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
 		  slopes_of_piece },

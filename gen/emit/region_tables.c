@@ -191,7 +191,7 @@ static void emit_whole_steps(const struct emitter *e, const struct pieces *p)
 	struct region_tables whole = steps_of_regions(e, p, "");
 	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	emit_of_each(e, &whole, "whole", keeps_rest(e) ? "e^{A h} - I in two words" : "e^{A h}",
-		     keeps_rest(e) ? twice(e->step->layout.size, name) : name);
+		     keeps_rest(e) ? listed_twice(e->step->layout.size, name) : name);
 }
 
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
@@ -292,7 +292,7 @@ void emit_state_of_x(const struct emitter *e)
 		       "    }\n", place_in_loop(e), e->step->layout.size);
 }
 
-const char **twice(int count, const char *const *text)
+const char **listed_twice(int count, const char *const *text)
 {
 	const char **both = ARRAY(const char *, 2 * (size_t)count);
 	for (int i = 0; i < 2 * count; i++)
