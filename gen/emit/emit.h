@@ -686,7 +686,8 @@ const char *search_of(const struct emitter *e);                    /* of the run
 const char *search_by(const struct emitter *e);                    /* the functions of that: pl_switching_kept, ... */
 bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
 int size_of_vector(const struct emitter *e);                      /* of x, with them */
-const char **listed_twice(int count, const char *const *text);           /* a list behind itself: first and second words */
+/* A list behind itself: first and second words */
+const char **listed_twice(int count, const char *const *text);
 void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
