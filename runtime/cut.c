@@ -108,7 +108,7 @@ int pl_cut_advance(const pl_cut *m, const real *A, const real *acting, const voi
     flow f;
     int i;
     f.size = size;
-    f.terms = m->fastest * tau <= TURN ? terms_of(m->fastest * tau) : 0;
+    f.terms = m->fastest * tau <= (real)TURN ? terms_of(m->fastest * tau) : 0;
     f.A = A;
     f.D = D;
     f.tau = tau;
