@@ -172,11 +172,13 @@ batch_add() {
 			done
 		fi
 		changes=$(head_of "$spec" changes)
+		adds=1
+		! grep -q 'kick-drift-kick' "$id.c" || adds=3
 		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$(head_of "$spec" impact)\"},"
+			"\"$(head_of "$spec" impact)\", $adds},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

@@ -24,6 +24,7 @@ struct subject {
 	const char *retune;         /* these values: NAME=VALUE ... */
 	double (*lanes)(void);      /* of NAME_batch, lanes.h; or NULL */
 	const char *impact;         /* GAP RESTITUTION: b' = -RESTITUTION b' where b comes up to GAP; "": none */
+	int adds;                   /* how often a step adds to a state: 3 of the form kick-drift-kick, else 1 */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */
