@@ -71,9 +71,10 @@ static double fitted_order(const char *name, const char *scheme, const double *t
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-static void judge(const char *name, const double *truth, double order)
+/* first: of two schemes that step across; etdrk4 does where it cannot go from crossing to crossing */
+static void judge(const char *name, const char *first_scheme, const double *truth, double order)
 {
-    static const char *const schemes[] = {"etdrk4", "bm3"};
+    const char *const schemes[] = {first_scheme, "bm3"};
     for (int k = 0; k < 2; k++) {
         double first = 0, last = 0;
         const double found = fitted_order(name, schemes[k], truth, &first, &last);
@@ -90,13 +91,13 @@ int main(void)
     for (size_t i = 0; i < sizeof switched / sizeof *switched; i++) {
         double y[2];
         end_of(variant_of(smooth, "%s_exact_0", switched[i].name)->model, y);
-        judge(switched[i].name, y, switched[i].order);
+        judge(switched[i].name, "dq4", y, switched[i].order);
     }
     for (size_t i = 0; i < sizeof solved / sizeof *solved; i++) {
         double y[2] = {solved[i].start[0], solved[i].start[1]};
         ok(follow(solved[i].early, 0, 1.2345678, y) && follow(solved[i].late, 1.2345678, END, y),
             "%s: a solution to compare with", solved[i].name);
-        judge(solved[i].name, y, solved[i].order);
+        judge(solved[i].name, i == 0 ? "dq4" : "etdrk4", y, solved[i].order);
     }
     return tap_end();
 }

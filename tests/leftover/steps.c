@@ -129,6 +129,12 @@ static bool run(struct subject *a, double t0, int count, const double *from)
     return good;
 }
 
+/* These go from crossing to crossing by exponential time differencing: tests/divided. */
+static bool is_cut(const struct system *s, const char *scheme)
+{
+    return strncmp(s->name, "functions", 9) == 0 && strncmp(scheme, "etd", 3) == 0;
+}
+
 static void judge(const struct system *s, const char *scheme)
 {
     const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_%s_0", s->name,
@@ -246,14 +252,16 @@ static void transfer(const struct system *s)
 int main(void)
 {
     for (int i = 0; i < systems_count; i++) {
-        between(&systems[i]);
+        if (!is_cut(&systems[i], "etd1"))
+            between(&systems[i]);
         if (is_pl(&systems[i])) {
             judge(&systems[i], "etd1");
             continue;
         }
         transfer(&systems[i]);
         for (size_t j = 0; j < sizeof schemes / sizeof *schemes; j++)
-            judge(&systems[i], schemes[j]);
+            if (!is_cut(&systems[i], schemes[j]))
+                judge(&systems[i], schemes[j]);
     }
     previous_sample();
     return tap_end();
