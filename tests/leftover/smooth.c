@@ -91,13 +91,13 @@ int main(void)
     for (size_t i = 0; i < sizeof switched / sizeof *switched; i++) {
         double y[2];
         end_of(variant_of(smooth, "%s_exact_0", switched[i].name)->model, y);
-        judge(switched[i].name, "dq4", y, switched[i].order);
+        judge(switched[i].name, "nc2", y, switched[i].order);
     }
     for (size_t i = 0; i < sizeof solved / sizeof *solved; i++) {
         double y[2] = {solved[i].start[0], solved[i].start[1]};
         ok(follow(solved[i].early, 0, 1.2345678, y) && follow(solved[i].late, 1.2345678, END, y),
             "%s: a solution to compare with", solved[i].name);
-        judge(solved[i].name, i == 0 ? "dq4" : "etdrk4", y, solved[i].order);
+        judge(solved[i].name, i == 0 ? "nc2" : "etdrk4", y, solved[i].order);
     }
     return tap_end();
 }
