@@ -76,7 +76,8 @@ builds() {
         awk '$2 ~ /^\.(data|bss|tdata|tbss)/ && $3 !~ /^0+$/ { print "variables in " $2 ", bytes: 0x" $3 }' "$work/code"
         grep -v -P '\tstatic$' "$work/$2.su"
         case $2 in
-            events | eventsf) ;;    # calls the model, which makes its series anew: of that the stack is its own
+            # these call the model, which makes its series anew, or says its forces: of that the stack is its own
+            events | eventsf | cut | cutf) ;;
             *) grep -o 'sourcename: "[^"]*" targetname: "__indirect_call"' "$work/$2.ci" ;;
         esac
         if [ "$3" = float ]; then
