@@ -10,7 +10,8 @@ sparing() {
 	# a cache of compilers would look for the compiler in PATH, and find what is made here
 	case $(readlink -f "$real") in
 		*/ccache)
-			real=$(PATH=$(echo "$PATH" | tr ':' '\n' | grep -v ccache | paste -s -d :) && command -v "$1") ;;
+			without=$(echo "$PATH" | tr ':' '\n' | grep -v ccache | paste -s -d :)
+			real=$(PATH=$without && command -v "$1") ;;
 	esac
 	sources=$(echo "$2"/*.c)
 	cat >"bin/$1" <<END
