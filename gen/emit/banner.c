@@ -34,8 +34,10 @@ static void banner_poles(const struct emitter *e)
 	int length = resolvent_determinant(e->step->written)->length;
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(e->step->written, B);
-	say(e, " *\n"
-	       " *     B(s) = %s\n", polynomial_text(length, (const mpq_t *)B));
+	say(e, " *\n");
+	if (is_nonlinear(e->step) && has_leftover(e->step))
+		say(e, " * Of the terms that are linear with constant coefficients:\n");
+	say(e, " *     B(s) = %s\n", polynomial_text(length, (const mpq_t *)B));
 	struct pole_report *pole;
 	int count = poles_of(e->model, e->step->written, &pole);
 	say(e, " *     %-34s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");

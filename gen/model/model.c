@@ -613,6 +613,8 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !told)
 		warn(&b);
+	if (!diagnostics_errors() && !request->solution && !request->tunable)
+		silent_guard(find_nonlinear, &b);
 	return diagnostics_errors() ? NULL : model;
 }
 

@@ -167,6 +167,10 @@ struct reduction {                  /* what --reduce found */
 	const char **dropped_name;
 	mpq_t *row;                 /* of a reduced model, states x written states: each state over the written ones */
 };
+struct nonlinear {                  /* a term of the equations, or what jumps */
+	struct place at;
+	const char *text;           /* as written */
+};
 struct delay {                      /* of an input */
 	const struct symbol *symbol; /* what it is then: an input of the model */
 	int back;                   /* in parts of the step */
@@ -215,6 +219,8 @@ struct model {
 	struct smoothness smooth;
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
 	const char *obstacle_text;  /* why it did, and the way out if there is one */
+	int nonlinears;             /* terms that no M, C and K have, by place */
+	struct nonlinear *nonlinear;
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
@@ -330,13 +336,17 @@ struct friction {                   /* in one segment of time */
 	bool low;                   /* S may fall below F, and counts as F there */
 };
 struct bearing { const struct atom *atom; const struct form *borne; };
-/* Of FN_SLIDE: friction of what has no mass, by what it bears; it slides beyond a breakpoint of q - F or of -q - F */
+/* Of FN_SLIDE: friction of what has no mass, by what it bears */
 struct slider {
 	const struct atom *atom;
+	bool negative;              /* F may fall below 0 */
+};
+/* It slides beyond a breakpoint of q - F or of -q - F; F may be another one in each region */
+struct slide {
+	int way;                    /* 1 or -1 where it slides */
 	int expression[2];          /* that of either */
 	mpq_t at[2];                /* its breakpoint, */
 	bool upward[2];             /* which is passed upward where the sliding begins */
-	bool negative;              /* F may fall below 0 */
 };
 /* Friction beside what is not piecewise linear, where there are no regions */
 struct drag {
@@ -362,7 +372,7 @@ struct region {                     /* one interval for each expression, in one 
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
 	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
 	struct output **grip;       /* per friction that outputs read: the same as a row; NULL: nothing */
-	int *slide;                 /* per slider's atom: 1 or -1 where it slides */
+	struct slide *slide;        /* per slider's atom */
 	int holds, releases;
 	struct hold *hold;
 	struct release *release;
@@ -668,7 +678,9 @@ struct form *borne_form(const struct building *b, const struct form *form); /* o
 /* where it slides, of the slider that is written there; NULL: it sticks */
 struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
 bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
-const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
+/* Where it slides: as many as its force differs in regions */
+int slides_of(const struct switching *s, int index, const struct slide ***slide);
+const char *slider_text(const struct switching *s, int index);      /* the same for a reader */
 /* ---- contacts.c: impacts and friction beside what is not piecewise linear ---- */
 
 void find_contacts(struct building *b);                     /* of the equations for all time */
@@ -723,6 +735,12 @@ bool is_linear(const struct building *b);                   /* with constant coe
 bool leaves_over(const struct building *b);
 bool needs_regions(const struct building *b);                    /* scheme exact has regions for them */
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+/* whose coordinates or inputs do not have the factors of the first segment; NULL: none */
+const struct node *changing_factor(struct building *b, int segment);
+
+/* ---- nonlinear.c: what is not in M, C and K ---- */
+
+void find_nonlinear(void *building);                        /* each with its place and its text */
 
 /* ---- needs.c: how exact outputs have to be ---- */
 

@@ -127,6 +127,16 @@ static bool check_changes(struct building *b)
 	return true;
 }
 
+const struct node *changing_factor(struct building *b, int segment)
+{
+	if (same_equations(b, &b->snapshot[segment]))
+		return NULL;
+	const struct node *term = first_changing_term(b, segment);
+	b->collector.interval = 0;
+	forget_lets(b->spec);
+	return term;
+}
+
 /* An equation is as many scalar ones at all times. */
 static bool check_sizes(const struct building *b)
 {
@@ -242,11 +252,9 @@ static void find_obstacle(void *context)
 	const char *why = "is not piecewise linear", *rewrite;
 	model->obstacle = atom ? atom->node : NULL;
 	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
-		model->obstacle = same_equations(b, &b->snapshot[s]) ? NULL : first_changing_term(b, s);
+		model->obstacle = changing_factor(b, s);
 		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
 	}
-	b->collector.interval = 0;
-	forget_lets(b->spec);
 	if (!model->obstacle)
 		return;
 	rewrite = rewrite_of(model->obstacle);

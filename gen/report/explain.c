@@ -170,7 +170,8 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no_phi);
 	else
 		fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
-			!has_leftover(step)  ? ""
+			model->switching     ? " of region 0"
+			: !has_leftover(step) ? ""
 			: step->branches > 1 ? " = e^{A h} of the first operator"
 					     : " = e^{A h}");
 	for (int i = 0; i < model->system.states && !step->shown->no_phi; i++) {
@@ -380,20 +381,36 @@ void person_course(FILE *to, const struct step *step)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
 }
 
+/* In the place of poles; those of A are of the scheme */
+static void person_left_out(FILE *to, const struct step *step)
+{
+	fputc('\n', to);
+	person_nonlinear(to, step);
+	if (!has_leftover(step) || step->normal || step->shown->model->operators == 0 ||
+	    *step->shown->model->operator[0].text)
+		return;
+	fputs("\nOf those terms alone, which are the operator A of the scheme:\n", to);
+	person_poles(to, step->model, step->written);
+}
+
 void explain_person(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
 		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
 	person_equations(to, step);
-	fputs("\nP(s) = M s^2 + C s + K with\n", to);
+	fprintf(to, "\n%sP(s) = M s^2 + C s + K with\n",
+		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients:\n" : "");
 	person_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
 	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	person_loads(to, &model->written->system);
 	if (model->shortened)
 		fputs("\nOf the modes that are kept:\n", to);
-	person_poles(to, step->model, step->written);
+	if (is_nonlinear(step))
+		person_left_out(to, step);
+	else
+		person_poles(to, step->model, step->written);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
 		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
@@ -403,5 +420,6 @@ void explain_person(FILE *to, const struct step *step)
 	person_step(to, step);
 	if (step->choice)
 		person_needs(to, step);
-	person_linear(to, step);
+	if (!is_nonlinear(step))
+		person_linear(to, step);
 }

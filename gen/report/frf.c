@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frequency responses N(jw)/B(jw) of the linear part as numbers: each is enclosed, and rounded once. */
+/* Frequency responses N(jw)/B(jw) of linear models as numbers: each is enclosed, and rounded once. */
 #include "report/report.h"
 
 #include <math.h>
@@ -40,6 +40,7 @@ static void need_transfers(const struct model *model)
 struct responses responses_of(const struct step *step, struct band band)
 {
 	const struct model *model = step->shown->model;
+	need_linear(step, "frequency responses");
 	need_transfers(model);
 	struct responses r = { .band = band };
 	r.count = transfers_of(resolvent_of(&model->system), model, &r.transfer);

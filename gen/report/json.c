@@ -268,7 +268,9 @@ void explain_json(FILE *to, const struct step *step)
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	json_poles(to, step);
-	json_linear(to, step);
+	json_nonlinear(to, step);
+	if (!is_nonlinear(step))
+		json_linear(to, step);
 	if (!step->shown->no_phi)
 		json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);

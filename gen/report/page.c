@@ -86,13 +86,19 @@ static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 	fputs("</table></div>\n", to);
 }
 
-static void print_matrices(FILE *to, const struct step *step)
+static void print_determinant(FILE *to, const struct step *step)
 {
-	const struct model *model = told_model(step);
 	int length = resolvent_determinant(step->written)->length;
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(step->written, B);
-	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", has_leftover(step) || model->switching
+	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n",
+		polynomial_text(length, (const mpq_t *)B));
+}
+
+static void print_matrices(FILE *to, const struct step *step)
+{
+	const struct model *model = told_model(step);
+	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", is_nonlinear(step)
 			? "Of the terms that are linear with constant coefficients: " : "");
 	for (int i = 0; i < model->n; i++)
 		fprintf(to, "%s %s", i ? "," : "", escaped(model->coord_name[i]));
@@ -100,8 +106,18 @@ static void print_matrices(FILE *to, const struct step *step)
 	print_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
 	print_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
 	print_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
-	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n",
-		polynomial_text(length, (const mpq_t *)B));
+	if (!is_nonlinear(step))
+		print_determinant(to, step);
+}
+
+static void print_left_out(FILE *to, const struct step *step)
+{
+	print_words(to, step, person_nonlinear, " class=\"text\"");
+}
+
+static bool is_linear_model(const struct step *step)
+{
+	return !is_nonlinear(step);
 }
 
 static void print_modes(FILE *to, const struct step *step)
@@ -126,7 +142,7 @@ static const char *entry_text(const struct mode_shape *shape, int i)
 
 static bool has_shapes(const struct step *step)
 {
-	return told_model(step)->n <= LIMIT_SHAPES;
+	return !is_nonlinear(step) && told_model(step)->n <= LIMIT_SHAPES;
 }
 
 static void print_shapes(FILE *to, const struct step *step)
@@ -157,7 +173,7 @@ static bool has_transfers(const struct step *step)
 	const struct model *model = step->shown->model;
 	struct drive *drive;
 	struct transfer *t;
-	if (model->system.states > LIMIT_TRANSFERS || drives_of(model, &drive) == 0)
+	if (is_nonlinear(step) || model->system.states > LIMIT_TRANSFERS || drives_of(model, &drive) == 0)
 		return false;
 	int count = transfers_of(resolvent_of(&model->system), model, &t);
 	while (count > 0 && t[count - 1].N.length == 0)
@@ -204,8 +220,9 @@ static void print_cost(FILE *to, const struct step *step)
 static const struct section sections[] = {
 	{ "Equations", print_equations, NULL },
 	{ "Matrices", print_matrices, NULL },
-	{ "Poles and modes", print_modes, NULL },
-	{ "Poles in the plane", print_poles, NULL },
+	{ "What is not told, and why", print_left_out, is_nonlinear },
+	{ "Poles and modes", print_modes, is_linear_model },
+	{ "Poles in the plane", print_poles, is_linear_model },
 	{ "Mode shapes", print_shapes, has_shapes },
 	{ "Static gains and zeros", print_gains, has_transfers },
 	{ "Frequency responses", print_frf, has_transfers },

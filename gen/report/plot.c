@@ -105,6 +105,7 @@ static void plot_poles(struct picture *p)
 {
 	struct pole_report *pole;
 	double left, right, high;
+	need_linear(p->step, "poles");
 	int count = poles_of(p->step->model, p->step->written, &pole);
 	window_of_poles(count, pole, &left, &right, &high);
 	print_poles(p->data, count, pole, high);
@@ -164,6 +165,7 @@ static void plot_modes(struct picture *p)
 {
 	const struct model *of;
 	struct mode_shape *shape;
+	need_linear(p->step, "mode shapes");
 	int count = shapes_of_step(p->step, &shape, &of);
 	int shown = count < SHAPES ? count : SHAPES;
 	if (of->system.n > LIMIT_SHAPES)
@@ -213,13 +215,6 @@ static void add_size_and_angle(struct picture *p, const char *frame, const char 
 	p->height += 190;
 }
 
-/* What is not in a frequency response */
-static const char *linear_part(const struct step *step)
-{
-	return has_leftover(step) ? ", of the linear terms alone"
-	       : step->shown->model->switching ? ", of the first region alone (--amplitude: of all)" : "";
-}
-
 static void add_bode(struct picture *p, const struct responses *r, int first, int last)
 {
 	int count, angles;
@@ -229,8 +224,7 @@ static void add_bode(struct picture *p, const struct responses *r, int first, in
 	note_first(count < CURVES ? count : CURVES, count, "outputs");
 	if (count == 0)
 		return;
-	add_size_and_angle(p, frame, format("outputs over %s%s", r->transfer[first].drive, linear_part(p->step)), size,
-			   angle);
+	add_size_and_angle(p, frame, format("outputs over %s", r->transfer[first].drive), size, angle);
 }
 
 /* ---- sweeps, up and down ---- */
@@ -306,6 +300,7 @@ static void plot_frf(struct picture *p)
 		plot_sweeps(p);
 		return;
 	}
+	need_linear(p->step, "frequency responses");
 	struct pole_report *pole;
 	int count = poles_of(p->step->model, p->step->written, &pole), drives = 0;
 	struct responses r = responses_of(p->step, band_of_poles(count, pole, 2 * POINTS / 3 + 1));

@@ -278,10 +278,15 @@ static void json_frictions(FILE *to, const struct switching *s)
 static void json_sliders(FILE *to, const struct switching *s)
 {
 	fputs("  \"sliders\": [", to);
-	for (int i = 0; i < s->sliders; i++)
-		fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", i ? ", " : "",
-			s->slider[i].expression[0], s->slider[i].expression[1],
-			s->slider[i].upward[0] ? "true" : "false", s->slider[i].upward[1] ? "true" : "false");
+	const char *between = "";
+	for (int i = 0; i < s->sliders; i++) {
+		const struct slide **slide;
+		int slides = slides_of(s, i, &slide);
+		for (int k = 0; k < slides; k++, between = ", ")
+			fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", between,
+				slide[k]->expression[0], slide[k]->expression[1],
+				slide[k]->upward[0] ? "true" : "false", slide[k]->upward[1] ? "true" : "false");
+	}
 	fputs("],\n", to);
 }
 

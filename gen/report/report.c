@@ -66,7 +66,8 @@ const char *json_text(const char *name)
 {
 	const char *text = "";
 	for (; *name; name++)
-		text = (unsigned char)*name < ' ' ? format("%s\\u%04x", text, *name)
-						  : format("%s%s%c", text, *name == '\\' ? "\\" : "", *name);
+		text = (unsigned char)*name < ' '
+			       ? format("%s\\u%04x", text, *name)
+			       : format("%s%s%c", text, *name == '\\' || *name == '"' ? "\\" : "", *name);
 	return text;
 }

@@ -15,6 +15,14 @@ const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
 const char *json_text(const char *name);                    /* a file's name, as it is in quotes */
 
+/* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
+
+bool is_nonlinear(const struct step *step);
+const char *nonlinear_text(const struct step *step);        /* sin(x); x'^3 */
+void person_nonlinear(FILE *to, const struct step *step);   /* what is not told of it, and why */
+void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
+void need_linear(const struct step *step, const char *what); /* "poles"; leaves the statement where it is not linear */
+
 /* ---- reach.c: what a series costs, and how far it reaches ---- */
 
 void person_reach(FILE *to, const struct step *step);
@@ -171,6 +179,7 @@ struct sweeps {                     /* up, then down; else as above */
 	struct swept *of;
 	double *size[2], *angle[2]; /* of the harmonic of the excitation's frequency, over its amplitude */
 };
+bool can_be_swept(const struct step *step);
 double amplitude_of(const char *text);                      /* of the command line; leaves the statement */
 struct sweeps sweeps_of(const struct step *step, struct band band, double amplitude);
 

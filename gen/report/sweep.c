@@ -291,6 +291,21 @@ static _Noreturn void tell_left_over(const struct model *model)
 	      "--amplitude is of models that are linear between breakpoints, and this has other terms");
 }
 
+static bool has_friction(const struct model *model)
+{
+	bool rubbed = rubs(model->switching);
+	for (int p = 0; p < model->switching->parts; p++)
+		rubbed = rubbed || rubs(model->switching->part[p].model->switching);
+	return rubbed;
+}
+
+bool can_be_swept(const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	return model->switching && model->impacts == 0 && !has_friction(model) && model->system.segments == 1 &&
+	       model->system.states <= LIMIT_SWEPT;
+}
+
 static void need_sweeps(const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -299,10 +314,7 @@ static void need_sweeps(const struct step *step)
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
-	bool rubbed = rubs(model->switching);
-	for (int p = 0; p < model->switching->parts; p++)
-		rubbed = rubbed || rubs(model->switching->part[p].model->switching);
-	if (model->impacts > 0 || rubbed)
+	if (model->impacts > 0 || has_friction(model))
 		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (model->system.segments > 1)

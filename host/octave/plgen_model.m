@@ -199,7 +199,7 @@ classdef plgen_model < handle
             e = m.told;
         end
         function p = get.Phi(m)
-            p = m.explain.Phi;
+            p = linear(m, "Phi").Phi;
         end
         function s = get.ss(m)
             s = state_space(m);
@@ -208,12 +208,7 @@ classdef plgen_model < handle
         % A, B, C, D (B1, D1 of u' where it acts) over the inputs, or with loads = true over the spec's loads; discrete:
         % those of a step over which u is held, or []
         function s = state_space(m, loads)
-            e = m.explain;
-            if any(isfield(e, {"leftover", "regions", "parts"}))
-                fail([m.name, ": not linear, so it has no state space"]);
-            elseif ! isfield(e, "ss")
-                fail("this plgen tells no state space");
-            end
+            e = linear(m, "state space");
             column = ismember(e.ss.inputs, m.inputs) != (nargin > 1 && loads);
             s = space_of(e.ss, column, numel(m.states));
             s.discrete = [];
@@ -236,6 +231,13 @@ classdef plgen_model < handle
     end
 
     methods (Access = private)
+        function e = linear(m, what)
+            e = m.explain;
+            if ! e.linear
+                fail([m.name, ": not linear, so it has no ", what, ": it would leave out ", strjoin(e.left_out, "; ")]);
+            end
+        end
+
         function begin(m)
             m.fresh = true;
             m.tail = [];

@@ -695,19 +695,21 @@ class Model:
     @property
     def Phi(self):
         """y(t + h) = Phi y(t) + ..., correctly rounded."""
-        return np.array(self.explain['Phi'], dtype=float)
+        return np.array(self._linear('Phi')['Phi'], dtype=float)
+
+    def _linear(self, what):
+        told = self.explain
+        if not told['linear']:
+            raise Error('{}: not linear, so it has no {}: it would leave out {}'.format(
+                self.name, what, '; '.join(told['left_out'])))
+        return told
 
     def state_space(self, loads=False):
         """StateSpace over the inputs; loads: over the spec's loads, each with its function of time as an input."""
-        told = self.explain
-        if told.get('leftover') or told.get('regions') or told.get('parts'):
-            raise Error('{}: not linear, so it has no state space'.format(self.name))
-        if 'ss' not in told:
-            raise Error('this plgen tells no state space')
-        own = told['ss']
+        own = self._linear('state space')['ss']
         column = [i for i, name in enumerate(own['inputs']) if (name in self.inputs) != loads]
         space = StateSpace(own, column, self.states)
-        if own.get('discrete'):
+        if own['discrete']:
             space.discrete = StateSpace(own['discrete'], column, self.states, own['discrete']['h'])
         for one in (space, space.discrete):
             if one:

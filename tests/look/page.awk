@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A page of --report: every element is closed, in the order in which it was opened; all its sections are there, and each
-# link leads to one; nothing is fetched from elsewhere.
+# link leads to one; nothing is fetched from elsewhere. nonlinear=1: of a model without poles.
 {
 	text = text $0 "\n"
 }
@@ -33,8 +33,14 @@ END {
 	}
 	if (depth != 0)
 		wrong("not closed: " name[depth])
-	n = split("Equations;Matrices;Poles and modes;Poles in the plane;Mode shapes;What was chosen, and why;" \
-	          "Cost and error of a step", section, ";")
+	linear = "Poles and modes;Poles in the plane;Mode shapes"
+	other = "What is not told, and why"
+	n = split("Equations;Matrices;What was chosen, and why;Cost and error of a step;" \
+	          (nonlinear ? other : linear), section, ";")
+	m = split((nonlinear ? linear ";Static gains and zeros;Frequency responses" : other), absent, ";")
+	for (i = 1; i <= m; i++)
+		if (text ~ (">" absent[i] "<"))
+			wrong("a section " absent[i])
 	for (i = 1; i <= n; i++)
 		if (text !~ ("<h2 id=\"s[0-9]+\">" section[i] "</h2>") ||
 		    text !~ ("<a href=\"#s[0-9]+\">" section[i] "</a>"))

@@ -118,7 +118,10 @@ refuses("a run that leaves the finite numbers", "hard: t = 0.4: the step has lef
 tell("... tells when, and its status", m.status == 1 && numel(m.t) == 4, m.status, m.t);
 refuses("a record too narrow", "expected rows of 2 numbers, the inputs", @() plgen_model("held.spec").run(ones(5, 3)));
 refuses("a jump where there is none", "plgen_mex: the model has no jump", @() plgen_model("held.spec").jump(3));
-refuses("the state space of a stop", "stop: not linear, so it has no state space", @() model("stop").ss);
+refuses("the state space of a stop", ...
+        "stop: not linear, so it has no state space: it would leave out max(x, 0)", @() model("stop").ss);
+refuses("the Phi of a stop", "stop: not linear, so it has no Phi: it would leave out max(x, 0)", ...
+        @() model("stop").Phi);
 
 m = plgen_model("held.spec", "k", 70.25);
 A = [0, 0, 1, 0; 0, 0, 0, 1; -70.25 / 2, 70.25 / 2, -0.3, 0.3; 70.25, -73.25, 0.6, -0.6];

@@ -219,7 +219,12 @@ refuses('a jump where there is none', 'held: it has no jump', lambda: Model('hel
 refuses('tau beyond the step', 'tau is not in 0 .. h', lambda: model('sdcsf').at(0.02), ValueError)
 refuses('pickling', 'a Model is compiled code and cannot be pickled; copy() makes another',
         lambda: pickle.dumps(m), TypeError)
-refuses('the state space of a stop', 'stop: not linear, so it has no state space', lambda: model('stop').ss)
+refuses('the state space of a stop',
+        'stop: not linear, so it has no state space: it would leave out max(x, 0)', lambda: model('stop').ss)
+refuses('the Phi of a stop', 'stop: not linear, so it has no Phi: it would leave out max(x, 0)',
+        lambda: model('stop').Phi)
+refuses('the response of a stop', 'stop: not linear, so it has no state space: it would leave out max(x, 0)',
+        lambda: model('stop').response([1.0]))
 os.environ['CC'] = 'no-such-compiler'
 refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
         lambda: model('sdcsf'))

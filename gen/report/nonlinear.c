@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of a model that is not linear there are no poles, mode shapes, frequency responses and static gains: those of the
+ * terms that happen to be linear are of another model. What they would leave out is said by name. */
+#include "report/report.h"
+
+enum { NAMED = 12 };
+
+bool is_nonlinear(const struct step *step)
+{
+	return step->shown->model->nonlinears > 0;
+}
+
+const char *nonlinear_text(const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	const char *text = "";
+	for (int i = 0; i < model->nonlinears && i < NAMED; i++)
+		text = format("%s%s%s", text, i ? "; " : "", model->nonlinear[i].text);
+	return model->nonlinears <= NAMED ? text : format("%s; and %d more", text, model->nonlinears - NAMED);
+}
+
+void person_nonlinear(FILE *to, const struct step *step)
+{
+	fprintf(to, "The model is not linear, so it has no poles, mode shapes, frequency responses and static gains. "
+		    "They would leave out:\n    %s\n", nonlinear_text(step));
+	if (can_be_swept(step))
+		fputs("--response F0:F1 --amplitude A sweeps through all regions.\n", to);
+}
+
+/* What B, poles and modes of an object are of, then: the terms that are in M, C and K */
+void json_nonlinear(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	fprintf(to, "  \"linear\": %s,\n  \"left_out\": [", is_nonlinear(step) ? "false" : "true");
+	for (int i = 0; i < model->nonlinears; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(model->nonlinear[i].text));
+	fputs("],\n", to);
+}
+
+void need_linear(const struct step *step, const char *what)
+{
+	const struct model *model = step->shown->model;
+	if (!is_nonlinear(step))
+		return;
+	error(model->nonlinear[0].at,
+	      can_be_swept(step) ? "--response and --plot frf with --amplitude A sweep through all regions"
+				 : "plrun runs any model, also with a record that sweeps",
+	      "the model is not linear, so there are no %s: they would leave out '%s'%s", what,
+	      model->nonlinear[0].text, model->nonlinears > 1 ? format(" and %d more", model->nonlinears - 1) : "");
+}
