@@ -647,18 +647,34 @@ static int *felt_in_segments(struct building *b, const struct switching *s, cons
 	return index;
 }
 
+static bool reads_channels(const struct model *model, const struct output *row)
+{
+	bool any = false;
+	for (int c = 0; row && c < model->channels; c++)
+		any = any || mpq_sgn(row->channel[c]) != 0;
+	return any;
+}
+
+/* An acceleration follows from its equation, and so reads what is left over; that is computed of all equations. */
+static bool reads_leftover(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs; i++)
+		any = any || reads_channels(model, &model->output[i]);
+	for (int k = 0; k < model->n; k++)
+		any = any || reads_channels(model, model->highest[k]);
+	return any;
+}
+
 static void build_grips(struct building *b, struct switching *s)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	const struct model *model = b->model;
-	for (int i = 0; i < model->outputs; i++) {
-		const struct output *output = &model->output[i];
-		if (output->left)
-			feel(s, seen, output->left);
-		for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
-			if (mpq_sgn(output->channel[c]) != 0)
-				feel(s, seen, model->operator[0].left[c]);
-	}
+	for (int i = 0; i < model->outputs; i++)
+		if (model->output[i].left)
+			feel(s, seen, model->output[i].left);
+	for (int c = 0; c < model->channels && reads_leftover(model); c++)
+		feel(s, seen, model->operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].grip = ARRAY(struct output *, (size_t)s->felts);
 	for (int i = 0; i < s->felts; i++) {

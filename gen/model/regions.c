@@ -245,8 +245,8 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 /* What it can hold while it sticks: no less than its force. It is that of the regions next to where it sticks. */
 static struct form *rest_here(struct looking *l, struct friction *f, struct form *const *x, struct form *force)
 {
-	int side = l->interval[f->expression] - stick_of(l->s, f);
-	if (l->grown || (side != 1 && side != -1))
+	int side = l->grown ? 0 : l->interval[f->expression] - stick_of(l->s, f);
+	if (side != 1 && side != -1)
 		return x[2];
 	struct form *more = less_in_velocity(x[2], force, x[0]);
 	if (is_positive_here(l, more) || sign_here(l, f->atom->node, more, form_number(0)) >= 0)
@@ -301,19 +301,19 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 
 /* Whether a > b, by which expression and which way that is passed */
 static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
-		    struct slider *slider, int side)
+		    struct slide *slide, int side)
 {
 	struct form *form = form_difference(a, b);
 	mpq_t factor;
 	mpq_init(factor);
 	refuse_force(node, form);
-	int e = expression_here(l, node, form, factor, slider->at[side]);
+	int e = expression_here(l, node, form, factor, slide->at[side]);
 	if (e < 0)
 		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
-	slider->expression[side] = e;
-	slider->upward[side] = mpq_sgn(factor) > 0;
+	slide->expression[side] = e;
+	slide->upward[side] = mpq_sgn(factor) > 0;
 	mpq_clear(factor);
-	return is_above(l, e, slider->at[side]) == slider->upward[side];
+	return is_above(l, e, slide->at[side]) == slide->upward[side];
 }
 
 static struct slider *slider_of(struct switching *s, const struct atom *a)
@@ -324,7 +324,6 @@ static struct slider *slider_of(struct switching *s, const struct atom *a)
 	ENLARGE(s->slider, (size_t)s->sliders + 1);
 	struct slider *slider = &s->slider[s->sliders++];
 	*slider = (struct slider){ .atom = a };
-	mpq_inits(slider->at[0], slider->at[1], NULL);
 	return slider;
 }
 
@@ -336,12 +335,14 @@ static struct form *slider_here(struct looking *l, const struct atom *a, struct 
 	check_forces_here(l, a);
 	struct form *force = force_here(l, a->node, x[1], &negative);
 	struct slider *slider = slider_of(l->s, a);
-	bool above = exceeds(l, a->node, x[0], force, slider, 0),
-	     below = exceeds(l, a->node, form_difference(NEW(struct form), x[0]), force, slider, 1);
+	struct slide *slide = &region->slide[a->index];
+	mpq_inits(slide->at[0], slide->at[1], NULL);
+	bool above = exceeds(l, a->node, x[0], force, slide, 0),
+	     below = exceeds(l, a->node, form_difference(NEW(struct form), x[0]), force, slide, 1);
 	slider->negative = slider->negative || negative;
 	region->force[a->index] = force;
 	region->rest[a->index] = x[0];
-	region->slide[a->index] = above ? 1 : below ? -1 : 0;
+	slide->way = above ? 1 : below ? -1 : 0;
 	return form_number(0);
 }
 
@@ -489,6 +490,7 @@ static void forget_region(const struct region *region)
 	discard(region->force);
 	discard(region->rest);
 	discard(region->carried);
+	discard(region->slide);
 }
 
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
@@ -521,7 +523,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
-		s->region[r].slide = ARRAY(int, (size_t)atoms);
+		s->region[r].slide = ARRAY(struct slide, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
@@ -861,14 +863,22 @@ static int breaks_of_all(const struct switching *s)
 	return count;
 }
 
+static void drop_from_slides(struct switching *s, int expression)
+{
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < 2 * s->sliders && s->region[r].slide; i++) {
+			int *of = &s->region[r].slide[s->slider[i / 2].atom->index].expression[i % 2];
+			*of -= *of > expression;
+		}
+}
+
 static void drop_expression(struct switching *s, int expression)
 {
 	for (int e = expression; e + 1 < s->expressions; e++)
 		s->expression[e] = s->expression[e + 1];
 	for (int i = 0; i < s->frictions; i++)
 		s->friction[i].expression -= s->friction[i].expression > expression;
-	for (int i = 0; i < 2 * s->sliders; i++)
-		s->slider[i / 2].expression[i % 2] -= s->slider[i / 2].expression[i % 2] > expression;
+	drop_from_slides(s, expression);
 	for (int i = 0; i < s->impacts; i++)
 		for (int k = 0; k < s->segments; k++)
 			s->impact[i].in[k].expression -= s->impact[i].in[k].expression > expression;

@@ -132,11 +132,42 @@ static void slide_alone(const struct slider_row *r, const struct form *rest)
 	put_in_others(r, borne);
 }
 
-/* c f + a z' + rest = 0 and v = d z' + w: v + k f = p, where k = c d/a and p = w - (d/a) rest */
-static void slide_damped(const struct slider_row *r, const struct form *rest, mpq_srcptr damping)
+/* F of a slider with a damper, and 0 where it falls below */
+static const struct form *force_beside_damper(const struct slider_row *r)
+{
+	struct form *force[] = { form_alias(r->force), form_number(0) };
+	mpq_t start;
+	mpq_init(start);
+	check_force(r->atom->node->child[1], r->force, start, NULL);
+	mpq_clear(start);
+	return never_falls_below(r->force) ? r->force : kept_call(&r->b->collector, r->atom->node, FN_MAX, 2, force);
+}
+
+/* v, what p has beyond -kF and kF, and k f, the rest of it. A force that changes is taken on either side by itself: as
+ * one function of three pieces it would jump where both sides are passed, which a force that is never below 0 does not
+ * let happen. */
+static void divide_drive(const struct slider_row *r, const struct form *p, mpq_srcptr k, struct form **slides,
+			 struct form **borne)
 {
 	struct collector *c = &r->b->collector;
 	const struct node *node = r->atom->node;
+	const struct form *force = force_beside_damper(r);
+	struct form *x[] = { form_alias(p), scaled_form(force, k, false, true), form_scale(force, k) };
+	if (is_constant(force)) {
+		*slides = kept_call(c, node, FN_DEADZONE, 3, x);
+		*borne = kept_call(c, node, FN_CLIP, 3, x);
+		return;
+	}
+	struct form *above[] = { form_difference(p, x[2]), form_number(0) },
+		    *below[] = { form_difference(p, x[1]), form_number(0) };
+	*slides = form_sum(kept_call(c, node, FN_MAX, 2, above), kept_call(c, node, FN_MIN, 2, below), false);
+	*borne = form_difference(p, *slides);
+}
+
+/* c f + a z' + rest = 0 and v = d z' + w: v + k f = p, where k = c d/a and p = w - (d/a) rest; v is what p has beyond
+ * kF */
+static void slide_damped(const struct slider_row *r, const struct form *rest, mpq_srcptr damping)
+{
 	mpq_srcptr along = rate_factor(r->velocity, r->coord);
 	struct basis rate = { .kind = BASIS_COORD, .index = r->coord, .order = 1 };
 	mpq_t ratio, k;
@@ -144,13 +175,14 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 	mpq_div(ratio, along, damping);
 	mpq_mul(k, ratio, r->factor);
 	if (mpq_sgn(k) < 0)
-		tell_drives(node);
+		tell_drives(r->atom->node);
 	rest = form_difference(rest, form_single(rate, damping));
 	struct form *drive = form_difference(form_difference(r->velocity, form_single(rate, along)),
 					     form_scale(rest, ratio));
-	struct form *x[] = { drive, scaled_form(r->force, k, false, true), form_scale(r->force, k) };
-	r->snapshot->residual[r->row].form = form_difference(r->velocity, kept_call(c, node, FN_DEADZONE, 3, x));
-	put_in_others(r, scaled_form(kept_call(c, node, FN_CLIP, 3, x), k, true, false));
+	struct form *slides, *borne;
+	divide_drive(r, drive, k, &slides, &borne);
+	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
+	put_in_others(r, scaled_form(borne, k, true, false));
 	mpq_clears(ratio, k, NULL);
 }
 

@@ -424,6 +424,18 @@ static bool is_first(const struct switching *s, int index, bool low)
 	return low ? f[index].low : f[index].negative;
 }
 
+/* Of a slider without mass that is none of regions, since a damper stands beside it; each is said once. */
+static bool falls_beside_damper(const struct model *model, int index)
+{
+	const struct atom *atom = model->bearing[index].atom;
+	bool other = never_falls_below(atom->operand[1]);
+	for (int i = 0; i < index; i++)
+		other = other || model->bearing[i].atom->node == atom->node;
+	for (int i = 0; model->switching && i < model->switching->sliders; i++)
+		other = other || model->switching->slider[i].atom->node == atom->node;
+	return !other;
+}
+
 /* The force of friction is never below 0, nor above what is held. */
 static void check_friction(const struct model *model)
 {
@@ -437,6 +449,9 @@ static void check_friction(const struct model *model)
 	for (int i = 0; s && i < s->sliders; i++)
 		if (s->slider[i].negative && !is_repeated_slider(s, i))
 			say_falls(s->slider[i].atom->node, true);
+	for (int i = 0; i < model->bearings; i++)
+		if (falls_beside_damper(model, i))
+			say_falls(model->bearing[i].atom->node, true);
 	for (int i = 0; i < model->drags; i++) {
 		const struct drag *drag = &model->drag[i];
 		if (!never_falls_below(drag->force))

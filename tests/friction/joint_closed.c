@@ -173,6 +173,92 @@ static void knock(int step)
 	beside_small_steps("knock", step, end, x, z);
 }
 
+/* z sticks behind each end of x = 0.3 cos(3 t), then bears F(x), on the way down and up */
+static wide leaning_place(wide t)
+{
+	int half = (int)(3 * t / pi);
+	wide x = 0.3L * cosl(3 * t), F = 2 + 3 * (x > 0 ? x : 0), end = half % 2 ? -0.26L : 0.3L - 2.9L / 50;
+	if (half % 2)
+		return x - F / 50 > end ? x - F / 50 : end;
+	if (half == 0)
+		end = 0.3L;
+	return x + F / 50 < end ? x + F / 50 : end;
+}
+
+/* What is crossed names expressions and breakpoints that there are. */
+static bool is_known(const struct run *r, const pl_crossing *crossing, int count)
+{
+	static const int breaks[] = { 1, 2, 1, 1 };     /* x; q; q - F; -q - F */
+	bool known = true;
+	for (int i = 0; i < count; i++)
+		known = known && crossing[i].expression >= 0 && crossing[i].expression < 4 &&
+			crossing[i].breakpoint >= 0 && crossing[i].breakpoint < breaks[crossing[i].expression];
+	return known && r->of->model->status(r->state) == 0;
+}
+
+static void leaning(int step)
+{
+	static double time[MOST];
+	static pl_crossing crossing[MOST];
+	struct run r = run_new(variant_of(joint_closed_table, "leaning_%d", step));
+	double off = 0, bears = 0, y[3], out[1], h = r.of->model->h;
+	for (int n = 1; n * h < 20; n++) {
+		run_step(&r, NULL);
+		run_state(&r, y);
+		r.of->model->out(r.state, out);
+		wide z = leaning_place(n * (wide)h);
+		off = worse(off, fabs(y[1] - (double)z));
+		bears = worse(bears, fabs(out[0] - (double)(50 * (0.3L * cosl(3 * n * (wide)h) - z))));
+	}
+	is_close(off, 0, 1e-13, "leaning %d: where the slider is", step);
+	is_close(bears, 0, 1e-11, "leaning %d: what it bears", step);
+	run_free(&r);
+	r = run_new(variant_of(joint_closed_table, "leaning_%d", step));
+	int count = run_crossings(&r, 20, MOST, time, crossing);
+	ok(count <= MOST && is_known(&r, crossing, count), "leaning %d: %d crossings, status 0", step, count);
+	run_free(&r);
+}
+
+/* The same equations by Runge and Kutta's method of order 4 in long double */
+static void pressed_slopes(wide t, const wide *z, wide *slope)
+{
+	wide x = 0.3L * cosl(3 * t), v = -0.9L * sinl(3 * t), q = 50 * (x - z[0]), p = 40 * (x - z[1]) + 0.4L * v;
+	wide F = 1 + 5 * x > 0 ? 1 + 5 * x : 0;
+	slope[0] = (q - held_to(q, 2 + cosl(5 * t))) / 0.3L;
+	slope[1] = (p - held_to(p, F)) / 0.4L;
+}
+
+static void pressed_step(wide t, wide h, wide *z)
+{
+	wide k[4][2], at[2];
+	for (int s = 0; s < 4; s++) {
+		wide c = s == 3 ? h : s > 0 ? h / 2 : 0;
+		for (int i = 0; i < 2; i++)
+			at[i] = z[i] + (s > 0 ? c * k[s - 1][i] : 0);
+		pressed_slopes(t + c, at, k[s]);
+	}
+	for (int i = 0; i < 2; i++)
+		z[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+}
+
+static void pressed(int step)
+{
+	struct run r = run_new(variant_of(joint_closed_table, "pressed_%d", step));
+	double off = 0, y[4], h = r.of->model->h;
+	wide z[2] = { 0, 0 };
+	int parts = (int)lround(h / 2e-5);
+	for (int n = 0; n * h < 3.95; n++) {
+		for (int k = 0; k < parts; k++)
+			pressed_step(n * (wide)h + k * (wide)h / parts, (wide)h / parts, z);
+		run_step(&r, NULL);
+		run_state(&r, y);
+		off = worse(off, worse(fabs(y[1] - (double)z[0]), fabs(y[2] - (double)z[1])));
+	}
+	is_close(off, 0, 1e-8, "pressed %d: where both are, beside steps of 2e-5 s", step);
+	is_close(r.of->model->status(r.state), 0, 0, "pressed %d: status", step);
+	run_free(&r);
+}
+
 int main(void)
 {
 	for (int step = 0; step < 3; step++)
@@ -182,7 +268,10 @@ int main(void)
 	for (int step = 0; step < 3; step++) {
 		changing(step);
 		knock(step);
+		leaning(step);
 	}
+	for (int step = 0; step < 2; step++)
+		pressed(step);
 	inside();
 	for (int step = 0; step < 2; step++) {
 		record(step);
