@@ -6,6 +6,8 @@
  * Where a sum of the equations is free of states, u, that one is the centre X = sum w_j x_j, w = u W with W what
  * multiplies the highest derivatives: only loads and inputs act on it, and nothing that rounds inside changes its
  * velocity. Otherwise it is a coordinate as written.
+ * A coordinate is measured from one that acts on it, and so is carried along wherever that goes. From one that does not
+ * it is not: b of a'' + a' = 0, b' = b - a may grow without bound while a rests, and a = (a - b) + b would be lost.
  *
  * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
  * are derived in them from the start; where the user looks, states are the written ones. */
@@ -20,6 +22,7 @@ struct look {
 	/* factors of coordinates in every form, sums inside functions too; and of velocities */
 	struct echelon place, rate;
 	bool *strong, *weak;        /* n x n: read in one sum, in one equation */
+	bool *acts;                 /* n x n, [i][j]: i stands in the equation of j; then, that or through others */
 	bool *seen;                 /* per atom */
 };
 
@@ -32,6 +35,13 @@ static bool leads(const struct model *model, const struct basis *basis)
 static void join(bool *joined, int n, int a, int b)
 {
 	joined[a * n + b] = joined[b * n + a] = true;
+}
+
+/* A coordinate in the equation of `own` */
+static void join_equation(struct look *l, int own, int coord)
+{
+	join(l->weak, l->model->n, own, coord);
+	l->acts[coord * l->model->n + own] = true;
 }
 
 /* Coordinates of a sum, one after the other */
@@ -59,7 +69,7 @@ static void look_at(struct look *l, const struct form *form, int own)
 		const struct basis *basis = &form->term[i].basis;
 		const struct atom *atom = basis->kind == BASIS_ATOM ? basis->atom : NULL;
 		if (basis->kind == BASIS_COORD) {
-			join(l->weak, n, own, basis->index);
+			join_equation(l, own, basis->index);
 			if (basis->order == 0 && own != basis->index)
 				join(l->strong, n, own, basis->index);
 			if (basis->order == 0)
@@ -91,7 +101,7 @@ static void join_atoms(struct look *l, const struct form *form, int own)
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind == BASIS_COORD)
-			join(l->weak, l->model->n, own, basis->index);
+			join_equation(l, own, basis->index);
 		if (basis->kind != BASIS_ATOM || l->seen[basis->atom->index])
 			continue;
 		l->seen[basis->atom->index] = true;
@@ -106,6 +116,7 @@ static struct look look_new(const struct model *model)
 	return (struct look){ model,
 			      echelon_new(model->n),
 			      echelon_new(model->n),
+			      ARRAY(bool, n *n),
 			      ARRAY(bool, n *n),
 			      ARRAY(bool, n *n),
 			      ARRAY(bool, (size_t)atoms_count(model->atoms)) };
@@ -245,6 +256,21 @@ static int *components_of(const struct look *l, int *count)
 	return component;
 }
 
+/* Whatever acts through others acts too. */
+static void close_acts(struct look *l)
+{
+	int n = l->model->n, *reached = ARRAY(int, (size_t)n);
+	bool *direct = ARRAY(bool, (size_t)(n * n));
+	memcpy(direct, l->acts, (size_t)(n * n) * sizeof *direct);
+	for (int i = 0; i < n; i++) {
+		for (int j = 0; j < n; j++)
+			reached[j] = -1;
+		spread(direct, n, i, 0, reached);
+		for (int j = 0; j < n; j++)
+			l->acts[i * n + j] = reached[j] == 0;
+	}
+}
+
 static int first_entry(int n, const mpq_t *v)
 {
 	int j = 0;
@@ -329,25 +355,58 @@ static bool fixed_in_part(const struct model *model, const struct group *g)
 	return false;
 }
 
-/* Whether it is one, and which */
-static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *weight, struct group *g)
+/* Do both act on each other? */
+static bool go_together(const struct look *l, int a, int b)
 {
+	return l->acts[a * l->model->n + b] && l->acts[b * l->model->n + a];
+}
+
+/* Nothing of the group acts on it that it does not act on */
+static bool leads_group(const struct look *l, const mpq_t *motion, int coord)
+{
+	int n = l->model->n;
+	for (int j = 0; j < n; j++)
+		if (mpq_sgn(motion[j]) != 0 && l->acts[j * n + coord] && !l->acts[coord * n + j])
+			return false;
+	return true;
+}
+
+/* Of those that lead the first; of these one of first order, where there is such */
+static int root_in(const struct look *l, const mpq_t *motion, bool split)
+{
+	int n = l->model->n, root = first_entry(n, motion);
+	while (!leads_group(l, motion, root))
+		for (root++; mpq_sgn(motion[root]) == 0; root++)
+			;
+	for (int j = 0; j < n && split; j++)
+		if (mpq_sgn(motion[j]) != 0 && l->model->system.velocity[j] < 0 && go_together(l, root, j))
+			return j;
+	return root;
+}
+
+/* What a centre is made of moves with the root. */
+static bool centres(const struct look *l, const struct group *g, const mpq_t *weight)
+{
+	for (int j = 0; j < g->n; j++)
+		if (mpq_sgn(weight[j]) != 0 && !go_together(l, g->root, j))
+			return false;
+	return support(g->n, weight) > 1 && !is_mixed(l->model, g->motion, weight);
+}
+
+/* Whether it is one, and which */
+static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight, struct group *g)
+{
+	const struct model *model = l->model;
 	int n = model->n;
 	mpq_t sum, product;
 	*g = (struct group){ .n = n, .motion = motion, .split = is_mixed(model, motion, motion) };
-	g->root = first_entry(n, motion);
-	for (int j = 0; j < n && g->split; j++)
-		if (mpq_sgn(motion[j]) != 0 && model->system.velocity[j] < 0) {
-			g->root = j;
-			break;
-		}
+	g->root = root_in(l, motion, g->split);
 	mpq_inits(sum, product, NULL);
 	for (int j = 0; j < n && weight; j++) {
 		mpq_mul(product, weight[j], motion[j]);
 		mpq_add(sum, sum, product);
 	}
-	if (mpq_sgn(sum) != 0 && support(n, (const mpq_t *)weight) > 1 &&
-	    !is_mixed(model, motion, (const mpq_t *)weight)) {
+	if (mpq_sgn(sum) != 0 && centres(l, g, (const mpq_t *)weight)) {
 		mpq_div(sum, sum, motion[g->root]);
 		scale(n, weight, sum);
 		g->weight = weight;
@@ -376,7 +435,7 @@ static void link_to(struct relative *r, const struct group *g, int coord, int pa
 	r->sequence[r->links++] = coord;
 }
 
-/* Breadth first from the root: neighbours in a sum, then in an equation, then the rest */
+/* Breadth first from the root: neighbours in a sum, then in an equation, then the rest; none that it does not act on */
 static void grow_tree(struct relative *r, const struct look *l, const struct group *g)
 {
 	int n = g->n, *queue = ARRAY(int, (size_t)n), done = 0, count = 1;
@@ -388,7 +447,7 @@ static void grow_tree(struct relative *r, const struct look *l, const struct gro
 		for (done = 0; done < count; done++)
 			for (int j = 0; j < n; j++) {
 				bool near = stage == 2 ? queue[done] == g->root : joined[queue[done] * n + j];
-				if (in[j] || !near || mpq_sgn(g->motion[j]) == 0)
+				if (in[j] || !near || mpq_sgn(g->motion[j]) == 0 || !l->acts[queue[done] * n + j])
 					continue;
 				in[j] = true;
 				link_to(r, g, j, queue[done]);
@@ -605,12 +664,19 @@ static struct form *divided(const struct relative *r, int coord, struct form *co
 	return form;
 }
 
+static bool same_order(const struct model *model, int a, int b)
+{
+	return (model->system.velocity[a] >= 0) == (model->system.velocity[b] >= 0);
+}
+
 struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation)
 {
 	const struct link *link = &r->link[coord];
 	struct form *form = NEW(struct form);
 	mpq_t one;
 	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
+		return equation[coord];
+	if (link->kind == LINK_PARENT && !same_order(r->written, coord, link->from))
 		return equation[coord];
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
@@ -636,6 +702,7 @@ struct relative *relative_of(const struct model *model)
 	int n = model->n, count, groups = 0, centres = 0, places = echelon_null_space(&l.place, &place);
 	if (places == 0)
 		return NULL;
+	close_acts(&l);
 	both.row = ARRAY(mpq_t *, (size_t)n);
 	both.pivot = ARRAY(int, (size_t)n);
 	both.rank = 0;
@@ -663,14 +730,14 @@ struct relative *relative_of(const struct model *model)
 		struct group g;
 		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c),
 		      *weight = sum_in(n, sums, sum, component, c, &found);
-		if (!motion || !make_group(model, (const mpq_t *)motion, found == 1 ? weight : NULL, &g))
+		if (!motion || !make_group(&l, (const mpq_t *)motion, found == 1 ? weight : NULL, &g))
 			continue;
 		int first = r->links;
 		grow_tree(r, &l, &g);
 		if (g.weight)
 			place_root(r, &g, first);
 		centres += g.weight != NULL;
-		groups++;
+		groups += g.weight || r->links > first;
 	}
 	if (groups == 0)
 		return NULL;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Drives that turn: after a million steps the torque, which is a difference of positions, is what the load asks for
  * to the last digits, and the position is where the speed has brought it. The specs are such that both have closed
- * forms: constant drive and load, so that in the end nothing but the whole moves. Each form, double or float. */
+ * forms: constant drive and load, so that in the end nothing but the whole moves. Each form, double or float.
+ * Two have a body at rest beside one that runs away: its place, 1, is their torque. */
 #include "../forms/variant.h"
 #include "../emitted/tap.h"
 
@@ -28,6 +29,8 @@ static const struct expected expected[] = {
     {"changing", 200000, 1.2, 100, -0.05230395601095225 / 6},
     {"follower", 1000000, 1.2, 100, 0.03},
     {"retuned", 1000000, 1.2, 100, -0.01 / 6},
+    {"still", 800, 1, 1, 0},
+    {"sources", 10000, 1, 1e9, 0},
     {"row", 40000, 1.2, 10000, -(11 * 12 / 2) * (1.2 / 300) / 12},
 };
 
