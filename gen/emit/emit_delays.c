@@ -54,10 +54,13 @@ void emit_delay_declarations(const struct emitter *core)
 	       "struct $n {\n"
 	       "    $n_core core;          /* what else there is of it: $n_core_...(&s->core, ...) */\n"
 	       "    double past[%d][%d];  /* samples of each input, in a ring */\n"
+	       "%s"
 	       "    int newest;\n"
 	       "};\n"
 	       "\n", e->system->states, d->inputs, e->model->outputs, shortest(round_rational(d->h)), d->inputs,
-	    samples_kept(core));
+	    samples_kept(core), core->ramps ? format("    double ends[%d][%d];  /* where a ramp to each ended that "
+						     "%s_hold left */\n", d->inputs, samples_kept(core), e->name)
+					    : "");
 	say(e, "void   $n_init($n *s);  /* as $n_core_init; inputs have been 0 */\n"
 	       "void   $n_set($n *s, double t, const double y[$N_STATES]);  /* the samples stay */\n"
 	       "void   $n_get(const $n *s, double y[$N_STATES]);\n"
@@ -97,6 +100,45 @@ static void emit_table_of_delays(const struct emitter *e)
 	say(e, "};\n");
 }
 
+/* Which inputs of the core are held, or ramps; NULL: none is */
+static const char *those_of_core(const struct emitter *e, bool ramps, int *count)
+{
+	const struct delays *d = delays_of(e);
+	const char *is = "";
+	*count = 0;
+	for (int i = 0; i < d->inputs + d->count; i++)
+		if ((e->system->input[i].hold != 0) == ramps)
+			is = format("%s%si == %d", is, (*count)++ ? " || " : "", i);
+	return is;
+}
+
+/* A ramp ends where NAME_hold may make the next begin anew, with a jump; delayed ones do so later. */
+static void emit_ends(const struct emitter *e, int kept)
+{
+	const struct delays *d = delays_of(e);
+	int count;
+	const char *ramps = those_of_core(e, true, &count);
+	say(e, "\n"
+	       "/* Where the ramp to that sample ended */\n"
+	       "static double $n_end(const $n *s, int input, int steps)\n"
+	       "{\n"
+	       "    const int at = s->newest - steps;\n"
+	       "    return s->ends[input][at < 0 ? at + %d : at];\n"
+	       "}\n"
+	       "\n"
+	       "/* Samples from which ramps of $n_core begin with a part of the step: u of those that do so there */\n"
+	       "static void $n_starts(const $n *s, int part, double u[%d])\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const int ago = $n_parts_ago[i] + %d - part;\n"
+	       "        if (ago %% %d == 0%s)\n"
+	       "            u[i] = $n_past(s, $n_input_of[i], ago / %d);\n"
+	       "    }\n"
+	       "}\n", kept, d->inputs + d->count, d->inputs + d->count, d->parts, d->parts,
+	    count < d->inputs + d->count ? format(" && (%s)", ramps) : "", d->parts);
+}
+
 static void emit_samples_of_core(const struct emitter *e)
 {
 	const struct delays *d = delays_of(e);
@@ -107,7 +149,7 @@ static void emit_samples_of_core(const struct emitter *e)
 	       "    int i;\n"
 	       "    s->newest = s->newest + 1 == %d ? 0 : s->newest + 1;\n"
 	       "    for (i = 0; i < $N_INPUTS; i++)\n"
-	       "        s->past[i][s->newest] = u[i];\n"
+	       "        %ss->past[i][s->newest] = u[i];\n"
 	       "}\n"
 	       "\n"
 	       "/* The sample so many steps before the newest */\n"
@@ -115,7 +157,9 @@ static void emit_samples_of_core(const struct emitter *e)
 	       "{\n"
 	       "    const int at = s->newest - steps;\n"
 	       "    return s->past[input][at < 0 ? at + %d : at];\n"
-	       "}\n", kept, kept);
+	       "}\n", kept, e->ramps ? "s->ends[i][s->newest] = " : "", kept);
+	if (e->ramps)
+		emit_ends(e, kept);
 	say(e, "\n"
 	       "/* Inputs of $n_core in a part of the step: 0 .. %d */\n"
 	       "static void $n_samples(const $n *s, int part, double u[%d])\n"
@@ -123,11 +167,8 @@ static void emit_samples_of_core(const struct emitter *e)
 	       "    int i;\n"
 	       "    for (i = 0; i < %d; i++) {\n", parts - 1, all, all);
 	for (int ramp = 0; ramp < 2; ramp++) {
-		int count = 0;
-		const char *is = "";
-		for (int i = 0; i < all; i++)
-			if ((e->system->input[i].hold != 0) == ramp)
-				is = format("%s%si == %d", is, count++ ? " || " : "", i);
+		int count;
+		const char *is = those_of_core(e, ramp, &count);
 		if (count == 0)
 			continue;
 		if (count < all)
@@ -135,7 +176,7 @@ static void emit_samples_of_core(const struct emitter *e)
 		if (ramp)
 			say(e, "            const int ago = $n_parts_ago[i] + %d - part, whole = ago / %d;\n"
 			       "            const double between = (double)(ago %% %d) / %d.0;\n"
-			       "            const double now = $n_past(s, $n_input_of[i], whole);\n"
+			       "            const double now = $n_end(s, $n_input_of[i], whole);\n"
 			       "            u[i] = between > 0.0\n"
 			       "                       ? now + between *\n"
 			       "                                   ($n_past(s, $n_input_of[i], whole + 1) - now)\n"
@@ -153,6 +194,16 @@ static void emit_samples_of_core(const struct emitter *e)
 
 /* ---- functions ---- */
 
+/* The ramps of those that the text declares */
+static const char *those_of_text(const struct emitter *e)
+{
+	const char *is = "";
+	for (int i = 0; i < delays_of(e)->inputs; i++)
+		if (e->system->input[i].hold)
+			is = format("%s%si == %d", is, *is ? " || " : "", i);
+	return is;
+}
+
 static void emit_state_functions(const struct emitter *e)
 {
 	const struct delays *d = delays_of(e);
@@ -163,7 +214,7 @@ static void emit_state_functions(const struct emitter *e)
 	       "    $n_core_init(&s->core);\n"
 	       "    for (i = 0; i < $N_INPUTS; i++)\n"
 	       "        for (k = 0; k < %d; k++)\n"
-	       "            s->past[i][k] = 0.0;\n"
+	       "            %ss->past[i][k] = 0.0;\n"
 	       "    s->newest = 0;\n"
 	       "}\n"
 	       "\n"
@@ -171,7 +222,8 @@ static void emit_state_functions(const struct emitter *e)
 	       "void $n_get(const $n *s, double y[$N_STATES]) { $n_core_get(&s->core, y); }\n"
 	       "double $n_time(const $n *s) { return $n_core_time(&s->core); }\n"
 	       "int $n_status(const $n *s) { return $n_core_status(&s->core); }\n"
-	       "void $n_out(const $n *s, double out[$N_OUTPUTS]) { $n_core_out(&s->core, out); }\n", samples_kept(e));
+	       "void $n_out(const $n *s, double out[$N_OUTPUTS]) { $n_core_out(&s->core, out); }\n", samples_kept(e),
+	    e->ramps ? "s->ends[i][k] = " : "");
 	if (e->ramps)
 		say(e, "\n"
 		       "void $n_hold($n *s, const double u[$N_INPUTS])\n"
@@ -179,10 +231,14 @@ static void emit_state_functions(const struct emitter *e)
 		       "    double all[%d];\n"
 		       "    int i;\n"
 		       "    for (i = 0; i < $N_INPUTS; i++)\n"
-		       "        s->past[i][s->newest] = u[i];\n"
+		       "        if (%s)\n"
+		       "            s->past[i][s->newest] = u[i];\n"
 		       "    $n_samples(s, %d, all);\n"
+		       "    $n_starts(s, %d, all);\n"
+		       "    for (i = 0; i < $N_INPUTS; i++)\n"
+		       "        all[i] = u[i];\n"
 		       "    $n_core_hold(&s->core, all);\n"
-		       "}\n", d->inputs + d->count, d->parts - 1);
+		       "}\n", d->inputs + d->count, those_of_text(e), d->parts - 1, d->parts);
 }
 
 static void emit_steps(const struct emitter *e)
@@ -197,6 +253,7 @@ static void emit_steps(const struct emitter *e)
 	       "    $n_keep(s, u);\n"
 	       "    for (part = 0; part < %d; part++) {\n"
 	       "        $n_samples(s, part, all);\n"
+	       "%s"
 	       "        $n_core_step(&s->core, all);\n"
 	       "    }\n"
 	       "}\n"
@@ -210,7 +267,7 @@ static void emit_steps(const struct emitter *e)
 	       "            out += $N_OUTPUTS;\n"
 	       "        }\n"
 	       "    }\n"
-	       "}\n", all, d->parts);
+	       "}\n", all, d->parts, e->ramps ? spell(e, "        $n_starts(s, part, s->core.u);\n") : "");
 	if (!e->step->series.emitted)
 		return;
 	say(e, "\n"
@@ -222,11 +279,14 @@ static void emit_steps(const struct emitter *e)
 	       "    $n_keep(&now, u);\n"
 	       "    for (part = 0; part < %d && tau > $N_CORE_H; part++, tau -= $N_CORE_H) {\n"
 	       "        $n_samples(&now, part, all);\n"
+	       "%s"
 	       "        $n_core_step(&now.core, all);\n"
 	       "    }\n"
 	       "    $n_samples(&now, part, all);\n"
+	       "%s"
 	       "    $n_core_at(&now.core, all, tau, y);\n"
-	       "}\n", all, d->parts - 1);
+	       "}\n", all, d->parts - 1, e->ramps ? spell(e, "        $n_starts(&now, part, now.core.u);\n") : "",
+	    e->ramps ? spell(e, "    $n_starts(&now, part, now.core.u);\n") : "");
 }
 
 static void emit_model(const struct emitter *e)

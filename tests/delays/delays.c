@@ -66,6 +66,44 @@ static void oscillator(const pl_model *m, bool ramp, long double h, long double 
 	free(s);
 }
 
+/* x' = u(t - d), where u begins with row 0 at once, and begins anew, with a jump, at t = 1: x is the area below it. A
+ * held input beside the ramp, v, acts from its own step on, and delayed by 0.1 s no sooner. */
+static void jumps(const pl_model *m, long double d)
+{
+	const long double h = 0.1L;
+	void *s = calloc(1, m->size);
+	double worst = 0, y[2], row[2] = { sample(1), 5 };
+	bool good = true;
+	m->init(s);
+	m->hold(s, row);
+	for (int k = 0; k < 20; k++) {
+		const double next[2] = { sample(k + 2), 1 + k };
+		const double again[2] = { 4, 0 };
+		if (k == 10)
+			m->hold(s, again);
+		for (int part = 1; part <= 4; part++) {
+			const long double t = k * h + part * h / 4;
+			long double area = 0, held = 0;
+			for (int j = 0; j < 20; j++) {      /* ramps from j h, as far as they have come by then */
+				const long double from = j == 10 ? 4 : sample(j + 1), to = sample(j + 2);
+				const long double w = fminl(fmaxl(t - d - j * h, 0), h);
+				area += from * w + (to - from) * w * w / (2 * h);
+				held += (1 + j) * fminl(fmaxl(t - h - j * h, 0), h);
+			}
+			m->at(s, next, (double)(part * h / 4), y);
+			worst = worse(worst, worse(fabs(y[0] - (double)area), fabs(y[1] - (double)held)));
+			good = close_to(y[0], (double)area, tolerance, "%s, t = %Lg", m->name, t) && good;
+			good = close_to(y[1], (double)held, tolerance, "%s, held, t = %Lg", m->name, t) && good;
+		}
+		double end[2];
+		m->step(s, next);
+		m->get(s, end);
+		good = close_to(end[0], y[0], tolerance, "%s, step %d", m->name, k) && good;
+	}
+	ok(good, "%s, d = %Lg: an input that jumps, and one that is held, to %.2g", m->name, d, worst);
+	free(s);
+}
+
 /* Steps of 0.1 and a delay of 0.25 against steps of 0.05 and an input that is late by 5 of them */
 static void late(const pl_model *m, const pl_model *plain, bool ramp)
 {
@@ -111,6 +149,10 @@ int main(void)
 	oscillator(&ramp0_1_model, true, 0.1L, 0.1L);
 	oscillator(&ramp1_7_model, true, 0.1L, 1.7L);
 	oscillator(&ramp0_model, true, 0.1L, 0);
+	jumps(&jumps0_03_model, 0.03L);
+	jumps(&jumps0_1_model, 0.1L);
+	jumps(&jumps0_25_model, 0.25L);
+	jumps(&jumps0_model, 0);
 	late(&stopped_model, &stopped_plain_model, false);
 	late(&stopped_ramp_model, &stopped_plain_ramp_model, true);
 	late(&bent_model, &bent_plain_model, false);

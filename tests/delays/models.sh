@@ -24,6 +24,9 @@ for d in 0.25 0.3 0.04 0.1 1.7 0; do
 	add "held$mark" echo '' -D "d=$d"
 	add "ramp$mark" echo "$ramp" -D "d=$d"
 done
+for d in 0.03 0.1 0.25 0; do
+	add "jumps$(echo "$d" | tr . _)" jumps '' -D "d=$d"
+done
 add other_step echo '' -D d=0.25 --step 0.04
 for model in stopped bent; do
 	add "$model" "$model" ''
