@@ -284,7 +284,7 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 	}
 	argv[count++] = "--";
 	argv[count++] = o->spec;
-	*error = run_command(argv, NULL, strcmp(o->spec, "-") == 0, &said);
+	*error = run_command(argv, strcmp(o->spec, "-") == 0 ? input_kept() : NULL, &said);
 	free(argv);
 	*status = WRONG_DATA;
 	if (*error)
@@ -314,7 +314,7 @@ static char *run_compiler(const struct toolchain *t, const char *const *more, si
 	argv[words++] = t->runtime;
 	for (size_t i = 0; i < count; i++)
 		argv[words++] = more[i];
-	char *error = run_command(argv, NULL, false, &said);
+	char *error = run_command(argv, NULL, &said);
 	free(argv);
 	if (!error && said.status)
 		error = format("the compiler '%s' could not make a program of the model:\n%s", t->compiler[0],
@@ -415,13 +415,17 @@ char *compile(const struct toolchain *t, const struct code *c, bool anew, char *
 	if (!anew && access(object, R_OK) == 0)
 		return object;
 	char *work = format("%s/making.XXXXXX", cache_folder());
+	struct unfinished folder = { .path = work, .remove = remove_work };
+	unfinished_begins();
 	if (!mkdtemp(work))
 		*error = format("cannot write to '%s': %s", cache_folder(), strerror(errno));
+	unfinished_is(*error ? NULL : &folder);
 	if (!*error && (anew || access(runtime, R_OK) != 0))
 		*error = compile_runtime(t, c->single, work, runtime);
 	if (!*error)
 		*error = compile_model(t, c, work, runtime, object);
 	remove_work(work);
+	unfinished_ends(&folder);
 	remove_old_work();
 	return *error ? NULL : object;
 }

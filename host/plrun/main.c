@@ -85,14 +85,6 @@ static void check_end(const struct start *s)
 				   s->machine->name));
 }
 
-static FILE *open_output(const struct options *o)
-{
-	FILE *to = o->output ? fopen(o->output, "wb") : stdout;
-	if (!to)
-		fail(WRONG_DATA, format("cannot write '%s': %s", o->output, strerror(errno)));
-	return to;
-}
-
 /* How many steps a row is apart from the next */
 static uint64_t steps_between(const struct options *o, const struct machine *m)
 {
@@ -137,7 +129,8 @@ static int run_once(struct start *s)
 		fail(WRONG_DATA, error);
 	if (job.resampled)
 		record_say(job.record, job.h);
-	FILE *to = open_output(o);
+	struct output *output;
+	FILE *to = output_open(o->output, &output);
 	if (!o->plot || o->output || !isatty(STDOUT_FILENO))
 		w.rows = rows_new(to, m, job.h, every);
 	if (o->plot)
@@ -146,6 +139,7 @@ static int run_once(struct start *s)
 	progress_end();
 	if (w.rows)
 		rows_end(w.rows);
+	output_done(output, to);
 	if (w.picture)
 		picture_draw(w.picture, o->plot_file);
 	if (error)
@@ -153,11 +147,21 @@ static int run_once(struct start *s)
 	return error ? WRONG_DATA : 0;
 }
 
+static int run_sweep(struct start *s, struct workers w)
+{
+	struct output *output;
+	FILE *to = output_open(w.rank == 0 ? s->options.output : NULL, &output);
+	int status = sweep_run(s->tools, &s->options, s->code, s->machine, to, w);
+	output_done(output, to);
+	return status;
+}
+
 int main(int argc, char **argv)
 {
 	struct start s = { 0 };
 	char *error;
 	int status;
+	watch_for_signals();
 	struct workers w = workers_begin(&argc, &argv);
 	read_options(argc, argv, &s.options);
 	if (w.rank != 0)
@@ -171,9 +175,7 @@ int main(int argc, char **argv)
 		fail(WRONG_DATA, error);
 	check_end(&s);
 	set_params(&s);
-	status = s.options.sweep
-		 ? sweep_run(s.tools, &s.options, s.code, s.machine, w.rank == 0 ? open_output(&s.options) : NULL, w)
-		 : run_once(&s);
+	status = s.options.sweep ? run_sweep(&s, w) : run_once(&s);
 	if (fclose(stdout) != 0)
 		fail(WRONG_DATA, format("cannot write to standard output: %s", strerror(errno)));
 	workers_end();

@@ -80,6 +80,9 @@ static void take_jobs(struct options *o, const char *value)
 
 static void take_plot(struct options *o, const char *value)
 {
+	for (const char *c = value ? value : ""; *c; c++)
+		if ((unsigned char)*c < ' ' || *c == 127)
+			wrong_usage("--plot: the name of the picture has a control character in it");
 	o->plot = true;
 	o->plot_file = value;
 }

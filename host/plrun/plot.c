@@ -109,6 +109,7 @@ static void print_data(FILE *to, const struct picture *p)
 	fputs("END\n", to);
 }
 
+/* Nothing of the file's name is in the script: the picture comes out of gnuplot's standard output. */
 static void print_terminal(FILE *to, const struct picture *p, const char *file)
 {
 	int height = 120 + (p->panels == 1 ? 360 : 180 * p->panels);
@@ -120,9 +121,6 @@ static void print_terminal(FILE *to, const struct picture *p, const char *file)
 	else
 		fprintf(to, "set term %s noenhanced size 900,%d font 'sans,11' background '#ffffff'\n",
 			strcmp(end, "png") == 0 ? "pngcairo" : "svg", height);
-	fputs("set output ", to);
-	print_quoted(to, file);
-	putc('\n', to);
 }
 
 static void print_panels(FILE *to, const struct picture *p)
@@ -142,10 +140,19 @@ static void print_panels(FILE *to, const struct picture *p)
 	fputs("unset multiplot\n", to);
 }
 
+static void write_picture(const struct said *said, const char *file)
+{
+	struct output *output;
+	FILE *to = output_open(file, &output);
+	fwrite(said->out, 1, said->out_length, to);
+	output_done(output, to);
+}
+
+/* -d: gnuplot without what the user has it do at its start */
 void picture_draw(struct picture *p, const char *file)
 {
 	FILE *script = need(tmpfile());
-	const char *window[] = { "gnuplot", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-", NULL };
+	const char *window[] = { "gnuplot", "-d", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-d", "-", NULL };
 	struct said said = { 0 };
 	const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
 	if (!file && !(display && *display) && !(wayland && *wayland))
@@ -155,12 +162,12 @@ void picture_draw(struct picture *p, const char *file)
 	print_terminal(script, p, file);
 	print_data(script, p);
 	print_panels(script, p);
-	fflush(script);
-	rewind(script);
-	char *error = run_command(file ? drawn : window, script, false, &said);
+	char *error = run_command(file ? drawn : window, script, &said);
 	if (!error && said.status)
 		error = format("gnuplot could not draw:\n%s", said.err);
 	if (error)
 		fail(WRONG_DATA, error);
+	if (file)
+		write_picture(&said, file);
 	fclose(script);
 }

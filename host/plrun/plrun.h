@@ -15,6 +15,8 @@
  *     options.c   the command line; what is plgen's own is passed on
  *     message.c   errors, with places in files; memory
  *     text.c      numbers as text: shortest digits, t as the decimal k h
+ *     unfinished.c    what goes when plrun is ended before its time
+ *     output.c    files that are written: whole, or not at all
  *     command.c   programs: found, started, what they say
  *     build.c     from a spec to a shared object.  The cache is keyed by everything that the object is made of: the
  *                 C, the runtime, the compiler and its flags; an object is made beside its place and renamed into
@@ -44,6 +46,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 /* ---- message.c ---- */
 
@@ -102,6 +105,26 @@ struct options {
 };
 void read_options(int argc, char **argv, struct options *o);
 
+/* ---- unfinished.c ---- */
+
+struct unfinished {
+	pid_t group;                            /* of programs; 0: none */
+	const char *path;
+	void (*remove)(const char *path);       /* NULL: nothing has to be */
+	struct unfinished *next;
+};
+void watch_for_signals(void);                   /* before any other thread begins */
+void say_when_interrupted(const char *text);
+void unfinished_begins(void);                   /* no end comes until it is said what has begun: */
+void unfinished_is(struct unfinished *u);       /* NULL: nothing has */
+void unfinished_ends(struct unfinished *u);
+
+/* ---- output.c ---- */
+
+struct output;
+FILE *output_open(const char *path, struct output **output);   /* path NULL: standard output */
+void output_done(struct output *o, FILE *to);   /* all that was written is there, under its name */
+
 /* ---- command.c ---- */
 
 struct said {
@@ -111,9 +134,10 @@ struct said {
 };
 const char *folder_of_program(void);            /* of plrun itself; NULL: not known */
 char *find_in_path(const char *name);           /* NULL: not there */
-/* The program argv[0], found in PATH, with `input` or NULL on its standard input (inherits: ours).  NULL, or why it
- * could not be started. */
-char *run_command(const char *const *argv, FILE *input, bool inherits, struct said *said);
+FILE *input_kept(void);                         /* our standard input as a file, for as many commands as read it */
+/* The program argv[0], found in PATH, with `input` from its beginning on its standard input, or nothing.  NULL, or why
+ * it could not be started. */
+char *run_command(const char *const *argv, FILE *input, struct said *said);
 
 /* ---- build.c ---- */
 
@@ -221,7 +245,9 @@ struct record {
 struct record *record_read(const struct options *o, const struct machine *m);
 /* Does row k stand at k h, for all k? Then samples are rows. */
 bool record_on_grid(const struct record *r, double h);
-uint64_t record_samples(const struct record *r, double h, bool on_grid);   /* how many there are at 0, h, 2 h ... */
+#define MOST_STEPS (UINT64_C(1) << 53)
+/* How many there are at 0, h, 2 h ...; no more than that many */
+uint64_t record_samples(const struct record *r, double h, bool on_grid);
 void record_say(const struct record *r, double h);      /* that it is resampled, where it is */
 /* Sample k; *near is where the last one was found, 0 at first */
 void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, size_t *near, double *u);

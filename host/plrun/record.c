@@ -229,7 +229,8 @@ bool record_on_grid(const struct record *r, double h)
 
 uint64_t record_samples(const struct record *r, double h, bool on_grid)
 {
-	return on_grid ? r->rows : (uint64_t)(r->time[r->rows - 1] / h + 1e-6) + 1;
+	double last = on_grid ? 0 : r->time[r->rows - 1] / h + 1e-6;
+	return on_grid ? r->rows : last < (double)MOST_STEPS ? (uint64_t)last + 1 : MOST_STEPS;
 }
 
 void record_say(const struct record *r, double h)

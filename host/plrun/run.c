@@ -10,7 +10,7 @@
 static bool steps_until(double end, double h, bool single, uint64_t *steps)
 {
 	double quotient = end / h;
-	if (!(quotient < 9007199254740992.0))
+	if (!(quotient < (double)MOST_STEPS))
 		return false;
 	*steps = (uint64_t)(quotient + 1e-9 + quotient * (single ? 0x1p-23 : 0x1p-52));
 	return true;
@@ -27,6 +27,8 @@ char *plan_run(struct job *job)
 	job->resampled = !on_grid;
 	if (job->until >= 0 && !steps_until(job->until, job->h, job->machine->single, &job->steps))
 		return format("T is more than 2^53 steps");
+	if (job->until < 0 && samples == MOST_STEPS)
+		return format("the record is more than 2^53 steps long");
 	if (job->until < 0)
 		job->steps = samples > ahead ? samples - ahead : 0;
 	if (r && samples < job->steps + ahead)

@@ -10,10 +10,8 @@
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct variant {
 	size_t row;                             /* the first that has it */
@@ -445,15 +443,6 @@ static char *key_of(const struct sweep *s, const struct code *c)
 	return hash_name(&h);
 }
 
-static void on_signal(int number)
-{
-	static const char text[] = "\nplrun: interrupted; the same command with --resume goes on here\n";
-	ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
-	(void)written;
-	signal(number, SIG_DFL);
-	raise(number);
-}
-
 static void begin_output(struct sweep *s, const struct code *c, struct workers w)
 {
 	if (s->record && !record_on_grid(s->record, s->machine->h))
@@ -462,8 +451,7 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 	if (w.rank != 0)
 		return;
 	s->journal = journal_open(key_of(s, c), s->options->resume, s->rows, s->line);
-	signal(SIGINT, on_signal);
-	signal(SIGTERM, on_signal);
+	say_when_interrupted("\nplrun: interrupted; the same command with --resume goes on here\n");
 	for (size_t i = 0; i < s->rows; i++)
 		s->done += s->line[i] != NULL;
 	if (s->options->resume)

@@ -193,6 +193,10 @@ note: r.csv: rows 0.1 to 2.2 s apart, and the step is 0.1 s: resampled by ramps'
 status=$?
 cp said log
 result $status 'rows that are missing, by their times'
+record 'a time beyond all steps' 't,push,road\n0,1,2\n1e300,1,2\n' \
+	'r.csv:3:1: error: the record is more than 2^53 steps long'
+run in.spec 0.2 --input r.csv >out && [ "$(wc -l <out)" -eq 4 ]
+result $? 'a time beyond all steps, and an end before it'
 printf 'push,road\n1,2\n' >r.csv
 refuses 'a column of no input' 2 "plrun: error: --column: the model has no input 'wind'; its inputs: road, push
 $usage" in.spec --input r.csv --column wind=push
@@ -208,6 +212,10 @@ if [ -w /dev/full ]; then
 	[ $? -eq 1 ] && grep -q 'error: cannot write the rows: No space left on device' said
 	result $? 'a full disk'
 fi
+
+run swing.spec 0.5 -D k=9 >file.csv
+cat swing.spec | run - 0.5 -D k=9 >pipe.csv
+same file.csv pipe.csv 'a spec on standard input, with a param: it is read once'
 
 # ---- sweeps ----
 # table NAME LINES EXPECTED [OPTIONS]

@@ -32,7 +32,7 @@ for spec in brake impact_oscillator; do
 	result $? "$spec: a picture"
 done
 mkdir own
-printf '#!/bin/sh\ncat >script\n' >own/gnuplot
+printf '#!/bin/sh\ncat >script\necho "$*" >arguments\necho drawn\n' >own/gnuplot
 chmod +x own/gnuplot
 (PATH=$PWD/own:$PATH; run "$models/sdcsf.spec" 30 --every 0.25 --plot thin.svg >rows.csv)
 sed -n '/^\$data/,/^END/{//d;p}' script >points
@@ -41,9 +41,24 @@ sed '1d; s/,/ /g' rows.csv >expected
 result $? 'with --every a picture has the points of the rows'
 grep -q 'xrange \[0:30\]' script
 result $? 'with --every a picture ends where the rows end'
+[ "$(cat arguments)" = '-d -' ] && [ "$(cat thin.svg)" = drawn ] && ! grep -q 'thin\|set output' script
+result $? 'gnuplot without start files, and without the name of the file'
+mkdir home && echo 'system "touch started"' | tee home/.gnuplot >.gnuplot
+(HOME=$work/home XDG_CONFIG_HOME=$work/home; export HOME XDG_CONFIG_HOME
+	run "$models/scs.spec" 1 --plot start.svg >rows.csv) && [ -s start.svg ] && [ ! -f started ]
+result $? 'a start file of the user is not read'
+name=$(printf 'a\nsystem "touch executed"\n.svg')
+run "$models/scs.spec" 1 --plot "$name" >rows.csv
+[ $? -eq 2 ] && [ ! -s rows.csv ] && [ ! -f executed ] &&
+	[ "$(head -n 1 said)" = 'plrun: error: --plot: the name of the picture has a control character in it' ]
+result $? 'lines of gnuplot in the name of a picture'
+echo before >kept.svg && printf '#!/bin/sh\necho half; echo no >&2; exit 1\n' >own/gnuplot
+(PATH=$PWD/own:$PATH; run "$models/scs.spec" 1 --plot kept.svg >rows.csv)
+[ $? -eq 1 ] && [ "$(cat kept.svg)" = before ]
+result $? 'where gnuplot fails a picture stays as it was'
 (unset DISPLAY WAYLAND_DISPLAY; run "$models/scs.spec" 1 --plot >rows.csv; [ $? -eq 1 ] && grep -q 'no display' said)
 result $? 'a window without a display'
 run "$models/scs.spec" 1 --plot none/such/a.svg >rows.csv
-[ $? -eq 1 ] && grep -q 'gnuplot could not draw' said
+[ $? -eq 1 ] && grep -q "cannot write 'none/such/a.svg': No such file" said
 result $? 'a picture that cannot be written'
 tap_end
