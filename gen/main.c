@@ -173,6 +173,34 @@ static void print_main_text(void *context)
 	}
 }
 
+/* The rows of a closed form are where the C would step, also where a need chooses how far that is. */
+static void choose_for_rows(void *context)
+{
+	struct work *w = context;
+	if (!make(w) || !choose(w))
+		abandon();
+}
+
+static bool find_rows(struct work *w)
+{
+	struct work code = *w;
+	struct request *request = &w->options.request;
+	if (!request->solution || !request->step_open)
+		return true;
+	code.options.request.solution = request->step_open = false;
+	code.options.request.step = NULL;
+	if (request->single)
+		target_float();
+	const char *refused = unheard_refusal_of(choose_for_rows, &code);
+	target_double();
+	if (refused) {
+		say_error(w->spec->end, "a step can be written: step 0.01", "the needs choose no step: %s", refused);
+		return false;
+	}
+	request->step = exact_text(code.step->model->h);
+	return make(w);
+}
+
 static bool print_text(struct work *w)
 {
 	w->text = w->options.fmu ? file_inside() : file_new(w->options.output);
@@ -297,8 +325,8 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (!make(w) || !goes_with_delays(w) || !choose(w) || (w->options.strict && diagnostics_harden()) ||
-	    !print_text(w))
+	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) ||
+	    (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;
 	print_header(w);
 	rewrite_code(w);

@@ -491,10 +491,33 @@ static void check_fmu(const struct options *options)
 			wrong_usage(format("%s does not go with --fmu", against[i].option));
 }
 
+static bool has_control(const char *text)
+{
+	for (; *text; text++)
+		if ((unsigned char)*text < ' ' || *text == 127)
+			return true;
+	return false;
+}
+
+/* The C includes the header by its name, and in a rule of make the paths stand too. */
+static void check_spelling(const struct options *options, const char *const *path, int paths)
+{
+	const char *slash = options->header ? strrchr(options->header, '/') : NULL;
+	const char *name = slash ? slash + 1 : options->header ? options->header : "";
+	if (has_control(name) || strpbrk(name, "\"\\"))
+		wrong_usage("-o: an #include cannot name this file: a quote, a backslash or a control character is in "
+			    "its name");
+	for (int i = 0; i < paths; i++)
+		if (options->depfile && path[i] && has_control(path[i]))
+			wrong_usage("--depfile: a rule of make cannot name a file with a control character in its "
+				    "path");
+}
+
 static void check_names(const struct options *options)
 {
 	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu };
 	enum { PATHS = sizeof path / sizeof *path };
+	check_spelling(options, path, PATHS);
 	for (int i = 0; i < PATHS; i++)
 		for (int j = i + 1; j < PATHS; j++)
 			if (path[i] && path[j] && same_file(path[i], path[j]))

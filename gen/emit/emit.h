@@ -305,6 +305,7 @@ void emit_column_scales(const struct emitter *e);                 /* of what sta
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
+void emit_unread_samples(const struct emitter *e);                /* where it reads no input */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 void emit_series_lines(const struct emitter *e);
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
@@ -739,6 +740,7 @@ void emit_blocks_tuning(const struct emitter *e);                 /* the equatio
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 const char *two_words(struct coefficient number);
 void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
+void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix);
 /* Of a function that fills A: locals i, j and row[], of the highest derivatives; what no param changes is there */
 void emit_slopes_begin(const struct emitter *e);
 

@@ -119,6 +119,7 @@ void emit_locate(const struct emitter *e)
 		say(e, "    const double change = s->segment < %d ? $n_until(s, s->segment) : $N_H;\n",
 		    e->system->segments - 1);
 	emit_input_samples(e);
+	emit_unread_samples(e);
 	say(e, "    for (i = 0; i < %d; i++)\n"
 	       "        contact->interval[i] = 0;\n"
 	       "    contact->last.expression = -1;\n"

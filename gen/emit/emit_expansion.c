@@ -107,6 +107,8 @@ static void emit_between_start(const struct emitter *e)
 	}
 	if (adaptive || !meets_contacts(e))
 		emit_input_samples(e);
+	if (!meets_contacts(e))
+		emit_unread_samples(e);
 }
 
 /* Up to which time the formulas hold that t chooses */

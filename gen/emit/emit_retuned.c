@@ -140,10 +140,7 @@ static void emit_terms(const struct emitter *e, const struct tuning *t, int plac
 {
 	const char **column = layout_names(&e->step->layout, e->system, e->model);
 	emit_monomials(e, t, suffix);
-	say(e, "\nstatic const pl_term $n_term%s[%d] = {  /* row, column, product of params, factor */\n", suffix,
-	    t->terms > 0 ? t->terms : 1);
-	if (t->terms == 0)
-		say(e, "    {0, 0, 0, {0.0, 0.0}},\n");
+	emit_term_start(e, t, suffix);
 	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++) {
 		const struct retuned_row *row = row_at(e, place + term->row);
 		bool left = term->column >= t->x.size;

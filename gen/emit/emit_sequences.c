@@ -70,6 +70,14 @@ void emit_input_samples(const struct emitter *e)
 		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
 }
 
+void emit_unread_samples(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	int inputs = e->system->inputs;
+	if (inputs && !any_of(x->input, inputs) && !any_of(x->slope, inputs))
+		say(e, "    (void)u;\n");
+}
+
 static void emit_expansion_locals(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);

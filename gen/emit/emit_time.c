@@ -302,6 +302,11 @@ static void emit_passing_at(const struct emitter *e)
 	emit_leftover_now(e);
 	if (relative)
 		say(e, "    double x[$N_STATES];\n");
+	if (e->step->forced)            /* of what is kept and its forced part $n_get takes what rounding loses too */
+		say(e, "    if (!(tau > 0.0)) {\n"
+		       "        $n_get(s, y);\n"
+		       "        return;\n"
+		       "    }\n");
 	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, left, whole, relative ? "x" : "y");
 	if (relative)
 		say(e, "    $n_written(s, x, y);\n");

@@ -254,11 +254,20 @@ const char *two_words(struct coefficient number)
 	return format("{%s, %s}", shortest(number.value), shortest(number.low));
 }
 
+/* An array has one element at least. */
+void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix)
+{
+	say(e, "\nstatic const pl_term $n_term%s[%d] = {  /* row, column, product of params, factor */\n", suffix,
+	    t->terms > 0 ? t->terms : 1);
+	if (t->terms == 0)
+		say(e, "    {0, 0, 0, {0.0, 0.0}},\n");
+}
+
 static void emit_equations(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	emit_monomials(e, t, "");
-	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n", t->terms);
+	emit_term_start(e, t, "");
 	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
 		say(e, "    {%d, %d, %d, %s},  /* %s */\n", term->row, term->column, term->monomial,
 		    two_words(equation_number(e->model, term->factor)), tuned_term_note(e, term));

@@ -252,9 +252,9 @@ static const char *side_text(struct writer *w, const struct form *left, enum com
 /* min, max where their order is known: each with each other; word: their text */
 static const char *best_text(struct writer *w, const struct atom *a, const char *const *word, int next, int champion)
 {
-	const struct form *x = a->operand[next], *y = a->operand[champion];
 	if (next == a->operands)
 		return word[champion];
+	const struct form *x = a->operand[next], *y = a->operand[champion];
 	const char *other = best_text(w, a, word, next + 1, next), *same = best_text(w, a, word, next + 1, champion);
 	return format("(%s ? %s : %s)",
 		      side_text(w, x, a->function == FN_MIN ? CMP_LT : CMP_GT, y, word[next], word[champion]), other,

@@ -7,12 +7,6 @@ static void nothing(const struct emitter *e)
 	(void)e;
 }
 
-static void no_start(const struct emitter *e, const char *s)
-{
-	(void)e;
-	(void)s;
-}
-
 static bool never(const struct step *step)
 {
 	(void)step;
@@ -45,28 +39,41 @@ static void emit_pass_of_changes(const struct emitter *e)
 		emit_passing(e);
 }
 
+/* Params that nothing reads are held where a scheme with a leftover has found none. */
+static void emit_linear_tables(const struct emitter *e)
+{
+	emit_held_nominal(e);
+	emit_times_of_changes(e);
+}
+
+static void emit_held_pass(const struct emitter *e)
+{
+	emit_held_retune(e);
+	emit_pass_of_changes(e);
+}
+
 static const struct kind linear = {
 	.banner = banner_linear,
 	.step_note = "",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_at = far_pole,
 	.constants = nothing,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = nothing,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.declare_state = nothing,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.reads_load = no_further_load,
 	.reads_phi = never,
-	.tables = emit_times_of_changes,
-	.pass = emit_pass_of_changes,
+	.tables = emit_linear_tables,
+	.pass = emit_held_pass,
 	.step = emit_step,
 	.held = nothing,
 	.at = emit_at,
-	.wrappers = nothing,
+	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };
 
@@ -163,12 +170,6 @@ static const struct kind tuned_blocks = {
 	.wrappers = emit_tuning_wrapper,
 	.params = emit_params_line
 };
-
-static void emit_held_pass(const struct emitter *e)
-{
-	emit_held_retune(e);
-	emit_pass_of_changes(e);
-}
 
 /* ---- regions ---- */
 

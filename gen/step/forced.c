@@ -14,6 +14,7 @@
 enum {
 	STEPS = 1000,
 	BITS = 320,
+	SPARE = 64,                 /* of these; what is left tells what is 0 */
 	LIMIT_SIZE = 64,
 	LIMIT_FORCED_STATES = 32,
 	LIMIT_SOLVED = 48,
@@ -175,13 +176,22 @@ static bool make_flow(const struct step *step, const struct layout *place, int s
 	return true;
 }
 
+/* A sum of which all but the last digits cancel is 0, as that of a state that stays at 0 by symmetry: its last digits
+ * are those that E is rounded by. */
 static void advance(int size, const mpfr_t *E, mpfr_t *x, mpfr_t *next)
 {
 	for (int i = 0; i < size; i++) {
+		mpfr_exp_t largest = mpfr_get_emin();
 		mpfr_set_zero(next[i], 1);
-		for (int j = 0; j < size; j++)
-			if (!mpfr_zero_p(E[i * size + j]) && !mpfr_zero_p(x[j]))
-				mpfr_fma(next[i], E[i * size + j], x[j], next[i], MPFR_RNDN);
+		for (int j = 0; j < size; j++) {
+			if (mpfr_zero_p(E[i * size + j]) || mpfr_zero_p(x[j]))
+				continue;
+			mpfr_fma(next[i], E[i * size + j], x[j], next[i], MPFR_RNDN);
+			mpfr_exp_t exponent = mpfr_get_exp(E[i * size + j]) + mpfr_get_exp(x[j]);
+			largest = exponent > largest ? exponent : largest;
+		}
+		if (!mpfr_zero_p(next[i]) && mpfr_get_exp(next[i]) < largest - (mpfr_exp_t)(BITS - SPARE))
+			mpfr_set_zero(next[i], 1);
 	}
 	for (int i = 0; i < size; i++)
 		mpfr_swap(x[i], next[i]);

@@ -83,7 +83,7 @@ need_files()    # FOLDER LIST: nothing half-written, no temporaries
 	[ "$found" = "$2${2:+ }" ] || wrong "files in $1: $found, expected $2"
 }
 
-echo "1..40"
+echo "1..41"
 
 # ---- a full disk ----
 
@@ -193,6 +193,24 @@ else
 	need_text readonly/m.c before
 	result '-o into a read-only folder'
 fi
+
+# What the C or a rule of make could not name is refused before anything is written.
+mkdir names
+newline='
+'
+for name in 'a"b.c' 'a\b.c' "a${newline}b.c" "a	b.c"; do
+	run "$plgen" -o "names/$name" model.spec
+	need_status 2
+	need_message 'plgen: error: -o: an #include cannot name this file: '
+done
+run "$plgen" -o names/a.c --depfile "names/a${newline}.d" model.spec
+need_status 2
+need_message 'plgen: error: --depfile: a rule of make cannot name a file with a control character in its path'
+need_files names ''
+mkdir 'names/"odd' && run "$plgen" -o "names/\"odd/it's.c" model.spec
+need_status 0
+"${CC:-cc}" -I "$runtime" -c -o names/odd.o "names/\"odd/it's.c" 2> "$work/err" || wrong "$(head -n 3 "$work/err")"
+result 'names that an #include or a rule of make cannot have; a folder may have them'
 
 # ---- files that can ----
 
