@@ -632,10 +632,8 @@ const char *restitution_text(const struct model *model, const struct impact *imp
 bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 
-/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+/* ---- force_sign.c: whether a friction force may fall below 0 ---- */
 
-bool holds_friction(const struct building *b);              /* somewhere in the equations */
-_Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
 /* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone
  * moves */
 bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
@@ -643,6 +641,11 @@ bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
 bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen */
 /* that it is above 0 at some time between; `node`: where it stands */
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to);
+
+/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+
+bool holds_friction(const struct building *b);              /* somewhere in the equations */
+_Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
 /* What is held exceeds the force of what slides by this, where the velocity is 0 */
 struct form *less_in_velocity(const struct form *rest, const struct form *force, const struct form *velocity);
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
