@@ -173,22 +173,18 @@ static void emit_time(const struct emitter *e)
 	       "}\n", elapsed_text(e));
 }
 
-/* Where a step keeps none, from the state, in both words where it has two: a step has nothing to do for it. */
+/* What is not finite is seen in the state now, in both words where it has two: a step has nothing to do for it, and
+ * none can pass over it. */
 static void emit_status(const struct emitter *e)
 {
 	bool written = e->step->momenta || e->model->relative;  /* s->y is not the state */
 	say(e, "\nint $n_status(const $n *s)\n"
 	       "{\n");
-	if (e->kind->keeps_status) {
-		say(e, "    return s->status;\n"
-		       "}\n");
-		return;
-	}
 	if (written)
 		say(e, "    double y[$N_STATES];\n"
 		       "    $n_get(s, y);\n");
-	say(e, "    return pl_not_finite(%s, $N_STATES)%s;\n"
-	       "}\n", written ? "y" : "s->y",
+	say(e, "    return %spl_not_finite(%s, $N_STATES)%s;\n"
+	       "}\n", e->kind->keeps_status ? "s->status | " : "", written ? "y" : "s->y",
 	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
 }
 

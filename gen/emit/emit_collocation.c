@@ -322,8 +322,21 @@ static void emit_finish(const struct emitter *e)
 	       "        const double last = pl_magnitude(poly[%d][i]) * unit[i];\n"
 	       "        most = last > most || last != last ? last : most;\n"
 	       "    }\n"
-	       "    return most * %s;\n"
+	       "    return $n_ends(y, gain) ? most * %s : 1e35;\n"
 	       "}\n", s, shortest(ldexp(1, 1 - 2 * s)));
+}
+
+static void emit_ends(const struct emitter *e)
+{
+	say(e, "\n/* Whether an internal step ends at numbers */\n"
+	       "static int $n_ends(const double y[$N_STATES], const double gain[$N_STATES])\n"
+	       "{\n"
+	       "    double end[$N_STATES];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        end[i] = y[i] + gain[i];\n"
+	       "    return !pl_not_finite(end, $N_STATES);\n"
+	       "}\n");
 }
 
 /* ---- the next internal step ---- */
@@ -592,6 +605,7 @@ void emit_collocation_step(const struct emitter *e)
 		emit_divided_tables(e);
 		emit_pass_breakpoint(e);
 	}
+	emit_ends(e);
 	if (switches(e))
 		emit_series_steps(e);
 	emit_within(e);

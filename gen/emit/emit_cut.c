@@ -295,6 +295,12 @@ static void emit_between_limit(const struct emitter *e)
 		       "        part.when = $n_time(s) + 0.5 * (done + limit) * $N_H;\n", e->system->segments - 1);
 }
 
+/* Of a step, above what its end is rounded to: shorter parts that are not finite are not tried. */
+static const char *shortest_part(const struct emitter *e)
+{
+	return e->model->asked.single ? "1e-6" : "1e-9";
+}
+
 static void emit_between(const struct emitter *e)
 {
 	int count = expressions(e);
@@ -325,10 +331,10 @@ static void emit_between(const struct emitter *e)
 	       "        } else {\n"
 	       "            if ($n_advance(&part, done * $N_H, size * $N_H, y, next)) {\n"
 	       "                longest = 0.5 * size;\n"
-	       "                if (longest < 1e-9)\n"
+	       "                if (longest < %s)\n"
 	       "                    return PL_NOT_FINITE;\n"
 	       "                continue;\n"
-	       "            }\n");
+	       "            }\n", shortest_part(e));
 	emit_end_call(e, "            ", "part.", "limit * $N_H", "next", "d, spare");
 	say(e, "            meets = $n_meets(c, (const double (*)[%d])d, terms, size, contact->interval, &splits,\n"
 	       "                &found);\n"
@@ -339,7 +345,7 @@ static void emit_between(const struct emitter *e)
 	       "        if (meets > 0.0) {\n"
 	       "            if ($n_advance(&part, done * $N_H, meets * $N_H, y, next)) {\n"
 	       "                longest = 0.5 * meets;\n"
-	       "                if (longest < 1e-9)\n"
+	       "                if (longest < %s)\n"
 	       "                    return PL_NOT_FINITE;\n"
 	       "                continue;\n"
 	       "            }\n"
@@ -359,7 +365,7 @@ static void emit_between(const struct emitter *e)
 	       "            return PL_TOO_MANY_EVENTS;\n"
 	       "    }\n"
 	       "    return 0;\n"
-	       "}\n", count);
+	       "}\n", count, shortest_part(e));
 }
 
 /* ---- the step ---- */

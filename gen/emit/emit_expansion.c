@@ -63,6 +63,13 @@ void emit_series_ahead(const struct emitter *e)
 
 /* ---- inside a step ---- */
 
+/* Where the search for events gave up: what is not finite may be why. */
+static const char *gave_up(const struct emitter *e)
+{
+	return spell(e, "PL_TOO_MANY_EVENTS | pl_not_finite(c[0], %d * $c)%s", expansion(e)->order + 1,
+		     meets_contacts(e) ? " | at.status" : "");
+}
+
 /* At the end of a piece: what ended it */
 static const char *passed_text(const struct emitter *e)
 {
@@ -73,9 +80,9 @@ static const char *passed_text(const struct emitter *e)
 			"%s"
 			"%s", meets_contacts(e) ? spell(e, "        from.tau = at.time = done * $N_H;\n"
 							 "        if (!pl_events_pass(&$n_events, &at))\n"
-							 "            return PL_TOO_MANY_EVENTS | at.status;\n")
+							 "            return %s;\n", gave_up(e))
 						: spell(e, "        if (!$n_cross(contact, done * $N_H))\n"
-							   "            return PL_TOO_MANY_EVENTS;\n"),
+							   "            return %s;\n", gave_up(e)),
 		     truncation(e)->adaptive ? "        fresh = 1;\n" : "");
 }
 
@@ -91,7 +98,7 @@ static void emit_between_start(const struct emitter *e)
 	say(e, "\n/* y and what rounding took from it, end h later: 0; or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %s%sdouble end, double y[$N_STATES], double rest[$N_STATES]%s)\n"
 	       "{\n"
-	       "    double c[%d][$c], gain[$N_STATES], done = 0.0;\n"
+	       "    double c[%d][$c], gain[$N_STATES], ends[$N_STATES], done = 0.0;\n"
 	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "",
 	    divided ? spell(e, ",\n    $n_contact *contact") : "", order + 1,
 	    adaptive ? ", steps = 0" : watches(e) ? ", status = 0" : "",
@@ -163,10 +170,10 @@ static void emit_begin_series(const struct emitter *e)
 	       "        from.when = $n_time(s) + 0.5 * (done + limit) * $N_H;\n"
 	       "        i = pl_events_begin(&$n_events, &at);\n"
 	       "        if (i < 0)\n"
-	       "            return PL_TOO_MANY_EVENTS | at.status;\n"
+	       "            return %s;\n"
 	       "        if (i > 0)%s\n"
 	       "            continue;\n"
-	       "%s", truncation(e)->adaptive ? " {\n            fresh = 1;" : "",
+	       "%s", gave_up(e), truncation(e)->adaptive ? " {\n            fresh = 1;" : "",
 	    truncation(e)->adaptive ? "        }\n" : "");
 }
 
@@ -184,28 +191,30 @@ static void emit_between(const struct emitter *e)
 	if (divided && !meets_contacts(e))
 		say(e, "        if (pl_divided_left(&$n_divided, c[0], terms, contact->interval, &contact->last)) {\n"
 		       "            if (!$n_cross(contact, done * $N_H))\n"
-		       "                return PL_TOO_MANY_EVENTS;\n"
+		       "                return %s;\n"
 		       "            continue;\n"
-		       "        }\n");
+		       "        }\n", gave_up(e));
 	emit_between_size(e);
 	if (meets_contacts(e))
 		say(e, "        meets = pl_events_next(&$n_events, &at, &size, &splits);\n"
 		       "        if (splits < 0)\n"
-		       "            return PL_TOO_MANY_EVENTS | at.status;\n"
+		       "            return %s;\n"
 		       "        if (meets >= 0.0)\n"
-		       "            size = meets;\n");
+		       "            size = meets;\n", gave_up(e));
 	else if (divided)
 		say(e, "        meets = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
 		       "            &contact->last, work);\n"
 		       "        if (splits < 0)\n"
-		       "            return PL_TOO_MANY_EVENTS;\n"
+		       "            return %s;\n"
 		       "        if (meets >= 0.0)\n"
-		       "            size = meets;\n");
+		       "            size = meets;\n", gave_up(e));
 	if (watches(e))
 		say(e, "        if (!$n_is_accurate(s, (const double (*)[$c])c, size))\n"
 		       "            status = PL_INACCURATE;\n");
 	say(e, "        $n_ahead((const double (*)[$c])c, size, gain);\n");
-	say(e, "        if (pl_not_finite(gain, $N_STATES))\n"
+	say(e, "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            ends[i] = y[i] + gain[i];\n"
+	       "        if (pl_not_finite(ends, $N_STATES))\n"
 	       "            return PL_NOT_FINITE%s;\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            y[i] = pl_accumulate(y[i], gain[i], 0.0, &rest[i]);\n"

@@ -95,7 +95,7 @@ static void emit_series_end(const struct emitter *e)
 	       "    next = pl_divided_next(&$n_divided, s->poly[0], terms, s->contact.interval, length, &splits,\n"
 	       "        &crossing, work);\n"
 	       "    if (splits < 0)\n"
-	       "        return PL_TOO_MANY_EVENTS;\n"
+	       "        return PL_TOO_MANY_EVENTS | pl_not_finite(s->poly[0], %d * $c);\n"
 	       "    if (next >= 0.0) {\n"
 	       "        s->contact.last = crossing;\n"
 	       "        s->stop = 3;\n"
@@ -104,7 +104,19 @@ static void emit_series_end(const struct emitter *e)
 	       "        s->contact.last.expression = -1;\n"
 	       "    }\n"
 	       "    if (length < %s && next >= 0.0)\n"
-	       "        return -2;\n", tiny);
+	       "        return -2;\n"
+	       "    if (next >= 0.0)\n"
+	       "        $n_ahead((const double (*)[$c])s->poly, length, s->gain);\n",
+	    e->step->expansion->order + 1, tiny);
+}
+
+/* Of all that it serves: before anything else is changed */
+static void emit_finite_end(const struct emitter *e)
+{
+	say(e, "    end = length < limit ? length : limit;\n"
+	       "    $n_ahead((const double (*)[$c])s->poly, end, s->gain);\n"
+	       "    if (!$n_ends(s->start, s->gain))\n"
+	       "        return PL_NOT_FINITE;\n");
 }
 
 /* A series in s->poly, up to where it serves or an expression passes a breakpoint */
@@ -119,7 +131,7 @@ static void emit_series_step(const struct emitter *e)
 	       " * stability bounds several in a row, the collocation is next. */\n"
 	       "static int $n_expand_step($n *s%s, double limit, const double rates[2])\n"
 	       "{\n"
-	       "    double length, product;\n", is_divided(e) ? "; -2: nothing moves" : "",
+	       "    double length, product, end;\n", is_divided(e) ? "; -2: nothing moves" : "",
 	    samples_parameter(e));
 	if (is_divided(e))
 		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], next;\n"
@@ -139,8 +151,9 @@ static void emit_series_step(const struct emitter *e)
 	       "    if (length == 0.0)\n"
 	       "        return PL_NOT_FINITE;\n");
 	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
-	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n"
-	       "    s->want = length;\n"
+	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n");
+	emit_finite_end(e);
+	say(e, "    s->want = length;\n"
 	       "    if (length < limit)\n"
 	       "        s->stop = 0;\n"
 	       "    else\n"
@@ -154,8 +167,7 @@ static void emit_series_step(const struct emitter *e)
 	       "    }\n", shortest(most));
 	if (is_divided(e))
 		emit_series_end(e);
-	say(e, "    $n_ahead((const double (*)[$c])s->poly, length, s->gain);\n"
-	       "    s->size = length;\n"
+	say(e, "    s->size = length;\n"
 	       "    s->series = 1;\n"
 	       "    s->ready = 0;\n"
 	       "    return 0;\n"
