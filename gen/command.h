@@ -5,6 +5,10 @@
 
 #include "fmu/fmu.h"
 
+/* ---- main.c: the pipeline ---- */
+
+int plgen(int argc, char **argv);       /* what the program's main returns; it may end the process. Once in each */
+
 /* ---- options.c: the command line ---- */
 
 enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION, PRINT_RESPONSE,

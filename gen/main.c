@@ -359,7 +359,7 @@ static void *run(void *context)
 	return NULL;
 }
 
-int main(int argc, char **argv)
+int plgen(int argc, char **argv)
 {
 	struct command command = { argc, argv, 1 };
 	pthread_attr_t attributes;
