@@ -8,6 +8,7 @@ plgen=$(realpath "$1")
 source=$(realpath "$2")
 first=${3:-0}
 many=${4:-100}
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
 seconds=6
@@ -52,7 +53,7 @@ errors() {
 		$(cat rows)
 		};
 	END
-	${CC:-cc} -O0 -w -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
+	$run_cc -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
 		>>log 2>&1 || return 1
 	./errors
 }

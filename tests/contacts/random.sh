@@ -23,6 +23,7 @@ seconds=10
 options=
 [ $wild -lt 2 ] || options="--scheme taylor --tolerance 1e-13"
 [ "$tuned" != compensated ] || options="$options --accuracy compensated"
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 decides=0
 
@@ -38,7 +39,7 @@ follows() {
 		grep 'more regions than the limit' log >found.txt && return 2
 		return 1
 	fi
-	${CC:-cc} -O0 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
+	$run_cc -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
 		-I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
 	./follow found.txt $1 $3 >>log 2>&1
 }

@@ -14,6 +14,7 @@ shift 8
 first=$1
 shift
 last=$((first + $1))
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 
 # tested REAL: what NAME_selftest returns; "none": it is refused by name
@@ -26,7 +27,7 @@ tested() {
 		printf '#include "scene.h"\n#include <stdio.h>\n'
 		printf 'int main(void) { printf("%%g\\n", (double)scene_selftest()); }\n'
 	} >main.c
-	${CC:-cc} -O0 -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
+	$run_cc -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
 }
 
 seed=$first

@@ -8,6 +8,7 @@ set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
@@ -91,8 +92,8 @@ for real in double float; do
     : >log
     # shellcheck disable=SC2086
     "$plgen" --real $real -o rows_pl.c $spec 2>>log &&
-        ${CC:-cc} -std=c99 -O0 $define -I"$root/runtime" steps.c rows_pl.c "$archive" -o steps >>log 2>&1 &&
-        ${CC:-cc} -std=c99 -O0 $define -DMODEL=rows -I"$root/runtime" "$root/runtime/host/plmain.c" rows_pl.c \
+        $run_cc $define -I"$root/runtime" steps.c rows_pl.c "$archive" -o steps >>log 2>&1 &&
+        $run_cc $define -DMODEL=rows -I"$root/runtime" "$root/runtime/host/plmain.c" rows_pl.c \
             "$archive" -o run >>log 2>&1 &&
         ./run 20 >rows.csv 2>>log && ./run 20 --raw >rows.raw 2>>log && ./steps rows.csv rows.raw 201 >>log
     result $? "$real: 201 rows as CSV and --raw are those of the steps, bit by bit"

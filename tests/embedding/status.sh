@@ -8,6 +8,7 @@ set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
@@ -108,7 +109,7 @@ looks() {
         [ $real = double ] || own=-DFLOAT
         # shellcheck disable=SC2086
         "$plgen" --prefix linear --real $real "$@" -o linear_pl.c "$spec" 2>log &&
-            ${CC:-cc} -std=c99 -O0 $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
+            $run_cc $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
                 -o look >>log 2>&1 &&
                 ./look >>log
         result $? "$title, $real: status is what the state says"
@@ -133,7 +134,7 @@ looks 'ramps, changing loads' "$root/tests/emitted/linear/switched.spec" ''
 
 : >log
 "$plgen" grows.spec >grows.c 2>>log && \
-    ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=linear "$root/runtime/host/plmain.c" grows.c "$archive" \
+    $run_cc -I"$root/runtime" -DMODEL=linear "$root/runtime/host/plmain.c" grows.c "$archive" \
         -o run >>log 2>&1
 ./run 400 >out.csv 2>said
 status=$?

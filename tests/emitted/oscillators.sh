@@ -11,6 +11,7 @@ case $1 in
 esac
 root=$(cd "$2" && pwd) || exit 99
 many=$3
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
 
@@ -23,7 +24,7 @@ awk -v n="$many" 'BEGIN {
 }' >oscillators.spec
 "$plgen" -o oscillators.c oscillators.spec >log 2>&1
 result $? "$many oscillators are generated"
-${CC:-cc} -std=c99 -O0 -I. -I"$root/runtime" -o check "$root/tests/emitted/oscillators.c" oscillators.c "$archive" \
+$run_cc -I. -I"$root/runtime" -o check "$root/tests/emitted/oscillators.c" oscillators.c "$archive" \
     -lm >log 2>&1 && ./check >log 2>&1
 result $? "$many oscillators: each by itself, as its closed form"
 tap_end

@@ -21,7 +21,7 @@ static inline int quadrant_of(long double x, long double *r)
 
 static inline long double sin_of(long double x)
 {
-    long double r;
+    long double r = x;
     switch (quadrant_of(x, &r)) {
     case 0: return sinl(r);
     case 1: return cosl(r);
@@ -33,7 +33,7 @@ static inline long double sin_of(long double x)
 
 static inline long double cos_of(long double x)
 {
-    long double r;
+    long double r = x;
     switch (quadrant_of(x, &r)) {
     case 0: return cosl(r);
     case 1: return -sinl(r);

@@ -11,6 +11,7 @@ absolute() {
 }
 plgen=$(absolute "$1")
 root=$(absolute "$2")
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
 
@@ -117,7 +118,7 @@ for type in double float; do
     awk -v type=$type '$3 == type { print "X(" $1 ", " $2 ")" }' list >"models_$type.h"
     [ $type = double ] && real= || real=-DREAL_FLOAT
     # shellcheck disable=SC2086
-    ${CC:-cc} -O0 -w $real "-DMODELS=\"models_$type.h\"" "-DCODE=\"$type.c\"" -I. -I"$root/runtime" \
+    $run_cc $real "-DMODELS=\"models_$type.h\"" "-DCODE=\"$type.c\"" -I. -I"$root/runtime" \
         "$root/tests/emitted/rows.c" "$archive" -lm -o "rows_$type" >log 2>&1
     result $? "$type: compiles"
     : >log

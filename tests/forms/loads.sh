@@ -13,6 +13,7 @@ case $specs in /*) ;; *) specs=$PWD/$specs ;; esac
 first=${4-1}
 last=${5-3}
 seed=${6-1}
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 echo '#include <math.h>' >models.c
 cat >table <<'EOF'
@@ -154,7 +155,7 @@ for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; d
 		tap_end
 	}
 done
-${CC:-cc} -O0 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
+$run_cc -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
 	"$root/tests/emitted/tap.c" "$archive" -lm >log 2>&1 || {
 	result 1 'the models compile'
 	tap_end

@@ -9,8 +9,8 @@ set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
-compiler=${CC:-cc}
 runtime_archive "$root/runtime"
 
 # subjects, then subject FILE ... and values: what the self-test of each file returns, a line each, from one program
@@ -26,7 +26,7 @@ subject() {
 }
 values() {
 	{ echo 'int main(void)'; echo '{'; cat calls; echo '    return 0;'; echo '}'; } >>subjects.c
-	$compiler -O0 -I"$root/runtime" subjects.c "$archive" -o program >log 2>&1 && ./program
+	$run_cc -I"$root/runtime" subjects.c "$archive" -o program >log 2>&1 && ./program
 }
 
 # constants FILE: those of its step, each once, from 1e-5 on: what is smaller adds less than rounding to a step of float

@@ -6,6 +6,7 @@
 plgen=$(realpath "$1")
 fading=$(realpath "$2")
 source=$(realpath "$3")
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
 cat >drive.c <<'END'
@@ -29,7 +30,7 @@ run() {
 	shift 4
 	printf 'model m\ncoord x\n%s\ninit x = %s\n' "$equation" "$x" >m.spec
 	"$plgen" "$@" --step "$h" m.spec -o m.c >log 2>&1 &&
-		${CC:-cc} -O1 -I. -I"$source/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
+		$run_cc -I. -I"$source/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
 		{ "$fading" $numbers "$x" "$steps" "$h"; ./drive "$steps"; } >both &&
 		awk -v most="$tolerance" 'NR == 1 { x = $1; v = $2 }
 			NR == 2 { good = ($1 - x)^2 + ($2 - v)^2 <= most^2 && $3 == 0 }

@@ -10,6 +10,7 @@ compare=$(realpath "$4")
 source=$(realpath "$5")
 seed=$6
 last=$(($6 + $7))
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
 
@@ -23,7 +24,7 @@ tested() {
 		printf '#include "joint.h"\n#include <stdio.h>\n'
 		printf 'int main(void) { printf("%%g\\n", (double)joint_selftest()); }\n'
 	} >main.c
-	${CC:-cc} -O1 -I. -I"$source/runtime" -o tested main.c joint.c "$archive" -lm >log 2>&1 && ./tested
+	$run_cc -I. -I"$source/runtime" -o tested main.c joint.c "$archive" -lm >log 2>&1 && ./tested
 }
 
 told=0

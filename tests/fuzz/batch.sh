@@ -14,8 +14,9 @@
 ASAN_OPTIONS=exitcode=99:detect_leaks=0:hard_rss_limit_mb=2048:${ASAN_OPTIONS:-}
 UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
 export ASAN_OPTIONS UBSAN_OPTIONS
+. "$source/tests/run_cc.sh"
 warnings='-Werror -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow'
-# not optimised, which takes half as long or less; with LONG=1 in the environment as a user would
+# What has no sanitizers is compiled only to be run; with LONG=1 in the environment as a user would, with warnings
 level=-O0
 [ -z "${LONG:-}" ] || level=-O1
 # without what stops anyway at the address where it goes: null, misaligned, out of an object; they double what is
@@ -185,7 +186,19 @@ batch_add() {
 	said=made
 }
 
-# objects CC FILES: each on its own where together they fail; what does not compile is left out
+# compile_code CHECKS FILES
+compile_code() {
+	if [ -n "${LONG:-}${1}" ]; then
+		# shellcheck disable=SC2086
+		$cc -std=c99 $level $warnings $1 -I"$source/runtime" -c $2 2>"$id.cc_said"
+		return
+	fi
+	for file in $2; do
+		$run_cc -I"$source/runtime" -c "$file" 2>"$id.cc_said" || return
+	done
+}
+
+# compile CC: what does not compile is left out
 compile() {
 	cc=$1
 	place=0
@@ -200,10 +213,7 @@ compile() {
 			others=${code#*.c}
 			code=${code%% *}
 		fi
-		# shellcheck disable=SC2086
-		if ! $cc -std=c99 $level $warnings $checks -I"$source/runtime" -c $code 2>"$id.cc_said" ||
-			{ [ -n "${others# }" ] &&
-			  ! $cc -std=c99 $level $warnings -I"$source/runtime" -c $others 2>"$id.cc_said"; }; then
+		if ! compile_code "$checks" "$code" || { [ -n "${others# }" ] && ! compile_code '' "$others"; }; then
 			{
 				echo "$cc: the C does not compile"
 				grep -m 3 -e 'error' "$id.cc_said"
@@ -211,7 +221,7 @@ compile() {
 			continue
 		fi
 		if [ -f "$id.again.c" ]; then
-			$cc -std=gnu11 $level -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" \
+			$run_cc -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" \
 				2>"$id.cc_said" ||
 				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } \
 					>"$id.wrong"; continue; }
@@ -243,10 +253,13 @@ batch_build() {
 			objects="$objects $(sed -n 's/^#include "\(.*\)\.h"$/\1.o/p' "$id.subject" | tr '\n' ' ')"
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
+		rm -f objects.a
+		# shellcheck disable=SC2086
+		ar rcsD objects.a $objects
+		rm -rf passing && mkdir passing && finish_archive objects.a passing
 		# shellcheck disable=SC2086
 		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
-			$objects \
-			"$folder/drive_$cc.a" \
+			objects.a "$folder/drive_$cc.a" \
 			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \
 				2>&1 ||
 				sed 's/^/# /' "link_$cc.said" | head -n 20

@@ -10,16 +10,16 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 here=$root/tests/holds
+. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
 runtime_archive "$root/runtime"
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
 
 # follows SPEC FLAGS
 follows() {
     {
         "$plgen" --prefix m -o m.c "$here/$1.spec" &&
-            ${CC:-cc} -std=c99 -O0 $warnings -I"$root/runtime" -c m.c -o m.o &&
-            ${CC:-cc} -std=c99 -O0 $2 -I"$root/runtime" -I. "$here/holds.c" m.o "$archive" -lm -o m && ./m
+            $run_cc -I"$root/runtime" -c m.c -o m.o &&
+            $run_cc $2 -I"$root/runtime" -I. "$here/holds.c" m.o "$archive" -lm -o m && ./m
     } >log 2>&1
     result $? "$1: closed forms"
 }
@@ -44,7 +44,7 @@ echo 'u,v,w' >record
 for t in 0 1 2 3 4 5 6; do echo "$((t * t * t)),$((t * t * t)),$((t * t * t))"; done >>record
 {
     "$plgen" -o cubic_pl.c cubic.spec &&
-        ${CC:-cc} -std=c99 -O0 -DMODEL=cubic -I"$root/runtime" "$root/runtime/host/plmain.c" cubic_pl.c "$archive" \
+        $run_cc -DMODEL=cubic -I"$root/runtime" "$root/runtime/host/plmain.c" cubic_pl.c "$archive" \
             -o cubic && ./cubic 5 <record >rows && awk -F, '
             function near(a, b) { return a - b < 1e-12 && b - a < 1e-12 }
             NR > 1 {

@@ -1,16 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# large.sh PLGEN ROOT CC, the runtime's library in PLRT: models of more than 16 states. Independent blocks step as each
+# large.sh PLGEN ROOT, the runtime's library in PLRT: models of more than 16 states. Independent blocks step as each
 # of them does alone, bit for bit where the block is done alike; modes step as states do; what cannot be is refused by
 # name.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 library=$PLRT
-shift 2
-cc=$*
+. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
-flags="-std=c99 -O0 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -ffp-contract=off"
 
 # oscillators N: damped, each with a frequency of its own, all driven by one input
 oscillators() {
@@ -91,7 +89,7 @@ beside() {
 	real=${real:-double}
 	model=pl_model$([ "$real" = float ] && echo f)
 	# shellcheck disable=SC2086
-	$cc $flags -I"$root/runtime" -DWHOLE="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
+	$run_cc -I"$root/runtime" -DWHOLE="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
 		"$root/tests/large/compare.c" $files "$library" -lm -o compare >>log 2>&1 &&
 		./compare "$steps" "$tolerance" "$rest" >>log 2>&1
 	result $? "$what"
@@ -244,7 +242,7 @@ at_rest() {
 		"$plgen" --real "$real" "$@" $model.spec -o $model.c >>log 2>&1
 	done
 	# shellcheck disable=SC2086
-	$cc $flags -I"$root/runtime" -DREAL="$real" -DMODEL=pl_model$([ "$real" = float ] && echo f) \
+	$run_cc -I"$root/runtime" -DREAL="$real" -DMODEL=pl_model$([ "$real" = float ] && echo f) \
 		"$root/tests/large/rest.c" decaying.c mixed.c "$PLRT" -lm -o rest >>log 2>&1 && ./rest "$how" >>log 2>&1
 	result $? "rest: $what"
 }

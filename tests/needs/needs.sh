@@ -15,6 +15,7 @@ models=$(cd "$here/../../models" && pwd) || exit 1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
+. "$here/../run_cc.sh"
 bad=0 met=0 unmet=0
 seeds=beam
 case $first in
@@ -45,7 +46,7 @@ for seed in $seeds; do
 	fi
 	end=$(sed -n 's/^need.* until //p' drawn.spec)
 	"$plgen" drawn.spec >drawn_pl.c && "$plgen" --solution "$end" drawn.spec | sed 1d >exact.csv &&
-		${CC:-cc} -O0 -ffp-contract=off -I"$work" -I"$runtime" -w "$here/run.c" "$PLRT" -o run &&
+		$run_cc -I"$work" -I"$runtime" "$here/run.c" "$PLRT" -o run &&
 		./run "$(wc -l <exact.csv)" >got || { echo "not ok - seed $seed: no program"; exit 1; }
 	sed -n '/"taken": true/{
 		s/.*"real": "\([^"]*\)"\(.*\)/\2 \1/

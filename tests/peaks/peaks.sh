@@ -9,9 +9,9 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 here=$root/tests/peaks
+. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
 runtime_archive "$root/runtime"
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
 
 # finds SPEC FLAGS OPTION ...
 finds() {
@@ -20,8 +20,8 @@ finds() {
     shift 2
     {
         "$plgen" --prefix m "$@" -o m.c "$here/$spec.spec" &&
-            ${CC:-cc} -std=c99 -O0 $warnings -I"$root/runtime" -c m.c -o m.o &&
-            ${CC:-cc} -std=c99 -O0 $flags -I"$root/runtime" -I. "$here/peaks.c" m.o "$archive" -lm -o m && ./m
+            $run_cc -I"$root/runtime" -c m.c -o m.o &&
+            $run_cc $flags -I"$root/runtime" -I. "$here/peaks.c" m.o "$archive" -lm -o m && ./m
     } >log 2>&1
     result $? "$spec${*:+ $*}: the largest values between steps"
 }

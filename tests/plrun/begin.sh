@@ -13,8 +13,12 @@ XDG_CACHE_HOME=$work/cache
 ASAN_OPTIONS=detect_leaks=0             # what lives to the end of the program is not given back
 export XDG_CACHE_HOME ASAN_OPTIONS
 models=$root/models
-# What it compiles has the same bits without an optimiser; with LONG=1 in the environment as a user has it
-[ -n "${LONG:-}" ] || { CFLAGS=-O0; export CFLAGS; }
+# What it compiles has the same bits by tcc, or without an optimiser; with LONG=1 in the environment as a user has it
+if [ -z "${LONG:-}" ]; then
+	CFLAGS=-O0
+	! command -v tcc >log || CC=tcc
+	export CC CFLAGS
+fi
 
 # plrun with what it says in `said`; a sanitizer's report is no message
 run() {

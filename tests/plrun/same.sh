@@ -5,6 +5,7 @@
 #
 #     same.sh PLRUN PLGEN SOURCE_ROOT
 . "${0%/*}/begin.sh"
+. "$root/tests/run_cc.sh"
 steps=60
 place=0
 runtime_archive "$root/runtime"
@@ -46,9 +47,9 @@ one_model() {
 	fi
 	record >record.csv
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {/\1/p' model_pl.c)
-	main_of "$model" "-w -O0 $define"
 	# shellcheck disable=SC2086
-	${CC:-cc} -w -O0 -I"$root/runtime" $main model_pl.c "$archive" -lm -o main 2>>log &&
+	$run_cc $define -I"$root/runtime" -DMODEL="$model" "$root/runtime/host/plmain.c" model_pl.c "$archive" -lm \
+		-o main 2>>log &&
 		./main "$end" $params <record.csv >main.csv 2>>log
 	set -- "$spec" "$end" --real "$real"
 	[ ! -s record.csv ] || set -- "$@" --input record.csv

@@ -11,9 +11,16 @@ root=$(absolute "$2")
 XDG_CACHE_HOME="$work/a cache"
 PLGEN_RUNTIME=$root/runtime
 export PLGEN PLGEN_RUNTIME XDG_CACHE_HOME
-# What is compiled has the same bits without an optimiser; with LONG=1 in the environment as a user has it
-level=-O2
-[ -n "${LONG:-}" ] || { level=-O0 CFLAGS=-O0; export CFLAGS; }
+. "$root/tests/run_cc.sh"
+# What is compiled has the same bits by tcc, or without an optimiser; with LONG=1 in the environment as a user has it
+cc_given=${CC:-cc}
+if [ -n "${LONG:-}" ]; then
+	run_cc="${CC:-cc} -O2 -w"
+else
+	CFLAGS=-O0
+	! command -v tcc >log || CC=tcc
+	export CC CFLAGS
+fi
 
 # rows NAME SPEC TIME [OPTION of plgen ...] -- [NAME=VALUE of plmain ...]: NAME.rows; held.csv is the record
 rows() {
@@ -30,9 +37,9 @@ rows() {
 	# shellcheck disable=SC2086
 	"$PLGEN" $options "$spec" >"$name.c" 2>said || cat said
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {$/\1/p' "$name.c")
-	main_of "$model" "$level -w $single"
 	# shellcheck disable=SC2086
-	${CC:-cc} $level -w -I"$root/runtime" $main "$name.c" "$archive" -lm -o "$name.program" || exit 99
+	$run_cc $single -I"$root/runtime" -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" "$archive" -lm \
+		-o "$name.program" || exit 99
 	"./$name.program" "$until" --raw "$@" <held.csv >"$name.rows"
 }
 

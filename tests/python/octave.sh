@@ -5,6 +5,8 @@
 #     octave.sh PLGEN SOURCE_ROOT
 here=$(cd "${0%/*}" && pwd) || exit 99
 . "$here/begin.sh"
+CC=$cc_given            # mkoctfile links with what CC names
+export CC
 if ! command -v octave-cli >/dev/null 2>&1 || ! command -v mkoctfile >/dev/null 2>&1; then
 	skip octave 'no octave, or no octave-dev'
 	tap_end

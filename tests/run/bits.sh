@@ -9,10 +9,10 @@ interpret=$2
 root=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $interpret in /*) ;; *) interpret=$PWD/$interpret ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
-level=-O0
-[ -z "${LONG:-}" ] || level=-O1
+[ -z "${LONG:-}" ] || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
 here=${0%/*}
 case $here in /*) ;; *) here=$root/tests/run ;; esac
 
@@ -27,7 +27,7 @@ same() {
 	: >log
 	# shellcheck disable=SC2086
 	"$plgen" --rhs --real "$3" ${4:+--scheme "$4"} "$1" >model.c 2>>log &&
-		${CC:-cc} -std=c99 $level -ffp-contract=off -w $flags -I"$root/runtime" "$here/drive.c" model.c \
+		$run_cc $flags -I"$root/runtime" "$here/drive.c" model.c \
 			"$archive" -lm -o drive >>log 2>&1 && ./drive "$2" >compiled &&
 		"$interpret" "$1" "$2" "$3" ${4:+"$4"} >run 2>>log && cmp compiled run >>log 2>&1 && [ -s run ]
 	result $? "$what"

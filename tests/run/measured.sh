@@ -10,11 +10,11 @@ root=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $judge in /*) ;; *) judge=$PWD/$judge ;; esac
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
 turn=0
-level=-O0
-! long || level=-O1
+! long || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
 
 cat >pendulum.txt <<END
 coord x
@@ -99,7 +99,7 @@ meets() {
 			${tolerance:+--tolerance "$tolerance"} ${force:+-D "F=$force*$load"} free.spec \
 			>model.c 2>>log &&
 			{ [ "$factors" != '1 1' ] || cp chosen.c model.c; } &&
-			${CC:-cc} -std=c99 $level -ffp-contract=off -w $flags -I"$root/runtime" \
+			$run_cc $flags -I"$root/runtime" \
 				"$root/tests/run/drive.c" model.c "$archive" -lm -o drive >>log 2>&1 &&
 			./drive "$until" "$start" >samples &&
 			{ echo "$scheme step $step tolerance $tolerance, start $start, load $load:"

@@ -14,6 +14,7 @@ drawn_series=$(absolute "$2")
 source=$(absolute "$3")
 seed=$4
 end=$(($4 + $5))
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
 
@@ -28,7 +29,7 @@ made() {
 		defines="$defines -DRELATIVE"
 	fi
 	# shellcheck disable=SC2086
-	${CC:-cc} -std=c99 -O0 -w $defines -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" \
+	$run_cc $defines -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" \
 		drawn_pl.c "$archive" -lm -o compare &&
 		order=$(./compare order)
 }

@@ -6,6 +6,7 @@ set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
 runtime_archive "$root/runtime"
 
@@ -29,7 +30,7 @@ awk 'BEGIN { for (k = 0; k <= 256; k++) print k % 40 < 20 ? 1 : -0.5 }' >u
 rows() {
 	name=$1
 	shift
-	${CC:-cc} -std=c99 -O0 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
+	$run_cc -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
 		-lm -o "run_$name" >>log 2>&1 && "./run_$name" 4 "$@" <u >"$name.csv" 2>>log
 }
 

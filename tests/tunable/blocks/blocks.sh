@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# blocks.sh PLGEN ROOT CHAINS CC, the runtime's library in PLRT: tunable params of models of more than 16 states. What
+# blocks.sh PLGEN ROOT CHAINS, the runtime's library in PLRT: tunable params of models of more than 16 states. What
 # NAME_retune makes of an instance, beside the same equations with the values written, and beside the series of the
 # solution for random models; what it returns for bad values; what keeps its tables.
 set -u
@@ -8,11 +8,9 @@ plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 chains=$(cd "$(dirname "$3")" && pwd)/$(basename "$3") || exit 99
 library=$PLRT
-shift 3
-cc=$*
 here=$root/tests/tunable/blocks
+. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
-flags="-std=c11 -O0 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror"
 
 # plain NAME VALUES [OPTION ...]: plain.c, of the same equations with these values; VALUES: k=80 F=2
 plain() {
@@ -26,7 +24,7 @@ plain() {
 # driver NAME REAL: ./beside, of NAME.c and plain.c
 driver() {
 	# shellcheck disable=SC2086
-	$cc $flags $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -DTUNED="$1_model" -DPLAIN=plain_model \
+	$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -DTUNED="$1_model" -DPLAIN=plain_model \
 		"$here/beside.c" "$1.c" plain.c "$library" -lm -o beside >>log 2>&1
 }
 
@@ -108,7 +106,7 @@ random() {
 	# shellcheck disable=SC2086
 	"$chains" "$1" chained.spec chained.truth >>log 2>&1 &&
 		"$plgen" --real "$2" -o chained_pl.c chained.spec >>log 2>&1 &&
-		$cc $flags $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -I. "$here/stepped.c" \
+		$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -I. "$here/stepped.c" \
 			chained_pl.c "$library" -lm -o stepped >>log 2>&1 && ./stepped chained.truth >>log 2>&1
 	result $? "random $1 $2: $(sed -n 's/^# //p' chained.spec)"
 }
