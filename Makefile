@@ -6,7 +6,7 @@ BUILD = build
 PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
 	gnuplot-nox
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
-CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
+CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy octave octave-dev \
 	libopenmpi-dev openmpi-bin cmake cppcheck
 
