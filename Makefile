@@ -10,7 +10,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy octave octave-dev \
 	libopenmpi-dev openmpi-bin cmake cppcheck
 
-.PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
+.PHONY: all setup deps demo-deps check-deps demo tests check quick check-long faults bench charts charts-quick \
 	charts-twice charts-page chart gallery firmware-report bare install clean
 
 all: setup
@@ -64,6 +64,13 @@ tests: check-deps
 
 check: tests
 	sh tests/check.sh $(BUILD)
+
+# After each change, in half a minute from a built tree: units, rooms, lines, a model of each kind by closed forms
+QUICK = runtime_double runtime_float memory mtx math walk modes poles number atoms program positive digits rooms \
+	docs_lines compilers values history_sdcsf leftover_figures switching_figures radau_numbers_3 friction_closed \
+	contacts_closed delays peaks
+quick: tests
+	sh tests/check.sh $(BUILD) $(QUICK)
 
 # What only long runs show: more random models, more seeds. Before a piece of work is called finished.
 check-long: tests
