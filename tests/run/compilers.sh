@@ -45,7 +45,8 @@ while read -r spec options; do
 	case $options in *float*) real=-DFLOAT ;; esac
 	# shellcheck disable=SC2086
 	"$plgen" --prefix made $options "$root/$spec" >model.c 2>said || cat said >log
-	end=$(sed -n 's/^#define MADE_H \([0-9.e-]*\).*/\1/p' model.c | head -n 1 | awk '{ printf "%.17g", 200.5 * $1 }')
+	end=$(sed -n 's/^#define MADE_H \([0-9.e-]*\).*/\1/p' model.c | head -n 1 |
+		awk '{ printf "%.17g", 200.5 * $1 }')
 	record >record.csv
 	rows by_tcc tcc && rows by_gcc gcc -std=gnu11 -O0 -ffp-contract=off &&
 		rows by_clang clang -std=gnu11 -O0 -ffp-contract=off &&
