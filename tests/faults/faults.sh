@@ -139,7 +139,8 @@ make_copy()
 			mkdir -p "$1/$(dirname "$file")" && cp -p "$root/$file" "$1/$file" && touch "$1/$file"
 		fi
 	done
-	[ -f "$1/build/build.ninja" ] || meson setup -Dbuildtype=plain -Doptimization=0 "$1/build" "$1" >"$1.log" 2>&1
+	[ -f "$1/build/build.ninja" ] ||
+		meson setup -Dtests=enabled -Dbuildtype=plain -Doptimization=0 "$1/build" "$1" >"$1.log" 2>&1
 }
 
 # run_suite COPY NAME LOG: 0 passes, 1 fails, 2 does not build
