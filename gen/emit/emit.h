@@ -332,6 +332,15 @@ bool looks_at_tolerance(const struct emitter *e);
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
 int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
 void emit_validity(const struct emitter *e);
+const char *measured_columns(const struct emitter *e);           /* C: those whose last terms count */
+
+/* ---- emit_unseen.c: how far what coefficients do not show is followed ---- */
+
+bool has_unseen(const struct emitter *e);
+void emit_shows(const struct emitter *e);                        /* NAME_shows, of a series */
+void emit_shows_along(const struct emitter *e);                  /* NAME_shows_along, of a step by collocation */
+/* C: " && " and that it does not */
+const char *shows_along(const struct emitter *e);
 
 /* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
@@ -423,6 +432,8 @@ const char *linearize_call(const struct emitter *e, const char *node, const char
 /* $n_watch: what chooses formulas into value, the sizes of what is added up there into terms */
 const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms);
 bool watch_reads_known(const struct emitter *e);                 /* more than the state */
+const char *trace_call(const struct emitter *e, const char *node, const char *y, const char *value);
+bool trace_reads_known(const struct emitter *e);
 /* The intervals of the expressions, where there are some: a parameter, an argument, a local */
 const char *interval_parameter(const struct emitter *e);
 const char *interval_argument(const struct emitter *e);

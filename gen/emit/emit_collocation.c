@@ -92,7 +92,15 @@ bool collocation_places(const struct emitter *e)
 }
 
 /* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
- * do. So the largest of its kind counts for each too, by a millionth. */
+ * do. So the largest of its kind counts for each too, by a millionth. What is below all units, as the first trace of a
+ * pulse that is to come, is measured by 1e-40. */
+static const char *one_over(const struct emitter *e, const char *size, const char *none)
+{
+	bool single = e->model->asked.single;
+	return format("%s > %s ? 1.0 / %s : %s > 0.0 ? %s : %s", size, single ? "1e-25" : "1e-40", size, size,
+		      single ? "1e25" : "1e40", none);
+}
+
 static void emit_scales(const struct emitter *e)
 {
 	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
@@ -113,9 +121,10 @@ static void emit_scales(const struct emitter *e)
 	       "            most[%s] = s->scale[i];\n"
 	       "    for (i = 0; i < $N_STATES; i++) {\n"
 	       "        const double least = %s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
-	       "        s->unit[i] = size > 0.0 ? 1.0 / size : 0.0;\n"
+	       "        s->unit[i] = %s;\n"
 	       "    }\n"
-	       "}\n", kind_text(e, "i"), kind_text(e, "i"), shortest(ldexp(1, -20)), kind_text(e, "i"));
+	       "}\n", kind_text(e, "i"), kind_text(e, "i"), shortest(ldexp(1, -20)), kind_text(e, "i"),
+	    one_over(e, "size", "0.0"));
 }
 
 static void emit_anew(const struct emitter *e)
@@ -230,10 +239,10 @@ static void emit_sizes(const struct emitter *e)
 	       "            if (pl_magnitude(k[j * %d + %s]) > most)\n"
 	       "                most = pl_magnitude(k[j * %d + %s]);\n"
 	       "        most *= %s;\n"
-	       "        unit[i] = most > 0.0 ? 1.0 / most : 1.0;\n"
+	       "        unit[i] = %s;\n"
 	       "    }\n"
 	       "}\n", unknowns_of_stages(e), stages(e), n, coord_text(e, "i"), n, coord_text(e, "i"),
-	    moved_text(e, "i"));
+	    moved_text(e, "i"), one_over(e, "most", "1.0"));
 }
 
 static void emit_solve(const struct emitter *e)
@@ -393,6 +402,15 @@ static void emit_limit(const struct emitter *e)
 	       "}\n");
 }
 
+/* What hides between the nodes makes a step half as long. */
+static const char *unshown(const struct emitter *e)
+{
+	return !has_unseen(e) ? "" : spell(e, "            if (good%s) {\n"
+					      "                good = 0;\n"
+					      "                factor = 0.5;\n"
+					      "            }\n", shows_along(e));
+}
+
 static void emit_collocate(const struct emitter *e)
 {
 	int s = stages(e);
@@ -429,13 +447,14 @@ static void emit_collocate(const struct emitter *e)
 	       "            if (error < 1e30)\n"
 	       "                factor = 0.9 * pl_root(%s / error, %d);\n"
 	       "            factor = factor > 5.0 ? 5.0 : factor > 0.15 ? factor : 0.15;\n"
+	       "%s"
 	       "        }\n"
 	       "        if (!good) {\n"
 	       "            s->want = size * (rejected++ < 3 || factor < 0.1 ? factor : 0.1);\n"
 	       "%s"
 	       "            continue;\n"
 	       "        }\n", e->system->inputs ? ", u, slope" : "", splits(e) ? ", slope_of" : "", single,
-	    shortest(2 * tolerance(e)), shortest(tolerance(e)), s + 1,
+	    shortest(2 * tolerance(e)), shortest(tolerance(e)), s + 1, unshown(e),
 	    !switches(e) ? "" : spell(e, "            if ($n_product(rates, s->want) < 0.5)\n"
 					 "                return -1;\n"));
 	say(e, "        s->want = size < limit || s->want < size * factor ? size * factor : s->want;\n"
@@ -614,6 +633,7 @@ void emit_collocation_step(const struct emitter *e)
 	emit_prediction(e);
 	emit_solve(e);
 	emit_finish(e);
+	emit_shows_along(e);
 	emit_commit(e);
 	emit_limit(e);
 	emit_passage(e);

@@ -252,7 +252,7 @@ void emit_expansion_place(const struct emitter *e)
 		       "        s->scale[i] = s->unit[i] = 0.0;\n");
 		emit_series_scales(e, "        ");
 		say(e, "    }\n");
-		for (int i = 0; i < expansion(e)->columns; i++)
+		for (int i = 0; i < expansion(e)->measured; i++)
 			say(e, "    s->scale[$N_STATES + %d] = s->unit[$N_STATES + %d] = 0.0;\n", i, i);
 	}
 	if (is_divided(e))

@@ -27,20 +27,33 @@ static const struct form **dividing_forms(const struct emitter *e, int *count)
 	return form;
 }
 
-/* The forces and their slopes, then what chooses formulas */
+/* The arguments of what polynomials may not show */
+static const struct form **unseen_forms(const struct emitter *e, int *count)
+{
+	const struct expansion *x = e->step->unseen;
+	const struct form **form = ARRAY(const struct form *, x ? (size_t)x->unseens : 1);
+	*count = x ? x->unseens : 0;
+	for (int i = 0; i < *count; i++)
+		form[i] = x->unseen[i].form;
+	return form;
+}
+
+/* The forces and their slopes, then what chooses formulas, and what bounds the polynomials. These are read too. */
 static const struct form **all_forms(const struct emitter *e, int *count)
 {
 	const struct motion *m = motion(e);
-	int dividing;
-	const struct form **choosing = dividing_forms(e, &dividing);
-	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries + dividing));
+	int dividing, unseen;
+	const struct form **choosing = dividing_forms(e, &dividing), **bounding = unseen_forms(e, &unseen);
+	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries + dividing + unseen));
 	for (int i = 0; i < m->coords; i++)
 		form[i] = m->force[i];
 	for (int k = 0; k < m->entries; k++)
 		form[m->coords + k] = m->entry[k].slope;
 	for (int i = 0; i < dividing; i++)
 		form[m->coords + m->entries + i] = choosing[i];
-	*count = m->coords + m->entries + dividing;
+	for (int i = 0; i < unseen; i++)
+		form[m->coords + m->entries + dividing + i] = bounding[i];
+	*count = m->coords + m->entries + dividing + unseen;
 	return form;
 }
 
@@ -416,15 +429,33 @@ const char *forces_call(const struct emitter *e, const char *node, const char *y
 	return spell(e, "$n_forces(%s%s%s, %s);", known_argument(e, node), interval_argument(e), y, left);
 }
 
-bool watch_reads_known(const struct emitter *e)
+static bool read_known(const struct emitter *e, int count, const struct form *const *form)
 {
-	int count;
-	const struct form **form = dividing_forms(e, &count);
 	struct reads read = reads_of(e->model, count, form);
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
 	return any;
+}
+
+bool watch_reads_known(const struct emitter *e)
+{
+	int count;
+	const struct form **form = dividing_forms(e, &count);
+	return read_known(e, count, form);
+}
+
+bool trace_reads_known(const struct emitter *e)
+{
+	int count;
+	const struct form **form = unseen_forms(e, &count);
+	return read_known(e, count, form);
+}
+
+const char *trace_call(const struct emitter *e, const char *node, const char *y, const char *value)
+{
+	return spell(e, "$n_trace(%s%s%s, %s);", trace_reads_known(e) ? known_argument(e, node) : "",
+		     interval_argument(e), y, value);
 }
 
 const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms)
@@ -482,6 +513,15 @@ static void emit_watched_forms(const struct emitter *e, const struct reads *r)
 	}
 }
 
+static void emit_unseen_forms(const struct emitter *e, const struct reads *r)
+{
+	int count;
+	const struct form **form = unseen_forms(e, &count);
+	struct writer *writer = motion_writer(e, r, count, form);
+	for (int i = 0; i < count; i++)
+		say(e, "    left[%d] = %s;\n", i, write_form(writer, form[i], 15));
+}
+
 /* ---- functions of them: their text first, since what an interval decides is not read ---- */
 
 static bool mentions(const char *text, const char *name)
@@ -518,7 +558,7 @@ static struct reads named_reads(const struct emitter *e, const char *text)
 	return r;
 }
 
-enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS };
+enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 
 static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
@@ -528,6 +568,8 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	aside.to = need_memory(open_memstream(&text, &length));
 	if (part == THE_EXPRESSIONS)
 		emit_watched_forms(&aside, r);
+	else if (part == THE_ARGUMENTS)
+		emit_unseen_forms(&aside, r);
 	else
 		emit_motion_forms(&aside, r, part == THE_SLOPES_TOO ? motion(e)->entries : 0);
 	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
@@ -539,7 +581,9 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	struct reads read = named_reads(e, plain);
 	emit_motion_locals(e, r, &read);
 	put(e->to, text, length);
-	bool given = part == THE_EXPRESSIONS ? watch_reads_known(e) : known_values(e) > 0;
+	bool given = part == THE_EXPRESSIONS ? watch_reads_known(e)
+		     : part == THE_ARGUMENTS ? trace_reads_known(e)
+					     : known_values(e) > 0;
 	if (given && !any_known(e, &read) && !mentions(plain, "node"))
 		say(e, "    (void)node;\n");
 	if (is_divided(e) && !mentions(plain, "interval"))
@@ -578,6 +622,14 @@ static void emit_watch(const struct emitter *e, const struct reads *r)
 	emit_motion_body(e, r, THE_EXPRESSIONS);
 }
 
+static void emit_trace(const struct emitter *e, const struct reads *r)
+{
+	say(e, "\n/* The arguments of functions that polynomials may not show, at state y */\n"
+	       "static void $n_trace(%s%sconst double y[$N_STATES], double left[%d])\n"
+	       "{\n", trace_reads_known(e) ? known_parameter(e) : "", interval_parameter(e), e->step->unseen->unseens);
+	emit_motion_body(e, r, THE_ARGUMENTS);
+}
+
 void emit_motion(const struct emitter *e)
 {
 	struct reads r = reads_of_motion(e);
@@ -588,6 +640,8 @@ void emit_motion(const struct emitter *e)
 		emit_force_function(e, &r);
 	if (is_divided(e))
 		emit_watch(e, &r);
+	if (e->step->unseen)
+		emit_trace(e, &r);
 }
 
 /* ---- for an internal step ---- */

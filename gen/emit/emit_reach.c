@@ -34,6 +34,12 @@ int most_served(const struct emitter *e)
 	return e->system->inputs ? 1 : EXPANSION_SERVES;
 }
 
+const char *measured_columns(const struct emitter *e)
+{
+	int measured = e->step->expansion->measured;
+	return measured ? spell(e, "$N_STATES + %d", measured) : spell(e, "$N_STATES");
+}
+
 static const char *tolerance_text(const struct emitter *e)
 {
 	return shortest(round_rational(truncation(e)->tolerance));
@@ -79,12 +85,12 @@ static void emit_remainder(const struct emitter *e, int kept)
 	    kept > 1 ? "s" : "", order + 1, kept, kept);
 	for (int j = 0; j < kept; j++)
 		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
-	say(e, "    for (i = 0; i < $c; i++) {\n"
+	say(e, "    for (i = 0; i < %s; i++) {\n"
 	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
 	       "        if (unit == 0.0) {\n"
 	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
 	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
-	       "        }\n");
+	       "        }\n", measured_columns(e));
 	for (int j = 0; j < 2 * kept; j++) {
 		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
 		if (order - j >= 2)
@@ -120,14 +126,16 @@ static void emit_part(const struct emitter *e)
 		       "        before[%d] *= %s;\n", j, shortest(ldexp(1, 2 * j - order)), j,
 		    shortest(ldexp(1, 2 * j + 1 - order)));
 	say(e, "    }\n"
+	       "%s"
 	       "    return halvings < 60 ? part : 0.0;\n"
-	       "}\n");
+	       "}\n", !has_unseen(e) ? "" : spell(e, "    for (; halvings < 60 && !$n_shows(c, part); halvings++)\n"
+						      "        part *= 0.5;\n"));
 }
 
 /* The last two coefficients, state by state: what follows waits for it */
 static void emit_written_remainder(const struct emitter *e)
 {
-	int order = order_of(e), states = e->system->states + e->step->expansion->columns;
+	int order = order_of(e), states = e->system->states + e->step->expansion->measured;
 	for (int i = 0; i < states; i++)
 		say(e, "    const double unit%d = s->unit[%d] != 0.0 ? s->unit[%d] : $n_unit(s, %d);\n", i, i, i, i);
 	for (int i = 0; i < states; i++)
@@ -166,23 +174,26 @@ static void emit_steps_served(const struct emitter *e)
 	       "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
 	       "static int $n_reach(const $n *s)\n"
 	       "{\n", EXPANSION_SERVES);
-	if (e->system->states + e->step->expansion->columns <= WRITTEN_STATES)
+	if (e->system->states + e->step->expansion->measured <= WRITTEN_STATES)
 		emit_written_remainder(e);
 	else
 		say(e, "    double last = 0.0, before = 0.0;\n"
 		       "    int i, m = s->valid;\n"
-		       "    for (i = 0; i < $c; i++) {\n"
+		       "    for (i = 0; i < %s; i++) {\n"
 		       "        const double unit = $n_unit(s, i), p = pl_magnitude(s->series[%d][i]) * unit,\n"
 		       "            q = pl_magnitude(s->series[%d][i]) * unit;\n"
 		       "        last = p > last ? p : last;\n"
 		       "        before = q > before ? q : before;\n"
-		       "    }\n", order, order - 1);
+		       "    }\n", measured_columns(e), order, order - 1);
 	say(e, "    while (m < %d && last <= $n_last[m] && before <= $n_before_last[m])\n"
 	       "        m++;\n"
 	       "    while (m > 0 && !(last <= $n_last[m - 1] && before <= $n_before_last[m - 1]))\n"
 	       "        m--;\n"
+	       "%s"
 	       "    return m;\n"
-	       "}\n", EXPANSION_SERVES);
+	       "}\n", EXPANSION_SERVES,
+	    !has_unseen(e) ? "" : spell(e, "    while (m > 0 && !$n_shows(s->series, (double)m))\n"
+					   "        m /= 2;\n"));
 }
 
 /* A first series may say nothing of what comes: x'' + x^3 = t^5 from rest has one term up to t^22. The equations do, at
@@ -256,6 +267,7 @@ void emit_validity(const struct emitter *e)
 	if (!e->system->inputs)
 		emit_reach_tables(e);
 	emit_series_remainder(e);
+	emit_shows(e);
 	emit_part(e);
 	emit_steps_served(e);
 	emit_agrees(e);

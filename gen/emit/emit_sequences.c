@@ -285,7 +285,7 @@ bool is_written_out(const struct emitter *e, int degree)
 
 void emit_column_scales(const struct emitter *e)
 {
-	int columns = expansion(e)->columns;
+	int columns = expansion(e)->measured;
 	if (columns)
 		say(e, "    for (i = $N_STATES; i < $N_STATES + %d; i++)\n"
 		       "        if (pl_magnitude(s->series[0][i]) > s->scale[i]) {\n"

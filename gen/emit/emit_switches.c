@@ -4,6 +4,12 @@
 
 #include <math.h>
 
+/* Of an internal step, in h */
+static const char *shortest_length(const struct emitter *e)
+{
+	return e->model->asked.single ? "1e-12" : "1e-18";
+}
+
 static double tolerance(const struct emitter *e)
 {
 	return round_rational(e->model->truncation.tolerance);
@@ -119,6 +125,17 @@ static void emit_finite_end(const struct emitter *e)
 	       "        return PL_NOT_FINITE;\n");
 }
 
+/* Half as long, and again, until the coefficients show what the equations do */
+static void emit_shown_length(const struct emitter *e)
+{
+	if (!has_unseen(e))
+		return;
+	say(e, "    while (length > %s && !$n_shows((const double (*)[$c])s->poly, length))\n"
+	       "        length *= 0.5;\n"
+	       "    if (!(length > %s))\n"
+	       "        return PL_NOT_FINITE;\n", shortest_length(e), shortest_length(e));
+}
+
 /* A series in s->poly, up to where it serves or an expression passes a breakpoint */
 static void emit_series_step(const struct emitter *e)
 {
@@ -140,18 +157,19 @@ static void emit_series_step(const struct emitter *e)
 	say(e, "    %s\n"
 	       "%s", expand_call(&here, start, when, "s->leg", "s->contact.", "s->start", "s->poly"),
 	    e->system->inputs ? "    (void)u;\n    (void)slope;\n" : "");
-	if (e->step->expansion->columns)
-		say(e, "    for (splits = $N_STATES; splits < $c; splits++)\n"
+	if (e->step->expansion->measured)
+		say(e, "    for (splits = $N_STATES; splits < %s; splits++)\n"
 		       "        if (pl_magnitude(s->poly[0][splits]) > s->scale[splits]) {\n"
 		       "            s->scale[splits] = pl_magnitude(s->poly[0][splits]);\n"
 		       "            s->unit[splits] = 1.0 / s->scale[splits];\n"
 		       "        }\n"
-		       "    splits = %d;\n", MAX_SPLITS);
+		       "    splits = %d;\n", measured_columns(e), MAX_SPLITS);
 	say(e, "    length = $n_length(s);\n"
 	       "    if (length == 0.0)\n"
 	       "        return PL_NOT_FINITE;\n");
 	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
 	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n");
+	emit_shown_length(e);
 	emit_finite_end(e);
 	say(e, "    s->want = length;\n"
 	       "    if (length < limit)\n"
@@ -180,6 +198,7 @@ void emit_series_steps(const struct emitter *e)
 	emit_expand_function(e);
 	emit_series_ahead(e);
 	emit_series_remainder(e);
+	emit_shows(e);
 	emit_rates(e);
 	emit_length(e);
 	emit_series_step(e);

@@ -181,6 +181,15 @@ static const struct form *divisor_of(const struct form *form)
 	return atom && atom->kind == ATOM_RECIPROCAL ? atom->operand[0] : NULL;
 }
 
+/* Of 1/x: a product in brackets */
+static const char *inverse_text(struct writer *w, const struct form *form)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	const char *text = operand_text(w, form);
+	bool product = atom && atom->kind == ATOM_PRODUCT && !is_word(text);
+	return format(product ? "(1.0 / (%s))" : "(1.0 / %s)", text);
+}
+
 static const char *product_text(struct writer *w, const struct atom *a)
 {
 	const char *above = "", *below = "";
@@ -383,7 +392,7 @@ static const char *expression_of(struct writer *w, const struct atom *a)
 	switch (a->kind) {
 	case ATOM_PARAM:      return c_name(w->e->c, a->param, 0);
 	case ATOM_PRODUCT:    return product_text(w, a);
-	case ATOM_RECIPROCAL: return format("(1.0 / %s)", operand_text(w, a->operand[0]));
+	case ATOM_RECIPROCAL: return inverse_text(w, a->operand[0]);
 	case ATOM_POWER:
 		base = argument_text(w, a->operand[0]);
 		return format("pow(%s, %s)", base, argument_text(w, a->operand[1]));

@@ -153,9 +153,11 @@ struct division divide_form(struct sequencing *w, const struct form *form, mpq_p
 
 /* ---- once all are there ---- */
 
-static int find_column(struct expansion *x, int states, int sequence, int top)
+int column_of_sequence(struct expansion *x, int sequence, int top)
 {
-	int i = 0;
+	int i = 0, states = 0;
+	while (states < x->count && x->sequence[states].state != NONE)
+		states++;
 	if (sequence < states)
 		return sequence;
 	while (i < x->columns && x->column[i] != sequence)
@@ -172,20 +174,17 @@ static int find_column(struct expansion *x, int states, int sequence, int top)
 
 void rank_breakpoints(struct expansion *x)
 {
-	int states = 0;
-	while (states < x->count && x->sequence[states].state != NONE)
-		states++;
 	for (int i = 0; i < x->expressions; i++) {
 		struct divided *d = &x->expression[i];
 		d->rank = ARRAY(int, (size_t)d->breaks);
 		for (int k = 0; k < d->breaks; k++)
 			for (int j = 0; j < d->breaks; j++)
 				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < (j < k);
-		d->column = find_column(x, states, d->sequence, x->order);
+		d->column = column_of_sequence(x, d->sequence, x->order);
 	}
 	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
 		struct watch *watch = &x->contacts->watch[i];
-		watch->column = find_column(x, states, watch->sequence, watch->whole ? x->order : 1);
+		watch->column = column_of_sequence(x, watch->sequence, watch->whole ? x->order : 1);
 	}
 }
 

@@ -161,6 +161,17 @@ static void find_time(struct sequencing *w)
 
 /* ---- the whole ---- */
 
+/* Their arguments, and behind these columns what bounds a series but is no part of its error */
+static void place_unseen(struct sequencing *w)
+{
+	struct expansion *x = w->x;
+	x->measured = x->columns;
+	for (int i = 0; i < x->unseens; i++) {
+		int sequence = sequence_of_form(w, x->unseen[i].form);
+		x->unseen[i].column = column_of_sequence(x, sequence, x->order);
+	}
+}
+
 static struct layout place_all(struct sequencing *w)
 {
 	struct reads reads = { 0 };
@@ -218,6 +229,8 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
 	rank_breakpoints(w->x);
+	w->x->unseen = unseen_of(model, &w->x->unseens);
+	place_unseen(w);
 	find_degrees(w);
 	find_tops(w);
 	find_late(w);

@@ -241,6 +241,7 @@ static void divide_step(struct step *step)
 {
 	step->divided = step->expansion->expressions > 0 ? step->expansion : NULL;
 	check_divided(step);
+	step->unseen = step->expansion->unseens > 0 ? step->expansion : NULL;
 }
 
 static void build_expanded_step(struct step *step)

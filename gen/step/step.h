@@ -305,6 +305,7 @@ struct step {                       /* everything that is emitted for one model 
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
+	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
 	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
@@ -1041,6 +1042,22 @@ struct divided {                    /* an expression of the state that breakpoin
 	int *rank;                  /* of each of them, how many are below it; the twin of one is above it */
 };
 
+/* ---- unseen.c: what coefficients at one time may not show ---- */
+
+enum unseen_kind {                  /* what of the argument a series has to follow: */
+	UNSEEN_RISE,                /* exp: how far it rises, */
+	UNSEEN_SPREAD,              /* sinh, cosh: how far it goes off 0, */
+	UNSEEN_TURN,                /* tanh: how near it comes to 0, */
+	UNSEEN_ARC,                 /* atan: likewise, */
+	UNSEEN_DIVISOR              /* log, and what is divided by: by which factor it falls */
+};
+struct unseen {
+	const struct form *form;
+	enum unseen_kind kind;
+	int column;                 /* as of an expression */
+};
+struct unseen *unseen_of(const struct model *model, int *count);
+
 /* Impacts and what is held beside a series. Beside dividing expressions the search watches other sequences. */
 struct watch {
 	int sequence, column;
@@ -1097,6 +1114,9 @@ struct expansion {
 	struct divided *expression;
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
+	int measured;               /* the first of them: their last terms count as those of states do */
+	int unseens;                /* what bounds how far a series serves beside its last terms */
+	struct unseen *unseen;
 	struct contacts *contacts;  /* NULL: there are none */
 	/* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
 	int *force;
@@ -1161,6 +1181,7 @@ bool find_division(const struct expansion *x, const struct form *a, const struct
 /* Of the state, by 0: factor times its expression less the breakpoint; with its sequence */
 struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor);
 void add_twin(struct divided *d, int breakpoint);            /* a second breakpoint there */
+int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
 mpq_t *rising_breakpoints(const struct divided *d);

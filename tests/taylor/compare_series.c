@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ORDER = (int)(sizeof((drawn *)0)->series / sizeof(double) / DRAWN_STATES) - 1 };
+enum { ORDER = (int)(sizeof((drawn *)0)->series / sizeof((drawn *)0)->series[0]) - 1 };
 
 static int state_of(const char *name)
 {
@@ -28,7 +28,7 @@ static int state_of(const char *name)
 static double written_at(const drawn *s, int k, double c[DRAWN_STATES])
 {
     double most = 0;
-    memcpy(c, s->series[k], sizeof s->series[k]);
+    memcpy(c, s->series[k], DRAWN_STATES * sizeof(double));
 #ifdef RELATIVE
     drawn copy = *s;
     memcpy(copy.y, s->series[k], sizeof copy.y);

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What coefficients at one time may not show: functions that are all but constant over most of their range, as tanh and
+ * exp are, and what is divided by. Where they bend follows from their arguments, whose polynomials are at hand; so
+ * these have a column each, and bound how far a series serves (emit/emit_unseen.c). */
+#include "step/step.h"
+
+#include <math.h>
+
+/* ---- between which bounds a form stays, whatever the state ---- */
+
+struct bounds { double low, high; };
+
+static struct bounds bounds_of_form(const struct form *form);
+
+static struct bounds times(struct bounds a, struct bounds b)
+{
+	const double corner[] = { a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high };
+	struct bounds product = { corner[0], corner[0] };
+	for (int i = 0; i < 4; i++) {
+		product.low = fmin(product.low, corner[i]);
+		product.high = fmax(product.high, corner[i]);
+		if (isnan(corner[i]))
+			return (struct bounds){ -INFINITY, INFINITY };
+	}
+	return product;
+}
+
+static struct bounds to_the_power(struct bounds base, unsigned n)
+{
+	struct bounds power = base;
+	if (n % 2 == 0) {
+		double most = fmax(fabs(base.low), fabs(base.high));
+		double least = base.low > 0 ? base.low : base.high < 0 ? -base.high : 0;
+		return (struct bounds){ pow(least, n), pow(most, n) };
+	}
+	for (; n > 1; n--)
+		power = times(power, base);
+	return power;
+}
+
+static struct bounds bounds_of_atom(const struct atom *atom)
+{
+	struct bounds product = { 1, 1 };
+	if (atom->kind == ATOM_CALL)
+		switch (atom->function) {
+		case FN_SIN:
+		case FN_COS:
+		case FN_TANH: return (struct bounds){ -1, 1 };
+		case FN_COSH: return (struct bounds){ 1, INFINITY };
+		case FN_EXP:
+		case FN_SQRT:
+		case FN_ABS:  return (struct bounds){ 0, INFINITY };
+		default:      break;
+		}
+	if (atom->kind != ATOM_PRODUCT)
+		return (struct bounds){ -INFINITY, INFINITY };
+	for (int i = 0; i < atom->operands; i++)
+		product = times(product, to_the_power(bounds_of_form(atom->operand[i]), atom->exponent[i]));
+	return product;
+}
+
+static struct bounds bounds_of_form(const struct form *form)
+{
+	struct bounds sum = { 0, 0 };
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		double factor = mpq_get_d(form->term[i].factor);
+		struct bounds of_basis = { -INFINITY, INFINITY };
+		if (basis->kind == BASIS_ONE)
+			of_basis = (struct bounds){ 1, 1 };
+		else if (basis->kind == BASIS_ATOM)
+			of_basis = bounds_of_atom(basis->atom);
+		of_basis = times(of_basis, (struct bounds){ factor, factor });
+		sum.low += of_basis.low;
+		sum.high += of_basis.high;
+	}
+	return sum;
+}
+
+/* A divisor that never falls by more than this hides nothing. */
+static bool stays_near(const struct form *form)
+{
+	enum { FACTOR = 16 };
+	struct bounds b = bounds_of_form(form);
+	return (b.low > 0 && b.high <= FACTOR * b.low) || (b.high < 0 && b.low >= FACTOR * b.high);
+}
+
+/* ---- what is there ---- */
+
+struct finding {
+	const struct model *model;
+	bool *seen;                 /* per atom */
+	int count;
+	struct unseen *unseen;
+};
+
+/* Of one that time or the state has, by its logarithm */
+static bool divides(const struct form *exponent)
+{
+	return !is_constant(exponent) || (exponent->terms == 1 && mpq_sgn(exponent->term->factor) < 0);
+}
+
+static bool hides(const struct atom *atom, enum unseen_kind *kind)
+{
+	switch (atom->kind) {
+	case ATOM_RECIPROCAL: *kind = UNSEEN_DIVISOR; return true;
+	case ATOM_POWER:      *kind = UNSEEN_DIVISOR; return divides(atom->operand[1]);
+	case ATOM_CALL:       break;
+	default:              return false;
+	}
+	switch (atom->function) {
+	case FN_EXP:  *kind = UNSEEN_RISE; return true;
+	case FN_SINH:
+	case FN_COSH: *kind = UNSEEN_SPREAD; return true;
+	case FN_TANH: *kind = UNSEEN_TURN; return true;
+	case FN_ATAN: *kind = UNSEEN_ARC; return true;
+	case FN_LOG:  *kind = UNSEEN_DIVISOR; return true;
+	default:      return false;
+	}
+}
+
+static void add_unseen(struct finding *f, const struct form *form, enum unseen_kind kind)
+{
+	for (int i = 0; i < f->count; i++)
+		if (f->unseen[i].form == form && f->unseen[i].kind == kind)
+			return;
+	ENLARGE(f->unseen, (size_t)f->count + 1);
+	f->unseen[f->count++] = (struct unseen){ .form = form, .kind = kind };
+}
+
+static void find_in_form(struct finding *f, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		enum unseen_kind kind;
+		if (!atom || f->seen[atom->index])
+			continue;
+		f->seen[atom->index] = true;
+		if (hides(atom, &kind) && (atom->time || atom->state || atom->velocity || atom->input) &&
+		    !(kind == UNSEEN_DIVISOR && stays_near(atom->operand[0])))
+			add_unseen(f, atom->operand[0], kind);
+		for (int k = 0; k < atom->operands; k++)
+			find_in_form(f, atom->operand[k]);
+	}
+}
+
+struct unseen *unseen_of(const struct model *model, int *count)
+{
+	struct finding f = { model, ARRAY(bool, (size_t)atoms_count(model->atoms)), 0, NULL };
+	for (int e = 0; e < model->channels && model->truncation.adaptive; e++)
+		find_in_form(&f, model->operator[0].left[e]);
+	*count = f.count;
+	return f.unseen;
+}
