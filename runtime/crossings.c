@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of
- * every breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated
- * before it is computed, so none is stepped over. */
+/* Steps of piecewise-linear models, in pieces of which most stay clear of every breakpoint, and a bound shows it; the
+ * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first crossing
+ * is isolated before it is computed, so none is stepped over. */
 #ifndef REST_IS_KEPT
 #include "columns.h"
 #endif
-#include "kept.h"
+#include "ladder.h"
 #include "regions.h"
 #include "roots.h"
 
@@ -107,7 +107,17 @@ static int clear(const pl_switching *m, int region, const real *low, const real 
     return 1;
 }
 
-/* Whether it is certain that nothing is crossed between x and y = Phi x, a piece on.  work: size + 5 switches */
+/* What e may do beside the chord from x to y: within low .. high.  off: as far from it at most */
+static void span(int switches, const real *from, const real *to, const real *off, real *low, real *high)
+{
+    int i;
+    for (i = 0; i < switches; i++) {
+        low[i] = smaller(from[i], to[i]) - off[i];
+        high[i] = larger(from[i], to[i]) + off[i];
+    }
+}
+
+/* Whether it is certain that nothing is crossed between x and y, a shortest piece on.  work: size + 5 switches */
 static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x, const real *y, real *work)
 {
     const int n = m->size, s = m->switches;
@@ -120,10 +130,7 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
     pl_multiply(s, n, m->row, x, from);
     pl_multiply(s, n, m->row, y, to);
     pl_multiply(s, n, rows_of(m->chord_error, m, c), size, off);
-    for (i = 0; i < s; i++) {
-        low[i] = smaller(from[i], to[i]) - off[i];
-        high[i] = larger(from[i], to[i]) + off[i];
-    }
+    span(s, from, to, off, low, high);
     if (clear(m, c->region, low, high)) {
         return 1;
     }
@@ -137,6 +144,24 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
         low[i] = smaller(smaller(from[i], to[i]), smaller(leaving, arriving)) - off[i];
         high[i] = larger(larger(from[i], to[i]), larger(leaving, arriving)) + off[i];
     }
+    return clear(m, c->region, low, high);
+}
+
+/* The same of a longer one, by x'' where it begins.  work: 2 size + 5 switches */
+static int stays_clear_far(const pl_switching *m, const pl_contact *c, climb *at, const real *x, const real *y,
+                           real *bend, real *work)
+{
+    const int n = m->size, s = m->switches;
+    real *from = work, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
+    const real *reach = m->ladder.reach + ((ptrdiff_t)m->ladder.first[c->matrix] * s + at->rung - 1) * n;
+    int i;
+    look_at_bend(at, n, matrix_of(m->A, m, c), x, bend, work);
+    pl_multiply(s, n, m->row, x, from);
+    pl_multiply(s, n, m->row, y, to);
+    for (i = 0; i < s; i++, reach += (ptrdiff_t)at->rungs * n) {
+        pl_multiply(1, n, reach, bend, &off[i]);
+    }
+    span(s, from, to, off, low, high);
     return clear(m, c->region, low, high);
 }
 
@@ -233,24 +258,29 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
 void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *room = work + WORDS * n;
+    real left = tau, *y = work, *bend = y + WORDS * n, *room = bend + n;
     int splits = m->max_splits, fresh = 1, i;
+    climb at = at_top;
     c->crossings = 0;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
+        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left);
         const int whole = left > longest * (1 - REST);
         const real dt = whole ? longest : left;
         found first;
         if (whole) {
-            whole_piece(n, m->Phi, c->matrix, x, y);
-            if (stays_clear(m, c, x, y, room)) {
+            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y);
+            if (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room) : stays_clear(m, c, x, y, room)) {
                 for (i = 0; i < WORDS * n; i++) {
                     x[i] = y[i];
                 }
                 left -= dt;
                 fresh = 0;
+                rise(&at);
                 continue;
             }
+        }
+        if (fall(&at)) {
+            continue;
         }
         if (fresh) { /* the region may be another one now */
             fresh = 0;
@@ -258,7 +288,8 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             continue;
         }
         first = move(m, c, dt, whole ? y : NULL, &splits, x, room);
-        if (splits < 0) {
+        at.bent = 0;
+        if (splits < 0 || is_lost(&at, n, x)) {
             break; /* x is held: this region may not be the one, and may be unstable */
         }
         left -= first.s * dt;
@@ -269,6 +300,7 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             splits = -1; /* no further search */
         }
         enter(m->matrix, c, c->region + (first.upward ? first.stride : -first.stride));
+        to_the_ground(&at);
     }
 }
 

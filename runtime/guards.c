@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
- * guard of their region go by e^{A d}; the others by Taylor polynomials, on which the first event is isolated.  What is
+ * guard of their region go by e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated. What is
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
-#include "kept.h"
+#include "ladder.h"
 #include "regions.h"
 #include "roots.h"
 
@@ -502,6 +502,27 @@ static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, c
     return 1;
 }
 
+/* The same of a piece that is longer than the shortest, by x'' where it begins.  work: 2 size */
+static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, const real *x, const real *y, real *bend,
+                           real *work)
+{
+    const int n = m->size;
+    int k;
+    look_at_bend(at, n, matrix_of(m->A, m, c->matrix), x, bend, work);
+    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+        const int row = m->guard[k].row;
+        const real *gate = m->gate + (ptrdiff_t)row * n;
+        real from, to, off;
+        pl_multiply(1, n, gate, x, &from);
+        pl_multiply(1, n, gate, y, &to);
+        pl_multiply(1, n, m->ladder.reach + ((ptrdiff_t)m->ladder.gates[row] + at->rung - 1) * n, bend, &off);
+        if (!(larger(from, to) + off < m->limit[k])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 typedef struct event {
     real s;    /* 1 without one */
     int guard; /* -1: none */
@@ -676,45 +697,54 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *room = work + WORDS * n;
+    real left = tau, *y = work, *bend = y + WORDS * n, *room = bend + n;
     int splits = m->max_splits, fresh = 1, i;
+    climb at = at_top;
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
         take_up(m, x, c, crossing, 0, room);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
+        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left);
         int whole = left > longest * (1 - REST);
         const real dt = shortened(m, c, x, whole ? longest : left, room);
         event first;
         whole = whole && dt >= longest;
         if (whole) {
-            whole_piece(n, m->Phi, c->matrix, x, y);
+            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y);
             assign(m, m->hold[c->region], y, room);
-            if (m->matrix[c->region] >= 0 && stays_clear(m, c, x, y, room)) {
+            if (m->matrix[c->region] >= 0 && (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room)
+                                                          : stays_clear(m, c, x, y, room))) {
                 for (i = 0; i < WORDS * n; i++) {
                     x[i] = y[i];
                 }
                 left -= dt;
                 fresh = 0;
+                rise(&at);
                 continue;
             }
+        }
+        if (fall(&at)) {
+            continue;
         }
         if (fresh) { /* the region may be another one now */
             fresh = 0;
             take_up(m, x, c, crossing, tau - left, room);
+            at.bent = 0;
             continue;
         }
         first = move(m, c, dt, whole ? y : (real *)0, &splits, x, room);
         assign(m, m->hold[c->region], x, room);
-        if (splits < 0) {
+        at.bent = 0;
+        if (splits < 0 || is_lost(&at, n, x)) {
             break; /* x is held: this region may not be the one, and may be unstable */
         }
         left -= first.s * dt;
         if (first.guard < 0) {
             continue;
         }
+        to_the_ground(&at);
         if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, room)) {
             if (m->guard[first.guard].impact >= 0) {
                 break; /* x is held on the guard: beyond it the impact would not come any more */

@@ -14,7 +14,7 @@
 
 enum { WORDS = 2 }; /* of an entry of x, of A */
 
-/* y = e^{A d} x.  Phi: of each matrix e^{A d} - I in two words, n x n first ones and then n x n second ones */
+/* y = e^{A h} x.  Phi: of each matrix e^{A h} - I in two words, n x n first ones and then n x n second ones */
 static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
 {
     const real *gain = Phi + 2 * (ptrdiff_t)matrix * n * n, *second = gain + (ptrdiff_t)n * n;
@@ -28,6 +28,12 @@ static void whole_piece(int n, const real *Phi, int matrix, const real *x, real 
         left[i] = x[n + i];
         y[i] = pl_accumulate(x[i], y[i], small, &left[i]);
     }
+}
+
+/* y = e^{A d} x by a rung's e^{A d} - I in two words */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y)
+{
+    whole_piece(n, pieces, rung, x, y);
 }
 
 /* row . x + small in two words */
@@ -110,10 +116,22 @@ static inline void take_from(int n, int state, real what, real *x)
 
 enum { WORDS = 1 };
 
-/* y = Phi x.  Phi: e^{A d} of each matrix, n x n. */
+/* y = Phi x.  Phi: e^{A h} of each matrix, n x n. */
 static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
 {
     pl_multiply(n, n, Phi + (ptrdiff_t)matrix * n * n, x, y);
+}
+
+/* y = e^{A d} x; what keeps most of itself is moved by its change, so that many short pieces do not repeat the rounding
+ * of a number near 1. */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y)
+{
+    const real *rows = pieces + (ptrdiff_t)rung * (n + 1) * n, *stays = rows + n * n;
+    int i;
+    pl_multiply(n, n, rows, x, y);
+    for (i = 0; i < n; i++) {
+        y[i] += stays[i] * x[i];
+    }
 }
 
 static void expand_piece(int n, int degree, const real *A, real dt, const real *x, real *coefficients, real *low)

@@ -436,6 +436,21 @@ static inline float pl_magnitudef(float a)
  *
  * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves
  * in the time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
+/* Of each matrix whose poles turn far in h: the lengths that pieces of a step have, rung by rung.  Rung 0 is as short as
+ * h / 2^halvings, the next ones are 2^spacing times as long each, and beyond the last of them, which is shorter than h,
+ * comes h itself.  A step goes by the longest that are seen to stay clear, so that few pieces round what is slow. */
+typedef struct pl_ladder {
+    const int *first;   /* the number of its rung 0 among those of all */
+    const int *spacing; /* 1 .. 30 */
+    /* Of each rung size + 1 rows of `size`: x_i goes on to row_i . x, and where the last row has 1 at i, not 0, x_i is
+     * added: there row_i is of e^{A d} - I, each entry rounded relative to itself. */
+    const double *pieces;
+    /* In a piece of the rung after this one an expression, or a row of guards, is off the chord through its ends by at
+     * most reach . |x''(0)|: of each matrix its rungs for the first expression, for the second; ... */
+    const double *reach;
+    const int *gates;   /* of each row of guards: the number of the first of its rows of reach; else not read */
+} pl_ladder;
+
 typedef struct pl_switching {
     int size;           /* entries of x */
     double h;           /* step [s] */
@@ -444,10 +459,12 @@ typedef struct pl_switching {
     const int *breaks;  /* of each switch: how many breakpoints, >= 1 */
     const double *at;   /* the breakpoints: those of switch 0, rising; those of switch 1; ... */
     const int *matrix;  /* of each region: the number of its A; -1: cannot occur, and passed through in no time */
-    /* Of each matrix: its steps go by pieces of length d = h / 2^halvings.  Tables for switches are switches x size. */
+    /* Of each matrix: crossings are looked for in pieces d = h / 2^halvings or shorter.  Tables for switches are switches
+     * x size. */
     const int *halvings; /* 0 .. 30: |pole| d is about 1 or below */
     const double *A;     /* size x size, row-major [1/s] */
-    const double *Phi;   /* e^{A d}: the piece where nothing is crossed */
+    const double *Phi;   /* e^{A h}: the step where nothing is crossed */
+    pl_ladder ladder;    /* shorter pieces; not read where halvings are 0 */
     const double *tangent; /* d/3 row . A, so that tangent . x = d/3 e' */
     /* On 0 .. d, e is off the chord through its ends by at most chord_error . |x(0)|: d^2/8 max|e''|, and off the cubic
      * through its ends with its slopes there by at most cubic_error . |x(0)|: d^4/384 max|e''''| */
@@ -476,13 +493,13 @@ typedef struct pl_contact {
 enum { PL_TOO_MANY_EVENTS = 2 };
 
 /* How many doubles, or floats, of work the functions below need; contents of no meaning. */
-#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 2 * (size) + 5 * (switches))
+#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 3 * (size) + 5 * (switches))
 
 /* The region of x, no crossings, status 0.  Exactly on a breakpoint the sign of e' decides, then of e'', then of e''';
  * what rests there counts as below. */
 void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
 
-/* x over h, with every crossing on the way, in order.  A whole piece without one is Phi x, to the last bit.
+/* x over h, with every crossing on the way, in order.  A step that is seen to have none is Phi x, to the last bit.
  *     x         `size` entries, in and out.  Loads may be set anew before each step, and inputs may jump: an expression
  * that has left its interval by that passes its breakpoints at time 0 crossing  max_events entries work
  * PL_SWITCHING_WORK(size, switches, degree) Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing
@@ -498,8 +515,8 @@ void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_conta
                           double *work);
 
 /* The same with what rounding takes from x kept: x is `size` entries and then their rests, so that x + rest is what is
- * meant.  m->A and m->Phi, which is e^{A d} - I, have two words: of each matrix size x size first ones and then as many
- * second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of x. */
+ * meant.  m->A, m->Phi and the rungs, which are e^{A d} - I, have two words: of each size x size first ones and then as
+ * many second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of x. */
 #define PL_SWITCHING_KEPT_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
 void pl_switching_kept_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
 void pl_switching_kept_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
@@ -509,6 +526,12 @@ void pl_switching_kept_advance(const pl_switching *m, double tau, double *x, pl_
 void pl_switching_kept_move(const pl_switching *m, int matrix, int degree, double dt, double *x, double *work);
 
 /* The same for floats; rounding errors are taken to be 8 FLT_EPSILON (...).  A pl_contact serves both. */
+typedef struct pl_ladderf {
+    const int *first, *spacing;
+    const float *pieces, *reach;
+    const int *gates;
+} pl_ladderf;
+
 typedef struct pl_switchingf {
     int size;
     float h;
@@ -517,7 +540,9 @@ typedef struct pl_switchingf {
     const int *breaks;
     const float *at;
     const int *matrix, *halvings;
-    const float *A, *Phi, *tangent, *chord_error, *cubic_error;
+    const float *A, *Phi;
+    pl_ladderf ladder;
+    const float *tangent, *chord_error, *cubic_error;
     int degree, max_events, max_splits;
 } pl_switchingf;
 
@@ -741,6 +766,7 @@ typedef struct pl_guards {
     /* Of each matrix, as for pl_switching: */
     const int *halvings;
     const double *A, *Phi;
+    pl_ladder ladder;
     const double *tangent; /* switches x size */
     /* Of each region: its guards are guard[first[region]] to guard[first[region + 1] - 1]; hold is the set of
      * assignments that holds its states, or -1 */
@@ -771,7 +797,7 @@ enum { PL_UNDECIDED = 16 };
 #define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
 
-#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 8 * (size))
+#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 9 * (size))
 
 /* The region of x.  What is on a breakpoint that stands twice sticks where that can be, else goes where it is heading;
  * what is on another one goes as in pl_switching_start. */
@@ -819,7 +845,9 @@ typedef struct pl_guardsf {
     const int *breaks;
     const float *at;
     const int *matrix, *halvings;
-    const float *A, *Phi, *tangent;
+    const float *A, *Phi;
+    pl_ladderf ladder;
+    const float *tangent;
     const int *first;
     const pl_guard *guard;
     const float *limit;
@@ -999,21 +1027,19 @@ int  pl_blockf_increment(const pl_blockf *b, const float *params, float tau, pl_
 void pl_blockf_advance(const pl_blockf *b, const float *params, int segment, float tau, float *x, pl_twof *work);
 /* ---- region.c: a region of a piecewise-linear model from other params ------------------------------------------ */
 
-/* Of x' = A x, A size x size in two words: *halvings, so that no pole times d = h 2^-halvings is above 1; slopes and
- * Phi = e^{A d} as pl_switching has them, each entry of Phi within 16 units in the last place of the largest of all.
+/* Of x' = A x, A size x size in two words: *halvings, so that no pole times h 2^-halvings is above 1; slopes and
+ * Phi = e^{A h} as pl_switching has them, each entry within 16 units in the last place of the largest of all; and the
+ * pieces of a ladder that has room for `rungs` of them, *spacing halvings apart.
  *     most  halvings that are allowed
  *     work  PL_REGION_WORK(size) entries, contents of no meaning
  * 0; PL_NOT_FINITE, PL_OUT_OF_RANGE: more halvings */
-int pl_region_of(int size, const pl_two *A, double h, int most, int *halvings, double *slopes, double *Phi,
-                 pl_two *work);
+int pl_region_of(int size, const pl_two *A, double h, int most, int rungs, int *halvings, int *spacing, double *slopes,
+                 double *Phi, double *ladder, pl_two *work);
 #define PL_REGION_WORK(size) (7 * (size) * (size))
 
-/* Of a region that pl_region_of gave *halvings and Phi: whole = e^{A h}, and *large = most over the largest of its
- * entries, or of 1.  Where there is more than one halving no step looks over the whole of h: *large is 0.
- *     work  PL_REGION_WORK(size) entries, contents of no meaning
- * 0; what pl_increment returns */
-int pl_region_whole(int size, const pl_two *A, double h, int halvings, const double *Phi, double most, double *whole,
-                    double *large, pl_two *work);
+/* `most` over the largest entry of Phi, or over 1; 0 where there is more than one halving: no step looks over the whole
+ * of h then. */
+double pl_region_large(int size, int halvings, const double *Phi, double most);
 
 /* Of rows over x, rows x size, in such a region: slope, second and fourth as tangent, chord_error and cubic_error of
  * pl_switching, with room for what rounding did to them.
@@ -1022,12 +1048,20 @@ void pl_region_bounds(int size, double d, const double *A, int rows, const doubl
                       double *fourth, double *work);
 #define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
 
-int pl_regionf_of(int size, const pl_twof *A, float h, int most, int *halvings, float *slopes, float *Phi,
-                  pl_twof *work);
-int pl_regionf_whole(int size, const pl_twof *A, float h, int halvings, const float *Phi, float most, float *whole,
-                     float *large, pl_twof *work);
+/* Of the same rows: reach as a ladder has it, for each row that of all rungs but the first, and of h.
+ *     A     size x size [1/s]
+ *     work  PL_REACH_WORK(size, rows) entries, contents of no meaning */
+void pl_region_reach(int size, double h, int halvings, int spacing, const double *A, int rows, const double *row,
+                     double *reach, double *work);
+#define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
+
+int pl_regionf_of(int size, const pl_twof *A, float h, int most, int rungs, int *halvings, int *spacing, float *slopes,
+                  float *Phi, float *ladder, pl_twof *work);
+float pl_regionf_large(int size, int halvings, const float *Phi, float most);
 void pl_regionf_bounds(int size, float d, const float *A, int rows, const float *row, float *slope, float *second,
                        float *fourth, float *work);
+void pl_regionf_reach(int size, float h, int halvings, int spacing, const float *A, int rows, const float *row,
+                      float *reach, float *work);
 
 /* ---- cut.c: a part of a step of a scheme with a leftover ------------------------------------------------------ */
 

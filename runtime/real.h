@@ -58,7 +58,9 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_region_bounds pl_regionf_bounds
 #define pl_cut pl_cutf
 #define pl_cut_advance pl_cutf_advance
-#define pl_region_whole pl_regionf_whole
+#define pl_region_large pl_regionf_large
+#define pl_region_reach pl_regionf_reach
+#define pl_ladder pl_ladderf
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels
 #define pl_entry pl_entryf

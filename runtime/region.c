@@ -56,66 +56,78 @@ static void from_increment(int n, const pl_two *D, real *Phi)
     }
 }
 
-int pl_region_of(int size, const pl_two *A, real h, int most, int *halvings, real *slopes, real *Phi, pl_two *work)
+/* A rung: D itself in the rows of what keeps more than half of itself, and behind them which these are */
+static void rung_of_increment(int n, const pl_two *D, real *rows)
 {
-    const int cells = size * size;
-    pl_two *const D = work + PL_INCREMENT_WORK(size);
-    real turn = largest_turn(size, A, h, slopes, Phi), d = h;
-    int i, status;
+    int i;
+    from_increment(n, D, rows);
+    for (i = 0; i < n; i++) {
+        const int stays = D[i * (n + 1)].hi > -1 / (real)2;
+        rows[n * n + i] = (real)stays;
+        if (stays) {
+            rows[i * (n + 1)] = D[i * (n + 1)].hi;
+        }
+    }
+}
+
+/* So many halvings of h that no pole turns by more than 1, and between the rungs of a ladder that has `rungs` of them */
+static int halve(int n, const pl_two *A, real h, int most, int rungs, int *halvings, int *spacing, real *v, real *next)
+{
+    real turn = largest_turn(n, A, h, v, next);
     if (!is_finite(turn)) {
         return PL_NOT_FINITE;
     }
-    for (*halvings = 0; turn > 1 && *halvings <= most; turn /= 2, d /= 2) {
+    for (*halvings = 0; turn > 1 && *halvings <= most; turn /= 2) {
         ++*halvings;
     }
-    if (*halvings > most) {
-        return PL_OUT_OF_RANGE;
+    *spacing = *halvings > rungs ? (*halvings + rungs - 1) / rungs : 1;
+    return *halvings > most ? PL_OUT_OF_RANGE : 0;
+}
+
+int pl_region_of(int size, const pl_two *A, real h, int most, int rungs, int *halvings, int *spacing, real *slopes,
+                 real *Phi, real *ladder, pl_two *work)
+{
+    const int cells = size * size;
+    pl_two *const D = work + PL_INCREMENT_WORK(size);
+    int i, down, status = halve(size, A, h, most, rungs, halvings, spacing, slopes, Phi);
+    if (status == 0) {
+        status = pl_increment(size, size, A, h, 1, D, work);
     }
-    status = pl_increment(size, size, A, d, 1, D, work);
-    for (i = 0; i < cells && status == 0; i++) {
+    if (status != 0) {
+        return status;
+    }
+    from_increment(size, D, Phi);
+    for (i = 0; i < cells; i++) {
         slopes[i] = A[i].hi;
     }
-    if (status == 0) {
-        from_increment(size, D, Phi);
+    for (down = *halvings; down > 0 && status == 0; down -= *spacing, ladder += cells + size) {
+        status = pl_increment(size, size, A, h / (real)((uint32_t)1 << down), 1, D, work);
+        rung_of_increment(size, D, ladder);
     }
     return status;
 }
 
-int pl_region_whole(int size, const pl_two *A, real h, int halvings, const real *Phi, real most, real *whole,
-                    real *large, pl_two *work)
+real pl_region_large(int size, int halvings, const real *Phi, real most)
 {
-    pl_two *const D = work + PL_INCREMENT_WORK(size);
-    const int cells = size * size;
     real largest = 1;
-    int i, status = 0;
-    *large = 0;
-    for (i = 0; i < cells; i++) {
-        whole[i] = Phi[i];
+    int i;
+    for (i = 0; i < size * size; i++) {
+        largest = magnitude(Phi[i]) > largest ? magnitude(Phi[i]) : largest;
     }
-    if (halvings > 1) {
-        return 0;
-    }
-    if (halvings == 1) {
-        status = pl_increment(size, size, A, h, 1, D, work);
-        from_increment(size, D, whole);
-    }
-    for (i = 0; i < cells; i++) {
-        largest = magnitude(whole[i]) > largest ? magnitude(whole[i]) : largest;
-    }
-    *large = most / largest;
-    return status;
+    return halvings > 1 ? 0 : most / largest;
 }
 
 /* ---- bounds ---- */
 
-/* E <- e^{A tau}, or e^{|A| tau}, whose poles times tau are below 1/4.  work: 2 n n */
+/* E <- e^{A tau} - I, or e^{|A| tau} - I, whose poles times tau are below 1/4.  work: 2 n n */
 static void exponential(int n, const real *A, real tau, int sizes, real *E, real *work)
 {
     enum { TERMS = 14 };
     real *term = work, *next = work + n * n, *swap;
     int i, j, k, m;
     for (i = 0; i < n * n; i++) {
-        E[i] = term[i] = (real)(i % (n + 1) == 0);
+        term[i] = (real)(i % (n + 1) == 0);
+        E[i] = 0;
     }
     for (k = 1; k < TERMS + n; k++) {
         for (i = 0; i < n; i++) {
@@ -133,6 +145,14 @@ static void exponential(int n, const real *A, real tau, int sizes, real *E, real
         for (i = 0; i < n * n; i++) {
             E[i] += term[i];
         }
+    }
+}
+
+static void add_one(int n, real *E)
+{
+    int i;
+    for (i = 0; i < n; i++) {
+        E[i * (n + 1)] += 1;
     }
 }
 
@@ -188,6 +208,8 @@ void pl_region_bounds(int size, real d, const real *A, int rows, const real *row
     int i, j, order;
     exponential(n, A, d / PARTS, 0, E, gone);
     exponential(n, A, d / PARTS, 1, most, gone);
+    add_one(n, E);
+    add_one(n, most);
     for (i = 0; i < rows; i++, row += n, slope += n) {
         for (j = 0; j < n; j++) {
             gone[j] = row[j];
@@ -211,6 +233,132 @@ void pl_region_bounds(int size, real d, const real *A, int rows, const real *row
             } else {
                 bound_row(n, E, most, at, lost, d * d * d * d / 384, fourth + i * n, more);
             }
+        }
+    }
+}
+
+/* ---- longer pieces ---- */
+
+/* On their way over pieces that double: e^{A d} - I and a bound of |e^{A tau}| for 0 <= tau <= d */
+typedef struct stride {
+    int n;
+    real *D, *most, *room;
+} stride;
+
+/* sum_k |(I + D)_ik| most_kj, or the factors the other way */
+static real grown(const stride *s, int swapped, int i, int j)
+{
+    real sum = 0;
+    int k;
+    for (k = 0; k < s->n; k++) {
+        const int left = i * s->n + k, right = k * s->n + j, at = swapped ? right : left;
+        sum += magnitude(s->D[at] + (real)(at % (s->n + 1) == 0)) * s->most[swapped ? left : right];
+    }
+    return sum;
+}
+
+/* Twice as long: I + D by its square, which loses nothing of what is small, and its bound over both halves */
+static void double_stride(stride *s)
+{
+    const int n = s->n;
+    int i, j, k;
+    real *swap;
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < n; j++) {
+            const real one = grown(s, 0, i, j), other = grown(s, 1, i, j), least = one < other ? one : other;
+            s->room[i * n + j] = least > s->most[i * n + j] ? least : s->most[i * n + j];
+        }
+    }
+    swap = s->most;
+    s->most = s->room;
+    s->room = swap;
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < n; j++) {
+            real sum = 2 * s->D[i * n + j];
+            for (k = 0; k < n; k++) {
+                sum += s->D[i * n + k] * s->D[k * n + j];
+            }
+            s->room[i * n + j] = sum;
+        }
+    }
+    swap = s->D;
+    s->D = s->room;
+    s->room = swap;
+}
+
+/* Of a row e^{A tau}: where it is, its largest sizes so far, and the integrals of tau times them */
+typedef struct reached {
+    real *row, *most, *moment;
+} reached;
+
+/* PARTS strides on from tau = from.  work: n */
+static void reach_on(const stride *s, real from, real d, const reached *r, real *work)
+{
+    const int n = s->n;
+    int i, j, part;
+    for (part = 1; part <= PARTS; part++) {
+        for (j = 0; j < n; j++) {
+            real sum = 0, change = 0;
+            for (i = 0; i < n; i++) {
+                sum += magnitude(r->row[i]) * s->most[i * n + j];
+                change += r->row[i] * s->D[i * n + j];
+            }
+            if (!(sum <= r->most[j])) {
+                r->most[j] = sum;
+            }
+            r->moment[j] += d * (from + (real)part * d) * sum;
+            work[j] = r->row[j] + change;
+        }
+        for (j = 0; j < n; j++) {
+            r->row[j] = work[j];
+        }
+    }
+}
+
+/* The chord over 0 .. length is off by the integral of G(tau) |e''(tau)|, where G <= tau (1 - tau / length) <= tau, and
+ * by length^2/8 max|e''|. */
+static void write_reach(int n, real length, const reached *r, real *reach)
+{
+    int j;
+    for (j = 0; j < n; j++) {
+        const real even = length * length / 8 * r->most[j];
+        reach[j] = (even < r->moment[j] ? even : r->moment[j]) * (1 + 1 / (real)1024);
+    }
+}
+
+void pl_region_reach(int size, real h, int halvings, int spacing, const real *A, int rows, const real *row,
+                     real *reach, real *work)
+{
+    const int n = size, cells = n * n, rungs = halvings > 0 ? (halvings - 1) / spacing + 1 : 0;
+    real *const state = work + 3 * cells, *const room = state + 3 * n * rows;
+    real d = h / (real)((uint32_t)1 << halvings) / PARTS;
+    stride s;
+    int i, j, k;
+    s.n = n;
+    s.D = work;
+    s.most = work + cells;
+    s.room = work + 2 * cells;
+    exponential(n, A, d, 0, s.D, room);
+    exponential(n, A, d, 1, s.most, room);
+    add_one(n, s.most);
+    for (k = 0; k <= halvings; k++) {
+        for (i = 0; i < rows; i++) {
+            reached r;
+            r.row = state + 3 * n * i;
+            r.most = r.row + n;
+            r.moment = r.most + n;
+            for (j = 0; j < n && k == 0; j++) {
+                r.row[j] = row[i * n + j];
+                r.most[j] = r.moment[j] = 0;
+            }
+            reach_on(&s, k > 0 ? d * PARTS : 0, d, &r, room);
+            if (k > 0 && (k % spacing == 0 || k == halvings)) {
+                write_reach(n, 2 * PARTS * d, &r, reach + (i * rungs + (k - 1) / spacing) * n);
+            }
+        }
+        if (k > 0) {
+            double_stride(&s);
+            d *= 2;
         }
     }
 }

@@ -51,7 +51,7 @@ enum {
 	CUT_POWERS = 3,             /* of a force over a part of a step: its value and two derivatives */
 	LIMIT_COMPARED = 6,         /* operands of min and max whose crossings are found */
 	LIMIT_STRAIGHTS = 100,      /* pieces of a table likewise */
-	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
+	LIMIT_PIECES = 30,          /* halvings of a step in which crossings are looked for */
 	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */
 	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */

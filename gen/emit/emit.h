@@ -589,7 +589,6 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 struct region_tables of_branch(struct region_tables t, int branch);
 /* e^{A h}; of a state in two words the same less I, second words behind the first */
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
-double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
 double *off_of(const struct region_piece *piece);                 /* expressions off their chords over h */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
@@ -678,6 +677,15 @@ void open_table(const struct emitter *e, const char *name, const char *shape, co
 void close_table(const struct emitter *e);
 const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
+/* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of them,
+ * where `none` stands for numbers that are not read; how many there are, rows of each, rows of what bounds them */
+void emit_ladder_places(const struct emitter *e, const struct guards *guards);
+void emit_spacing(const struct emitter *e);
+void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
+const char *ladder_text(const struct emitter *e, const struct guards *guards, const char *none);
+int rungs_of_all(const struct emitter *e);
+int rows_of_rung(const struct emitter *e);
+int rows_of_reach(const struct emitter *e, const struct guards *guards);
 void emit_region_declarations(const struct emitter *e);
 void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */

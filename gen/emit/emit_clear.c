@@ -106,7 +106,7 @@ static struct look look_of(const struct emitter *e, const struct pieces *p, cons
 	struct look l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
 			  .end = moving(e, entries(e, "end%d")) };
 	l.size = magnitudes(e, l.x);
-	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->whole[%d]", branch) : "factor");
+	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
 	l.off = tables_of_regions(e, p, own && branch >= 0 ? format("c->chord_off[%d]", branch) : "c->chord_off[which]",
 				  expressions_of(e), off_of);
 	if (branch >= 0) {
@@ -225,7 +225,7 @@ static void emit_table_step(const struct emitter *e, const struct pieces *p, con
 	if (l.own)
 		say(e, "    const int *const span = $o_span[s->contact$p.region];\n");
 	say(e, "    const double (*const factor)[%d] = %s[which];\n", e->step->layout.size,
-	    l.own ? "c->whole" : spell(e, any_pieces(e) ? "$o_whole" : "$o_pieces"));
+	    l.own ? "c->pieces" : spell(e, "$o_pieces"));
 	emit_ends(e, &l, "const double ");
 	for (int i = 0; i < expressions_of(e); i++) {
 		if (leader(&l, i) != i)

@@ -270,8 +270,8 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	say(e, "\n"
 	       "static void $o_advance(int which, const double x[%d], double end[%d])\n"
 	       "{\n"
-	       "    const double (*const factor)[%d] = $o_%s[which];\n",
-	    size, size, size, any_pieces(e) ? "whole" : "pieces");
+	       "    const double (*const factor)[%d] = $o_pieces[which];\n",
+	    size, size, size);
 	for (int i = 0; i < size; i++)
 		if (keeps_rest(e))
 			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));

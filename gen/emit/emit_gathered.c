@@ -8,7 +8,7 @@ static void emit_added(const struct emitter *e, int stays)
 		say(e, "        for (i = 0; i < %d; i++) {\n"
 		       "            c->added[k][i] = 0.0;\n"
 		       "            for (j = 0; j < %d; j++)\n"
-		       "                c->added[k][i] += c->whole[k][i][stays[j]] * at[j];\n"
+		       "                c->added[k][i] += c->pieces[k][i][stays[j]] * at[j];\n"
 		       "            if (!(pl_magnitude(c->added[k][i]) < %s))\n"
 		       "                c->large[k] = 0.0;\n"
 		       "        }\n", e->system->states, stays, shortest(LARGE_ENOUGH));

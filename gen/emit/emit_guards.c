@@ -184,9 +184,11 @@ static void emit_search_in(const struct emitter *e, const struct guards *g, int 
 	const char *of = prefix_of_tables(e), *play = offset_of(segment, s->expressions);
 	const char *from = offset_of(segment, g->impacts), *impact = first_of(segment, g->impacts);
 	say(e, "%s    %d, $N_H, %d, %srow%s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
-	       "%s    %sslopes[0][0], %spieces[0][0], %slean[0][0],\n"
-	       "%s    $o_first, $o_guard, %slimit, $o_holding,\n",
-	    indent, e->step->layout.size, s->expressions, of, row, of, of, indent, of, of, of, indent, of);
+	       "%s    %sslopes[0][0], %spieces[0][0],\n"
+	       "%s    %s,\n"
+	       "%s    %slean[0][0], $o_first, $o_guard, %slimit, $o_holding,\n",
+	    indent, e->step->layout.size, s->expressions, of, row, of, of, indent, of, of, indent,
+	    ladder_text(e, g, format("%sslopes[0][0]", of)), indent, of, of);
 	say(e, "%s    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay%s, %sgate_play,\n"
 	       "%s    $o_sets, $o_held, %svalue[0], %d, %simpact%s, %sspeed[%s], %sback[%s], %d, $N_MAX_EVENTS, "
 	       "%d\n",

@@ -97,7 +97,7 @@ static const char *note_of_slopes(const struct emitter *part)
 
 static const char *note_of_pieces(const struct emitter *part)
 {
-	return keeps_rest(part) ? "e^{A d} - I in two words, d = h 2^-halvings" : "e^{A d}, d = h 2^-halvings";
+	return keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}";
 }
 
 static void emit_matrix(const struct emitter *part, const char *name, const char *note, const double *value)
@@ -129,6 +129,14 @@ static double *slopes_of_piece(const struct region_piece *piece) { return piece-
 static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
 static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
 
+static void emit_ladder_of_linear(const struct emitter *part)
+{
+	struct pieces pieces = pieces_of(part->step);
+	emit_ladder_places(part, NULL);
+	emit_spacing(part);
+	emit_ladder(part, &pieces, NULL);
+}
+
 /* The same in each segment of time */
 static void emit_changing_tables(const struct emitter *part)
 {
@@ -143,16 +151,19 @@ static void emit_changing_tables(const struct emitter *part)
 		halvings[k] = part->step->branch[k].halvings;
 	emit_indices(part, "matrix", s->segments, matrix, "in each segment of time");
 	emit_indices(part, "halvings", part->step->branches, halvings, "log2 of the pieces of a step");
+	emit_ladder_of_linear(part);
 	say(part, "\n"
 		  "static const pl_switching $o_switching[%d] = {  /* no expressions: what is theirs is not read */\n",
 	    s->segments);
 	for (int k = 0; k < s->segments; k++)
 		say(part, "  {\n"
 			  "    %d, $N_H, 0, $o_slopes[0][0], $o_matrix, $o_slopes[0][0], $o_matrix, $o_halvings,\n"
-			  "    $o_slopes[0][0], $o_pieces[0][0], $o_slopes[0][0], $o_slopes[0][0], $o_slopes[0][0], "
-			  "%d, 0, 0\n"
+			  "    $o_slopes[0][0], $o_pieces[0][0],\n"
+			  "    %s,\n"
+			  "    $o_slopes[0][0], $o_slopes[0][0], $o_slopes[0][0], %d, 0, 0\n"
 			  "  },\n",
-		    part->step->layout.size, part->step->series.degree);
+		    part->step->layout.size, ladder_text(part, NULL, spell(part, "$o_slopes[0][0]")),
+		    part->step->series.degree);
 	say(part, "};\n");
 	emit_region_changes(part);
 }
@@ -170,13 +181,16 @@ static void emit_linear_tables(const struct emitter *part)
 		    keeps_rest(part) ? pieces.piece->gain : pieces.piece->Phi);
 	say(part, "\n"
 		  "static const int $o_matrix[1] = {0};\n"
-		  "static const int $o_halvings[1] = {%d};\n"
-		  "\n"
+		  "static const int $o_halvings[1] = {%d};\n", part->step->branch->halvings);
+	emit_ladder_of_linear(part);
+	say(part, "\n"
 		  "static const pl_switching $o_switching = {  /* no expressions: what is theirs is not read */\n"
 		  "    %d, $N_H, 0, $o_slopes[0], $o_matrix, $o_slopes[0], $o_matrix, $o_halvings,\n"
-		  "    $o_slopes[0], $o_pieces[0], $o_slopes[0], $o_slopes[0], $o_slopes[0], %d, 0, 0\n"
+		  "    $o_slopes[0], $o_pieces[0],\n"
+		  "    %s,\n"
+		  "    $o_slopes[0], $o_slopes[0], $o_slopes[0], %d, 0, 0\n"
 		  "};\n",
-	    part->step->branch->halvings, part->step->layout.size, part->step->series.degree);
+	    part->step->layout.size, ladder_text(part, NULL, spell(part, "$o_slopes[0]")), part->step->series.degree);
 }
 
 static const char *names_of_part(const struct emitter *part)

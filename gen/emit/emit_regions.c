@@ -128,10 +128,11 @@ static void emit_switching_in(const struct emitter *e, const char *row, const ch
 {
 	const char *of = prefix_of_tables(e);
 	say(e, "%s    %d, $N_H, %d, %s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
-	       "%s    %sslopes[0][0], %spieces[0][0], %slean[0][0], %ssag[0][0], %ssway[0][0], "
-	       "%d, $N_MAX_EVENTS, %d\n",
-	    indent, e->step->layout.size, regions_of(e)->expressions, row, of, of, indent, of, of, of, of, of,
-	    e->step->series.degree, MAX_SPLITS);
+	       "%s    %sslopes[0][0], %spieces[0][0],\n"
+	       "%s    %s,\n"
+	       "%s    %slean[0][0], %ssag[0][0], %ssway[0][0], %d, $N_MAX_EVENTS, %d\n",
+	    indent, e->step->layout.size, regions_of(e)->expressions, row, of, of, indent, of, of, indent,
+	    ladder_text(e, NULL, format("%sslopes[0][0]", of)), indent, of, of, of, e->step->series.degree, MAX_SPLITS);
 }
 
 /* Of tunable tables it is made anew for each call: an instance that is copied would have to point into itself. */
@@ -176,14 +177,11 @@ static void emit_own_rows(const struct emitter *e, const struct pieces *pieces, 
 }
 
 /* By which a step sees over the whole of h that it stays clear */
-static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **entry,
-			  const char **expression)
+static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **expression)
 {
-	const struct matrices whole = { "whole", "e^{A h}", e->step->layout.size, entry, whole_of };
 	const struct matrices off = { "chord_off",
 				      "times |x|: how far each expression is off its chord over h, at most",
 				      regions_of(e)->expressions, expression, off_of };
-	emit_matrices(e, pieces, &whole);
 	emit_matrices(e, pieces, &off);
 	if (any_stays(e->step))
 		emit_own_rows(e, pieces, "added: over h to each state, by what stays of x", e->system->states,
@@ -213,21 +211,23 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	const struct matrices all[] = {
 		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
 		  slopes_of_piece },
-		{ "pieces", format("e^{A d}%s%s, d = h 2^-halvings", rest ? " - I" : "", words), size_of_vector(e),
-		  entry, rest ? gain_of_piece : Phi_of_piece },
-		{ "lean", "d/3 times the slope of each expression", expressions, expression, slope_of_piece },
+		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
+		  rest ? gain_of_piece : Phi_of_piece },
+		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression, slope_of_piece },
 		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, second_of_piece },
 		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, fourth_of_piece }
 	};
 	emit_halvings(e);
+	emit_spacing(e);
 	if (e->model->retuned) {
 		emit_rows(e, pieces);
 		emit_breakpoints(e, pieces);
 	}
 	for (size_t i = 0; i < sizeof all / sizeof *all - (g ? 2 : 0); i++)
 		emit_matrices(e, pieces, &all[i]);
+	emit_ladder(e, pieces, g);
 	if (e->model->retuned && e->step->clears)
-		emit_own_look(e, pieces, entry, expression);
+		emit_own_look(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
 }
@@ -244,6 +244,7 @@ void emit_regions(const struct emitter *e)
 	if (!e->model->retuned)
 		emit_breakpoints(e, &pieces);
 	emit_region_numbers(e);
+	emit_ladder_places(e, g);
 	if (g && e->model->retuned)
 		emit_guards(e, g);
 	if (e->model->retuned)

@@ -64,20 +64,28 @@ void emit_retuned_members(const struct emitter *e)
 	for (int i = 0; i < s->expressions; i++)
 		breaks += s->expression[i].breaks;
 	member(e, "int", "halvings", format("[%d]", systems), "of h, to a piece d of a step in each region");
+	member(e, "int", "spacing", format("[%d]", systems), "between lengths of longer pieces");
 	member(e, "double", "row", format("%s[%d][%d]", segments, s->expressions, size), "expressions, over x");
 	member(e, "double", "breakpoint", format("[%d]", breaks), "that divide them");
 	member(e, "double", "slopes", matrices, "x' = A x");
-	member(e, "double", "pieces", matrices, "e^{A d}");
+	member(e, "double", "pieces", matrices, "e^{A h}");
 	member(e, "double", "lean", rows, "d/3 times the slope of each expression");
+	if (!has_guards(e)) {
+		member(e, "double", "sag", rows, "d^2/8 times its second derivative, at most");
+		member(e, "double", "sway", rows, "d^4/384 times its fourth derivative, at most");
+	}
+	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
+	member(e, "double", "rungs", format("[%d][%d][%d]", rungs_of_all(e), rows_of_rung(e), size),
+	       "e^{A d} of shorter pieces");
+	if (rows_of_reach(e, has_guards(e) ? &g : NULL) > 0)
+		member(e, "double", "bend", table_shape(rows_of_reach(e, has_guards(e) ? &g : NULL), size),
+		       "times |x''|: off a chord over the next longer one, at most");
 	if (has_guards(e)) {
 		guard_members(e);
 		return;
 	}
-	member(e, "double", "sag", rows, "d^2/8 times its second derivative, at most");
-	member(e, "double", "sway", rows, "d^4/384 times its fourth derivative, at most");
 	if (!e->step->clears)
 		return;
-	member(e, "double", "whole", matrices, "e^{A h}");
 	member(e, "double", "chord_off", rows, "how far each expression is off its chord over h, at most");
 	if (any_stays(e->step))
 		member(e, "double", "added", format("[%d][%d]", systems, e->system->states),
@@ -378,17 +386,15 @@ static void emit_systems(const struct emitter *e)
 	say(e, "};  /* its rows; -1: it stays */\n"
 	       "        if (first[k] >= 0) {\n"
 	       "            $n_own_slopes(&value[first[k]], A);\n"
-	       "            status = pl_region_of(%d, A[0], h, %d, &made.halvings[k], made.slopes[k][0],\n"
-	       "                                  made.pieces[k][0], work);\n", size, LIMIT_PIECES);
+	       "            status = pl_region_of(%d, A[0], h, %d, %d, &made.halvings[k], &made.spacing[k],\n"
+	       "                                  made.slopes[k][0], made.pieces[k][0], made.rungs[$o_first_rung[k]][0],\n"
+	       "                                  work);\n"
+	       "            if (status != 0)\n"
+	       "                return status;\n", size, LIMIT_PIECES, room_for_rungs(e->step));
 	if (e->step->clears)
-		say(e, "            if (status == 0)\n"
-		       "                status = pl_region_whole(%d, A[0], h, made.halvings[k], made.pieces[k][0],\n"
-		       "                                         %s, made.whole[k][0],\n"
-		       "                                         &made.large[k], work);\n", size,
+		say(e, "            made.large[k] = pl_region_large(%d, made.halvings[k], made.pieces[k][0], %s);\n", size,
 		    shortest(LARGE_ENOUGH));
-	say(e, "            if (status != 0)\n"
-	       "                return status;\n"
-	       "        }\n");
+	say(e, "        }\n");
 	if (!rows_change(e))
 		say(e, "        if (first[k] < 0)\n"
 		       "            continue;\n");
@@ -413,6 +419,10 @@ static void emit_bounds(const struct emitter *e)
 	       "%s                         made.lean[k][0], %s, %s, room);\n", indent, size, s->expressions, row,
 	       indent,
 	    has_guards(e) ? "spare[0]" : "made.sag[k][0]", has_guards(e) ? "spare[1]" : "made.sway[k][0]");
+	if (!has_guards(e))
+		say(e, "%s        pl_region_reach(%d, h, made.halvings[k], made.spacing[k], made.slopes[k][0], %d, %s,\n"
+		       "%s                        made.bend[$o_first_rung[k] * %d], room);\n", indent, size,
+		    s->expressions, row, indent, s->expressions);
 	say(e, s->segments > 1 ? "        }\n" : "");
 	if (e->step->clears)
 		say(e, "        if (made.halvings[k] == 1)\n"
@@ -438,8 +448,11 @@ static void emit_gate_bounds(const struct emitter *e, const struct guards *g)
 	       "                continue;\n"
 	       "            pl_region_bounds(%d, d, made.slopes[k][0], j, made.gate[i],\n"
 	       "                             made.gate_lean[i], made.gate_sag[i], made.gate_sway[i], room);\n"
-	       "            i += j - 1;\n"
-	       "        }\n", g->rows, size);
+	       "            for (j += i; i < j; i++)\n"
+	       "                pl_region_reach(%d, h, made.halvings[k], made.spacing[k], made.slopes[k][0], 1,\n"
+	       "                                made.gate[i], made.bend[$o_gate_rung[i]], room);\n"
+	       "            i--;\n"
+	       "        }\n", g->rows, size, size);
 }
 
 static void emit_retuning(const struct emitter *e)
@@ -452,7 +465,8 @@ static void emit_retuning(const struct emitter *e)
 	       "{\n"
 	       "    $n_coeffs made = $n_nominal;\n"
 	       "    pl_two value[%d][%d], A[%d][%d], work[%s];\n"
-	       "    double room[PL_BOUNDS_WORK(%d)], d;\n", r->tuning->rows, size, size, size, work, size);
+	       "    double room[PL_REACH_WORK(%d, %d)], d;\n", r->tuning->rows, size, size, size, work, size,
+	    e->model->switching->expressions > 0 ? e->model->switching->expressions : 1);
 	if (r->blocks)
 		say(e, "    pl_two wide[%d];\n", widest_block(e));
 	if (has_guards(e) || e->step->clears)

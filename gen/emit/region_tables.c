@@ -58,8 +58,8 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 	return t;
 }
 
-double *whole_of(const struct region_piece *piece)  { return piece->whole; }
-static double *gain_over_h(const struct region_piece *piece)   { return piece->whole_gain; }
+static double *whole_of(const struct region_piece *piece)  { return piece->Phi; }
+static double *gain_over_h(const struct region_piece *piece)   { return piece->gain; }
 double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
@@ -186,14 +186,6 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 	emit_spans(e);
 }
 
-static void emit_whole_steps(const struct emitter *e, const struct pieces *p)
-{
-	struct region_tables whole = steps_of_regions(e, p, "");
-	const char **name = layout_names(&e->step->layout, e->system, e->model);
-	emit_of_each(e, &whole, "whole", keeps_rest(e) ? "e^{A h} - I in two words" : "e^{A h}",
-		     keeps_rest(e) ? listed_twice(e->step->layout.size, name) : name);
-}
-
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
 {
 	int n = expressions_of(e);
@@ -205,7 +197,6 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 	if (any_pieces(e)) {
 		struct region_tables turn = tables_of_regions(e, p, "", n, turn_of),
 			      bend = tables_of_regions(e, p, "", n, bend_of);
-		emit_whole_steps(e, p);
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}

@@ -111,8 +111,3 @@ double *gain_of(const struct step *step, const struct table *table, int halvings
 	mpq_clear(d);
 	return first;
 }
-
-double *whole_gain_of(const struct step *step, int branch)
-{
-	return gain_of(step, step->branch[branch].whole, 0);
-}

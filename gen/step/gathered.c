@@ -70,7 +70,7 @@ static void gather_piece(const struct step *step, struct region_piece *piece)
 	piece->added = ARRAY(double, (size_t)system->states);
 	for (int i = 0; i < system->states; i++)
 		for (int k = 0; k < stays; k++)
-			piece->added[i] += piece->whole[i * size + column[k]] * value_of_column(step, column[k]);
+			piece->added[i] += piece->Phi[i * size + column[k]] * value_of_column(step, column[k]);
 	for (int i = 0; i < expressions; i++) {
 		const double *off = piece->off + i * size;
 		double still = 0;

@@ -162,18 +162,35 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 	return new;
 }
 
+/* In an instance each has as much room as any. */
+static void add_reach(const struct step *step, const struct pieces *pieces, struct guards *g, int row)
+{
+	int branch = g->branch[row], size = step->layout.size, rungs = step->branch[branch].rungs;
+	int room = step->model->retuned ? room_for_rungs(step) : rungs;
+	double *reach = reach_of_rows(step, branch, pieces->piece[branch].slopes, 1, g->row + row * size);
+	ENLARGE(g->reach, (size_t)((g->reaches + room) * size));
+	for (int i = 0; i < room * size; i++)
+		g->reach[g->reaches * size + i] = i < rungs * size ? reach[i] : 0;
+	g->reach_at[row] = g->reaches;
+	g->reaches += room;
+	discard(reach);
+}
+
 static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)
 {
 	size_t size = (size_t)step->layout.size, cells = (size_t)g->rows * size;
 	g->slope = ARRAY(double, cells);
 	g->second = ARRAY(double, cells);
 	g->fourth = ARRAY(double, cells);
+	g->reach_at = ARRAY(int, (size_t)g->rows);
 	for (int from = 0, to; from < g->rows; from = to) {
 		for (to = from; to < g->rows && g->branch[to] == g->branch[from]; to++)
 			;
 		size_t at = (size_t)from * size;
 		bounds_of_rows(step, pieces, g->branch[from], to - from, g->row + at, g->slope + at, g->second + at,
 			       g->fourth + at);
+		for (int i = from; i < to; i++)
+			add_reach(step, pieces, g, i);
 	}
 }
 

@@ -68,7 +68,7 @@ static void fill_state_rows(const struct step *step, const struct table *table, 
 }
 
 /* Over h 2^-halvings, from its table */
-static double *Phi_of(const struct step *step, const struct table *table, int halvings)
+double *Phi_over(const struct step *step, const struct table *table, int halvings)
 {
 	double *Phi = ARRAY(double, (size_t)step->layout.size * (size_t)step->layout.size);
 	mpq_t d;
@@ -84,7 +84,7 @@ static double *Phi_of(const struct step *step, const struct table *table, int ha
 
 double *whole_step_of(const struct step *step, int branch)
 {
-	return Phi_of(step, step->branch[branch].whole, 0);
+	return Phi_over(step, step->branch[branch].whole, 0);
 }
 
 static double *finite_slopes(const struct step *step, int branch)
@@ -306,6 +306,7 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	piece->slope = slope_rows(step, piece->row, piece->slopes, d / 3);
 	piece->second = bound_rows(step, piece->row, piece->slopes, &growth, 2, d * d / 8);
 	piece->fourth = bound_rows(step, piece->row, piece->slopes, &growth, 4, d * d * d * d / 384);
+	piece->reach = reach_of_rows(step, branch, piece->slopes, step->model->switching->expressions, piece->row);
 	discard(growth.E);
 	discard(growth.most);
 }
@@ -430,8 +431,6 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	struct region_piece *piece = &pieces->piece[branch];
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, h);
-	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
-	piece->whole_gain = whole_gain_of(step, branch);
 	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
 	piece->still = ARRAY(double, (size_t)step->model->switching->expressions);
 	discard(growth.E);
@@ -465,7 +464,7 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 	double factor = 1;
 	for (int k = 0; k < step->branches; k++)
 		for (int i = 0; i < cells; i++)
-			factor = fmax(factor, fabs(pieces->piece[k].whole[i]));
+			factor = fmax(factor, fabs(pieces->piece[k].Phi[i]));
 	return ldexp(step->model->asked.single ? LARGE_FLOAT : LARGE_ENOUGH, -ilogb(factor));
 }
 
@@ -511,8 +510,9 @@ struct pieces pieces_of(const struct step *step)
 		pieces.piece[k].row = pieces.rows[step->model->switching->system_segment[k]];
 	}
 	for (int k = 0; k < step->branches; k++) {
-		pieces.piece[k].Phi = Phi_of(step, step->branch[k].table[0], step->branch[k].halvings);
-		pieces.piece[k].gain = gain_of(step, step->branch[k].table[0], step->branch[k].halvings);
+		pieces.piece[k].Phi = whole_step_of(step, k);
+		pieces.piece[k].gain = gain_of(step, step->branch[k].whole, 0);
+		pieces.piece[k].rung = rungs_of(step, k);
 	}
 	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);

@@ -231,11 +231,10 @@ struct rounding {                   /* a bound over the first steps from the ini
 struct branch {
 	struct linear system;       /* with what the scheme holds taken out of C and K */
 	struct resolvent *resolvent; /* of `system` */
-	struct table **table;
-	/* of the whole step: the first; of regions, whose tables are of pieces, that of the first region, and of all
-	 * where a step is swift */
-	struct table *whole;
+	struct table **table;       /* of regions: of the step, then of the rungs of its ladder */
+	struct table *whole;        /* of the whole step: the first */
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
+	int rungs, spacing;         /* lengths of pieces that are shorter than h: from those on, so many halvings apart */
 };
 struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
 	bool emitted;               /* max|pole| h <= 8 */
@@ -421,20 +420,21 @@ bool is_cleared_by_tables(const struct step *step);         /* a step that clear
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
-struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
+struct region_piece {               /* of a branch, d = h 2^-halvings is its shortest piece; x as in struct layout */
 	double *row;                /* of each expression: row . x, expressions x size */
 	double *slopes;             /* A of x' = A x, size x size [x/s]; second words behind them */
-	double *Phi;                /* e^{A d}, size x size */
-	double *gain;               /* e^{A d} - I in two words, 2 size x size: first ones, then second ones; or NULL */
+	double *Phi;                /* e^{A h}, size x size */
+	double *gain;               /* e^{A h} - I in two words, 2 size x size: first ones, then second ones; or NULL */
+	double **rung;              /* as in pl_ladder, the shortest first */
+	double *reach;              /* of each expression, of each rung but the first, and of h */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
-	/* Where a step clears: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still.
+	/* Where a step clears: over h, each expression is off its chord by at most off . |x(0)| + still.
 	 * Where it is swift: rounding and what its Taylor polynomial leaves out make its value and h times its slope
 	 * wrong by at most slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
-	double *whole, *off, *still, *slack, *turn, *bend;
-	double *whole_gain;         /* e^{A h} - I, as gain */
+	double *off, *still, *slack, *turn, *bend;
 	double *added;              /* of a retuned model: what stays of x adds to each state over h */
 	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
@@ -464,9 +464,17 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 #define LARGE_FLOAT (0x1p60)
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
 /* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
- * state has one word. The same over h, of a branch */
+ * state has one word */
 double *gain_of(const struct step *step, const struct table *table, int halvings);
-double *whole_gain_of(const struct step *step, int branch);
+/* ladder.c: the rungs of a branch, as pl_ladder has them; what is off its chord in them, of rows over x: so many for each
+ * row as it has rungs; whether any has some, and how many each has room for where an instance has its tables */
+void plan_ladder(struct step *step, int branch);
+double **rungs_of(const struct step *step, int branch);
+double *reach_of_rows(const struct step *step, int branch, const double *A, int rows, const double *row);
+bool has_ladder(const struct step *step);
+int room_for_rungs(const struct step *step);
+int rung_halvings(const struct branch *branch, int rung);   /* of h, to its length */
+double *Phi_over(const struct step *step, const struct table *table, int halvings);
 void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
 /* the same in two words: 2 x size */
 void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
@@ -519,6 +527,8 @@ struct guards {
 	int rows, *branch;          /* of each row: whose it is, */
 	struct gate_key *gate;          /* and what */
 	double *row, *slope, *second, *fourth; /* rows x size */
+	int reaches, *reach_at;     /* of each row: where it begins in reach, reaches x size, as in pl_ladder */
+	double *reach;
 	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */
 	double *play, *row_play;
 	int sets, *set;             /* per set, and one more: the first of its assignments */

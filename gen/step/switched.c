@@ -9,7 +9,8 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	struct recipe *r = NEW(struct recipe);
 	r->step = step;
 	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
-	r->table[piece].increments = r->table[piece].two_words = step->model->asked.compensated;
+	r->table[piece].two_words = step->model->asked.compensated;
+	r->table[piece].increments = step->model->asked.compensated || halvings > 0;
 	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
 	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
 	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
@@ -42,14 +43,10 @@ bool is_cleared_by_tables(const struct step *step)
 	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
 }
 
-/* Tables over the whole of h, of a region that has pieces of half of it */
-static void plan_whole(struct step *step, int k)
+/* Over h or a shorter piece */
+static struct table *table_over(const struct step *step, struct branch *b, int halvings)
 {
-	struct branch *b = &step->branch[k];
-	if (b->halvings == 0)
-		b->whole = b->table[0];
-	else if (b->halvings == 1 && k > 0)
-		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
+	return tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, halvings))[0];
 }
 
 /* How often an entry of e^{A d} is multiplied: of two words the first with x and with its rest, the second with x */
@@ -75,19 +72,25 @@ static void plan_look(struct step *step)
 	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
-static void plan_region(struct step *step, int k)
+static void halve_region(struct step *step, int k)
 {
 	step->branch[k].halvings = series_halvings(step, k);
 	if (step->branch[k].halvings > LIMIT_PIECES)
 		error(step->model->asked.step_at, "a smaller step would do",
-		      "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
+		      "the largest pole times h is above 2^%d: the pieces of a step to look for crossings in are too short",
 		      LIMIT_PIECES);
-	struct linear *system = &step->branch[k].system;
-	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1,
-					  wanted_piece(step, step->branch[k].halvings));
-	plan_whole(step, k);
-	system->channels = 0;
-	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
+}
+
+static void plan_region(struct step *step, int k)
+{
+	struct branch *b = &step->branch[k];
+	plan_ladder(step, k);
+	b->table = ARRAY(struct table *, (size_t)b->rungs + 1);
+	b->table[0] = b->whole = k == 0 ? b->whole : table_over(step, b, 0);
+	for (int r = 0; r < b->rungs; r++)
+		b->table[1 + r] = table_over(step, b, rung_halvings(b, r));
+	b->system.channels = 0;
+	int degree = series_degree(step, k, k + 1, b->halvings);
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
 }
 
@@ -108,7 +111,7 @@ static void build_divided(struct step *step)
 	int words = products_of_words(step);
 	choose_form_of_regions(step);
 	step->tables = 1;
-	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
+	first->whole = table_over(step, first, 0);
 	first->system.channels = 0;
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
@@ -121,6 +124,8 @@ static void build_divided(struct step *step)
 	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;
+	for (int k = 0; k < step->branches; k++)
+		halve_region(step, k);
 	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
 	if (step->model->retuned)

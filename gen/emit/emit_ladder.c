@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pieces of a step between the shortest and the whole, as C: of regions, and of linear parts, whose fastest pole turns
+ * far in it. */
+#include "emit/emit.h"
+
+/* ---- how many ---- */
+
+/* Of a branch: as many as it has, or as an instance has room for */
+static int room_of(const struct emitter *e, int branch)
+{
+	return e->model->retuned ? room_for_rungs(e->step) : e->step->branch[branch].rungs;
+}
+
+int rungs_of_all(const struct emitter *e)
+{
+	int all = 0;
+	for (int k = 0; k < e->step->branches; k++)
+		all += room_of(e, k);
+	return all;
+}
+
+/* ---- tables ---- */
+
+static void emit_places(const struct emitter *e, const char *name, const char *note, int count, const int *number)
+{
+	say(e, "\nstatic const int $o_%s[%d] = {  /* %s */\n    ", name, count, note);
+	for (int i = 0; i < count; i++)
+		say(e, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", number[i]);
+	say(e, "\n};\n");
+}
+
+/* Where the rungs of each matrix begin, which is fixed */
+void emit_ladder_places(const struct emitter *e, const struct guards *g)
+{
+	int *first = ARRAY(int, (size_t)e->step->branches), next = 0;
+	for (int k = 0; k < e->step->branches; next += room_of(e, k++))
+		first[k] = next;
+	if (!has_ladder(e->step))
+		return;
+	emit_places(e, "first_rung", "of each matrix", e->step->branches, first);
+	if (g)
+		emit_places(e, "gate_rung", "of each row of guards", g->rows, g->reach_at);
+}
+
+void emit_spacing(const struct emitter *e)
+{
+	if (!has_ladder(e->step))
+		return;
+	say(e, e->model->retuned ? "    {" : "\nstatic const int $o_spacing[] = {");
+	for (int k = 0; k < e->step->branches; k++)
+		say(e, "%s%d", k ? ", " : "", e->step->branch[k].spacing);
+	say(e, e->model->retuned ? "},  /* spacing */\n" : "};\n");
+}
+
+static const char **names_of_rung(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
+	const char **all = ARRAY(const char *, 2 * (size_t)size + 1);
+	for (int i = 0; i < 2 * size; i++)
+		all[i] = name[i % size];
+	if (!keeps_rest(e))
+		all[size] = "what stays";
+	return all;
+}
+
+static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
+{
+	int size = e->step->layout.size, rows = rows_of_rung(e);
+	double *none = ARRAY(double, (size_t)rows * (size_t)size);
+	open_table(e, "rungs", format("[%d][%d][%d]", rungs_of_all(e), rows, size),
+		   keeps_rest(e) ? "e^{A d} - I in two words, of pieces that are shorter than h"
+				 : "e^{A d} of pieces that are shorter than h, less I where the last row has 1");
+	for (int k = 0; k < e->step->branches; k++)
+		for (int r = 0; r < room_of(e, k); r++) {
+			say(e, "  {\n");
+			emit_number_rows(e, rows, size,
+					 r < e->step->branch[k].rungs ? pieces->piece[k].rung[r] : none,
+					 names_of_rung(e));
+			say(e, "  },\n");
+		}
+	close_table(e);
+}
+
+int rows_of_rung(const struct emitter *e)
+{
+	return keeps_rest(e) ? 2 * e->step->layout.size : e->step->layout.size + 1;
+}
+
+int rows_of_reach(const struct emitter *e, const struct guards *g)
+{
+	return g ? g->reaches : rungs_of_all(e) * e->model->switching->expressions;
+}
+
+/* Of expressions: of each matrix as many rows for each as it has rungs, and the rest of its room behind them */
+static double *reach_of_all(const struct emitter *e, const struct pieces *pieces)
+{
+	int size = e->step->layout.size, expressions = e->model->switching->expressions, at = 0;
+	double *reach = ARRAY(double, (size_t)(rungs_of_all(e) * expressions * size));
+	for (int k = 0; k < e->step->branches; k++) {
+		for (int i = 0; i < e->step->branch[k].rungs * expressions * size; i++)
+			reach[at + i] = pieces->piece[k].reach[i];
+		at += room_of(e, k) * expressions * size;
+	}
+	return reach;
+}
+
+static void emit_reach_of(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
+{
+	int rows = rows_of_reach(e, g), size = e->step->layout.size;
+	const char **note = ARRAY(const char *, (size_t)rows);
+	for (int i = 0; i < rows; i++)
+		note[i] = "over the next longer one";
+	open_table(e, "bend", format("[%d][%d]", rows, size), "times |x''|: off the chord in such a piece, at most");
+	emit_number_rows(e, rows, size, g ? g->reach : reach_of_all(e, pieces), note);
+	close_table(e);
+}
+
+void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
+{
+	if (!has_ladder(e->step))
+		return;
+	emit_rungs(e, pieces);
+	if (rows_of_reach(e, g) > 0)
+		emit_reach_of(e, pieces, g);
+}
+
+/* ---- in the descriptor ---- */
+
+const char *ladder_text(const struct emitter *e, const struct guards *g, const char *none)
+{
+	const char *of = prefix_of_tables(e), *places = spell(e, "$o_first_rung");
+	if (!has_ladder(e->step))
+		return format("{%shalvings, %shalvings, %s, %s, %shalvings}", of, of, none, none, of);
+	const char *reach = rows_of_reach(e, g) > 0 ? format("%sbend[0]", of) : none;
+	return format("{%s, %sspacing, %srungs[0][0], %s, %s}", places, of, of, reach,
+		      g ? spell(e, "$o_gate_rung") : places);
+}
