@@ -10,14 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 301, REPEATS = 100, CASES = 5, N = 9, S = 3, R = 8, DEGREE = 30 };
+enum { SAMPLES = 301, REPEATS = 100, CASES = 5, N = 9, S = 3, R = 8, DEGREE = 30, RUNGS = 4 };
 
 /* `dof` masses side by side, each with a stop 1 away: x'' = -x + 0.1 cos t, and -8 (x - 1) more beyond 1 */
 typedef struct bench {
 	pl_switching m;
 	double row[S * N], at[S], A[R * N * N], Phi[R * N * N];
 	double tangent[R * S * N], chord_error[R * S * N], cubic_error[R * S * N];
-	int breaks[S], matrix[R], halvings[R];
+	double rungs[R * RUNGS * (N + 1) * N], reach[R * RUNGS * S * N];
+	int breaks[S], matrix[R], halvings[R], first[R], spacing[R];
 	double work[PL_SWITCHING_WORK(N, S, DEGREE)];
 	pl_crossing crossing[16];
 } bench;
@@ -61,15 +62,31 @@ static void exponential(int n, const double *A, double h, int absolute, double *
 	}
 }
 
+static void fill_ladder(bench *b, int r, double h)
+{
+	double work[PL_REACH_WORK(N, S)];
+	int n = b->m.size, dof = b->m.switches;
+	b->first[r] = r * RUNGS;
+	b->spacing[r] = 2;
+	double *rung = b->rungs + b->first[r] * (n + 1) * n;
+	for (int down = b->halvings[r]; down > 0; down -= 2, rung += (n + 1) * n) {
+		exponential(n, b->A + r * n * n, ldexp(h, -down), 0, rung);
+		for (int i = 0; i < n; i++)
+			rung[n * n + i] = 0.0;
+	}
+	pl_region_reach(n, h, b->halvings[r], 2, b->A + r * n * n, dof, b->row, b->reach + b->first[r] * dof * n, work);
+}
+
 static void fill_tables(bench *b, int r, double h)
 {
 	int n = b->m.size, dof = b->m.switches;
-	h = ldexp(h, -b->halvings[r]);
 	double *A = b->A + r * n * n, A2[N * N], A4[N * N], growth[N * N];
 	fill_A(dof, r, A);
 	multiply(n, A, A, A2);
 	multiply(n, A2, A2, A4);
 	exponential(n, A, h, 0, b->Phi + r * n * n);
+	fill_ladder(b, r, h);
+	h = ldexp(h, -b->halvings[r]);
 	exponential(n, A, h, 1, growth);
 	for (int i = 0; i < dof; i++)
 		for (int j = 0; j < n; j++) {
@@ -97,7 +114,8 @@ static void fill(bench *b, int dof, double h)
 	b->m = (pl_switching){.size = 2 * dof + 3, .h = h, .switches = dof, .row = b->row,
 	                      .breaks = b->breaks, .at = b->at, .matrix = b->matrix, .A = b->A, .Phi = b->Phi,
 	                      .tangent = b->tangent, .chord_error = b->chord_error, .cubic_error = b->cubic_error,
-	                      .halvings = b->halvings, .max_events = 16, .max_splits = 500};
+	                      .halvings = b->halvings, .ladder = {b->first, b->spacing, b->rungs, b->reach, b->first},
+	                      .max_events = 16, .max_splits = 500};
 	for (int i = 0; i < dof; i++) {
 		b->row[i * b->m.size + i] = b->at[i] = 1.0;
 		b->breaks[i] = 1;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Steps of piecewise-linear models, in pieces of which most stay clear of every breakpoint, and a bound shows it; the
- * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first crossing
- * is isolated before it is computed, so none is stepped over. */
+ * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first
+ * crossing is isolated before it is computed, so none is stepped over. */
 #ifndef REST_IS_KEPT
 #include "columns.h"
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
- * guard of their region go by e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated. What is
- * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
+ * guard of their region go by e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated.
+ * What is to stick and what is to slip after an event is found by looking at all combinations of those that are at
+ * rest. */
 #include "ladder.h"
 #include "regions.h"
 #include "roots.h"

@@ -27,7 +27,7 @@ static void to_the_ground(climb *at)
 
 static real length_of(const pl_ladder *l, const int *halvings, int matrix, int rung, real h)
 {
-    const int down = halvings[matrix] > 0 ? halvings[matrix] - rung * l->spacing[matrix] : 0;
+    const int down = halvings[matrix] - rung * l->spacing[matrix];
     return h / (real)((uint32_t)1 << (down > 0 ? down : 0));
 }
 
@@ -35,7 +35,11 @@ static real length_of(const pl_ladder *l, const int *halvings, int matrix, int r
 static real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix, real h, real left)
 {
     real length;
-    at->rungs = halvings[matrix] > 0 ? (halvings[matrix] - 1) / l->spacing[matrix] + 1 : 0;
+    if (halvings[matrix] == 0) {
+        at->rung = at->rungs = 0;
+        return h;
+    }
+    at->rungs = (halvings[matrix] - 1) / l->spacing[matrix] + 1;
     at->rung = at->rung < at->rungs ? at->rung : at->rungs;
     length = length_of(l, halvings, matrix, at->rung, h);
     while (at->rung > 0 && left <= length * (1 - REST)) {
@@ -58,6 +62,9 @@ static void take_piece(int n, const climb *at, const pl_ladder *l, const real *P
 static void rise(climb *at)
 {
     at->bent = 0;
+    if (at->rungs == 0) {
+        return;
+    }
     at->wait = at->tried ? 1 : at->wait;
     at->tried = ++at->steady >= at->wait && at->rung < at->rungs;
     if (at->tried) {

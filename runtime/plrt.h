@@ -436,9 +436,9 @@ static inline float pl_magnitudef(float a)
  *
  * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves
  * in the time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
-/* Of each matrix whose poles turn far in h: the lengths that pieces of a step have, rung by rung.  Rung 0 is as short as
- * h / 2^halvings, the next ones are 2^spacing times as long each, and beyond the last of them, which is shorter than h,
- * comes h itself.  A step goes by the longest that are seen to stay clear, so that few pieces round what is slow. */
+/* Of each matrix whose poles turn far in h: the lengths that pieces of a step have, rung by rung.  Rung 0 is as short
+ * as h / 2^halvings, the next ones are 2^spacing times as long each, and beyond the last of them, which is shorter than
+ * h, comes h itself.  A step goes by the longest that are seen to stay clear, so that few pieces round what is slow. */
 typedef struct pl_ladder {
     const int *first;   /* the number of its rung 0 among those of all */
     const int *spacing; /* 1 .. 30 */
@@ -459,8 +459,8 @@ typedef struct pl_switching {
     const int *breaks;  /* of each switch: how many breakpoints, >= 1 */
     const double *at;   /* the breakpoints: those of switch 0, rising; those of switch 1; ... */
     const int *matrix;  /* of each region: the number of its A; -1: cannot occur, and passed through in no time */
-    /* Of each matrix: crossings are looked for in pieces d = h / 2^halvings or shorter.  Tables for switches are switches
-     * x size. */
+    /* Of each matrix: crossings are looked for in pieces d = h / 2^halvings or shorter.  Tables for switches are
+     * switches x size. */
     const int *halvings; /* 0 .. 30: |pole| d is about 1 or below */
     const double *A;     /* size x size, row-major [1/s] */
     const double *Phi;   /* e^{A h}: the step where nothing is crossed */
@@ -516,7 +516,8 @@ void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_conta
 
 /* The same with what rounding takes from x kept: x is `size` entries and then their rests, so that x + rest is what is
  * meant.  m->A, m->Phi and the rungs, which are e^{A d} - I, have two words: of each size x size first ones and then as
- * many second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of x. */
+ * many second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of
+ * x. */
 #define PL_SWITCHING_KEPT_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
 void pl_switching_kept_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
 void pl_switching_kept_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);

@@ -70,7 +70,7 @@ static void rung_of_increment(int n, const pl_two *D, real *rows)
     }
 }
 
-/* So many halvings of h that no pole turns by more than 1, and between the rungs of a ladder that has `rungs` of them */
+/* So many halvings of h that no pole turns by more than 1, and between the rungs of a ladder that has room for some */
 static int halve(int n, const pl_two *A, real h, int most, int rungs, int *halvings, int *spacing, real *v, real *next)
 {
     real turn = largest_turn(n, A, h, v, next);

@@ -333,6 +333,31 @@ static void banner_expressions(const struct emitter *e)
 	}
 }
 
+/* Of regions beside a fast pole: the shortest piece of a step; 0: none is shorter than the step */
+static int most_halvings(const struct step *step)
+{
+	int most = 0;
+	for (int k = 0; k < step->branches; k++)
+		most = step->branch[k].halvings > most && step->branch[k].rungs > 0 ? step->branch[k].halvings : most;
+	for (int p = 0; p < step->parts; p++) {
+		int own = most_halvings(step->part[p]);
+		most = own > most ? own : most;
+	}
+	return most;
+}
+
+static void banner_pieces(const struct emitter *e)
+{
+	long most = e->step->parts ? 0 : most_of_regions(e->step);
+	for (int p = 0; p < e->step->parts; p++)
+		most += most_of_regions(e->step->part[p]);
+	if (most_halvings(e->step) > 0)
+		say(e, " * The fastest pole turns far in a step: crossings are looked for in pieces of h/%ld, and longer "
+		       "ones lead there\n"
+		       " * that a bound shows clear; of a step that is not clear as a whole, at most %ld "
+		       "multiplications.\n", 1l << most_halvings(e->step), most);
+}
+
 static void banner_region_number(const struct emitter *e)
 {
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
@@ -374,6 +399,7 @@ void banner_regions(const struct emitter *e)
 		       "the search.\n");
 	else
 		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
+	banner_pieces(e);
 	banner_region_number(e);
 }
 
@@ -415,6 +441,7 @@ void banner_parts(const struct emitter *e)
 		       "crossings that\n"
 		       " * are certain go by the part's own Taylor polynomials; all else by the search.\n",
 		    MOST_SWIFT);
+	banner_pieces(e);
 	banner_region_number(e);
 }
 
@@ -520,6 +547,14 @@ static void banner_forced(const struct emitter *e)
 	       forced->multiplications, forced->additions);
 }
 
+/* What is counted */
+static const char *step_note_of(const struct emitter *e)
+{
+	return e->kind->step_note && most_halvings(e->step) > 0
+		       ? " * A step that a bound shows clear of every breakpoint, as a whole:\n"
+		       : e->kind->step_note;
+}
+
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
@@ -528,7 +563,7 @@ static void banner_cost(const struct emitter *e)
 						       : "One iteration of Newton's method, of which an internal step "
 							 "takes two "
 							 "to four");
-	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", e->kind->step_note,
+	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", step_note_of(e),
 	    readable_text(e->model->h), step_form_text(e->step), program->multiplications, program->additions);
 	if (e->step->anchors)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",

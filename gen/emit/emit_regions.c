@@ -213,7 +213,8 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		  slopes_of_piece },
 		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
 		  rest ? gain_of_piece : Phi_of_piece },
-		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression, slope_of_piece },
+		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
+		  slope_of_piece },
 		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, second_of_piece },
 		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, fourth_of_piece }
 	};

@@ -387,13 +387,13 @@ static void emit_systems(const struct emitter *e)
 	       "        if (first[k] >= 0) {\n"
 	       "            $n_own_slopes(&value[first[k]], A);\n"
 	       "            status = pl_region_of(%d, A[0], h, %d, %d, &made.halvings[k], &made.spacing[k],\n"
-	       "                                  made.slopes[k][0], made.pieces[k][0], made.rungs[$o_first_rung[k]][0],\n"
-	       "                                  work);\n"
+	       "                                  made.slopes[k][0], made.pieces[k][0],\n"
+	       "                                  made.rungs[$o_first_rung[k]][0], work);\n"
 	       "            if (status != 0)\n"
 	       "                return status;\n", size, LIMIT_PIECES, room_for_rungs(e->step));
 	if (e->step->clears)
-		say(e, "            made.large[k] = pl_region_large(%d, made.halvings[k], made.pieces[k][0], %s);\n", size,
-		    shortest(LARGE_ENOUGH));
+		say(e, "            made.large[k] = pl_region_large(%d, made.halvings[k], made.pieces[k][0], %s);\n",
+		    size, shortest(LARGE_ENOUGH));
 	say(e, "        }\n");
 	if (!rows_change(e))
 		say(e, "        if (first[k] < 0)\n"
@@ -420,9 +420,9 @@ static void emit_bounds(const struct emitter *e)
 	       indent,
 	    has_guards(e) ? "spare[0]" : "made.sag[k][0]", has_guards(e) ? "spare[1]" : "made.sway[k][0]");
 	if (!has_guards(e))
-		say(e, "%s        pl_region_reach(%d, h, made.halvings[k], made.spacing[k], made.slopes[k][0], %d, %s,\n"
-		       "%s                        made.bend[$o_first_rung[k] * %d], room);\n", indent, size,
-		    s->expressions, row, indent, s->expressions);
+		say(e, "%s        pl_region_reach(%d, h, made.halvings[k], made.spacing[k], made.slopes[k][0], %d,\n"
+		       "%s                        %s, made.bend[$o_first_rung[k] * %d], room);\n", indent, size,
+		    s->expressions, indent, row, s->expressions);
 	say(e, s->segments > 1 ? "        }\n" : "");
 	if (e->step->clears)
 		say(e, "        if (made.halvings[k] == 1)\n"
@@ -505,7 +505,7 @@ static void emit_retuning(const struct emitter *e)
 int retuned_numbers(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	return (e->step->clears ? 3 : 2) * e->step->branches * size * size;
+	return 2 * e->step->branches * size * size + rungs_of_all(e) * (size + 1) * size;
 }
 
 int retuned_kilobytes(const struct emitter *e)

@@ -28,7 +28,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_block_increment", "pl_block", false }, { "pl_block_advance", "pl_block", false },
 	{ "pl_region_of", "pl_region", false }, { "pl_region_bounds", "pl_region", false },
 	{ "pl_cut", "pl_cut", false }, { "pl_cut_advance", "pl_cut", false },
-	{ "pl_region_whole", "pl_region", false },
+	{ "pl_region_large", "pl_region", false }, { "pl_region_reach", "pl_region", false },
 	{ "pl_impact", "pl_impact", false },
 	{ "pl_guards", "pl_guards", false }, { "pl_guards_start", "pl_guards", false },
 	{ "pl_guards_step", "pl_guards", false }, { "pl_guards_advance", "pl_guards", false },

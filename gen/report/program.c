@@ -290,10 +290,11 @@ static void print_list(FILE *to, const struct step *step)
 static void print_matrices(FILE *to, const struct step *step)
 {
 	for (int k = 0; k < step->branches; k++) {
+		const struct branch *b = &step->branch[k];
 		fprintf(to, "Matrix %d, %s:\n", k,
-			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings)
-						 : "one piece");
-		print_table(to, step->branch[k].table[0]);
+			b->rungs ? format("pieces of %d lengths", b->rungs + 1) : "one piece");
+		for (int r = 0; r <= b->rungs; r++)
+			print_table(to, b->table[r]);
 	}
 }
 
@@ -301,7 +302,7 @@ static void print_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	fprintf(to,
-		"Actions, from piece to piece d of the step:\n"
+		"Actions, from piece to piece d of the step, the longest that is seen to stay clear:\n"
 		"    y %s y + loads + piece.held u + piece.ramp u'\n"
 		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
 		"region\n",

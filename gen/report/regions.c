@@ -21,8 +21,19 @@ static long swift_bytes(const struct step *step)
 	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
 	return 8 * s->systems *
 		       (s->expressions * (2 * size + off) +
-			halves * size * (words_of(step) * size + 2 * s->expressions)) +
+			halves * size * 2 * s->expressions) +
 	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
+}
+
+/* Of pieces that are shorter than h, but for what bounds guards */
+static long ladder_bytes(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, rungs = 0;
+	for (int k = 0; k < step->branches; k++)
+		rungs += step->model->retuned ? room_for_rungs(step) : step->branch[k].rungs;
+	long rows = words_of(step) > 1 ? 2 * size : size + 1, bounds = has_events(s) ? 0 : s->expressions;
+	return !has_ladder(step) ? 0 : 8 * rungs * (rows + bounds) * size + 8 * (long)step->branches;
 }
 
 /* Of cos, sin and e^{at} in the steps after an anchor */
@@ -51,7 +62,7 @@ static long guard_bytes(const struct step *step)
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
 	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
-	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size + s->expressions -
+	return 8 * (g.reaches * size + g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size + s->expressions -
 		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
 }
@@ -65,13 +76,13 @@ static long bytes_of_regions(const struct step *step)
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	if (step->clears && !step->swift)
-		bytes += 8 * (matrices * (size * size + s->expressions * (size + 1) + step->layout.states + 1) +
+		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
-	return bytes + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
+	return bytes + ladder_bytes(step) + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
 }
 
-/* The most multiplications of a step: every piece of it by a Taylor polynomial, all events and splits used */
-static long most_of_regions(const struct step *step)
+/* Every piece of it by a Taylor polynomial, after one of each other length was tried, all events and splits used */
+long most_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, degree = step->series.degree, pieces = 1;
@@ -79,7 +90,7 @@ static long most_of_regions(const struct step *step)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += max_events(step->model) + 1;
 	long two_words = (words_of(step) - 1) * (12 * size * size + 3 * size);
-	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6) + two_words) +
+	return pieces * (products_of_piece(step) + degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
 		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
 	       swift_multiplications(step);

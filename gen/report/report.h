@@ -31,6 +31,7 @@ void json_reach(FILE *to, const struct step *step);
 /* ---- regions.c: formulas that the state chooses ---- */
 
 void person_regions(FILE *to, const struct step *step);     /* of a model of straight pieces */
+long most_of_regions(const struct step *step);              /* multiplications of a step, or of that of a part */
 void json_regions(FILE *to, const struct step *step);        /* members of an object */
 void person_divided(FILE *to, const struct step *step);     /* of a series */
 void json_divided(FILE *to, const struct step *step);        /* members of an object */

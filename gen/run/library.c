@@ -19,11 +19,14 @@ const char library_types[] =
 	"typedef struct pl_seriesf { int size, states, degree, halvings; const float *A; } pl_seriesf;\n"
 	"typedef struct pl_two { double hi, lo; } pl_two;\n"
 	"typedef struct pl_twof { float hi, lo; } pl_twof;\n"
-	"typedef struct pl_ladder { const int *first, *spacing; const double *pieces, *reach; const int *gates; } pl_ladder;\n"
-	"typedef struct pl_ladderf { const int *first, *spacing; const float *pieces, *reach; const int *gates; } pl_ladderf;\n"
+	"typedef struct pl_ladder { const int *first, *spacing; const double *pieces, *reach; const int *gates; }\n"
+	"pl_ladder;\n"
+	"typedef struct pl_ladderf { const int *first, *spacing; const float *pieces, *reach; const int *gates; }\n"
+	"pl_ladderf;\n"
 	"typedef struct pl_switching { int size; double h; int switches; const double *row; const int *breaks;\n"
 	"const double *at; const int *matrix; const int *halvings; const double *A; const double *Phi;\n"
-	"pl_ladder ladder; const double *tangent; const double *chord_error, *cubic_error; int degree; int max_events, max_splits; }\n"
+	"pl_ladder ladder; const double *tangent; const double *chord_error, *cubic_error; int degree;\n"
+	"int max_events, max_splits; }\n"
 	"pl_switching;\n"
 	"typedef struct pl_crossing { double time; int expression, breakpoint, upward; } pl_crossing;\n"
 	"typedef struct pl_contact { uint64_t total; int crossings; int region; int matrix; int status; } pl_contact;\n"
@@ -224,14 +227,14 @@ static void count_call(const struct library_function *f, const union word *a)
 		products = (uint64_t)f->multiplications * size * size * size / 3;
 	else if (f->takes == TAKES_SOLUTION)
 		products = (uint64_t)f->multiplications * size * size;
-	else if (f->takes == TAKES_PIECES) {            /* a piece, and whether it is clear; both types begin so */
+	else if (f->takes == TAKES_PIECES) {            /* the step, and whether it is clear; both types begin so */
 		const pl_contact *contact = a[f->type[2] == 'd' ? 3 : 2].place;
 		const pl_switching *m = a[0].place;
 		bool single = strncmp(f->name, "pl_switchingf", 13) == 0;
 		uint64_t words = strstr(f->name, "_kept_") ? 3 : 1;
 		size = (uint64_t)m->size;
 		const int *halvings = single ? ((const pl_switchingf *)a[0].place)->halvings : m->halvings;
-		products = size * (words * size + 3) << halvings[contact->matrix];
+		products = size * (words * size + 3 + (halvings[contact->matrix] > 0 ? 4 * size : 0));
 	}
 	bool plain = f->takes <= TAKES_CALL;
 	counted.calls += f->takes == TAKES_CALL;

@@ -1,12 +1,88 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a region whose fastest pole turns far in a step: pieces of lengths between that in which crossings are looked for
- * and the step, so that a step takes few of them. Each is e^{A d} - I, correctly rounded entry by entry, in the rows of
- * what hardly changes in it: a number near 1 would repeat its rounding in every piece. */
+/* e^{A d} of a region, over the step and, where its fastest pole turns far in that, over pieces of lengths down to that
+ * in which crossings are looked for, so that a step takes few of them. A piece has e^{A d} - I, correctly rounded entry
+ * by entry, in the rows of what hardly changes in it: a number near 1 would repeat its rounding in every piece. */
 #include "step/step.h"
 
 #include "plrt.h"
 
 #include <math.h>
+
+/* ---- e^{A d} of a region over x = states, load states, inputs ---- */
+
+/* The load states among themselves */
+static void fill_load_states(const struct step *step, mpq_srcptr d, double *Phi)
+{
+	const struct layout *layout = &step->layout;
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; l < system->loads; l++) {
+		const struct load *load = &system->load[l];
+		int n = load->columns, at = layout->load[l];
+		for (int i = 0; i < n * n && at >= 0; i++) {
+			struct response *response = response_of_load_state(load, i / n, i % n);
+			const char *what = column_text(load, i / n);
+			Phi[(at + i / n) * layout->size + at + i % n] =
+				response_value(response, d, false, step->model->asked.step_at, what).value;
+		}
+	}
+}
+
+static void fill_input_states(const struct step *step, mpq_srcptr d, double *Phi)
+{
+	const struct layout *layout = &step->layout;
+	for (int i = 0; i < step->branch->system.inputs; i++) {
+		int at = layout->input[i];
+		Phi[at * layout->size + at] = 1;
+		if (!step->branch->system.input[i].hold)
+			continue;
+		Phi[at * layout->size + at + 1] = round_rational(d);
+		Phi[(at + 1) * layout->size + at + 1] = 1;
+	}
+}
+
+/* u, and of a ramp u': held, and as the slope of u */
+static void fill_inputs(const struct step *step, const struct table *table, double *Phi)
+{
+	const struct layout *layout = &step->layout;
+	for (int row = 0; row < table->states; row++)
+		for (int i = 0; i < step->branch->system.inputs; i++) {
+			const struct coefficient *held = &table->kernel[0][row * table->channels];
+			const struct coefficient *ramp = &table->kernel[1][row * table->channels];
+			double *cell = Phi + row * layout->size + layout->input[i];
+			cell[0] = held[2 * i].value;
+			if (step->branch->system.input[i].hold)
+				cell[1] = ramp[2 * i].value + held[2 * i + 1].value;
+		}
+}
+
+static void fill_state_rows(const struct step *step, const struct table *table, double *Phi)
+{
+	const struct layout *layout = &step->layout;
+	const struct linear *system = &step->branch->system;
+	for (int i = 0; i < table->states; i++) {
+		double *row = Phi + i * layout->size;
+		for (int j = 0; j < table->states; j++)
+			row[j] = table->Phi[i * table->states + j].value;
+		for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
+			for (int k = 0; k < system->load[l].columns && layout->load[l] >= 0; k++)
+				row[layout->load[l] + k] = table->load[i * table->columns + column + k].value;
+	}
+}
+
+/* Over h 2^-halvings, from its table */
+double *Phi_over(const struct step *step, const struct table *table, int halvings)
+{
+	double *Phi = ARRAY(double, (size_t)step->layout.size * (size_t)step->layout.size);
+	mpq_t d;
+	mpq_init(d);
+	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)halvings);
+	fill_state_rows(step, table, Phi);
+	fill_inputs(step, table, Phi);
+	fill_load_states(step, d, Phi);
+	fill_input_states(step, d, Phi);
+	mpq_clear(d);
+	return Phi;
+}
 
 /* ---- which lengths ---- */
 
@@ -42,7 +118,7 @@ void plan_ladder(struct step *step, int branch)
 	b->rungs = b->halvings > 0 ? (b->halvings - 1) / b->spacing + 1 : 0;
 }
 
-/* ---- pieces ---- */
+/* ---- their pieces ---- */
 
 static double *rung_of(const struct step *step, const struct table *table, int halvings)
 {

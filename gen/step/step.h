@@ -416,6 +416,7 @@ void take_operators(struct step *step);
 
 void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
+int products_of_piece(const struct step *step);             /* and of the bound that shows it clear */
 bool is_cleared_by_tables(const struct step *step);         /* a step that clears does by tables, not case by case */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
@@ -466,8 +467,8 @@ double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x 
 /* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
  * state has one word */
 double *gain_of(const struct step *step, const struct table *table, int halvings);
-/* ladder.c: the rungs of a branch, as pl_ladder has them; what is off its chord in them, of rows over x: so many for each
- * row as it has rungs; whether any has some, and how many each has room for where an instance has its tables */
+/* ladder.c: e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
+ * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an instance has its tables */
 void plan_ladder(struct step *step, int branch);
 double **rungs_of(const struct step *step, int branch);
 double *reach_of_rows(const struct step *step, int branch, const double *A, int rows, const double *row);

@@ -55,6 +55,15 @@ static int products_of_words(const struct step *step)
 	return step->model->asked.compensated ? 3 : 1;
 }
 
+int products_of_piece(const struct step *step)
+{
+	bool ladder = false;
+	for (int k = 0; k < step->branches; k++)
+		ladder = ladder || step->branch[k].rungs > 0;
+	int size = step->layout.size, expressions = step->model->switching->expressions;
+	return size * (products_of_words(step) * size + (ladder ? 4 * size + 3 * expressions + 1 : 6 * expressions));
+}
+
 static void plan_look(struct step *step)
 {
 	bool any = false;
@@ -108,7 +117,6 @@ static void build_divided(struct step *step)
 {
 	struct branch *first = step->branch;
 	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
-	int words = products_of_words(step);
 	choose_form_of_regions(step);
 	step->tables = 1;
 	first->whole = table_over(step, first, 0);
@@ -118,9 +126,6 @@ static void build_divided(struct step *step)
 	plan_anchors(step);
 	fill_anchors(step);
 	step->program = linear_program(step);
-	step->program->multiplications =
-		(words * step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
-	step->program->additions = step->program->multiplications;
 	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;
@@ -130,6 +135,7 @@ static void build_divided(struct step *step)
 		plan_region(step, k);
 	if (step->model->retuned)
 		plan_retuned(step);
+	step->program->additions = step->program->multiplications = products_of_piece(step);
 	plan_look(step);
 }
 

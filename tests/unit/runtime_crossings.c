@@ -27,14 +27,15 @@ enum { DEGREE = 21 };
 #define LARGEST -1e308
 #endif
 
-enum { N = 10, S = 3, B = 2, R = 27, LARGEST_DEGREE = 24, EVENTS = 64, SPLITS = 4000 };
+enum { N = 10, S = 3, B = 2, R = 27, RUNGS = 16, LARGEST_DEGREE = 24, EVENTS = 64, SPLITS = 4000 };
 
 /* A model as the generator would emit it.  A of a region is base plus what each switch adds in its interval. */
 typedef struct model {
     pl_switching m;
     double base[N * N], add[S][B + 1][N * N];
-    real row[S * N], at[S * B], *A, *Phi, *tangent, *chord_error, *cubic_error;
-    int states, breaks[S], matrix[R], halvings[R], regions; /* states: the model's own, coordinates first */
+    real row[S * N], at[S * B], *A, *Phi, *tangent, *chord_error, *cubic_error, *rungs, *reach;
+    int states, breaks[S], matrix[R], halvings[R], rung[R], spacing[R]; /* states: the model's own, coordinates first */
+    int regions;
     real x[N], *work;
     pl_contact c;
     pl_crossing *crossing;
@@ -76,6 +77,8 @@ static void unbuild(model *s)
     free(s->tangent);
     free(s->chord_error);
     free(s->cubic_error);
+    free(s->rungs);
+    free(s->reach);
     free(s->work);
     free(s->crossing);
 }
@@ -165,6 +168,30 @@ static void bound(int n, const real *row, const real *A, int k, const long doubl
     }
 }
 
+/* Pieces by e^{A d} - I where that is the smaller number, and what is off their chords as retuned models have it */
+static void ladder_of(model *s, int r, double step)
+{
+    const int n = s->m.size, switches = s->m.switches;
+    const real *A = s->A + r * n * n;
+    real *rung = s->rungs + r * RUNGS * (n + 1) * n, *work = reals(PL_REACH_WORK(n, switches));
+    long double E[N * N];
+    int down, i, j;
+    s->rung[r] = r * RUNGS;
+    s->spacing[r] = s->halvings[r] > RUNGS ? (s->halvings[r] + RUNGS - 1) / RUNGS : 1 + r % 3;
+    for (down = s->halvings[r]; down > 0; down -= s->spacing[r], rung += (n + 1) * n) {
+        exponential(n, A, ldexp(step, -down), 0, E);
+        for (i = 0; i < n; i++) {
+            rung[n * n + i] = E[i * n + i] > 0.5L;
+            E[i * n + i] -= rung[n * n + i];
+            for (j = 0; j < n; j++)
+                rung[i * n + j] = (real)E[i * n + j];
+        }
+    }
+    pl_region_reach(n, s->m.h, s->halvings[r], s->spacing[r], A, switches, s->row,
+                    s->reach + r * RUNGS * switches * n, work);
+    free(work);
+}
+
 static void tables_of(model *s, int r, double step)
 {
     const int n = s->m.size;
@@ -181,9 +208,10 @@ static void tables_of(model *s, int r, double step)
     most = fastest(n, A) * step;
     s->halvings[r] = most > 1.0 ? (int)ceil(log2(most)) : 0;
     h = ldexp(step, -s->halvings[r]);
-    exponential(n, A, h, 0, E);
+    exponential(n, A, step, 0, E);
     for (j = 0; j < n * n; j++)
         s->Phi[r * n * n + j] = (real)E[j];
+    ladder_of(s, r, step);
     exponential(n, A, h, 1, growth);
     for (i = 0; i < s->m.switches; i++) {
         const int at = (r * s->m.switches + i) * n;
@@ -211,11 +239,13 @@ static void build(model *s, double h)
     s->tangent = reals(s->regions * n * switches);
     s->chord_error = reals(s->regions * n * switches);
     s->cubic_error = reals(s->regions * n * switches);
+    s->rungs = reals(s->regions * RUNGS * (n + 1) * n);
+    s->reach = reals(s->regions * RUNGS * switches * n);
+    s->m.h = (real)h;
     for (i = 0; i < s->regions; i++) {
         s->matrix[i] = i;
         tables_of(s, i, (double)(real)h);
     }
-    s->m.h = (real)h;
     s->m.degree = DEGREE;
     s->m.row = s->row;
     s->m.breaks = s->breaks;
@@ -227,6 +257,10 @@ static void build(model *s, double h)
     s->m.chord_error = s->chord_error;
     s->m.cubic_error = s->cubic_error;
     s->m.halvings = s->halvings;
+    s->m.ladder.first = s->rung;
+    s->m.ladder.spacing = s->spacing;
+    s->m.ladder.pieces = s->rungs;
+    s->m.ladder.reach = s->reach;
     s->m.max_events = EVENTS;
     s->m.max_splits = SPLITS;
     s->work = reals(PL_SWITCHING_WORK(n, switches, s->m.degree));
