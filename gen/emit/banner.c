@@ -352,8 +352,8 @@ static void banner_pieces(const struct emitter *e)
 	for (int p = 0; p < e->step->parts; p++)
 		most += most_of_regions(e->step->part[p]);
 	if (most_halvings(e->step) > 0)
-		say(e, " * The fastest pole turns far in a step: crossings are looked for in pieces of h/%ld, and longer "
-		       "ones lead there\n"
+		say(e, " * The fastest pole turns far in a step: crossings are looked for in pieces of h/%ld, and "
+		       "longer ones lead there\n"
 		       " * that a bound shows clear; of a step that is not clear as a whole, at most %ld "
 		       "multiplications.\n", 1l << most_halvings(e->step), most);
 }

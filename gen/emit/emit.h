@@ -678,7 +678,7 @@ void close_table(const struct emitter *e);
 const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 /* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
- * them, where `none` stands for numbers that are not read; how many there are, rows of each, rows of what bounds them */
+ * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
 void emit_ladder_places(const struct emitter *e, const struct guards *guards);
 void emit_spacing(const struct emitter *e);
 void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);

@@ -62,7 +62,8 @@ static long guard_bytes(const struct step *step)
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
 	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
-	return 8 * (g.reaches * size + g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size + s->expressions -
+	return 8 * (g.reaches * size + g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size +
+		    s->expressions -
 		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
 }
@@ -78,7 +79,8 @@ static long bytes_of_regions(const struct step *step)
 	if (step->clears && !step->swift)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
-	return bytes + ladder_bytes(step) + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
+	return bytes + ladder_bytes(step) + (step->swift ? swift_bytes(step) : 0) +
+	       (has_events(s) ? guard_bytes(step) : 0);
 }
 
 /* Every piece of it by a Taylor polynomial, after one of each other length was tried, all events and splits used */
@@ -90,7 +92,8 @@ long most_of_regions(const struct step *step)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += max_events(step->model) + 1;
 	long two_words = (words_of(step) - 1) * (12 * size * size + 3 * size);
-	return pieces * (products_of_piece(step) + degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6) + two_words) +
+	return pieces * (products_of_piece(step) + degree * (size * size + 2 * size) +
+			 (degree + 1) * s->expressions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
 		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
 	       swift_multiplications(step);

@@ -154,7 +154,8 @@ double *reach_of_rows(const struct step *step, int branch, const double *A, int 
 	int size = step->layout.size, cells = rows * b->rungs * size;
 	double *reach = ARRAY(double, (size_t)cells), *work = ARRAY(double, (size_t)PL_REACH_WORK(size, rows));
 	if (b->rungs > 0)
-		pl_region_reach(size, round_rational(step->model->h), b->halvings, b->spacing, A, rows, row, reach, work);
+		pl_region_reach(size, round_rational(step->model->h), b->halvings, b->spacing, A, rows, row, reach,
+				work);
 	for (int i = 0; i < cells && step->model->asked.single; i++)
 		reach[i] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
 	discard(work);

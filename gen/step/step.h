@@ -234,7 +234,7 @@ struct branch {
 	struct table **table;       /* of regions: of the step, then of the rungs of its ladder */
 	struct table *whole;        /* of the whole step: the first */
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
-	int rungs, spacing;         /* lengths of pieces that are shorter than h: from those on, so many halvings apart */
+	int rungs, spacing;         /* lengths of pieces below h: from those on, so many halvings apart */
 };
 struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
 	bool emitted;               /* max|pole| h <= 8 */
@@ -468,7 +468,8 @@ double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x 
  * state has one word */
 double *gain_of(const struct step *step, const struct table *table, int halvings);
 /* ladder.c: e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
- * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an instance has its tables */
+ * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an
+ * instance has its tables */
 void plan_ladder(struct step *step, int branch);
 double **rungs_of(const struct step *step, int branch);
 double *reach_of_rows(const struct step *step, int branch, const double *A, int rows, const double *row);
