@@ -541,6 +541,7 @@ void emit_conversions(const struct emitter *e);
 /* ---- access.c: init, set, get, time, status ---- */
 
 void emit_access(const struct emitter *e);
+void emit_initial_values(const struct emitter *e, const struct model *model);  /* of its states, up to the }; */
 
 /* ---- descriptor.c: tables for all to read, and the descriptor ---- */
 

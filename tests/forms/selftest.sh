@@ -9,8 +9,9 @@ set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
+here=$(cd "${0%/*}" && pwd) || exit 99
+. "$here/../run_cc.sh"
+. "$here/../tap.sh"
 runtime_archive "$root/runtime"
 
 # subjects, then subject FILE ... and values: what the self-test of each file returns, a line each, from one program
@@ -86,4 +87,29 @@ for spec in reduce_highest_good reduce_loops_good; do
 		result $? "$spec $type: below 60 units in the last place"
 	done
 done
+
+# What NAME_init leaves, where the copy of its table goes wrong (gcc 12 makes {1, 1, 1, 1} of {1, 1, 0, 0}); and that it
+# is right where that compiler has wide constants
+"$plgen" --prefix subject --selftest "$here/begun.spec" >good.c 2>log
+awk '/^void subject_init/, /^}/ { sub("1.0, 0.0, 0.0", "1.0, 1.0, 1.0") } { print }' good.c >bad.c
+cmp -s good.c bad.c && echo 'no table in NAME_init' >>log
+subjects
+subject good.c
+subject bad.c
+values | awk '{ v[NR] = $1 } END { print v[1], v[2], "expected: below 60, above 300"
+                                  exit !(NR == 2 && v[1] < 60 && v[2] > 300) }' >log
+result $? "a table of NAME_init that is copied wrongly is seen"
+name="NAME_init with wide constants is right"
+if grep -q -w avx512f /proc/cpuinfo 2>/dev/null; then
+	for level in -O1 -O2 -O3 -Os; do
+		subjects
+		subject good.c
+		echo "$level: returns $(run_cc="${CC:-cc} $level -mavx512f -ffp-contract=off -w" values)"
+	done >levels
+	awk '{ print $0 ", expected below 60"; bad = bad || $3 == "" || !($3 + 0 < 60) }
+	     END { exit bad || NR != 4 }' levels >log
+	result $? "$name"
+else
+	skip "$name" "no AVX-512 here"
+fi
 tap_end
