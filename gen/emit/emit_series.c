@@ -632,7 +632,8 @@ static void define_power(const struct emitter *e, int sequence, const struct seq
 
 static int rank_of_choice(const struct emitter *e, const struct sequence *s)
 {
-	return breakpoint_rank(expansion(e), s->expression, s->breakpoint);
+	return s->choice == CHOICE_BY_HOLD ? breakpoint_rank(expansion(e), s->expression, s->breakpoint)
+					   : upper_rank(expansion(e), s->expression, s->breakpoint);
 }
 
 static void define_choice(const struct emitter *e, int sequence, const struct sequence *s, int k)

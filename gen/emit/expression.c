@@ -231,7 +231,7 @@ static const char *above_text(struct writer *w, const struct form *a, const stru
 	if (x && find_division(x, a, b, &d))
 		return d.expression == NONE ? (d.above ? "1" : "0")
 					    : format("interval[%d] %s %d", d.expression, d.above ? ">" : "<=",
-						     breakpoint_rank(x, d.expression, d.breakpoint));
+						     upper_rank(x, d.expression, d.breakpoint));
 	if (!chosen)
 		internal_error(w->e->step, "a choice by the state that no expression stands for");
 	const char *first = above_text(w, a, chosen->operand[1]), *second = above_text(w, a, chosen->operand[2]);

@@ -69,11 +69,12 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 	l->lowest = below < l->lowest ? below : l->lowest;
 }
 
-/* Is e above `at` here? What is not known yet is noted. */
+/* Is e above `at` here? What is not known yet is noted. Where the breakpoint stands twice, what sticks or rests between
+ * counts as below it. */
 static bool is_above(struct looking *l, int index, mpq_srcptr at)
 {
 	struct expression *e = &l->s->expression[index];
-	for (int i = 0; i < e->breaks; i++)
+	for (int i = e->breaks - 1; i >= 0; i--)
 		if (mpq_equal(e->at[i], at))
 			return !l->grown && l->interval[index] > i;
 	add_break(l, e, at);

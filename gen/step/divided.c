@@ -193,6 +193,16 @@ int breakpoint_rank(const struct expansion *x, int expression, int breakpoint)
 	return x->expression[expression].rank[breakpoint];
 }
 
+int upper_rank(const struct expansion *x, int expression, int breakpoint)
+{
+	const struct divided *d = &x->expression[expression];
+	int rank = d->rank[breakpoint];
+	for (int k = 0; k < d->breaks; k++)
+		if (mpq_equal(d->at[k], d->at[breakpoint]) && d->rank[k] > rank)
+			rank = d->rank[k];
+	return rank;
+}
+
 mpq_t *rising_breakpoints(const struct divided *d)
 {
 	mpq_t *rising = rationals((size_t)d->breaks);

@@ -1196,6 +1196,8 @@ void add_twin(struct divided *d, int breakpoint);            /* a second breakpo
 int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
+/* of two alike that of the upper: what is held between them counts as below */
+int  upper_rank(const struct expansion *x, int expression, int breakpoint);
 mpq_t *rising_breakpoints(const struct divided *d);
 const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
 /* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */

@@ -6,6 +6,8 @@
 #include "counted.h"
 #include "four_balls.h"
 #include "high_ball.h"
+#include "landed.h"
+#include "landed_series.h"
 #include "lively_ball.h"
 #include "slopes.h"
 #include "thrown.h"
@@ -224,6 +226,34 @@ static void on_slopes(void)
 	is_close(slopes_status(&s), 0, 0, "slopes: status");
 }
 
+/* ---- what rests on a breakpoint counts as below it, for conditions on the same expression too ---- */
+
+static void landed_block(const char *name, const double *y)
+{
+	const double lies = 3 * sqrt(20 / 9.81), part = 3e-9;  /* what is left of the bouncing, up to 2^-23 h, is cut */
+	is_close(y[2], lies, part, "%s: in the air until it lies", name);
+	is_close(y[3], lies - (12 - lies), 2 * part, "%s: sgn is -1 where it lies", name);
+	is_close(y[1], 5 * lies + 12.5, 5 * part, "%s: it slides to its stop", name);
+	is_close(y[0], 0, 0, "%s: it lies on the ground", name);
+}
+
+static void landings(void)
+{
+	landed s;
+	landed_series c;
+	double y[LANDED_STATES];
+	landed_init(&s);
+	landed_series_init(&c);
+	for (int k = 0; k < 1200; k++) {
+		landed_step(&s);
+		landed_series_step(&c);
+	}
+	landed_get(&s, y);
+	landed_block("landed", y);
+	landed_series_get(&c, y);
+	landed_block("landed, by series", y);
+}
+
 int main(void)
 {
 	counted_jumps();
@@ -235,5 +265,6 @@ int main(void)
 	lively();
 	limits();
 	on_slopes();
+	landings();
 	return tap_end();
 }
