@@ -1,0 +1,292 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# jury.sh PLGEN PLRUN SOURCE: cases that others have published, with their digits, as TAP. A case is NAME.spec and
+# NAME.jury beside it:
+#
+#     case TEXT                   what it is
+#     source TEXT                 who published the digits, and where
+#     options WORDS               for plgen and plrun
+#     without SCHEME: REASON      a scheme that is not run
+#     short REASON                why a run may reach fewer digits than are published
+#     at T                        from here on values at this time, a multiple of the step:
+#     OUTPUT VALUE [within X]     with as many digits as are published; within: what the source says of its error
+#     hertz N VALUE, rad N VALUE  the N-th natural frequency, in Hz or rad/s
+#     refused TEXT                instead of all values: plgen's message about the spec
+#     long                        only with LONG=1
+#
+# Each scheme makes its C, which is compiled and run; plrun runs what plgen chooses by itself, with the same rows. All
+# published digits are reached, or where a case says why not, as many as doc/jury.md says.
+#
+#     jury.sh PLGEN PLRUN SOURCE --page       prints doc/jury.md
+set -u
+absolute() {
+	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
+}
+PLGEN=$(absolute "$1")
+plrun=$(absolute "$2")
+root=$(absolute "$3")
+mode=${4-}
+export PLGEN
+. "$root/tests/tap.sh"
+. "$root/tests/compilers.sh"
+. "$root/tests/run_cc.sh"
+XDG_CACHE_HOME=$work/cache
+export XDG_CACHE_HOME
+# With LONG=1 plrun compiles as a user has it.
+if ! long; then
+	CC=${run_cc%% *}
+	CFLAGS=${run_cc#* }
+	export CC CFLAGS
+fi
+here=$root/tests/jury
+page=$root/doc/jury.md
+runtime_archive "$root/runtime"
+
+# key NAME WORD: what stands behind the word in NAME.jury
+key() {
+	sed -n "s/^$2 //p" "$here/$1.jury"
+}
+
+# run_c NAME SCHEME END: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
+run_c() {
+	# shellcheck disable=SC2046
+	"$PLGEN" --scheme "$2" --prefix judged $(key "$1" options) "$here/$1.spec" >judged.c 2>log || return 2
+	$run_cc -I"$root/runtime" -DMODEL=judged "$root/runtime/host/plmain.c" judged.c "$archive" -lm -o judged \
+		>>log 2>&1 && ./judged "$3" >rows.csv 2>>log
+}
+
+# fewest_of FILE: `PUBLISHED REACHED` of what judge.awk has written: the fewest digits published, and `all` where each
+# value has all of its own, else the fewest
+fewest_of() {
+	awk 'NR == 1 || $3 < published { published = $3 }
+		$4 < ($3 < 15 ? $3 : 15) && (!short++ || $4 < fewest) { fewest = $4 }
+		END { print published + 0, NR == 0 ? 0 : short ? fewest : "all" }' "$1"
+}
+
+# end_of NAME: the last time at which it has values
+end_of() {
+	awk '$1 == "at" { print $2 }' "$here/$1.jury" | sort -g | tail -n 1
+}
+
+# stated NAME COLUMN: what the page says of the case
+stated() {
+	awk -F '|' -v name="[$1]" -v column="$2" 'index($2, name "(") {
+		gsub(/ /, "", $column)
+		print $column
+	}' "$page"
+}
+
+# kept STATED FOUND: whether as much is reached as is stated
+kept() {
+	case $1:$2 in
+		-:-|all:all) return 0 ;;
+		*:all) [ "$1" != - ] && [ -n "$1" ] ;;
+		[0-9]*:[0-9]*) [ "$2" -ge "$1" ] ;;
+		*) return 1 ;;
+	esac
+}
+
+# tell_short: the values of judged.txt that are not reached in full, to `log`
+tell_short() {
+	awk '$4 < 15 && $4 < $3 {
+		print "t = " $1 ": " $2 " = " $6 ", published " $5 ": " $4 " of " $3 " digits"
+	}' judged.txt >>log
+}
+
+# one_scheme NAME SCHEME: sets `cell`, the digits reached or `-`, and `published`
+one_scheme() {
+	cell=-
+	: >log
+	if key "$1" without | grep -q "^$2:"; then
+		return
+	fi
+	run_c "$1" "$2" "$(end_of "$1")"
+	case $? in
+		0) ;;
+		2) return ;;
+		*) echo "its C does not run to the end" >>log; cell=0; return ;;
+	esac
+	cp rows.csv "rows_$2.csv"
+	awk -v spare="$spare" -f "$here/judge.awk" "$here/$1.jury" rows.csv >judged.txt
+	# shellcheck disable=SC2046
+	set -- "$1" "$2" $(fewest_of judged.txt)
+	published=$3
+	cell=$4
+	tell_short
+}
+
+# poles_of NAME: its natural frequencies against those published
+poles_of() {
+	# shellcheck disable=SC2046
+	"$PLGEN" --explain=json $(key "$1" options) "$here/$1.spec" 2>log |
+		awk '/"poles": \[/ { inside = 1 }
+			inside && match($0, /"im": [-0-9.e+]*/) { im = substr($0, RSTART + 6, RLENGTH - 6) + 0
+				sub(/.*"multiplicity": /, "")
+				for (k = 0; im > 0 && k < $0 + 0; k++) printf "%.17g\n", im }
+			/\],$/ { inside = 0 }' | sort -g >poles
+	cell=-
+	awk -v poles=poles -v spare="$spare" -f "$here/judge.awk" "$here/$1.jury" >judged.txt
+	# shellcheck disable=SC2046
+	set -- "$1" $(fewest_of judged.txt)
+	published=$2
+	cell=$3
+	tell_short
+}
+
+# by_plrun NAME: plrun by itself has the rows of the C of the scheme that plgen chooses
+by_plrun() {
+	# shellcheck disable=SC2046
+	set -- "$1" $(key "$1" options)
+	name=$1
+	shift
+	scheme=$("$PLGEN" --explain=json "$@" "$here/$name.spec" 2>/dev/null |
+		sed -n 's/^ *"scheme": "\([a-z]*\).*/\1/p')
+	"$plrun" "$@" "$here/$name.spec" "$(end_of "$name")" >plrun.csv 2>log || return 1
+	[ -s "rows_$scheme.csv" ] || run_c "$name" "$scheme" "$(end_of "$name")" || return 1
+	[ -s "rows_$scheme.csv" ] || cp rows.csv "rows_$scheme.csv"
+	cut -d , -f 2- plrun.csv >plrun_outputs
+	cut -d , -f 2- "rows_$scheme.csv" | cmp - plrun_outputs >>log 2>&1
+}
+
+# refusal NAME: what plgen says of it
+refusal() {
+	"$PLGEN" "$here/$1.spec" 2>&1 >/dev/null | sed -n 's/.*: error: //p' | head -n 1
+}
+
+column_of() {
+	case $1 in
+		exact) echo 5 ;;
+		taylor) echo 6 ;;
+		radau) echo 7 ;;
+		auto) echo 8 ;;
+	esac
+}
+
+# try NAME: its lines as TAP
+try() {
+	rm -f rows_*.csv
+	if [ -n "$(key "$1" refused)" ]; then
+		refusal "$1" >log
+		echo "expected: $(key "$1" refused)" >>log
+		[ "$(head -n 1 log)" = "$(key "$1" refused)" ]
+		result $? "$1 is refused"
+		return
+	fi
+	published=
+	line=
+	for scheme in exact taylor radau auto; do
+		cell=-
+		if ! grep -q '^hertz\|^rad' "$here/$1.jury"; then
+			one_scheme "$1" $scheme
+		elif [ $scheme = exact ]; then
+			poles_of "$1"
+		fi
+		line="$line | $cell"
+		told "$1" $scheme
+	done
+	echo " $published$line" >"cells_$1"
+	[ "$mode" = --page ] || grep -q '^hertz\|^rad' "$here/$1.jury" && return
+	by_plrun "$1"
+	result $? "$1: plrun has the rows of the C"
+}
+
+# told NAME SCHEME: `cell` against the page and what the case asks for
+told() {
+	want=$(stated "$1" "$(column_of "$2")")
+	[ "$cell" != - ] || [ "$want" != - ] || return 0
+	echo "the page says '$want', found '$cell'" >>log
+	kept "$want" "$cell" && { [ "$cell" = all ] || [ -n "$(key "$1" short)" ]; }
+	result $? "$1 by $2: $cell of $published digits"
+}
+
+cases() {
+	for file in "$here"/*.jury; do
+		basename "$file" .jury
+	done
+}
+
+# row NAME NUMBER_OF_SOURCE: its line of the table; digits of what was not run as the page has them
+row() {
+	[ -s "cells_$1" ] || grep -F -e "| [$1](" "$page" | cut -d '|' -f 4-8 | sed 's/ $//' >"cells_$1"
+	printf '| [%s](../tests/jury/%s.jury) | %s |%s |\n' "$1" "$1" "$2" "$(cat "cells_$1")"
+}
+
+# source_number NAME
+source_number() {
+	grep -n -x -F -e "$(key "$1" source)" sources | cut -d : -f 1
+}
+
+print_page() {
+	for name in $(cases); do
+		key "$name" source
+	done | LC_ALL=C sort -u >sources
+	cat <<'END'
+# Cases that others have published
+
+What others have published is entered here as they have it, before it is run: the equations as a spec, the values with
+their digits. plgen makes C of it by each scheme, the C is compiled and run, and the digits that it reaches are counted.
+A test does this anew and holds this page, which `tests/jury/jury.sh` prints, against it; `plrun` has the same rows.
+A name leads to the values; the spec lies beside it.
+
+- **published**: the fewest digits of a value of that case.
+- **exact, taylor, radau, auto**: `all` where every value has every published digit, of at most 15, which a double
+  holds, within half a unit of the last; else the fewest that one has, and below is said why. `-`: plgen refuses this
+  scheme, or it is not run.
+
+| case | source | published | exact | taylor | radau | auto |
+| --- | --- | --- | --- | --- | --- | --- |
+END
+	for name in $(cases); do
+		[ -n "$(key "$name" refused)" ] || row "$name" "$(source_number "$name")"
+	done
+	printf '\n## Where fewer digits are reached, or a scheme is not run\n\n'
+	for name in $(cases); do
+		short=$(key "$name" short)
+		[ -z "$short" ] || echo "- $name: $short" | fold_item
+		key "$name" without | while read -r scheme reason; do
+			echo "- $name without ${scheme%:}: $reason" | fold_item
+		done
+	done
+	printf '\n## What cannot be written today\n\n'
+	for name in $(cases); do
+		words=$(key "$name" refused)
+		[ -z "$words" ] || printf '%s\n' "- [$name](../tests/jury/$name.spec), $(key "$name" case), source\
+ $(source_number "$name"): \`$words\`" | fold_item
+	done
+	printf '\n## The cases\n\n'
+	for name in $(cases); do
+		[ -n "$(key "$name" refused)" ] || echo "- $name: $(key "$name" case)" | fold_item
+	done
+	printf '\n## Sources\n\n'
+	awk '{ print NR ". " $0 }' sources | while IFS= read -r line; do
+		echo "$line" | fold_item
+	done
+}
+
+# a list item as lines of at most 118 columns, the others indented
+fold_item() {
+	fold -s -w 116 | sed '2,$s/^/  /; s/ *$//'
+}
+
+# words_alone FILE: the page without the digits, which `told` compares
+words_alone() {
+	sed 's/^\(| \[.*jury) | [0-9]* |\).*/\1/' "$1"
+}
+
+spare=1
+[ "$mode" != --page ] || spare=2
+for name in $(cases); do
+	chosen "$name" || continue
+	[ "$mode" = --page ] || long || ! grep -q '^long$' "$here/$name.jury" || continue
+	try "$name" >>tried
+done
+print_page >page
+if [ "$mode" = --page ]; then
+	cat page
+	exit
+fi
+cat tried
+words_alone "$page" >page_words
+words_alone page | diff - page_words >log
+result $? 'doc/jury.md is what these cases make, but for the digits'
+tap_end
