@@ -386,6 +386,7 @@ void emit_cut_at(const struct emitter *e);
 void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
 void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
+void emit_divided_place(const struct emitter *e);
 void emit_divided_functions(const struct emitter *e);             /* tables, NAME_cross, NAME_locate */
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
@@ -657,6 +658,7 @@ void emit_series_slopes(const struct emitter *e);                  /* A, of x' =
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_at_start(const struct emitter *e);
 void emit_next_tap(const struct emitter *e, int input);           /* u is the next of its samples */
 int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */

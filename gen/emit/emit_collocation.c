@@ -160,8 +160,7 @@ void emit_collocation_place(const struct emitter *e)
 		       "    s->series = s->stiff = s->bounds = s->run = 0;\n"
 		       "    s->patience = 2;\n");
 	if (is_divided(e))
-		say(e, "    s->contact.placed = s->contact.crossings = 0;\n"
-		       "    s->contact.total = 0;\n");
+		emit_divided_place(e);
 	say(e, "}\n");
 }
 

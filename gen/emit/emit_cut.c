@@ -49,9 +49,9 @@ void emit_cut_place(const struct emitter *e)
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
 	       "{\n"
-	       "    s->contact.placed = s->contact.crossings = 0;\n"
-	       "    s->contact.total = 0;\n"
-	       "%s"
+	       "    int i;\n");
+	emit_divided_place(looking(e));
+	say(e, "%s"
 	       "}\n", keeps_look(e) ? "    s->ended = 0;\n" : "");
 }
 

@@ -33,6 +33,17 @@ void emit_divided_members(const struct emitter *e)
 	say(e, "    $n_contact contact;   /* intervals, crossings */\n");
 }
 
+/* Of a state that was set the next step, which knows its samples, finds the intervals; until then they are the lowest.
+ * Local i. */
+void emit_divided_place(const struct emitter *e)
+{
+	say(e, "    s->contact.placed = s->contact.crossings = %s0;\n"
+	       "    s->contact.total = 0;\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        s->contact.interval[i] = 0;\n", meets_contacts(e) ? "s->contact.rested = " : "",
+	    expansion(e)->expressions);
+}
+
 void emit_divided_declarations(const struct emitter *e)
 {
 	if (!is_divided(e))

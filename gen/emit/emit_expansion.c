@@ -241,7 +241,7 @@ void emit_expansion_place(const struct emitter *e)
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
 	       "{\n");
-	if (looks_at_tolerance(e))
+	if (looks_at_tolerance(e) || is_divided(e))
 		say(e, "    int i;\n");
 	if (truncation(e)->adaptive)
 		say(e, "    s->served = s->valid = s->most = 0;\n");
@@ -256,8 +256,7 @@ void emit_expansion_place(const struct emitter *e)
 			say(e, "    s->scale[$N_STATES + %d] = s->unit[$N_STATES + %d] = 0.0;\n", i, i);
 	}
 	if (is_divided(e))
-		say(e, "    s->contact.placed = s->contact.crossings = %s0;\n"
-		       "    s->contact.total = 0;\n", meets_contacts(e) ? "s->contact.rested = " : "");
+		emit_divided_place(e);
 	say(e, "}\n");
 }
 

@@ -534,6 +534,8 @@ void emit_region_at(const struct emitter *e)
 	    u);
 	declare_region_room(e);
 	declare_descriptor(e);
+	if (has_guards(e))              /* what is held is put back to its place, off by rounding, in no time too */
+		emit_at_start(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
 	emit_region_advance_call(e);

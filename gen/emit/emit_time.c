@@ -293,6 +293,15 @@ void emit_hand_over(const struct emitter *e)
 		       "        y[i] = x[i];\n");
 }
 
+/* At the start of the step the state is what $n_get gives, to the last bit. */
+void emit_at_start(const struct emitter *e)
+{
+	say(e, "    if (!(tau > 0.0)) {\n"
+	       "        $n_get(s, y);\n"
+	       "        return;\n"
+	       "    }\n");
+}
+
 /* Where the loads change their formula on the way */
 static void emit_passing_at(const struct emitter *e)
 {
@@ -303,10 +312,7 @@ static void emit_passing_at(const struct emitter *e)
 	if (relative)
 		say(e, "    double x[$N_STATES];\n");
 	if (e->step->forced)            /* of what is kept and its forced part $n_get takes what rounding loses too */
-		say(e, "    if (!(tau > 0.0)) {\n"
-		       "        $n_get(s, y);\n"
-		       "        return;\n"
-		       "    }\n");
+		emit_at_start(e);
 	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, left, whole, relative ? "x" : "y");
 	if (relative)
 		say(e, "    $n_written(s, x, y);\n");

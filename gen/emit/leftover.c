@@ -38,14 +38,40 @@ bool takes_slope(const struct emitter *e, const struct reads *r)
 	return reads_slope(e, r) || (reads_ramp(e, r) && e->step->program->nodes > 1);
 }
 
+static bool reads_channel(const struct model *model, int channel)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs + model->n; i++) {
+		const struct output *output =
+			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+		any = any || (output && mpq_sgn(output->channel[channel]) != 0);
+	}
+	return any;
+}
+
+bool reads_channels(const struct model *model)
+{
+	bool any = false;
+	for (int c = 0; c < model->channels; c++)
+		any = any || reads_channel(model, c);
+	return any;
+}
+
+/* Beside friction outputs alone ask what is left over, and of equations that have none: its force is no formula. */
+static bool is_asked(const struct emitter *e, int channel)
+{
+	return e->model->drags == 0 || reads_channel(e->model, channel);
+}
+
 struct reads reads_of_leftover(const struct emitter *e)
 {
-	int channels = e->model->channels, all = channels * e->model->operators;
+	int channels = e->model->channels, all = channels * e->model->operators, asked = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
 	for (int k = 0; k < e->model->operators; k++)
 		for (int c = 0; c < channels; c++)
-			form[k * channels + c] = e->model->operator[k].left[c];
-	return reads_of(e->model, all, form);
+			if (is_asked(e, c))
+				form[asked++] = e->model->operator[k].left[c];
+	return reads_of(e->model, asked, form);
 }
 
 bool needs_node(const struct emitter *e, const struct reads *r)
@@ -100,18 +126,6 @@ const char *leftover_of_step(const struct emitter *e)
 const char *leftover_of_outputs(const struct emitter *e)
 {
 	return leftover_call(e, "0", e->step->normal ? "now" : "s->y", "left", FROM_OUTPUTS);
-}
-
-bool reads_channels(const struct model *model)
-{
-	bool any = false;
-	for (int i = 0; i < model->outputs + model->n; i++) {
-		const struct output *output =
-			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
-		for (int c = 0; output && c < model->channels; c++)
-			any = any || mpq_sgn(output->channel[c]) != 0;
-	}
-	return any;
 }
 
 /* ---- its text ---- */
@@ -228,7 +242,7 @@ static void emit_lefts(const struct emitter *e, const struct bank *bank)
 {
 	struct writer *writer = writer_new(e, basis_now, e->model->channels, bank->common);
 	for (int c = 0; c < e->model->channels; c++) {
-		const char *text = write_form(writer, bank->common[c], 15);
+		const char *text = is_asked(e, c) ? write_form(writer, bank->common[c], 15) : "0.0";
 		say(e, "    left[%d] = %s;  /* %s */\n", c, with_excess(e, c, text, bank), name_of_channel(e, c));
 	}
 }

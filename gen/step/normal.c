@@ -25,7 +25,7 @@ static const char *name_of(const struct step *step)
 	return scheme_name(step->model->scheme);
 }
 
-static void check_orders(const struct step *step)
+void check_mode_orders(const struct step *step)
 {
 	const struct model *model = step->model;
 	if (model->n > LIMIT_MODES)
@@ -362,7 +362,6 @@ struct normal *normal_of(struct step *step)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	struct normal *normal = NEW(struct normal);
 	struct normal_work w = { .step = step, .model = model, .normal = normal };
-	check_orders(step);
 	check_left(step);
 	check_changes(step);
 	check_turns(step);

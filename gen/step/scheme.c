@@ -323,6 +323,8 @@ static void build(void *context)
 	step->written = resolvent_of_written(model);
 	check_pole_size(model, step->written);
 	check_holds(step);
+	if (step->kind == KIND_NORMAL)
+		check_mode_orders(step);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);

@@ -10,9 +10,11 @@ char *put_shortest(char *to, double value, bool single)
 {
 	if (value - value != 0)
 		return to + sprintf(to, "%g", value);
-	if (value < 0 || (value == 0 && 1 / value < 0)) {
+	if (value < 0) {
 		*to++ = '-';
 		value = -value;
+	} else if (value == 0) {
+		value = 0; /* not -0 */
 	}
 	return digits_text(to, digits_shortest(value, single), single ? 6 : 15);
 }

@@ -85,14 +85,16 @@ static void fail_write(void)
 
 enum { LONGEST = 26 }; /* characters of a number, its sign and a comma */
 
-/* In as few digits as read back the same; returns the end, no NUL */
+/* In as few digits as read back the same, -0 as 0; returns the end, no NUL */
 static char *put_shortest(char *to, real value)
 {
     if (value - value != 0)
         return to + sprintf(to, "%g", (double)value);
-    if (value < 0 || (value == 0 && 1 / value < 0)) {
+    if (value < 0) {
         *to++ = '-';
         value = -value;
+    } else if (value == 0) {
+        value = 0; /* not -0 */
     }
     return digits_text(to, digits_shortest((double)value, sizeof value == sizeof(float)), PLACES);
 }

@@ -43,6 +43,7 @@ head_of() { # SPEC WHAT
 make_c() {
 	rhs=--rhs
 	[ "$(head_of "$2" class)" != ' sticking' ] || rhs=
+	! grep -q '^# beside:' "$2" || rhs=
 	# shellcheck disable=SC2086
 	timeout 1200 "$plgen" $rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
@@ -59,6 +60,22 @@ why_refused() { # ID STATUS
 		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" |
 			tr '\n' ' ')" ;;
 	esac
+}
+
+# step_of ID: as it is written in its header
+step_of() {
+	sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$1.h" | head -n 1
+}
+
+# regions_of ID: how many numbers NAME_region may give, by the breakpoints of each expression; 0: there is none
+regions_of() {
+	if grep -q "^int *$1_region(" "$1.h"; then
+		awk '/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); all *= split($0, at, ",") + 1 }
+			BEGIN { all = 1 }
+			END { printf "%.17g", all }' "$1.c"
+	else
+		echo 0
+	fi
 }
 
 # slopes ID: a function of one form around ID_rhs
@@ -87,18 +104,22 @@ batch_add() {
 		[ -s "$id.wrong" ] || said=refused
 		return
 	fi
-	# the plain model: no state left out, in double
+	# the plain model: no state left out, in double, of the same step
 	plain=$(printf '%s\n' "$given" |
 		awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
 		$i, $(i + 1) }')
+	grep -q '^step' "$spec" || plain="$plain --step $(step_of "$id")"
+	plain="$plain$(head_of "$spec" plain)"
+	beside=$(head_of "$spec" beside)
 	whole=$id
 	code="$id.c"
 	instead=$(head_of "$spec" instead)
 	grep -v '^need' "$spec" | sed "$instead" >"$id.free.spec"
-	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead} in
-		*--real*|*--reduce*|*--modes*|*--need|*--instead)
+	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead}${beside:+ --beside} in
+		*--real*|*--reduce*|*--modes*|*--need*|*--instead*|*--beside)
 			whole=w$id
-			if ! make_c "$whole" "$id.free.spec" "$plain"; then
+			if ! make_c "$whole" "$id.free.spec" "$plain$beside" &&
+			    { [ -z "$beside" ] || ! make_c "$whole" "$id.free.spec" "$plain"; }; then
 				echo "the plain model: $(grep -m 1 error "$whole.said")" >"$id.wrong"
 				return
 			fi
@@ -122,13 +143,13 @@ batch_add() {
 	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
 	solution=NULL
 	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
-		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" |
-			awk '{ printf "%.17g", 32.5 * $1 }')
+		horizon=$(step_of "$whole" | awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
 		timeout 1200 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
 		if [ $status -eq 0 ]; then
 			solution="\"$id.csv\""
+			! grep -q -E '(^|,)-0(,|$)' "$id.csv" || echo 'the closed form has a -0' >"$id.wrong"
 		else
 			why_refused "$id" $status >"$id.wrong"
 			[ -s "$id.wrong" ] && return
@@ -148,7 +169,13 @@ batch_add() {
 		for one in $code; do
 			echo "#include \"${one%.c}.h\""
 		done
-		slopes "$whole"
+		slopes=NULL
+		[ -n "$beside" ] || { slopes=${whole}_slopes && slopes "$whole"; }
+		region=NULL
+		if grep -q "^int *${id}_region(" "$id.h"; then
+			region=${id}_where
+			echo "static int ${id}_where(const void *s) { return ${id}_region(s); }"
+		fi
 		model="&${id}_model, NULL"
 		grep -q "pl_modelf ${id}_model" "$id.h" && model="NULL, &${id}_model"
 		selftest=NULL
@@ -175,11 +202,11 @@ batch_add() {
 		changes=$(head_of "$spec" changes)
 		adds=1
 		! grep -q 'kick-drift-kick' "$id.c" || adds=3
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, $slopes, \"$scheme\", \"$class\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$(head_of "$spec" impact)\", $adds},"
+			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id")},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

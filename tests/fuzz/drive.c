@@ -8,7 +8,8 @@
  *                                        1e-2, in order 1 5e-2
  *     the closed form                    1e-12 per step; of an output named inner... over its own largest value, or 1
  *     rhs, outputs against the second writing    1e-10, of the largest slope or output
- *     jump, set, retune                  1e-12 per step; at(0), at(h): 1e-12
+ *     jump, set, retune                  1e-12 per step; at(h): 1e-12; at(0): get, to the last bit
+ *     another scheme of piecewise linear 1e-6
  *     run                                2 units in the last place per step; restore: to the last bit
  *     a batch                            1e-12 per step of one that steps alone
  * selftest 100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
@@ -388,7 +389,7 @@ static bool at_a_change(double t)
 static void judge_rhs(void)
 {
 	unsigned seed = 1;
-	if (!of->residual)
+	if (!of->residual || !of->slopes)
 		return;
 	for (int point = 0; point < 40; point++) {
 		double y[MOST], u[2 * MOST], top[MOST], found[MOST], largest = 1;
@@ -427,6 +428,8 @@ static void record(const void *s, struct row *r)
 	r->t = model_time(s);
 	model_get(s, r->y);
 	model_out(s, r->out);
+	if (of->region && !(of->region(s) >= 0 && of->region(s) < of->regions))
+		complain("region %d of %g, t = %.17g", of->region(s), of->regions, r->t);
 }
 
 /* The largest size of `wave`, another output, so far: no less than at the ends of steps, and hardly more, its fastest
@@ -580,12 +583,43 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 	free(w);
 }
 
+/* The same by steps of the other model, from the same state on: of those states and outputs that both have. */
+static void judge_beside(void *s, void *w, int from, int steps, const char *what)
+{
+	const double most = in_float ? 2e-3 : 1e-6;
+	const bool all = whole(), seen = of->whole->outputs == outputs;
+	bool good = true;
+	for (int k = from; k < from + steps && good; k++) {
+		double u[MOST], found[MOST], expected[MOST];
+		samples(k, u);
+		model_step(s, u);
+		of->whole->step(w, inputs ? u : NULL);
+		model_get(s, found);
+		of->whole->get(w, expected);
+		for (int i = 0; i < states && all; i++) {
+			good = near(found[i], expected[i], most * size, what, model_time(s), state_name(i)) && good;
+			worst_truth = worse(worst_truth, fabs(found[i] - expected[i]) / size);
+		}
+		model_out(s, found);
+		of->whole->out(w, expected);
+		for (int i = 0; i < outputs && seen; i++)
+			good = near(found[i], expected[i], most * fmax(out_size, size), what, model_time(s),
+			    output_name(i)) && good;
+	}
+}
+
 static void judge_truth(void)
 {
-	void *const s = fresh();
+	void *const s = fresh(), *const w = malloc(of->whole->size);
+	if (!w)
+		exit(3);
 	model_init(s);
-	judge_steps(s, 0, STEPS, h, row, "steps against CVODE");
-	free(s);
+	of->whole->init(w);
+	if (of->slopes)
+		judge_steps(s, 0, STEPS, h, row, "steps against CVODE");
+	else
+		judge_beside(s, w, 0, STEPS, "steps against another scheme");
+	free(s), free(w);
 }
 
 static void judge_solution(void)
@@ -711,7 +745,7 @@ static void judge_at(void)
 	void *const s = fresh(), *const before = fresh();
 	struct truth *solver = new_truth();
 	double u[MOST], y[MOST], now[MOST], past[MOST] = {0};
-	const bool all = whole();
+	const bool all = whole() && of->slopes;
 	model_init(s);
 	for (int k = 0; k < STEPS; k++) {
 		whole_samples(k, u);
@@ -720,7 +754,7 @@ static void judge_at(void)
 			if (!model_at(s, u, 0, y))
 				break;
 			for (int i = 0; i < states; i++)
-				near(y[i], row[k].y[i], rounding(0) * size, "at(0)", row[k].t, state_name(i));
+				near(y[i], row[k].y[i], 0, "at(0) against get", row[k].t, state_name(i));
 			model_at(s, u, of->model ? of->model->h : (double)of->modelf->h, y);
 			for (int i = 0; i < states; i++)
 				near(y[i], row[k + 1].y[i], (plain ? rounding(4) : bound()) * size, "at(h)",
@@ -786,7 +820,24 @@ static void judge_set(void)
 		complain("get after set: %.17g, expected %.17g", u[0], y[0]);
 	const double kept = size;
 	size = fmax(size, 0.5);
-	judge_steps(s, 3, LATER, h, NULL, "steps after set against CVODE");
+	if (of->slopes) {
+		judge_steps(s, 3, LATER, h, NULL, "steps after set against CVODE");
+	} else {
+		void *const w = malloc(of->whole->size);
+		if (!w)
+			exit(3);
+		model_init(s);
+		of->whole->init(w);
+		for (int k = 0; k < 3; k++) {
+			samples(k, u);
+			model_step(s, u);
+			of->whole->step(w, inputs ? u : NULL);
+		}
+		model_set(s, 0.3515625, y);
+		of->whole->set(w, 0.3515625, y);
+		judge_beside(s, w, 3, LATER, "steps after set against another scheme");
+		free(w);
+	}
 	size = kept;
 	free(s);
 }

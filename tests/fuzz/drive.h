@@ -11,7 +11,8 @@ struct subject {
 	const pl_modelf *modelf;    /* of one in float */
 	/* the same spec in double, no state left out; of inputs more, the first one delayed */
 	const pl_model *whole;
-	void (*slopes)(double t, const double *y, const double *u, double *dydt);   /* NAME_rhs of `whole` */
+	/* NAME_rhs of `whole`; NULL: its steps are what those of the model are held against */
+	void (*slopes)(double t, const double *y, const double *u, double *dydt);
 	const char *scheme, *class; /* class: linear, piecewise, sticking (dry friction, of which `whole` has a steep
 				     * damper up to the force), smooth, kinked; "": unknown */
 	const char *changes;        /* times at which a load changes its formula */
@@ -25,6 +26,8 @@ struct subject {
 	double (*lanes)(void);      /* of NAME_batch, lanes.h; or NULL */
 	const char *impact;         /* GAP RESTITUTION: b' = -RESTITUTION b' where b comes up to GAP; "": none */
 	int adds;                   /* how often a step adds to a state: 3 of the form kick-drift-kick, else 1 */
+	int (*region)(const void *s);   /* NAME_region, or NULL */
+	double regions;             /* how many there may be */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */

@@ -264,12 +264,25 @@ static bool velocity(struct both *v)
 	return true;
 }
 
+/* Arguments of extremes that are extremes themselves */
+static struct both extreme_in_extreme(struct both e)
+{
+	const struct both x = position(), a = fixed(0.02, 0.2), b = fixed(0.25, 0.4);
+	switch (below(5)) {
+	case 0: return JOIN2("max(@, min(@, @))", "fmax(@, fmin(@, @))", e, x, a);
+	case 1: return JOIN2("clip(max(@, @), -@, @)", "clip(fmax(@, @), -@, @)", e, x, a, b);
+	case 2: return JOIN2("min(max(@, -@), clip(@, -@, @))", "fmin(fmax(@, -@), clip(@, -@, @))", e, a, x, a, b);
+	case 3: return JOIN2("max(@, @, min(@, @))", "fmax(fmax(@, @), fmin(@, @))", e, a, x, b);
+	default: return JOIN2("abs(@ - max(@, 0))", "fabs(@ - fmax(@, 0))", e, x);
+	}
+}
+
 /* Linear in each region. */
 static struct both regional(int depth)
 {
 	const struct both e = linear_form(), k = fixed(0.5, 20), a = fixed(0.02, 0.3);
 	struct both v;
-	switch (below(12)) {
+	switch (below(15)) {
 	case 0: return JOIN("@*deadzone(@, -@, @)", k, e, a, fixed(0.05, 0.3));
 	case 1: return JOIN("@*clip(@, -@, @)", k, e, a, fixed(0.05, 0.3));
 	case 2: return JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, e, a);
@@ -286,6 +299,7 @@ static struct both regional(int depth)
             return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
         case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
 		fixed(0.11, 0.3));
+	case 11: case 12: return JOIN("@*@", k, extreme_in_extreme(e));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
 	}
 }
@@ -323,7 +337,7 @@ static struct both leftover(void)
 static struct both kinked(void)
 {
 	const struct both x = position(), w = any_state();
-	switch (below(7)) {
+	switch (below(9)) {
 	case 0: return JOIN2("abs(@)*@", "fabs(@)*@", x, w);
 	case 1: return JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", fixed(1, 5), x);
 	case 2: return JOIN2("(@ > @ ? (@ - @)^2 : 0)", "(@ > @ ? pow(@ - @, 2) : 0)", x, same("0.1"), x, same("0.1"));
@@ -331,6 +345,7 @@ static struct both kinked(void)
 	case 4: return JOIN2("min(@^2, 0.04)", "fmin(pow(@, 2), 0.04)", x);
         case 5:
             return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
+	case 6: case 7: return JOIN("@*@", fixed(0.5, 5), extreme_in_extreme(x));
         default: return JOIN("@ + @", regional(1), leftover());
 	}
 }
@@ -650,7 +665,19 @@ static void write_outputs(void)
 
 static const char *of_all(void)
 {
-	return (const char *const[]){ "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3" }[below(7)];
+	static const char *const scheme[] = { "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3", "taylor",
+					      "radau", "auto", "etdam4", "etdam5", "etdam6", "etdcol" };
+	return scheme[below(sizeof scheme / sizeof *scheme)];
+}
+
+/* Those with a number stand in the spec. */
+static char *scheme_statement(void)
+{
+	static const char *const scheme[] = { "taylor 12", "taylor 16", "taylor 12 over 3", "taylor 14 over 2", "radau 3",
+					      "radau 5", "radau 7", "auto 5", "auto 7", "etdcol 4", "etdcol 8" };
+	static const char *const tolerance[] = { "1e-7", "1e-9", "1e-11" };
+	char *const all = text("scheme %s\n", scheme[below(sizeof scheme / sizeof *scheme)]);
+	return chance(50) ? all : text("%stolerance %s\n", all, tolerance[below(3)]);
 }
 
 /* The operator of a scheme with a leftover, sometimes. */
@@ -667,12 +694,14 @@ static char *operator_statement(void)
         }
 }
 
-static char *options(void)
+static char *options(const char *stated)
 {
 	char *all = "";
 	if (chance(20))
 		add(&all, " --real float");
-	if (class >= SMOOTH ? chance(70) : !drive && chance(12))
+	if (*stated)
+		;
+	else if (class >= SMOOTH ? chance(70) : !drive && chance(12))
 		add(&all, text(" --scheme %s", !drive && chance(6) ? "pl" : of_all()));
 	else if (!drive && chance(8))
 		add(&all, chance(70) ? " --scheme exact" : " --scheme pl");
@@ -776,7 +805,18 @@ static void equations(void)
 			scalar_equation(i);
 }
 
-static void write_spec(FILE *file, const char *of, const char *given, const char *operator)
+/* What no expression reads */
+static void write_unread(FILE *file)
+{
+	if (chance(6))
+		fprintf(file, "param spare = 2, more = spare + 1\n");
+	if (chance(4))
+		fprintf(file, "param idle = 3\ntunable idle\n");
+	if (chance(6))
+		fprintf(file, "matrix still = [1, 2; 3, 4]\n");
+}
+
+static void write_spec(FILE *file, const char *of, const char *given, const char *operator, const char *stated)
 {
 	bool any = false;
 	fprintf(file, "# options:%s\n# class: %s\n# changes:%s\n", given, of, changes);
@@ -787,7 +827,9 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 		for (int i = 0; i < params; i++)
 			if (param[i].tunable)
 				fprintf(file, " %s=%.4f", param[i].name, 0.6 + (double)below(3000) / 1000);
-		fprintf(file, " step=%s\n", (const char *const[]){ "0.01", "0.03", "0.0625" }[below(3)]);
+		if (class == LINEAR)
+			fprintf(file, " step=%s", (const char *const[]){ "0.01", "0.03", "0.0625" }[below(3)]);
+		fputc('\n', file);
 	}
 	fprintf(file, "model f\n");
 	for (int i = 0; i < params; i++)
@@ -799,7 +841,10 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 		fprintf(file, coord[i].size ? "coord %s[%d]\n" : "coord %s\n", coord[i].name, coord[i].size);
 	for (int i = 0; i < inputs; i++)
 		fprintf(file, "input %s%s\n", input[i].name, input[i].ramp ? " hold first" : "");
-	fprintf(file, "%s%s%s%s%s", initial(), spec_lets, operator, spec_equations, spec_outputs);
+	write_unread(file);
+	fprintf(file, "%s%s%s%s%s%s", initial(), spec_lets, operator, spec_equations, spec_outputs, stated);
+	if (chance(6))
+		fprintf(file, "let unread = %s + t\n", coord[0].size ? "2" : coord[0].name);
         fprintf(file, "step %s\n",
                 (const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
 }
@@ -840,7 +885,7 @@ int main(int argc, char **argv)
 	state = strtoull(argv[1], NULL, 10) * UINT64_C(0x2545f4914f6cdd1d) + 7;
 	const int kind = below(100);
 	class = kind < 46 ? LINEAR : kind < 70 ? PIECEWISE : kind < 88 ? SMOOTH : KINKED;
-	tunable = class == LINEAR && chance(25);
+	tunable = chance(class == LINEAR ? 25 : 15);
 	drive = chance(50) ? GROUNDED : chance(50) ? TURNS : TURNS_FAR;
 	declare();
 	equations();
@@ -848,7 +893,8 @@ int main(int argc, char **argv)
 		write_inner();
 	else
 		write_outputs();
-	const char *const operator = operator_statement(), *const given = options();
+	const char *const operator = operator_statement(), *const stated = class >= SMOOTH && chance(20) ?
+		scheme_statement() : "", *const given = options(stated);
 	if (class == SMOOTH && *changes && strstr(given, "--loads leftover"))
 		class = KINKED;         /* the quadrature goes over the changes */
 	FILE *const spec = fopen(argv[2], "w"), *const c = argc > 3 ? fopen(argv[3], "w") : NULL;
@@ -856,7 +902,8 @@ int main(int argc, char **argv)
 		perror(argv[spec ? 3 : 2]);
 		return 1;
 	}
-	write_spec(spec, (const char *const[]){ "linear", "piecewise", "smooth", "kinked" }[class], given, operator);
+	write_spec(spec, (const char *const[]){ "linear", "piecewise", "smooth", "kinked" }[class], given, operator,
+		stated);
 	if (c)
 		write_c(c, given);
 	return fclose(spec) != 0 || (c && fclose(c) != 0);

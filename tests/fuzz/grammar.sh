@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the folder CORPUS, then the specs that
-# `grammar` makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of
+# GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of
 # seeds.  PLGEN is built with sanitizers; what it emits is compiled with all warnings as errors and sanitizers, by gcc
 # and clang in turn, and drive.c holds it against other roads.  A spec may be refused only with a message of
 # refusals.list.
@@ -38,11 +38,11 @@ keep_it() {
 	[ -z "$keep" ] || cp "$3" "$keep/$2.spec"
 }
 
+cp -R "$source/tests/fuzz/corpus/parts" .
 # the corpus, in one batch
 if [ -n "$corpus" ]; then
 	batch_new
 	names=
-	cp -R "$corpus/parts" .
 	for spec in "$corpus"/*.spec; do
 		name=$(basename "$spec" .spec)
 		names="$names $name"
