@@ -45,7 +45,7 @@ look share share
 look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086
 look tests tests '(' $code ')'
-look specs tests -name '*.spec' ! -path '*/errors/*' ! -path '*/fuzz/*'
-look doc doc ! -path '*/charts/*' ! -path '*/gallery/*' ! -name '*.csv' ! -name combinations.md
+look specs tests -name '*.spec' ! -path '*/tests/errors/*' ! -path '*/tests/fuzz/*'
+look doc doc ! -path '*/doc/charts/*' ! -path '*/doc/gallery/*' ! -name '*.csv' ! -name combinations.md
 look top . -maxdepth 1 '(' -name '*.md' -o -name Makefile -o -name meson.build ')'
 tap_end

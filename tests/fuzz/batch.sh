@@ -132,6 +132,10 @@ batch_add() {
 			*--reduce*) less=--reduce ;;
 			*) less= ;;
 		esac
+		case $retune in
+			*step=*) ;;
+			*) less="$less$(printf '%s\n' "$given" | grep -o ' --step [^ ]*')" ;;
+		esac
 		if ! make_c "$tuned" "$spec" \
 			"$less $(printf '%s\n' "$retune" |
 				sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then

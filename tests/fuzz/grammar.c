@@ -673,8 +673,8 @@ static const char *of_all(void)
 /* Those with a number stand in the spec. */
 static char *scheme_statement(void)
 {
-	static const char *const scheme[] = { "taylor 12", "taylor 16", "taylor 12 over 3", "taylor 14 over 2", "radau 3",
-					      "radau 5", "radau 7", "auto 5", "auto 7", "etdcol 4", "etdcol 8" };
+	static const char *const scheme[] = { "taylor 12", "taylor 16", "taylor 12 over 3", "taylor 14 over 2",
+		"radau 3", "radau 5", "radau 7", "auto 5", "auto 7", "etdcol 4", "etdcol 8" };
 	static const char *const tolerance[] = { "1e-7", "1e-9", "1e-11" };
 	char *const all = text("scheme %s\n", scheme[below(sizeof scheme / sizeof *scheme)]);
 	return chance(50) ? all : text("%stolerance %s\n", all, tolerance[below(3)]);

@@ -45,7 +45,8 @@ static double between(double low, double high)
 	return low + (high - low) * below(101) / 100;
 }
 
-#define ONE_OF(...) ((const char *const[]){ __VA_ARGS__ }[below(sizeof(const char *[]){ __VA_ARGS__ } / sizeof(char *))])
+#define ONE_OF(...)                                                                                                   \
+	((const char *const[]){ __VA_ARGS__ }[below(sizeof(const char *[]){ __VA_ARGS__ } / sizeof(char *))])
 
 /* ---- what it has ---- */
 
@@ -102,13 +103,15 @@ static const char *load(void)
 
 /* ---- friction ---- */
 
-static const char steep[] = "s/friction(\\(vel[0-9]\\), \\(bear[0-9]\\))"
-			    "/max(-max(\\2, 0), min(max(\\2, 0), 40000*(\\1)))/g; "
-			    "s/brake.spec/brake_steep.spec/; s/^output rub.*$//; s/^# class: sticking/# class: kinked/; ";
-static const char creeping[] = "s/^friction(\\(s[0-9]\\)', \\(bear[0-9]\\)) = \\(born[0-9]\\)$"
-			       "/\\1' = 10000*(max(\\3 - max(\\2, 0), 0) + min(\\3 + max(\\2, 0), 0))/; "
-			       "s/^friction(\\(s[0-9]\\)', \\(bear[0-9]\\)) + \\([0-9.]*\\)[*]s[0-9]' = "
-			       "\\(born[0-9]\\)$/\\1' = (max(\\4 - max(\\2, 0), 0) + min(\\4 + max(\\2, 0), 0))\\/\\3/; ";
+static const char steep[] =
+	"s/friction(\\(vel[0-9]\\), \\(bear[0-9]\\))"
+	"/max(-max(\\2, 0), min(max(\\2, 0), 40000*(\\1)))/g; "
+	"s/brake.spec/brake_steep.spec/; s/^output rub.*$//; s/^# class: sticking/# class: kinked/; ";
+static const char creeping[] =
+	"s/^friction(\\(s[0-9]\\)', \\(bear[0-9]\\)) = \\(born[0-9]\\)$"
+	"/\\1' = 10000*(max(\\3 - max(\\2, 0), 0) + min(\\3 + max(\\2, 0), 0))/; "
+	"s/^friction(\\(s[0-9]\\)', \\(bear[0-9]\\)) + \\([0-9.]*\\)[*]s[0-9]' = "
+	"\\(born[0-9]\\)$/\\1' = (max(\\4 - max(\\2, 0), 0) + min(\\4 + max(\\2, 0), 0))\\/\\3/; ";
 
 /* Its force, as a let: of a constant, time, an input or the state */
 static int bear(const char *velocity)
@@ -142,7 +145,8 @@ static void rub(void)
 	if (pair)
 		put(v, "%s' - %s'", name[i], name[j]);
 	else
-		put(v, "%s'%s", name[i], chance(50) ? "" : ONE_OF(" - 0.2", " + 0.1", " - 0.3*cos(2*t)", " - 0.4*exp(-t)"));
+		put(v, "%s'%s", name[i],
+			chance(50) ? "" : ONE_OF(" - 0.2", " + 0.1", " - 0.3*cos(2*t)", " - 0.4*exp(-t)"));
 	const int k = bear(v);
 	put(lets, "let vel%d = %s\n", k, v);
 	const char *const more = has.holding ? ONE_OF(", 2", ", 1.6") : "";
@@ -161,7 +165,8 @@ static void slide(void)
 	put(lets, "let born%d = %.2f*(%s - s%d)\n", sliders, spring, name[i], sliders);
 	put(equation[i], " + born%d", sliders);
 	if (chance(40))
-		put(body, "friction(s%d', bear%d) + %.2f*s%d' = born%d\n", sliders, k, between(0.1, 1), sliders, sliders);
+		put(body, "friction(s%d', bear%d) + %.2f*s%d' = born%d\n", sliders, k, between(0.1, 1), sliders,
+			sliders);
 	else
 		put(body, "friction(s%d', bear%d) = born%d\n", sliders, k, sliders);
 	if (chance(40))
@@ -174,7 +179,9 @@ static void strike(void)
 	const int i = below(coords), j = (i + 1) % coords;
 	const double e = chance(20) ? 0 : between(0.1, 0.95);
 	switch (below(coords > 1 ? 4 : 3)) {
-	case 0: put(body, "when %s >= %.3f: %s' = -%.2f*%s'\n", name[i], between(0.01, 0.3), name[i], e, name[i]); break;
+	case 0:
+		put(body, "when %s >= %.3f: %s' = -%.2f*%s'\n", name[i], between(0.01, 0.3), name[i], e, name[i]);
+		break;
 	case 1: put(body, "stop between %s, ground at %.3f restitution %.2f\n", name[i], between(0.01, 0.3), e); break;
 	case 2: put(body, "stop between ground, %s at %.3f restitution %.2f\n", name[i], between(0.01, 0.3), e); break;
 	default: put(body, "stop between %s, %s at %.3f restitution %.2f\n", name[i], name[j], between(0.01, 0.3), e);
@@ -191,7 +198,9 @@ static const char *piece(int i)
 	switch (below(7)) {
 	case 0: snprintf(text, sizeof text, "%.2f*max(%s, min(%s, %.2f))", k, x, y, a); break;
 	case 1: snprintf(text, sizeof text, "%.2f*clip(%s, -%.2f, %.2f)", k, x, a, a); break;
-	case 2: snprintf(text, sizeof text, "%.2f*deadzone(%s - %s, -%.2f, %.2f)", k, x, i ? name[i - 1] : "0.1", a, a);
+	case 2:
+		snprintf(
+			text, sizeof text, "%.2f*deadzone(%s - %s, -%.2f, %.2f)", k, x, i ? name[i - 1] : "0.1", a, a);
 		break;
 	case 3: snprintf(text, sizeof text, "%s*max(%s - %.2f, 0)", number(1, 20), x, a); break;
 	case 4: snprintf(text, sizeof text, "(%s' > 0 ? 0.2*%s' : 0.7*%s')", x, x, x); break;
@@ -259,10 +268,11 @@ static void parts(void)
 {
 	if (!has.parts)
 		return;
-	const char *const of = has.curve == LINEAR && !has.friction ? "cell" : ONE_OF("cell", "stop",
-		has.friction || has.sliders ? "brake" : "stop");
-	put(declared, "use \"parts/%s.spec\" as p%s with x' = %.2f%s\n", of, chance(30) ? ", idle" : "", between(0.1, 1),
-	    strcmp(of, "cell") ? "" : ", pull = cos(4*t), base = 0.1");
+	const char *const of = has.curve == LINEAR && !has.friction
+				       ? "cell"
+				       : ONE_OF("cell", "stop", has.friction || has.sliders ? "brake" : "stop");
+	put(declared, "use \"parts/%s.spec\" as p%s with x' = %.2f%s\n", of, chance(30) ? ", idle" : "",
+		between(0.1, 1), strcmp(of, "cell") ? "" : ", pull = cos(4*t), base = 0.1");
 	if (chance(80))
 		put(body, "spring %.2f between p.x, x\n", between(1, 9));
 	put(outputs, "output p.x, x\n");
@@ -272,12 +282,13 @@ static void statements(double step)
 {
 	for (int i = 0; i < coords; i++)
 		if (chance(60))
-			put(outputs, "output out%d = %s%s\n", i, name[i], ONE_OF("", "'", chance(50) ? "''" : "", " + 0.5*x'"));
+			put(outputs, "output out%d = %s%s\n", i, name[i],
+				ONE_OF("", "'", chance(50) ? "''" : "", " + 0.5*x'"));
 	if (has.needs || !*outputs || strcmp(outputs, "output p.x, x\n") == 0)
 		put(outputs, "output seen = x + 0.5*%s'\n", name[coords - 1]);
 	if (has.needs)
 		put(outputs, "need seen within %s until 0.5%s\n", has.curve == LINEAR ? "1e-7" : "1e-5",
-		    strstr(declared, "input u_in") ? " for |u_in| <= 2" : "");
+			strstr(declared, "input u_in") ? " for |u_in| <= 2" : "");
 	if (!has.needs || strstr(declared, "input u_in") || chance(30))
 		put(outputs, "step %g\n", step);
 }
@@ -286,8 +297,10 @@ static void statements(double step)
 
 static const char *class_of(void)
 {
-	return has.friction || has.sliders ? "sticking" : has.curve == SMOOTH ? "kinked"
-		: has.curve == PIECES || has.impacts || strstr(declared, "stop.spec") ? "piecewise" : "linear";
+	return has.friction || has.sliders					     ? "sticking"
+	       : has.curve == SMOOTH						     ? "kinked"
+	       : has.curve == PIECES || has.impacts || strstr(declared, "stop.spec") ? "piecewise"
+										     : "linear";
 }
 
 static void against(void)
@@ -295,13 +308,15 @@ static void against(void)
 	const bool contacts = has.friction || has.sliders || has.impacts || has.curve >= PIECES;
 	put(head, "# class: %s\n", class_of());
 	if (has.impacts || has.holding || has.smooth_hold || has.oddly) {
-		put(head, "# beside: %s\n", has.curve == SMOOTH ? "--scheme taylor --tolerance 1e-13"
-			: contacts ? "--scheme taylor --tolerance 1e-12" : "--form direct");
+		put(head, "# beside: %s\n",
+			has.curve == SMOOTH ? "--scheme taylor --tolerance 1e-13"
+			: contacts	    ? "--scheme taylor --tolerance 1e-12"
+					    : "--form direct");
 		return;
 	}
 	if (has.friction || has.sliders || has.delayed)
-		put(head, "# instead: %s%ss/u_in(t - [0-9.]*)/late/; s/^# whole: //\n# plain: --scheme etdrk4\n", steep,
-		    creeping);
+		put(head, "# instead: %s%ss/u_in(t - [0-9.]*)/late/; s/^# whole: //\n# plain: --scheme etdrk4\n",
+			steep, creeping);
 }
 
 static void choose_options(void)
@@ -314,9 +329,11 @@ static void choose_options(void)
 	if (has.curve < SMOOTH && contacts && !has.sliders && !has.needs && chance(30))
 		put(options, " --scheme taylor");
 	if (has.curve == SMOOTH && !contacts && chance(70))
-		put(options, " --scheme %s", ONE_OF("taylor", "radau", "auto", "etd1", "etdrk2", "etdrk4", "nc2", "bm3"));
+		put(options, " --scheme %s",
+			ONE_OF("taylor", "radau", "auto", "etd1", "etdrk2", "etdrk4", "nc2", "bm3"));
 	if (has.curve == LINEAR && !contacts && chance(30))
-		put(options, " %s", ONE_OF("--batch", "--reduce", "--form delta", "--form direct", "--rows 8", "--selftest"));
+		put(options, " %s",
+			ONE_OF("--batch", "--reduce", "--form delta", "--form direct", "--rows 8", "--selftest"));
 	if (has.curve == PIECES && chance(10))
 		put(options, " --selftest");
 }
@@ -326,8 +343,9 @@ static void inputs(void)
 	if (!has.delayed && !has.smooth_hold && !chance(25))
 		return;
 	const char *const hold = has.smooth_hold ? ONE_OF("third", "fifth", "seventh") : chance(50) ? "first" : NULL;
-	put(declared, "input u_in%s%s\n%s", hold ? " hold " : "", hold ? hold : "", chance(15) ? "input unread\n" : "");
-	if (has.delayed)        /* drive.c has it behind all others */
+	put(declared, "input u_in%s%s\n%s", hold ? " hold " : "", hold ? hold : "",
+		chance(15) ? "input unread\n" : "");
+	if (has.delayed) /* drive.c has it behind all others */
 		put(declared, "# whole: input late%s%s\n", hold ? " hold " : "", hold ? hold : "");
 }
 
@@ -344,8 +362,8 @@ static void choose(void)
 	has.oddly = has.delayed && chance(30);
 	has.smooth_hold = !has.delayed && has.curve == LINEAR && kind >= 80 && chance(40);
 	has.tunable = !has.delayed && !has.smooth_hold && chance(30);
-	has.needs = !has.delayed && !has.tunable && !has.smooth_hold && !has.friction && !has.impacts && !has.sliders &&
-		    chance(30);
+	has.needs = !has.delayed && !has.tunable && !has.smooth_hold && !has.friction && !has.impacts &&
+		    !has.sliders && chance(30);
 	coords = 1 + below(3);
 }
 
@@ -378,8 +396,8 @@ int main(int argc, char **argv)
 		fprintf(file, ", %s", name[i]);
 	fprintf(file, "\n%s%s", declared, chance(8) ? "param spare = 2\n" : "");
 	for (int i = 0; i < coords; i++)
-		fprintf(file, "init %s = %.3f, %s' = %.3f\n", name[i], has.impacts ? between(-0.3, 0) : between(-0.3, 0.3),
-			name[i], between(-0.8, 0.8));
+		fprintf(file, "init %s = %.3f, %s' = %.3f\n", name[i],
+			has.impacts ? between(-0.3, 0) : between(-0.3, 0.3), name[i], between(-0.8, 0.8));
 	fprintf(file, "%s%s%s", lets, body, outputs);
 	return fclose(file) != 0;
 }
