@@ -64,10 +64,11 @@ int main(int argc, char **argv)
         for (i = 0, p = line; i < COLUMNS; i++) {
             char *const start = p;
             const real text = READ(p, &p);
+            const real shown = value[i] == 0 ? 0 : value[i]; /* -0 is written as 0 */
             const char expected = i + 1 < COLUMNS ? ',' : '\n';
             if (p - start > most)
                 most = (int)(p - start);
-            if (memcmp(&text, &value[i], sizeof text) != 0 || memcmp(&read[i], &value[i], sizeof text) != 0 ||
+            if (memcmp(&text, &shown, sizeof text) != 0 || memcmp(&read[i], &value[i], sizeof text) != 0 ||
                 *p++ != expected) {
                 printf("row %d, column %d: CSV %.17g, raw %.17g, expected %.17g: %s", k, i, (double)text,
                     (double)read[i], (double)value[i], line);
