@@ -389,6 +389,7 @@ void pl_multiply_add(int rows, int columns, const double *table, const double *x
 /* What the status of a model says: 0, or */
 enum { PL_TOO_MANY_STEPS = 4, PL_INACCURATE = 8 }; /* of steps by series: more substeps within h than allowed, and the
                                                     * state is the last good one; last terms above the tolerance */
+enum { PL_LEFT_RANGE = 32 }; /* at the end of a step a state was outside of the range that the spec gives it */
 enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers: of linear models, while it shows in the state */
 
 /* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes

@@ -47,7 +47,7 @@ static void emit_rest_of_state(const struct emitter *e)
 {
 	say(e, "    s->t0 = t;\n"
 	       "    s->k = 0;\n");
-	if (e->kind->keeps_status)
+	if (keeps_status(e))
 		say(e, "    s->status = 0;\n");
 	emit_load_set(e);
 	if (e->step->anchors)
@@ -190,8 +190,42 @@ static void emit_status(const struct emitter *e)
 		say(e, "    double y[$N_STATES];\n"
 		       "    $n_get(s, y);\n");
 	say(e, "    return %spl_not_finite(%s, $N_STATES)%s;\n"
-	       "}\n", e->kind->keeps_status ? "s->status | " : "", written ? "y" : "s->y",
+	       "}\n", keeps_status(e) ? "s->status | " : "", written ? "y" : "s->y",
 	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
+}
+
+/* ---- ranges that the spec gives ---- */
+
+bool has_ranges(const struct emitter *e)
+{
+	return e->model->written->ranges > 0;
+}
+
+bool keeps_status(const struct emitter *e)
+{
+	return e->kind->keeps_status || has_ranges(e);
+}
+
+/* What is not a number has left none: PL_NOT_FINITE tells it. */
+static void emit_ranges(const struct emitter *e)
+{
+	const struct model *written = e->model->written;
+	if (!has_ranges(e))
+		return;
+	say(e, "\n/* Whether the states are in their ranges: the end of a step */\n"
+	       "static void $n_stay($n *s)\n"
+	       "{\n"
+	       "    double y[$N_STATES];\n"
+	       "    $n_get(s, y);\n"
+	       "    if (");
+	for (int i = 0; i < written->ranges; i++) {
+		const struct state_range *range = &written->range[i];
+		say(e, "%sy[%d] < %s || y[%d] > %s", i ? " ||\n        " : "", range->state,
+		    shortest(round_rational(range->low)), range->state, shortest(round_rational(range->high)));
+	}
+	say(e, ")\n"
+	       "        s->status |= PL_LEFT_RANGE;\n"
+	       "}\n");
 }
 
 /* Where an input has several samples before the next */
@@ -231,6 +265,7 @@ void emit_access(const struct emitter *e)
 	(relative ? (e->step->forced ? emit_get_over_forced : emit_get_over_relative) : emit_get_as_written)(e);
 	emit_time(e);
 	emit_status(e);
+	emit_ranges(e);
 	if (e->ramps)
 		emit_hold(e);
 }

@@ -248,6 +248,33 @@ static void banner_divided(const struct emitter *e)
 		  "two.");
 }
 
+/* Where errors are measured otherwise than by the largest size of a state */
+static void banner_floors(const struct emitter *e)
+{
+	const char *list = "";
+	for (int i = 0; i < e->system->states && has_floors(e); i++)
+		if (mpq_sgn(e->model->truncation.absolute[i]) != 0)
+			list = format("%s%s%s %s", list, *list ? ", " : "", e->model->state_name[i],
+				      readable_text(e->model->truncation.absolute[i]));
+	if (*list)
+		banner_sentence(e, format("Beside the tolerance of their size now states may be off by an absolute "
+					  "one: %s.", list));
+}
+
+/* The ranges of states */
+static void banner_ranges(const struct emitter *e)
+{
+	const struct model *written = e->model->written;
+	const char *list = "";
+	for (int i = 0; i < written->ranges; i++)
+		list = format("%s%s%s in [%s, %s]", list, i ? ", " : "",
+			      written->state_name[written->range[i].state], readable_text(written->range[i].low),
+			      readable_text(written->range[i].high));
+	if (*list)
+		banner_sentence(e, format("%s_status says PL_LEFT_RANGE once a state is outside at the end of a "
+					  "step: %s.", e->name, list));
+}
+
 void banner_expanded(const struct emitter *e)
 {
 	const struct truncation *truncation = &e->model->truncation;
@@ -266,6 +293,7 @@ void banner_expanded(const struct emitter *e)
 	else
 		say(e, " * One way through, whatever the numbers are; no %s looks at its error.\n",
 		    spans_steps(e) ? "expansion" : "step");
+	banner_floors(e);
 	if (spans_steps(e))
 		say(e, " * One expansion is over %d steps, and its error is that of a step of %d h; those before the "
 		       "last are values of\n"
@@ -287,6 +315,7 @@ void banner_collocated(const struct emitter *e)
 	       "tried "
 	       "at most.\n", e->step->expansion ? "The collocation: " : "", truncation->stages,
 	    2 * truncation->stages - 1, readable_text(truncation->tolerance), truncation->substeps);
+	banner_floors(e);
 	say(e, splits(e) ? " * Newton's method with the Jacobian of its start, by the modes of its stages: one real "
 			   "and %d "
 			   "complex systems of %d.\n"
@@ -641,6 +670,7 @@ static void banner_functions(const struct emitter *e)
 		say(e, " * There is no $n_jump: %s.\n",
 		    e->kind->no_jump  ? e->kind->no_jump
 		    : has_peaks(e) ? "peaks are found step by step"
+		    : has_ranges(e) ? "ranges are looked at step by step"
 				   : "the samples to come are not known");
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);
@@ -665,5 +695,6 @@ void emit_banner(const struct emitter *e)
 	banner_state(e);
 	banner_run(e);
 	banner_functions(e);
+	banner_ranges(e);
 	say(e, " */\n");
 }

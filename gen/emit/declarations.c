@@ -49,7 +49,7 @@ static void emit_state_struct(const struct emitter *e)
 	       "    uint64_t k;           /* steps since then */\n");
 	e->kind->members(e);
 	emit_peak_members(e);
-	if (e->kind->keeps_status)
+	if (keeps_status(e))
 		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
 	say(e, "};\n\n");
 }
@@ -60,8 +60,10 @@ static void declare_state_functions(const struct emitter *e)
 	declare(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"), "any state at any time [s]");
 	declare(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
 	declare(e, spell(e, "double $n_time(const $n *s);"), "[s]");
-	declare(e, spell(e, "int    $n_status(const $n *s);"), e->model->switching && has_events(e->model->switching)
-			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED" : e->kind->status_note);
+	const char *note = e->model->switching && has_events(e->model->switching)
+			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED" : e->kind->status_note;
+	declare(e, spell(e, "int    $n_status(const $n *s);"),
+		has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
 	e->kind->declare_state(e);
 	if (e->ramps)
 		declare(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),

@@ -103,6 +103,10 @@ static const char *one_over(const struct emitter *e, const char *size, const cha
 
 static void emit_scales(const struct emitter *e)
 {
+	const char *floored = !has_floors(e) ? "" : spell(e, "if ($n_floor[i] > 0.0) {\n"
+		"            s->scale[i] = pl_magnitude(s->start[i]) + $n_floor[i];\n"
+		"            grown = 1;\n"
+		"        } else ");
 	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
 	       "is 0 */\n"
 	       "static void $n_measure($n *s)\n"
@@ -110,7 +114,7 @@ static void emit_scales(const struct emitter *e)
 	       "    double most[3] = {0.0, 0.0, 0.0};\n"
 	       "    int i, grown = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        if (pl_magnitude(s->start[i]) > s->scale[i]) {\n"
+	       "        %sif (pl_magnitude(s->start[i]) > s->scale[i]) {\n"
 	       "            s->scale[i] = pl_magnitude(s->start[i]);\n"
 	       "            grown = 1;\n"
 	       "        }\n"
@@ -120,11 +124,12 @@ static void emit_scales(const struct emitter *e)
 	       "        if (s->scale[i] > most[%s])\n"
 	       "            most[%s] = s->scale[i];\n"
 	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        const double least = %s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
+	       "        const double least = %s%s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
 	       "        s->unit[i] = %s;\n"
 	       "    }\n"
-	       "}\n", kind_text(e, "i"), kind_text(e, "i"), shortest(ldexp(1, -20)), kind_text(e, "i"),
-	    one_over(e, "size", "0.0"));
+	       "}\n", floored, kind_text(e, "i"), kind_text(e, "i"),
+	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "", shortest(ldexp(1, -20)),
+	    kind_text(e, "i"), one_over(e, "size", "0.0"));
 }
 
 static void emit_anew(const struct emitter *e)
@@ -144,6 +149,7 @@ static void emit_anew(const struct emitter *e)
 void emit_collocation_place(const struct emitter *e)
 {
 	emit_state_table(e);
+	emit_floors(e);
 	emit_anew(e);
 	emit_scales(e);
 	say(e, "\n/* What follows from a state that was set */\n"
@@ -501,8 +507,9 @@ static void emit_first_length(const struct emitter *e)
 	       "        const double speed = pl_magnitude(%s) * s->unit[i] * (100.0 * $N_H);\n"
 	       "        most = speed > most ? speed : most;\n"
 	       "    }\n"
-	       "    return 1.0 / most;\n"
-	       "}\n", samples_parameter(e), start_jacobian(e), speed_text(e, "i"));
+	       "    return most < %s ? 1.0 / most : %s;  /* far above the shortest that is tried */\n"
+	       "}\n", samples_parameter(e), start_jacobian(e), speed_text(e, "i"),
+	    e->model->asked.single ? "1e10" : "1e15", e->model->asked.single ? "1e-10" : "1e-15");
 }
 
 /* How the internal step goes that starts now */

@@ -238,6 +238,7 @@ void emit_expansion_place(const struct emitter *e)
 {
 	if (!expansion_places(e))
 		return;
+	emit_floors(e);
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
 	       "{\n");

@@ -24,6 +24,28 @@ bool looks_at_tolerance(const struct emitter *e)
 	return mpq_sgn(truncation(e)->tolerance) != 0;
 }
 
+bool has_floors(const struct emitter *e)
+{
+	return looks_at_tolerance(e) && truncation(e)->absolute;
+}
+
+void emit_floors(const struct emitter *e)
+{
+	if (!has_floors(e))
+		return;
+	mpq_t floor;
+	mpq_init(floor);
+	say(e, "\n/* Of each state its absolute tolerance over the relative one, which counts beside its size; 0: it has "
+	       "none */\n"
+	       "static const double $n_floor[$c] = {");
+	for (int i = 0; i < e->system->states; i++) {
+		mpq_div(floor, truncation(e)->absolute[i], truncation(e)->tolerance);
+		say(e, "%s%s", i == 0 ? "\n    " : i % 8 ? ", " : ",\n    ", shortest(round_rational(floor)));
+	}
+	say(e, "\n};\n");
+	mpq_clear(floor);
+}
+
 bool watches(const struct emitter *e)
 {
 	return looks_at_tolerance(e) && !truncation(e)->adaptive;
@@ -86,11 +108,12 @@ static void emit_remainder(const struct emitter *e, int kept)
 	for (int j = 0; j < kept; j++)
 		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
 	say(e, "    for (i = 0; i < %s; i++) {\n"
-	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
+	       "        double p = pl_magnitude(c[0][i]), unit = %sp > s->scale[i] ? 1.0 / p : s->unit[i];\n"
 	       "        if (unit == 0.0) {\n"
 	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
 	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
-	       "        }\n", measured_columns(e));
+	       "        }\n", measured_columns(e),
+	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 1.0 / (p + $n_floor[i])\n            : ") : "");
 	for (int j = 0; j < 2 * kept; j++) {
 		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
 		if (order - j >= 2)

@@ -296,10 +296,15 @@ void emit_column_scales(const struct emitter *e)
 
 void emit_series_scales(const struct emitter *e, const char *indent)
 {
+	if (has_floors(e))
+		say(e, "%sif ($n_floor[i] > 0.0) {\n"
+		       "%s    s->scale[i] = pl_magnitude(s->y[i]) + $n_floor[i];\n"
+		       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
+		       "%s} else ", indent, indent, indent, indent);
 	say(e, "%sif (pl_magnitude(s->y[i]) > s->scale[i]) {\n"
 	       "%s    s->scale[i] = pl_magnitude(s->y[i]);\n"
 	       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
-	       "%s}\n", indent, indent, indent, indent);
+	       "%s}\n", has_floors(e) ? "" : indent, indent, indent, indent);
 }
 
 const char *plus(const char *sum, const char *term)

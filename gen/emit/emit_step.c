@@ -286,6 +286,8 @@ void emit_step_end(const struct emitter *e)
 	if (e->step->rest && e->step->rest->in_step)
 		say(e, "    if ((s->k & 63) == 0)\n"
 		       "        $n_rest(s);\n");
+	if (has_ranges(e))
+		say(e, "    $n_stay(s);\n");
 }
 
 const char *step_parameters(const struct emitter *e)

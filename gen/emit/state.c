@@ -42,7 +42,7 @@ const char *name_of_step(const struct emitter *e)
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e);
+	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e) && !has_ranges(e);
 }
 
 const char *state_list(const struct model *model)

@@ -517,6 +517,8 @@ static void evaluate_modes(void *context)
 		list = parse_mode_list(b->spec, source_argument(b->request->modes));
 	if (!list.at.source)
 		abandon();
+	if (b->spec->ranges > 0)
+		error(b->spec->range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
 	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, (size_t)list.count), list.each,
 					 !list.without_static };
 	for (int i = 0; i < list.count; i++) {
@@ -554,6 +556,10 @@ static void collect_model(struct building *b)
 		relative_values(model, model->written->initial, model->initial);
 	else if (all)
 		evaluate_initials(b);
+	if (all)
+		evaluate_absolutes(b);
+	if (all && !model->relative)
+		evaluate_ranges(b);
 	if (all && (b->spec->step || request->step))
 		statement_guard(evaluate_step, b);
 	b->collector.constant_only = false;
@@ -570,6 +576,8 @@ static void check_reduction(const struct building *b)
 		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates",
 			  scheme_name(model->scheme));
+	if (!diagnostics_errors() && model->ranges > 0)
+		say_error(model->range[0].at, NULL, "--reduce leaves no states as written, of which a range is");
 }
 
 /* Forms to matrices, operators, outputs, regions */

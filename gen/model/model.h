@@ -146,7 +146,15 @@ struct truncation {                 /* of a Taylor series */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h, */
 	int over;                   /* and one expansion is over so many of them */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
+	/* per state: what a step may add to it beside the tolerance of its size now; 0: its largest size counts. NULL:
+	 * so of all */
+	mpq_t *absolute;
 	int substeps;               /* most within one h */
+};
+struct state_range {                /* in which the spec says that a state stays */
+	struct place at;
+	int state;
+	mpq_t low, high;
 };
 struct requirement {                /* a need, evaluated */
 	const struct need *need;
@@ -242,6 +250,8 @@ struct model {
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
 	struct wanted_modes modes;
+	int ranges;                 /* of the written model's states */
+	struct state_range *range;
 	/* the model is over other coordinates than the written ones; NULL: over those */
 	const struct relative *relative;
 	const struct shortening *shortened; /* it is of some modes of another; NULL: it is not */
@@ -710,6 +720,11 @@ enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
 enum { LEAST_STAGES = 3, MOST_STAGES = 9 };
 /* from its tolerance, which is the default where it is 0; of what is no series, none */
 void choose_order(struct model *model, bool single);
+
+/* ---- bounds.c: what a spec says of single states ---- */
+
+void evaluate_absolutes(struct building *b);                /* into truncation.absolute */
+void evaluate_ranges(struct building *b);                   /* behind the initial values, which have to be in them */
 
 /* ---- jacobian.c: of the equations for all time, where states and time are fixed ---- */
 

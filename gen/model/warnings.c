@@ -365,6 +365,8 @@ static void check_truncation(const struct building *b)
 	if ((asked || b->spec->tolerance) && !expands)
 		say_warning(asked ? (struct place){ source_argument(asked), 0 } : b->spec->tolerance->start, NULL,
 			    "the tolerance has no effect: %s", why);
+	else if (b->spec->absolutes > 0 && mpq_sgn(model->truncation.tolerance) == 0)
+		say_warning(b->spec->absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
 	if (b->spec->substeps && !model->truncation.adaptive)
 		say_warning(b->spec->substeps->start, NULL, "the bound on substeps has no effect: %s", why);
 }

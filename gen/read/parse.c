@@ -21,12 +21,12 @@ static const struct statement {
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
-	{ "when", read_when }, { "stop", read_stop }
+	{ "when", read_when }, { "stop", read_stop }, { "range", read_range }
 };
 
-/* tolerance, substeps, modes, use, need, budget, when and stop may be names of a spec's own: in an equation an operator
- * or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there is no such
- * name. */
+/* tolerance, substeps, modes, use, need, budget, when, stop and range may be names of a spec's own: in an equation
+ * an operator or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there
+ * is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;

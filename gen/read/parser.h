@@ -89,6 +89,7 @@ struct node *take_order(struct parser *p, struct node **over);
 void read_scheme(struct parser *p);
 void read_tolerance(struct parser *p);
 void read_substeps(struct parser *p);
+void read_range(struct parser *p);
 struct mode_list take_modes(struct parser *p);
 void read_modes(struct parser *p);
 void read_operator(struct parser *p);

@@ -145,6 +145,13 @@ struct initial {
 	int primes, component;
 	struct node *value;
 };
+struct state_bound {                /* range NAME in [LOW, HIGH]; tolerance of NAME = LOW */
+	struct place at;
+	const struct scene_part *part;    /* whose text gives it; NULL: the scene's */
+	struct symbol *coord;
+	int primes, component;
+	struct node *low, *high;    /* high NULL: there is none */
+};
 struct fixed {                      /* of `operator at NAME = value, value, ...` */
 	struct place at, end;
 	struct symbol *symbol; /* a coordinate or a let; NULL: t */
@@ -226,6 +233,11 @@ struct spec {                       /* what the text says, names resolved, nothi
 	/* of a scheme in powers of h: its order, as an expression; the steps that one expansion is over; the error that
 	 * a step may make; the most steps within one h. NULL: not given */
 	struct node *scheme_order, *scheme_over, *tolerance, *substeps;
+	struct node *absolute;      /* behind the tolerance: what a step may add to any state; NULL: not given */
+	int absolutes;
+	struct state_bound *absolute_of;  /* the same of some states */
+	int ranges;
+	struct state_bound *range;
 	bool has_operator;
 	struct node *operator_count; /* of a bank between two values; NULL: each has a value of its own */
 	struct place operator_at;

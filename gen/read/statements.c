@@ -256,26 +256,35 @@ void add_initial(struct parser *p, struct token name, struct symbol *coord, int 
 		(struct initial){ name.at, p->part, p->statement, coord, name.primes, component, value };
 }
 
+/* NAME [ ' ]: a coordinate, its component or their derivative; `what` is for those alone */
+static struct token read_state_name(struct parser *p, struct symbol **coord, int *component, const char *what)
+{
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a coordinate");
+	struct token name = take(p);
+	*component = read_component(p, &name.primes, false);
+	name.length = p->end.offset - name.at.offset;
+	*coord = find_symbol(p, name.name);
+	if (*coord && (*coord)->broken)
+		abandon();
+	if (!*coord && !is_reserved(name.name))
+		unknown_name(p, name);
+	if (!*coord || (*coord)->kind != SYMBOL_COORD)
+		error(name.at, format("%ss are for coordinates and their velocities", what),
+		      "'%s' is not a coordinate", name.name);
+	check_component(*coord, *component, name.at);
+	if (name.primes > 1)
+		error(name.at, NULL, "an acceleration has no %s: it follows from the equations", what);
+	return name;
+}
+
 /* init: init NAME [ ' ] = expression { , ... } */
 void read_init(struct parser *p)
 {
 	do {
-		if (p->token.kind != TOKEN_NAME)
-			unexpected(p, "a coordinate");
-		struct token name = take(p);
-		int component = read_component(p, &name.primes, false);
-		name.length = p->end.offset - name.at.offset;
-		struct symbol *coord = find_symbol(p, name.name);
-		if (coord && coord->broken)
-			abandon();
-		if (!coord && !is_reserved(name.name))
-			unknown_name(p, name);
-		if (!coord || coord->kind != SYMBOL_COORD)
-			error(name.at, "initial values are for coordinates and their velocities",
-			      "'%s' is not a coordinate", name.name);
-		check_component(coord, component, name.at);
-		if (name.primes > 1)
-			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
+		struct symbol *coord;
+		int component;
+		struct token name = read_state_name(p, &coord, &component, "initial value");
 		expect_op(p, "=", "'='");
 		add_initial(p, name, coord, component, read_expression(p));
 	} while (take_op(p, ","));
@@ -387,19 +396,85 @@ void read_scheme(struct parser *p)
 	p->own->scheme = name.name;
 }
 
-/* tolerance: tolerance expression; substeps: substeps expression */
-static void read_bound(struct parser *p, const char *word, struct node **bound)
+/* ---- bounds of states ---- */
+
+/* One text gives a state one. What a part's own text gives, the scene gives again. */
+static struct state_bound read_bound_name(struct parser *p, int count, const struct state_bound *list, const char *what)
 {
-	struct place at = last_token(p, strlen(word));
-	if (*bound)
-		error(at, NULL, "the %s given already",
-		      strcmp(word, "substeps") == 0 ? "substeps are" : "tolerance is");
-	*bound = read_expression(p);
+	struct state_bound bound = { .at = p->token.at, .part = p->part };
+	struct token name = read_state_name(p, &bound.coord, &bound.component, what);
+	bound.primes = name.primes;
+	for (int i = 0; i < count; i++) {
+		const struct state_bound *other = &list[i];
+		if (other->coord == bound.coord && other->primes == bound.primes && other->part == bound.part &&
+		    (!other->component || !bound.component || other->component == bound.component))
+			error(bound.at, NULL, "the %s of %s is given already", what,
+			      text_between(bound.at, p->end));
+	}
+	return bound;
+}
+
+static void add_bound(struct state_bound **list, int *count, struct state_bound bound)
+{
+	ENLARGE(*list, (size_t)*count + 1);
+	(*list)[(*count)++] = bound;
+}
+
+/* range: range NAME [ ' ] in [ expression , expression ] { , ... } */
+void read_range(struct parser *p)
+{
+	do {
+		struct state_bound range = read_bound_name(p, p->spec->ranges, p->spec->range, "range");
+		expect_word(p, "in");
+		expect_op(p, "[", "'[': range x in [0, 1]");
+		range.low = read_expression(p);
+		expect_op(p, ",", "',': range x in [0, 1]");
+		range.high = read_expression(p);
+		expect_op(p, "]", "']'");
+		add_bound(&p->spec->range, &p->spec->ranges, range);
+	} while (take_op(p, ","));
 	expect_end(p);
 }
 
-void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->own->tolerance); }
-void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->own->substeps); }
+/* tolerance of NAME [ ' ] = expression { , ... } */
+static void read_absolutes(struct parser *p)
+{
+	do {
+		struct state_bound absolute = read_bound_name(p, p->own->absolutes, p->own->absolute_of, "tolerance");
+		expect_op(p, "=", "'='");
+		absolute.low = read_expression(p);
+		add_bound(&p->own->absolute_of, &p->own->absolutes, absolute);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* tolerance: tolerance expression [ , absolute expression ] */
+void read_tolerance(struct parser *p)
+{
+	struct place at = last_token(p, strlen("tolerance"));
+	if (!find_symbol(p, "of") && take_word(p, "of")) {
+		read_absolutes(p);
+		return;
+	}
+	if (p->own->tolerance)
+		error(at, NULL, "the tolerance is given already");
+	p->own->tolerance = read_expression(p);
+	if (take_op(p, ",")) {
+		expect_word(p, "absolute");
+		p->own->absolute = read_expression(p);
+	}
+	expect_end(p);
+}
+
+/* substeps: substeps expression */
+void read_substeps(struct parser *p)
+{
+	struct place at = last_token(p, strlen("substeps"));
+	if (p->own->substeps)
+		error(at, NULL, "the substeps are given already");
+	p->own->substeps = read_expression(p);
+	expect_end(p);
+}
 
 /* expression { , expression } [ , ] [ without static ] */
 struct mode_list take_modes(struct parser *p)

@@ -206,6 +206,15 @@ static void drop_symbols(struct sight *sight, const bool *gone)
 	*spec->last = NULL;
 }
 
+static void drop_bounds(int *count, struct state_bound *bound, const bool *gone)
+{
+	int kept = 0;
+	for (int i = 0; i < *count; i++)
+		if (!gone[bound[i].coord->number])
+			bound[kept++] = bound[i];
+	*count = kept;
+}
+
 static void drop_others(struct spec *spec, const bool *gone, int tunables)
 {
 	int initials = 0, fixeds = 0;
@@ -223,6 +232,8 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 	spec->initials = initials;
 	spec->fixeds = fixeds;
 	spec->has_operator = fixeds > 0;
+	drop_bounds(&spec->ranges, spec->range, gone);
+	drop_bounds(&spec->absolutes, spec->absolute_of, gone);
 }
 
 static void drop_ties(struct sight *sight, const struct tie *tie)

@@ -166,7 +166,7 @@ static const char *left_aside(const struct spec *own)
 {
 	const struct { const char *word; bool there; } statement[] = {
 		{ "step", own->step != NULL }, { "scheme", own->scheme != NULL },
-		{ "tolerance", own->tolerance != NULL }, { "substeps", own->substeps != NULL },
+		{ "tolerance", own->tolerance != NULL || own->absolutes > 0 }, { "substeps", own->substeps != NULL },
 		{ "operator", own->has_operator }, { "modes", own->modes.count > 0 }, { "need", own->needs > 0 },
 		{ "budget", own->budget.instructions != NULL }
 	};

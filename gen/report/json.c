@@ -212,6 +212,30 @@ static void json_scene(FILE *to, const struct spec *spec)
 	fputs("],\n", to);
 }
 
+/* What the spec says of single states */
+static void json_bounds(FILE *to, const struct model *model)
+{
+	const mpq_t *absolute = (const mpq_t *)model->truncation.absolute;
+	const bool looks = mpq_sgn(model->truncation.tolerance) != 0 && scheme_row(model->scheme)->expands;
+	bool any = false;
+	for (int i = 0; i < model->system.states && absolute && looks; i++) {
+		if (mpq_sgn(absolute[i]) == 0)
+			continue;
+		fputs(any ? ", " : "  \"absolute\": {", to);
+		json_name(to, model->state_name[i]);
+		fprintf(to, ": %s", shortest(round_rational(absolute[i])));
+		any = true;
+	}
+	fputs(any ? "},\n" : "", to);
+	for (int i = 0; i < model->ranges; i++) {
+		fputs(i ? ", " : "  \"ranges\": {", to);
+		json_name(to, model->state_name[model->range[i].state]);
+		fprintf(to, ": [%s, %s]", shortest(round_rational(model->range[i].low)),
+			shortest(round_rational(model->range[i].high)));
+	}
+	fputs(model->ranges ? "},\n" : "", to);
+}
+
 /* Its order here, and what it goes by */
 static void json_scheme(FILE *to, const struct step *step)
 {
@@ -277,6 +301,7 @@ void explain_json(FILE *to, const struct step *step)
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	json_scheme(to, step);
+	json_bounds(to, model);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

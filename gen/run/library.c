@@ -39,7 +39,8 @@ const char library_types[] =
 	"const double *at; } pl_divided;\n"
 	"typedef struct pl_dividedf { int expressions, columns, degree; const int *column, *breaks;\n"
 	"const float *at; } pl_dividedf;\n"
-	"enum { PL_NOT_FINITE = 1, PL_TOO_MANY_EVENTS = 2, PL_TOO_MANY_STEPS = 4, PL_INACCURATE = 8 };\n";
+	"enum { PL_NOT_FINITE = 1, PL_TOO_MANY_EVENTS = 2, PL_TOO_MANY_STEPS = 4, PL_INACCURATE = 8,\n"
+	"       PL_LEFT_RANGE = 32 };\n";
 
 /* ---- calls ---- */
 

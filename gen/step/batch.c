@@ -62,6 +62,8 @@ void need_batch(const struct step *step)
 	why = why ? why : objection_of_outputs(step->model);
 	if (!why && scheme_row(step->model->scheme)->holds_coupling && peak_outputs(step->model) > 0)
 		why = "peaks inside its steps depend on terms that its scheme holds";
+	if (!why && step->model->written->ranges > 0)
+		why = "ranges are looked at in the steps of one instance";
 	if (!why && step->modal && step->branch->system.states <= LIMIT_UNROLLED_STATES)
 		why = "the form modal keeps modes in the place of states";
 	if (!why && step->program->loops)

@@ -336,6 +336,8 @@ static const char *rows_objection(const struct step *step)
 		return format("blocks are built for up to %d columns of loads", MOST_LOADS);
 	if (model->relative && !model->declared_outputs)
 		return "the states as written follow from what each has gained";
+	if (model->written->ranges > 0)
+		return "ranges are looked at step by step";
 	for (int o = 0; o < model->outputs; o++)
 		if (model->output[o].left)
 			return format("output %s is not linear", model->output[o].name);

@@ -368,6 +368,9 @@ static enum fmu_result fmu_look(fmu_instance *i)
     if (fresh & PL_INACCURATE) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step was less exact than its tolerance", fmu_time(d));
     }
+    if (fresh & PL_LEFT_RANGE) {
+        return fmu_say(i, FMU_WARNING, "up to %.9g s a state has left the range that the spec gives it", fmu_time(d));
+    }
     return FMU_OK;
 }
 

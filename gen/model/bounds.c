@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a spec says of single states: in which range they stay, what a step may add to them. */
+#include "model/model.h"
+
+typedef void take_bound(struct building *b, const struct state_bound *bound, int state);
+struct bound_work {
+	struct building *b;
+	const struct state_bound *bound;
+	take_bound *take;
+};
+
+/* Of all components where none is named */
+static void evaluate_bound(void *context)
+{
+	struct bound_work *work = context;
+	const struct state_bound *bound = work->bound;
+	const struct symbol *coord = bound->coord;
+	int first = coord->index + (bound->component ? bound->component - 1 : 0),
+	    count = bound->component || !coord->length ? 1 : coord->length;
+	if (bound->primes == 1 && coord->highest == 1)
+		error(bound->at, format("it is of first order: %s alone is a state", coord->name),
+		      "%s' is no state", coord->name);
+	for (int i = first; i < first + count; i++)
+		work->take(work->b, bound, bound->primes ? work->b->model->system.velocity[i] : i);
+}
+
+static void evaluate_bounds(struct building *b, int count, const struct state_bound *bound, take_bound *take)
+{
+	for (int i = 0; i < count; i++)
+		statement_guard(evaluate_bound, &(struct bound_work){ b, &bound[i], take });
+}
+
+static struct state_range *range_of(struct model *model, int state)
+{
+	for (int i = 0; i < model->ranges; i++)
+		if (model->range[i].state == state)
+			return &model->range[i];
+	ENLARGE(model->range, (size_t)model->ranges + 1);
+	struct state_range *range = &model->range[model->ranges++];
+	range->state = state;
+	mpq_inits(range->low, range->high, NULL);
+	return range;
+}
+
+static void take_range(struct building *b, const struct state_bound *bound, int state)
+{
+	struct model *model = b->model;
+	struct state_range *range = range_of(model, state);
+	range->at = bound->at;
+	collect_constant(&b->collector, bound->low, range->low);
+	collect_constant(&b->collector, bound->high, range->high);
+	if (mpq_cmp(range->low, range->high) >= 0)
+		error(bound->high->start, NULL, "a range ends above where it begins, found %s and %s",
+		      readable_text(range->low), readable_text(range->high));
+	if (beyond_range(range->low) || beyond_range(range->high))
+		error(bound->low->start, NULL, "the range is beyond that of %s", target_name());
+	if (mpq_cmp(model->initial[state], range->low) < 0 || mpq_cmp(model->initial[state], range->high) > 0)
+		error(bound->at, "its initial value has to be there", "%s starts at %s, outside of its range",
+		      model->state_name[state], readable_text(model->initial[state]));
+}
+
+static void evaluate_absolute(struct building *b, struct node *node, mpq_ptr value)
+{
+	collect_constant(&b->collector, node, value);
+	if (mpq_sgn(value) <= 0)
+		error(node->start, "it has the unit of the state", "an absolute tolerance is above 0, found %s",
+		      readable_text(value));
+	if (beyond_range(value) || round_rational(value) == 0)
+		error(node->start, NULL, "the tolerance is beyond the range of %s", target_name());
+}
+
+static void take_absolute(struct building *b, const struct state_bound *bound, int state)
+{
+	evaluate_absolute(b, bound->low, b->model->truncation.absolute[state]);
+}
+
+static void evaluate_all_absolute(void *context)
+{
+	struct building *b = context;
+	mpq_t *absolute = b->model->truncation.absolute;
+	evaluate_absolute(b, b->spec->absolute, absolute[0]);
+	for (int i = 1; i < b->model->system.states; i++)
+		mpq_set(absolute[i], absolute[0]);
+}
+
+/* Of what is kept in the place of written coordinates: as of the coordinate there; of a further one as of the first */
+static void relative_absolutes(struct model *model)
+{
+	const struct model *written = model->written;
+	const mpq_t *given = (const mpq_t *)written->truncation.absolute;
+	for (int i = 0; i < model->system.states && given; i++) {
+		int coord = model->system.coord[i], like = coord < written->n ? coord : 0;
+		int velocity = written->system.velocity[like];
+		mpq_set(model->truncation.absolute[i], given[i >= model->n && velocity >= 0 ? velocity : like]);
+	}
+}
+
+void evaluate_absolutes(struct building *b)
+{
+	struct model *model = b->model;
+	if (!b->spec->absolute && b->spec->absolutes == 0)
+		return;
+	model->truncation.absolute = rationals((size_t)model->system.states);
+	if (model->relative) {
+		relative_absolutes(model);
+		return;
+	}
+	if (b->spec->absolute)
+		statement_guard(evaluate_all_absolute, b);
+	evaluate_bounds(b, b->spec->absolutes, b->spec->absolute_of, take_absolute);
+}
+
+void evaluate_ranges(struct building *b)
+{
+	evaluate_bounds(b, b->spec->ranges, b->spec->range, take_range);
+}

@@ -1,0 +1,66 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Robertson's reaction to 1e11 s, whose second species is 8e-14 at the end and 4e-5 at most: with an absolute tolerance
+# its published values (Mazzia, Magherini, Test set for IVP solvers, 2008) at coarse tolerances; without one its course
+# has no digit left, and a range tells so.
+#
+#     small.sh PLGEN SOURCE_ROOT
+set -u
+plgen=$1
+root=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../tap.sh"
+
+runtime_archive "$root/runtime"
+main_of reaction
+
+# reaction SCHEME STATEMENTS [OPTIONS]: into out.csv
+reaction() {
+    cat >reaction.spec <<EOF
+model reaction
+param least = 1e-12
+coord a, b, c
+a' = -0.04*a + 1e4*b*c
+b' = 0.04*a - 1e4*b*c - 3e7*b^2
+c' = 3e7*b^2
+init a = 1
+step 1e10
+scheme $1
+$2
+EOF
+    shift 2
+    # shellcheck disable=SC2086
+    "$plgen" "$@" reaction.spec >reaction.c 2>log &&
+        ${CC:-cc} -std=c99 -O0 -I"$root/runtime" $main reaction.c "$archive" -o reaction 2>>log &&
+        ./reaction 1e11 >out.csv 2>>log
+}
+
+# near BOUND: the last row, each species relative to its published value
+near() {
+    tail -n 1 out.csv >>log
+    tail -n 1 out.csv | awk -F, -v bound="$1" '
+        function off(a, b) { return a > b ? a / b - 1 : 1 - a / b }
+        { worst = off($2, 0.2083340149701255e-07); if (off($3, 0.8333360770334713e-13) > worst)
+            worst = off($3, 0.8333360770334713e-13); if (off($4, 0.9999999791665050) > worst)
+            worst = off($4, 0.9999999791665050); print "off by", worst
+          exit !($1 == 1e11 && worst <= bound) }' >>log
+}
+
+for scheme in radau auto; do
+    for digits in 4 5 6; do
+        [ -z "${LONG:-}" ] && [ $scheme$digits != radau4 ] && [ $scheme$digits != auto6 ] && continue
+        reaction $scheme "tolerance 1e-$digits, absolute least" && near "1e-$digits"
+        result $? "$scheme, tolerance 1e-$digits, absolute 1e-12: the published values"
+    done
+done
+reaction radau 'tolerance 1e-4, absolute 1e-12' --tolerance 1e-9 && near 1e-7
+result $? 'a tolerance on the command line: the absolute one stays'
+reaction radau 'tolerance 1e-5
+tolerance of b = least/100, a = 1e-12' -D least=1e-12 && near 1e-5
+result $? 'of two species each'
+for digits in 4 6; do
+    ! reaction radau "tolerance 1e-$digits
+range a in [0, 1], b in [0, 1]" && grep -q 'a state has left the range that the spec gives it' log
+    result $? "tolerance 1e-$digits alone: a species leaves its range, and that is told"
+done
+tap_end
