@@ -196,16 +196,6 @@ static void emit_status(const struct emitter *e)
 
 /* ---- ranges that the spec gives ---- */
 
-bool has_ranges(const struct emitter *e)
-{
-	return e->model->written->ranges > 0;
-}
-
-bool keeps_status(const struct emitter *e)
-{
-	return e->kind->keeps_status || has_ranges(e);
-}
-
 /* What is not a number has left none: PL_NOT_FINITE tells it. */
 static void emit_ranges(const struct emitter *e)
 {

@@ -89,6 +89,9 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 /* ---- state.c: the state in emitted code ---- */
 
 bool has_jump(const struct emitter *e);
+bool has_ranges(const struct emitter *e);       /* the spec says in which some states stay */
+bool keeps_status(const struct emitter *e);
+bool has_floors(const struct emitter *e);       /* some states have an absolute tolerance */
 bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
 const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 const char *state_list(const struct model *model);                /* x, x' */
@@ -329,7 +332,6 @@ void emit_series_scales(const struct emitter *e, const char *indent);           
 /* ---- emit_reach.c: how far a series holds ---- */
 
 bool looks_at_tolerance(const struct emitter *e);
-bool has_floors(const struct emitter *e);       /* some states have an absolute tolerance */
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
 int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
@@ -542,9 +544,6 @@ void emit_declarations(const struct emitter *e, bool rhs);
 void emit_conversions(const struct emitter *e);
 
 /* ---- access.c: init, set, get, time, status ---- */
-
-bool has_ranges(const struct emitter *e);       /* the spec says in which some states stay */
-bool keeps_status(const struct emitter *e);
 
 void emit_access(const struct emitter *e);
 void emit_initial_values(const struct emitter *e, const struct model *model);  /* of its states, up to the }; */

@@ -24,19 +24,14 @@ bool looks_at_tolerance(const struct emitter *e)
 	return mpq_sgn(truncation(e)->tolerance) != 0;
 }
 
-bool has_floors(const struct emitter *e)
-{
-	return looks_at_tolerance(e) && truncation(e)->absolute;
-}
-
 void emit_floors(const struct emitter *e)
 {
 	if (!has_floors(e))
 		return;
 	mpq_t floor;
 	mpq_init(floor);
-	say(e, "\n/* Of each state its absolute tolerance over the relative one, which counts beside its size; 0: it has "
-	       "none */\n"
+	say(e, "\n/* Of each state its absolute tolerance over the relative one, which counts beside its size; 0: it "
+	       "has none */\n"
 	       "static const double $n_floor[$c] = {");
 	for (int i = 0; i < e->system->states; i++) {
 		mpq_div(floor, truncation(e)->absolute[i], truncation(e)->tolerance);

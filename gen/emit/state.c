@@ -34,6 +34,21 @@ bool has_peaks(const struct emitter *e)
 	return peak_outputs(e->model) > 0;
 }
 
+bool has_ranges(const struct emitter *e)
+{
+	return e->model->written->ranges > 0;
+}
+
+bool has_floors(const struct emitter *e)
+{
+	return mpq_sgn(e->model->truncation.tolerance) != 0 && e->model->truncation.absolute;
+}
+
+bool keeps_status(const struct emitter *e)
+{
+	return e->kind->keeps_status || has_ranges(e);
+}
+
 /* The step itself goes by another name. */
 const char *name_of_step(const struct emitter *e)
 {
