@@ -228,14 +228,14 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
 
 /* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at
  * the end of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
-static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
+static found move(const pl_switching *m, pl_contact *c, const climb *at, real dt, const real *y, int *splits, real *x,
+                  real *rest, real *work)
 {
     found first = nothing;
     real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
-    int i;
     expand_piece(m->size, m->degree, matrix_of(m->A, m, c), dt, x, coefficients, low);
     if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
-        part_of_piece(m->size, m->degree, coefficients, low, 1, x);
+        part_of_piece(m->size, m->degree, coefficients, low, 1, x, (real *)0);
         return nothing;
     }
     if (*splits >= 0) {
@@ -246,11 +246,9 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
         first = nothing;
     }
     if (y && first.expression < 0) {
-        for (i = 0; i < WORDS * m->size; i++) {
-            x[i] = y[i];
-        }
+        keep_piece(m->size, at, y, x, rest);
     } else {
-        part_of_piece(m->size, m->degree, coefficients, low, first.s, x);
+        part_of_piece(m->size, m->degree, coefficients, low, first.s, x, at->rungs > 0 ? rest : (real *)0);
     }
     return first;
 }
@@ -258,9 +256,10 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
 void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *bend = y + WORDS * n, *room = bend + n;
-    int splits = m->max_splits, fresh = 1, i;
+    real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
+    int splits = m->max_splits, fresh = 1;
     climb at = at_top;
+    clear_rest(n, rest);
     c->crossings = 0;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
         const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left);
@@ -268,11 +267,9 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
         const real dt = whole ? longest : left;
         found first;
         if (whole) {
-            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y);
+            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y, rest);
             if (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room) : stays_clear(m, c, x, y, room)) {
-                for (i = 0; i < WORDS * n; i++) {
-                    x[i] = y[i];
-                }
+                keep_piece(n, &at, y, x, rest);
                 left -= dt;
                 fresh = 0;
                 rise(&at);
@@ -287,7 +284,7 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             follow_jumps(m, x, c, crossing);
             continue;
         }
-        first = move(m, c, dt, whole ? y : NULL, &splits, x, room);
+        first = move(m, c, &at, dt, whole ? y : NULL, &splits, x, rest, room);
         at.bent = 0;
         if (splits < 0 || is_lost(&at, n, x)) {
             break; /* x is held: this region may not be the one, and may be unstable */
@@ -316,7 +313,7 @@ void pl_switching_move(const pl_switching *m, int matrix, int degree, real dt, r
     const int n = m->size;
     real *const low = work, *const coefficients = work + n;
     expand_piece(n, degree, m->A + WORDS * (ptrdiff_t)matrix * n * n, dt, x, coefficients, low);
-    part_of_piece(n, degree, coefficients, low, 1, x);
+    part_of_piece(n, degree, coefficients, low, 1, x, (real *)0);
 }
 
 #else

@@ -603,15 +603,15 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
 }
 
 /* Moves x on over a piece of length dt, or to the first event in it; splits < 0: without looking for one. */
-static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
+static event move(const pl_guards *m, pl_contact *c, const climb *at, real dt, const real *y, int *splits, real *x,
+                  real *rest, real *work)
 {
     const event none = {1, -1};
     event first = none;
     real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
-    int i;
     expand_piece(m->size, m->degree, matrix_of(m->A, m, c->matrix), dt, x, coefficients, low);
     if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
-        part_of_piece(m->size, m->degree, coefficients, low, 1, x);
+        part_of_piece(m->size, m->degree, coefficients, low, 1, x, (real *)0);
         return none;
     }
     if (*splits >= 0 && m->matrix[c->region] >= 0) {
@@ -622,11 +622,9 @@ static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int
         first = none;
     }
     if (y && first.guard < 0) {
-        for (i = 0; i < WORDS * m->size; i++) {
-            x[i] = y[i];
-        }
+        keep_piece(m->size, at, y, x, rest);
     } else {
-        part_of_piece(m->size, m->degree, coefficients, low, first.s, x);
+        part_of_piece(m->size, m->degree, coefficients, low, first.s, x, at->rungs > 0 ? rest : (real *)0);
     }
     return first;
 }
@@ -698,9 +696,10 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    real left = tau, *y = work, *bend = y + WORDS * n, *room = bend + n;
-    int splits = m->max_splits, fresh = 1, i;
+    real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
+    int splits = m->max_splits, fresh = 1;
     climb at = at_top;
+    clear_rest(n, rest);
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
         take_up(m, x, c, crossing, 0, room);
@@ -713,13 +712,11 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         event first;
         whole = whole && dt >= longest;
         if (whole) {
-            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y);
+            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y, rest);
             assign(m, m->hold[c->region], y, room);
             if (m->matrix[c->region] >= 0 && (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room)
                                                           : stays_clear(m, c, x, y, room))) {
-                for (i = 0; i < WORDS * n; i++) {
-                    x[i] = y[i];
-                }
+                keep_piece(n, &at, y, x, rest);
                 left -= dt;
                 fresh = 0;
                 rise(&at);
@@ -735,7 +732,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
             at.bent = 0;
             continue;
         }
-        first = move(m, c, dt, whole ? y : (real *)0, &splits, x, room);
+        first = move(m, c, &at, dt, whole ? y : (real *)0, &splits, x, rest, room);
         assign(m, m->hold[c->region], x, room);
         at.bent = 0;
         if (splits < 0 || is_lost(&at, n, x)) {

@@ -30,9 +30,10 @@ static void whole_piece(int n, const real *Phi, int matrix, const real *x, real 
     }
 }
 
-/* y = e^{A d} x by a rung's e^{A d} - I in two words */
-static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y)
+/* y = e^{A d} x by a rung's e^{A d} - I in two words.  rest: not used */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *rest)
 {
+    (void)rest;
     whole_piece(n, pieces, rung, x, y);
 }
 
@@ -68,9 +69,10 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
 
 /* x from where the polynomial starts on to s.  An entry that its gain takes away but for the gain's own rounding is 0:
  * what is on a breakpoint at 0 has no other size there that what remains could be held against. */
-static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x)
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *rest)
 {
     int i, k;
+    (void)rest;
     for (i = 0; i < n; i++) {
         real gain = 0;
         for (k = degree; k > 0; k--) {
@@ -122,15 +124,26 @@ static void whole_piece(int n, const real *Phi, int matrix, const real *x, real 
     pl_multiply(n, n, Phi + (ptrdiff_t)matrix * n * n, x, y);
 }
 
+/* x + gain + *rest, and *left what rounding takes from that, where x is the largest */
+static real plus_gain(real x, real gain, real rest, real *left)
+{
+    const real more = gain + rest, sum = x + more;
+    *left = more - (sum - x);
+    return sum;
+}
+
 /* y = e^{A d} x; what keeps most of itself is moved by its change, so that many short pieces do not repeat the rounding
- * of a number near 1. */
-static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y)
+ * of a number near 1.  rest: what rounding has taken from x in pieces before, and behind it of y; n each */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *rest)
 {
     const real *rows = pieces + (ptrdiff_t)rung * (n + 1) * n, *stays = rows + n * n;
     int i;
     pl_multiply(n, n, rows, x, y);
     for (i = 0; i < n; i++) {
-        y[i] += stays[i] * x[i];
+        rest[n + i] = 0;
+        if (stays[i] > 0) {
+            y[i] = plus_gain(x[i], y[i], rest[i], &rest[n + i]);
+        }
     }
 }
 
@@ -140,10 +153,22 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
     expand(n, degree, A, dt, x, coefficients);
 }
 
-static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x)
+/* rest: as for rung_piece, of x alone; NULL where pieces are not many */
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *rest)
 {
+    int i, k;
     (void)low;
-    sum_up(n, degree, coefficients, s, x);
+    if (!rest) {
+        sum_up(n, degree, coefficients, s, x);
+        return;
+    }
+    for (i = 0; i < n; i++) {
+        real gain = 0;
+        for (k = degree; k > 0; k--) {
+            gain = (gain + coefficients[k * n + i]) * s;
+        }
+        x[i] = plus_gain(x[i], gain, rest[i], &rest[i]);
+    }
 }
 
 static inline void value_of(int n, const real *all, int row, const real *x, real *value)

@@ -49,12 +49,37 @@ static real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix
     return length;
 }
 
-static void take_piece(int n, const climb *at, const pl_ladder *l, const real *Phi, int matrix, const real *x, real *y)
+/* y: x a piece on.  rest: 2 n */
+static void take_piece(int n, const climb *at, const pl_ladder *l, const real *Phi, int matrix, const real *x, real *y,
+                       real *rest)
 {
-    if (at->rung == at->rungs) {
-        whole_piece(n, Phi, matrix, x, y);
-    } else {
-        rung_piece(n, l->pieces, l->first[matrix] + at->rung, x, y);
+    int i;
+    if (at->rung < at->rungs) {
+        rung_piece(n, l->pieces, l->first[matrix] + at->rung, x, y, rest);
+        return;
+    }
+    whole_piece(n, Phi, matrix, x, y);
+    for (i = 0; i < n && at->rungs > 0; i++) {
+        rest[n + i] = 0;
+    }
+}
+
+static void keep_piece(int n, const climb *at, const real *y, real *x, real *rest)
+{
+    int i;
+    for (i = 0; i < WORDS * n; i++) {
+        x[i] = y[i];
+    }
+    for (i = 0; i < n && at->rungs > 0; i++) {
+        rest[i] = rest[n + i];
+    }
+}
+
+static void clear_rest(int n, real *rest)
+{
+    int i;
+    for (i = 0; i < n; i++) {
+        rest[i] = 0;
     }
 }
 

@@ -494,7 +494,7 @@ typedef struct pl_contact {
 enum { PL_TOO_MANY_EVENTS = 2 };
 
 /* How many doubles, or floats, of work the functions below need; contents of no meaning. */
-#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 3 * (size) + 5 * (switches))
+#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 5 * (size) + 5 * (switches))
 
 /* The region of x, no crossings, status 0.  Exactly on a breakpoint the sign of e' decides, then of e'', then of e''';
  * what rests there counts as below. */
@@ -799,7 +799,7 @@ enum { PL_UNDECIDED = 16 };
 #define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
 
-#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 9 * (size))
+#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
 
 /* The region of x.  What is on a breakpoint that stands twice sticks where that can be, else goes where it is heading;
  * what is on another one goes as in pl_switching_start. */
