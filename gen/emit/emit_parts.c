@@ -581,6 +581,16 @@ static void emit_at_call(const struct emitter *part)
 	say(part, "    $o_at(s%s, tau, y);\n", given_text(part, false));
 }
 
+static bool any_part_takes_inputs(const struct emitter *e)
+{
+	bool any = false;
+	for (int p = 0; p < e->step->parts; p++) {
+		const struct emitter part = part_of(e, p);
+		any = any || given_inputs(&part);
+	}
+	return any;
+}
+
 void emit_parts_at(const struct emitter *e)
 {
 	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
@@ -590,5 +600,7 @@ void emit_parts_at(const struct emitter *e)
 	       "{\n", u);
 	emit_load_states(e, needed_loads(e, true), false);
 	for_parts(e, e->step->parts, emit_at_call);
+	if (given_inputs(e) && !any_part_takes_inputs(e))
+		say(e, "    (void)u;\n");
 	say(e, "}\n");
 }

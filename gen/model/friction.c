@@ -602,11 +602,13 @@ static void build_grips(struct building *b, struct switching *s)
 		const int *index = slides ? NULL : felt_in_segments(b, s, s->felt[i]);
 		for (int r = 0; r < s->regions; r++) {
 			struct region *region = &s->region[r];
+			if (!region->possible)          /* nothing is carried there */
+				continue;
 			int here = slides ? -1 : index[segment_of_region(s, r)];
 			struct form *carried = slides     ? slide_velocity(s, region, s->felt[i]->node)
 					       : here < 0 ? NULL
 							  : region->carried[s->friction[here].atom->index];
-			if (carried && region->possible)
+			if (carried)
 				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
 			if (region->grip[i])
 				region->grip[i]->form = carried;

@@ -67,6 +67,10 @@ step_of() {
 	sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$1.h" | head -n 1
 }
 
+expressions_of() { # ID
+	sed -n '/^ \*     expression [0-9]*: /p' "$1.c"
+}
+
 # regions_of ID: how many numbers NAME_region may give, by the breakpoints of each expression; 0: there is none
 regions_of() {
 	if grep -q "^int *$1_region(" "$1.h"; then
@@ -176,6 +180,12 @@ batch_add() {
 		slopes=NULL
 		[ -n "$beside" ] || { slopes=${whole}_slopes && slopes "$whole"; }
 		region=NULL
+		other=NULL
+		if [ -n "$beside" ] && [ "$(expressions_of "$id")" = "$(expressions_of "$whole")" ] &&
+		    grep -q "^int *${whole}_region(" "$whole.h"; then
+			other=${whole}_where_too
+			echo "static int ${whole}_where_too(const void *s) { return ${whole}_region(s); }"
+		fi
 		if grep -q "^int *${id}_region(" "$id.h"; then
 			region=${id}_where
 			echo "static int ${id}_where(const void *s) { return ${id}_region(s); }"
@@ -210,7 +220,7 @@ batch_add() {
 			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id")},"
+			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id"), $other},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

@@ -600,6 +600,11 @@ static void judge_beside(void *s, void *w, int from, int steps, const char *what
 			good = near(found[i], expected[i], most * size, what, model_time(s), state_name(i)) && good;
 			worst_truth = worse(worst_truth, fabs(found[i] - expected[i]) / size);
 		}
+		if (of->region && of->whole_region && !in_float && of->region(s) != of->whole_region(w)) {
+			complain("%s, t = %.17g: region %d, expected %d", what, model_time(s), of->region(s),
+			    of->whole_region(w));
+			good = false;
+		}
 		model_out(s, found);
 		of->whole->out(w, expected);
 		for (int i = 0; i < outputs && seen; i++)

@@ -28,6 +28,7 @@ struct subject {
 	int adds;                   /* how often a step adds to a state: 3 of the form kick-drift-kick, else 1 */
 	int (*region)(const void *s);   /* NAME_region, or NULL */
 	double regions;             /* how many there may be */
+	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */
