@@ -128,6 +128,9 @@ static void declare_tables(const struct emitter *e)
 	}
 	if (!e->model->delays)
 		declare(e, spell(e, "extern const pl_model $n_model;"), "");
+	if (tells_tolerance(e))
+		declare(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
+			"by how much a step may miss each state; 0: it has an absolute tolerance");
 }
 
 static void emit_functions(const struct emitter *e, bool rhs)

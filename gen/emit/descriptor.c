@@ -124,6 +124,18 @@ static const char *name_if(const struct emitter *e, bool there, const char *name
 	return there ? spell(e, "$n_%s", name) : "NULL";
 }
 
+/* Of the size that errors are measured by */
+static void emit_allowed(const struct emitter *e)
+{
+	say(e, "\nvoid $n_allowed(const $n *s, double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] = %ss->unit[i] > 0.0 ? %s / s->unit[i] : 0.0;\n"
+	       "}\n", has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "",
+	    shortest(round_rational(e->model->truncation.tolerance)));
+}
+
 void emit_descriptor(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
@@ -145,4 +157,6 @@ void emit_descriptor(const struct emitter *e)
 	e->kind->params(e);
 	say(e, "    %s, %s\n"
 	       "};\n", name_if(e, e->ramps, "any_hold"), name_if(e, inputs, "start_samples"));
+	if (tells_tolerance(e))
+		emit_allowed(e);
 }

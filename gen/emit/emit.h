@@ -91,6 +91,7 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 bool has_jump(const struct emitter *e);
 bool has_ranges(const struct emitter *e);       /* the spec says in which some states stay */
 bool keeps_status(const struct emitter *e);
+bool tells_tolerance(const struct emitter *e);  /* of its states, as written */
 bool has_floors(const struct emitter *e);       /* some states have an absolute tolerance */
 bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
 const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */

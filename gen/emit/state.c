@@ -44,6 +44,12 @@ bool has_floors(const struct emitter *e)
 	return mpq_sgn(e->model->truncation.tolerance) != 0 && e->model->truncation.absolute;
 }
 
+bool tells_tolerance(const struct emitter *e)
+{
+	return mpq_sgn(e->model->truncation.tolerance) != 0 && (e->step->expansion || e->step->collocation) &&
+	       !e->model->relative && !e->model->delays;
+}
+
 bool keeps_status(const struct emitter *e)
 {
 	return e->kind->keeps_status || has_ranges(e);

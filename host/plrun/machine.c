@@ -88,6 +88,11 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 		machine_close(m);
 		return NULL;
 	}
+	symbol = format("%s_allowed", name);
+	void *allowed = dlsym(m->object, symbol);
+	memcpy(&m->allowed, &allowed, sizeof allowed);
+	memcpy(&m->allowedf, &allowed, sizeof allowed);
+	free(symbol);
 	m->single = ((const struct head *)descriptor)->real_size == (int)sizeof(float);
 	m->model = descriptor;
 	m->modelf = descriptor;
@@ -123,6 +128,7 @@ struct instance *instance_new(const struct machine *m)
 {
 	struct instance *i = need(calloc(1, sizeof *i));
 	int most = m->inputs > m->outputs ? m->inputs : m->outputs;
+	most = m->states > most ? m->states : most;
 	i->machine = m;
 	i->state = need(calloc(1, m->size));
 	if (m->single)
@@ -191,6 +197,30 @@ void instance_out(struct instance *i, double *out)
 	m->modelf->out(i->state, i->narrow);
 	for (int k = 0; k < m->outputs; k++)
 		out[k] = (double)i->narrow[k];
+}
+
+void instance_get(struct instance *i, double *y)
+{
+	const struct machine *m = i->machine;
+	if (!m->single) {
+		m->model->get(i->state, y);
+		return;
+	}
+	m->modelf->get(i->state, i->narrow);
+	for (int k = 0; k < m->states; k++)
+		y[k] = (double)i->narrow[k];
+}
+
+void instance_allowed(struct instance *i, double *y)
+{
+	const struct machine *m = i->machine;
+	if (!m->single) {
+		m->allowed(i->state, y);
+		return;
+	}
+	m->allowedf(i->state, i->narrow);
+	for (int k = 0; k < m->states; k++)
+		y[k] = (double)i->narrow[k];
 }
 
 int instance_status(const struct instance *i)

@@ -178,6 +178,9 @@ struct machine {
 	const pl_model *model;                  /* of a model in float its pl_modelf: `single` says which */
 	const pl_modelf *modelf;
 	bool single, has_status, can_retune; /* can_retune: to another step too */
+	/* NAME_allowed, of its type; NULL: steps do not look at their error */
+	void (*allowed)(const void *s, double *y);
+	void (*allowedf)(const void *s, float *y);
 	const char *name;
 	int states, inputs, outputs, params;
 	size_t size;
@@ -202,6 +205,8 @@ const char *instance_retune(struct instance *i, const double *params, double h);
 void instance_hold(struct instance *i, const double *u);
 void instance_step(struct instance *i, const double *u);
 void instance_out(struct instance *i, double *out);
+void instance_get(struct instance *i, double *y);
+void instance_allowed(struct instance *i, double *y);   /* where the machine has it */
 int instance_status(const struct instance *i);
 double instance_time(const struct instance *i);
 

@@ -93,6 +93,68 @@ static char *status_text(int status, double t, bool single)
 	return text;
 }
 
+/* ---- states far below the size that their error is measured by ---- */
+
+/* Per state its size in the rows since a power of two, and in as many before, and by how much a step may miss it */
+struct sizes {
+	double *y, *allowed, *recent, *before;
+	int small;                              /* the first that was seen to be less; -1: none */
+	double from, size, missed;
+};
+
+static struct sizes sizes_new(const struct job *job)
+{
+	size_t n = (size_t)job->machine->states;
+	struct sizes z = { .small = -1 };
+	if (!job->told || !job->machine->allowed)
+		return z;
+	z.y = need(calloc(4 * n + 1, sizeof *z.y));
+	z.allowed = z.y + n;
+	z.recent = z.allowed + n;
+	z.before = z.recent + n;
+	return z;
+}
+
+static void judge(struct sizes *z, const struct job *job, struct instance *s, uint64_t k)
+{
+	enum { ENOUGH = 8 };            /* rows; fewer may all be close to a zero */
+	instance_allowed(s, z->allowed);
+	for (int i = 0; i < job->machine->states; i++) {
+		const double size = z->recent[i] > z->before[i] ? z->recent[i] : z->before[i];
+		if (k >= ENOUGH && z->small < 0 && size > 0 && size < z->allowed[i]) {
+			z->small = i;
+			z->from = (double)k * job->h;
+			z->size = size;
+			z->missed = z->allowed[i];
+		}
+		z->before[i] = z->recent[i];
+		z->recent[i] = 0;
+	}
+}
+
+static void take_sizes(struct sizes *z, const struct job *job, struct instance *s, uint64_t k)
+{
+	if (!z->y)
+		return;
+	instance_get(s, z->y);
+	for (int i = 0; i < job->machine->states; i++) {
+		const double size = z->y[i] < 0 ? -z->y[i] : z->y[i];
+		z->recent[i] = size > z->recent[i] ? size : z->recent[i];
+	}
+	if ((k & (k - 1)) == 0 || k == job->steps)
+		judge(z, job, s, k);
+}
+
+static void tell_sizes(const struct sizes *z, const struct machine *m)
+{
+	if (z->small < 0)
+		return;
+	const char *name = (m->single ? m->modelf->state_names : m->model->state_names)[z->small];
+	say_note(format("before t = %.3g s %s was at most %.2g, less than the %.2g that a step may be wrong by, since "
+			"its largest value counts: 'tolerance of %s = ...', or 'absolute' behind the tolerance, "
+			"measures it otherwise", z->from, name, z->size, z->missed, name));
+}
+
 static void tell(const struct job *job, uint64_t k)
 {
 	char line[120];
@@ -106,20 +168,27 @@ static void tell(const struct job *job, uint64_t k)
 static char *take_steps(const struct job *job, struct instance *s, struct window *w, double *out, watch *each,
 			void *who)
 {
+	struct sizes sizes = sizes_new(job);
+	char *error = NULL;
 	instance_out(s, out);
 	each(who, 0, out);
-	for (uint64_t k = 1; k <= job->steps; k++) {
+	for (uint64_t k = 1; k <= job->steps && !error; k++) {
 		if (job->record)
 			take_sample(w);
 		instance_step(s, w->u);
 		int status = instance_status(s);
-		if (status)
-			return status_text(status, instance_time(s), job->machine->single);
+		take_sizes(&sizes, job, s, k);
+		if (status) {
+			error = status_text(status, instance_time(s), job->machine->single);
+			continue;
+		}
 		instance_out(s, out);
 		each(who, k, out);
 		tell(job, k);
 	}
-	return NULL;
+	tell_sizes(&sizes, job->machine);
+	free(sizes.y);
+	return error;
 }
 
 char *run_steps(const struct job *job, watch *each, void *who)

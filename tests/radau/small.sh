@@ -4,11 +4,13 @@
 # its published values (Mazzia, Magherini, Test set for IVP solvers, 2008) at coarse tolerances; without one its course
 # has no digit left, and a range tells so.
 #
-#     small.sh PLGEN SOURCE_ROOT
+#     small.sh PLGEN SOURCE_ROOT PLRUN
 set -u
 plgen=$1
 root=$2
+plrun=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
@@ -63,4 +65,16 @@ for digits in 4 6; do
 range a in [0, 1], b in [0, 1]" && grep -q 'a state has left the range that the spec gives it' log
     result $? "tolerance 1e-$digits alone: a species leaves its range, and that is told"
 done
+
+# ---- plrun, which runs it by itself, says which state is too small for its measure ----
+
+told() {
+    "$plrun" reaction.spec 1e8 2>&1 >log | grep '^note: before t = ' >>log
+    grep -q 'b was at most .*tolerance of b = ' log
+}
+reaction radau 'tolerance 1e-4' --step 1e6 && sed -i.bak 's/^step.*/step 1e6/' reaction.spec && told
+result $? 'plrun: a species without a digit is named'
+echo 'tolerance of b = 1e-15' >>reaction.spec
+! told
+result $? 'plrun: with an absolute tolerance of its own it is not'
 tap_end
