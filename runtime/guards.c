@@ -3,26 +3,13 @@
  * guard of their region go by e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated.
  * What is to stick and what is to slip after an event is found by looking at all combinations of those that are at
  * rest. */
+#include "chain.h"
 #include "ladder.h"
 #include "regions.h"
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant, and how
- * many of them are listed */
-enum { MOST = 6, MOST_AT_ONCE = 1000, LISTED_AT_ONCE = 12 };
-
-/* Of the fastest impact at an instant: what is slower is over */
-#ifdef REAL_IS_FLOAT
-#define CALM 0x1p-20f
-#else
-#define CALM 0x1p-48
-#endif
-
-#ifdef REAL_IS_FLOAT
-#define BRIEF PL_BRIEFF
-#else
-#define BRIEF PL_BRIEF
-#endif
+/* How many at rest are looked at together: 3^MOST combinations */
+enum { MOST = 6 };
 
 static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
 {
@@ -71,15 +58,47 @@ static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const
     return 0;
 }
 
-/* An expression that has left its interval other than by an event: by an input, a load or a jump */
-static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing *crossing, real time)
+/* What follows from an event is listed where there is room, and counted. */
+static void tell(int max_events, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
+                 int upward)
+{
+    if (c->crossings < max_events) {
+        (void)list(max_events, c, crossing, time, expression, breakpoint, upward);
+    } else {
+        c->total++;
+    }
+}
+
+/* The interval before the guard of a bounce */
+static int free_of(const pl_impact *p)
+{
+    return p->rest + (p->upward ? -1 : 1);
+}
+
+/* Whether a bounce stops an expression that would go this way */
+static int is_stopped(const pl_guards *m, const walk *w, int way)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (p->expression == w->i && p->rest >= 0 && p->upward == (way > 0) &&
+            (w->interval == p->rest || w->interval == free_of(p))) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* An expression that has left its interval other than by an event: by an input, a load or a jump.  Past a bounce a jump
+ * alone leads (`jumped`): what rounding has taken beyond one is still before it. */
+static void follow(const pl_guards *m, int jumped, const real *x, pl_contact *c, pl_crossing *crossing, real time)
 {
     walk w;
     int way;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
-        for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
+        for (; (way = outside(m, c, &w, x)) != 0 && (jumped || !is_stopped(m, &w, way)); w.interval += way) {
             if (crossing) {
-                (void)list(m->max_events, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
+                tell(m->max_events, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
             }
             enter(m->matrix, c, c->region + way * w.stride);
         }
@@ -97,11 +116,6 @@ static walk switch_of(const pl_guards *m, int region, int expression)
     return w;
 }
 
-static int free_of(const pl_impact *p)
-{
-    return p->rest + (p->upward ? -1 : 1);
-}
-
 /* The speed at which impact k comes closer, 0 where that is but rounding */
 static real speed_of(const pl_guards *m, int k, const real *x)
 {
@@ -111,15 +125,21 @@ static real speed_of(const pl_guards *m, int k, const real *x)
     return magnitude(speed) <= noise_of(sizes(m->size, row, x) + m->impact[k].play) ? 0 : speed;
 }
 
-/* Whether a bounce is on its guard, flying or at rest */
+/* Whether a bounce is on its guard, flying or at rest, or where rounding has taken it beyond */
 static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
 {
     const walk w = switch_of(m, c->region, p->expression);
-    real noise;
+    real noise, e;
     if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p))) {
         return 0;
     }
-    return magnitude(excess(m, c, &w, p->breakpoint, x, &noise)) <= noise;
+    e = excess(m, c, &w, p->breakpoint, x, &noise);
+    return (p->upward ? e : -e) >= -noise;
+}
+
+static int rests(const pl_guards *m, const pl_contact *c, const pl_impact *p)
+{
+    return switch_of(m, c->region, p->expression).interval == p->rest;
 }
 
 static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int interval)
@@ -141,60 +161,194 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
     }
 }
 
-/* Impacts at one instant without an end become slower and slower: what touches with less than `slow` comes to rest
- * together. */
-static void calm(const pl_guards *m, real slow, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+/* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
+static uint32_t seat(const pl_guards *m, uint32_t set, pl_contact *c)
 {
-    const int before = c->region;
-    int k, any = 0;
+    uint32_t laid = 0;
+    int k;
     for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
-        if (!touches(m, c, p, x) || magnitude(speed_of(m, k, x)) >= slow ||
-            switch_of(m, c->region, p->expression).interval == p->rest) {
+        const int before = c->region;
+        if (!(set >> k & 1) || rests(m, c, &m->impact[k])) {
             continue;
         }
-        go_to(m, c, p, p->rest);
-        (void)list(m->max_events, c, crossing, time, p->expression, p->breakpoint, p->upward);
-        any++;
+        go_to(m, c, &m->impact[k], m->impact[k].rest);
+        if (m->matrix[c->region] < 0) {
+            enter(m->matrix, c, before); /* others hold it already */
+        } else {
+            laid |= (uint32_t)1 << k;
+        }
     }
-    if (m->matrix[c->region] < 0) {
-        c->status |= PL_UNDECIDED; /* they cannot all rest */
-        enter(m->matrix, c, before);
-        return;
-    }
-    c->rested += any;
-    assign(m, m->hold[c->region], x, work);
+    return laid;
 }
 
-/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
-static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                        real *work)
+/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
+ * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
+ * rest now. */
+static uint32_t lay(const pl_guards *m, uint32_t set, real *x, pl_contact *c, real *work)
 {
-    uint32_t struck = 0;
-    real most = 0;
-    int k, rounds = 0, calms = 0;
+    uint32_t laid;
+    int k, sweeps, moving = 1;
+    for (k = 0; k < m->impacts; k++) {
+        set |= (uint32_t)(m->impact[k].rest >= 0 && rests(m, c, &m->impact[k])) << k;
+    }
+    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
+        moving = 0;
+        for (k = 0; k < m->impacts; k++) {
+            if (set >> k & 1) {
+                moving |= magnitude(speed_of(m, k, x)) > 0;
+                assign(m, m->impact[k].still, x, work);
+                put_on(m, c, k, x);
+            }
+        }
+    }
+    laid = seat(m, set, c);
+    assign(m, m->hold[c->region], x, work);
+    return laid;
+}
+
+static void list_rests(const pl_guards *m, uint32_t laid, pl_contact *c, pl_crossing *crossing, real time)
+{
+    int k;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        const real speed = touches(m, c, p, x) ? speed_of(m, k, x) : 0;
+        if (laid >> k & 1) {
+            c->rested++;
+            tell(m->max_events, c, crossing, time, p->expression, p->breakpoint, p->upward);
+        }
+    }
+}
+
+/* Impacts without an end become slower and slower: what touches with less than `slow` comes to rest together. */
+static void calm(const pl_guards *m, real slow, uint32_t met, real *x, pl_contact *c, pl_crossing *crossing,
+                 const pl_chain *chain, real *work)
+{
+    uint32_t set = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if ((met >> k & 1 || touches(m, c, &m->impact[k], x)) && magnitude(speed_of(m, k, x)) <= slow &&
+            !rests(m, c, &m->impact[k])) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    list_rests(m, lay(m, set, x, c, work), c, crossing, chain->last);
+}
+
+/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
+ * what has been parted for good.  0: nothing does. */
+static int give_up(const pl_guards *m, uint32_t met, real *x, pl_contact *c, pl_crossing *crossing, pl_chain *chain,
+                   real *work)
+{
+    uint32_t set = 0;
+    real fastest = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        fastest = met >> k & 1 ? larger(fastest, speed_of(m, k, x)) : fastest;
+    }
+    for (k = 0; k < m->impacts; k++) {
+        const real speed = met >> k & 1 && m->impact[k].restitution < 1 ? speed_of(m, k, x) : -16 * fastest;
+        if (speed > 0 || (chain->acting >> k & 1 && speed > -16 * fastest)) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    list_rests(m, lay(m, set, x, c, work), c, crossing, chain->last);
+    chain->impacts = MOST_AT_ONCE - SOME;
+    chain->ended++;
+    return set != 0;
+}
+
+/* A speed that is nothing but what rounding makes of forces over a step.  work: size */
+static real least_speed(const pl_guards *m, const pl_contact *c, const real *x, real *work)
+{
+    const int n = m->size;
+    pl_contact flying = *c;
+    real most = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
+            go_to(m, &flying, &m->impact[k], free_of(&m->impact[k]));
+        }
+    }
+    for (k = 0; k < n; k++) {
+        work[k] = sizes(n, matrix_of(m->A, m, flying.matrix) + k * n, x);
+    }
+    for (k = 0; k < m->impacts; k++) {
+        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
+            most = larger(most, sizes(n, m->speed + (ptrdiff_t)k * n, work));
+        }
+    }
+    return m->h * noise_of(most);
+}
+
+/* An event: what loses speed in contacts goes on beyond the list. */
+static int has_listed(const pl_guards *m, int loses, pl_contact *c, pl_crossing *crossing, real time, int expression,
+                      int breakpoint, int upward)
+{
+    if (!loses) {
+        return list(m->max_events, c, crossing, time, expression, breakpoint, upward);
+    }
+    tell(m->max_events, c, crossing, time, expression, breakpoint, upward);
+    return 1;
+}
+
+/* Whether there is room for one more impact */
+static int has_room(const pl_guards *m, int k, pl_contact *c, pl_crossing *crossing, pl_chain *chain)
+{
+    const pl_impact *p = &m->impact[k];
+    if (is_listed(chain, k, c->crossings, m->max_events)) {
+        chain->full = !has_listed(m, p->restitution < 1, c, crossing, chain->last, p->expression, p->breakpoint,
+                                  p->upward);
+    }
+    if (!chain->full && !has_time(chain)) {
+        c->status |= PL_TOO_MANY_EVENTS;
+    }
+    return !chain->full;
+}
+
+/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits.  What
+ * has met once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
+static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                        pl_chain *chain, real *work)
+{
+    uint32_t struck = 0, met = 0;
+    real slow = -1;
+    int k, calms = 0;
+    go_on(chain, time, m->h);
+    for (k = 0; k < m->impacts && !chain->full; k++) {
+        const pl_impact *p = &m->impact[k];
+        real speed = 0;
+        if (met >> k & 1 || touches(m, c, p, x)) {
+            met |= (uint32_t)1 << k;
+            speed = speed_of(m, k, x);
+        }
         if (k != begins && !(speed > 0)) {
             continue;
         }
-        if (k != begins && speed < CALM * most) {
+        if (slow < 0) {
+            slow = least_speed(m, c, x, work);
+        }
+        slow = larger(slow, CALM * chain->most);
+        if (k != begins && speed <= slow) {
             calms = 1;
             continue;
         }
-        most = larger(most, speed);
-        if (++rounds > MOST_AT_ONCE || (rounds <= LISTED_AT_ONCE && !list(m->max_events, c, crossing, time,
-            p->expression, p->breakpoint, p->upward))) {
-            c->status |= PL_TOO_MANY_EVENTS;
+        chain->most = larger(chain->most, speed);
+        if (chain->impacts == MOST_AT_ONCE) {
+            chain->full = !give_up(m, met, x, c, crossing, chain, work);
+            c->status |= chain->full ? PL_TOO_MANY_EVENTS : 0;
+            begins = k = -1;
+            continue;
+        }
+        if (!has_room(m, k, c, crossing, chain)) {
             break;
         }
         assign(m, p->jump, x, work);
         if (p->rest >= 0) {
             go_to(m, c, p, free_of(p));
-        }
-        if (p->rest >= 0) {
             put_on(m, c, k, x);
+            met |= (uint32_t)1 << k;
+        } else {
+            follow(m, 1, x, c, crossing, chain->last);
+            met = 0;
         }
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
@@ -202,7 +356,7 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
         k = -1;
     }
     if (calms) {
-        calm(m, CALM * most, x, c, crossing, time, work);
+        calm(m, slow, met, x, c, crossing, chain, work);
     }
     return struck;
 }
@@ -263,10 +417,10 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
             if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST) {
                 continue;
             }
-            if (magnitude(e) > noise) {
+            found[count].impact = impact_of(m, w.i, k);
+            if (found[count].impact < 0 ? magnitude(e) > noise : !touches(m, c, &m->impact[found[count].impact], x)) {
                 continue;
             }
-            found[count].impact = impact_of(m, w.i, k);
             if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k) {
                 continue; /* it flies off, or there was no room for its impact */
             }
@@ -396,10 +550,10 @@ static void change(const pl_guards *m, pl_contact *c, pl_crossing *crossing, rea
     for (i = 0; i < count && crossing; i++) {
         const int now = interval_of(m, &r[i], c->region), then = interval_of(m, &r[i], region);
         for (k = now; k < then; k++) {
-            (void)list(m->max_events, c, crossing, time, r[i].expression, k, 1);
+            tell(m->max_events, c, crossing, time, r[i].expression, k, 1);
         }
         for (k = now; k > then; k--) {
-            (void)list(m->max_events, c, crossing, time, r[i].expression, k - 1, 0);
+            tell(m->max_events, c, crossing, time, r[i].expression, k - 1, 0);
         }
     }
     enter(m->matrix, c, region);
@@ -454,7 +608,7 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
     c->crossings = c->status = c->rested = 0;
     c->matrix = m->matrix[first];
     enter(m->matrix, c, 0);
-    follow(m, x, c, (pl_crossing *)0, 0);
+    follow(m, 1, x, c, (pl_crossing *)0, 0);
     /* at rest: let it stick first */
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
@@ -631,78 +785,190 @@ static event move(const pl_guards *m, pl_contact *c, const climb *at, real dt, c
 
 /* ---- a step ---- */
 
+/* Whether what rests there is pressed, by more than rounding */
+static int is_pressed(const pl_guards *m, int region, int expression, const real *x)
+{
+    int k, any = 0;
+    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+        if (m->guard[k].expression == expression) {
+            if (!(pull_of(m, k, x) < 0)) {
+                return 0;
+            }
+            any = 1;
+        }
+    }
+    return any;
+}
+
+/* The largest acceleration by which one of those that touch is pressed, and the most that rounding does to their
+ * places: they lie on each other.  work: size */
+static real most_pressed(const pl_guards *m, const pl_contact *c, const real *x, real *rounding, real *work)
+{
+    const int n = m->size;
+    real most = 0, press, noise;
+    int k;
+    pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
+    for (k = 0; k < m->impacts; k++) {
+        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
+            const walk w = switch_of(m, c->region, m->impact[k].expression);
+            pl_multiply(1, n, m->speed + (ptrdiff_t)k * n, work, &press);
+            most = larger(most, press);
+            (void)excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
+            *rounding = larger(*rounding, noise);
+        }
+    }
+    return most;
+}
+
+/* Several contacts that are as good as at rest together, those of them that fly as bits: all that any of them could
+ * still do is over within `brief` [s] under the force that presses one of them, or lower than rounding.  work: size */
+static uint32_t near_rest(const pl_guards *m, const pl_contact *c, real brief, const real *x, real *work)
+{
+    real noise = 0;
+    const real most = most_pressed(m, c, x, &noise, work), fastest = most * brief / 2;
+    uint32_t set = 0;
+    int k, together = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        const walk w = switch_of(m, c->region, p->expression);
+        real unused, e, speed;
+        if (p->rest < 0 || (w.interval != free_of(p) && w.interval != p->rest)) {
+            continue;
+        }
+        e = excess(m, c, &w, p->breakpoint, x, &unused);
+        speed = magnitude(speed_of(m, k, x));
+        if ((p->upward ? e : -e) < -larger(noise, fastest * brief)) {
+            continue;
+        }
+        e = 1 - p->restitution;
+        if (w.interval == p->rest) {
+            together++;
+        } else if (speed <= fastest * e || speed * speed <= 2 * most * noise * e * e) {
+            set |= (uint32_t)1 << k;
+            together++;
+        }
+    }
+    return together > 1 ? set : 0;
+}
+
+/* Several that strike each other come to rest together if all of them are pressed then. */
+static void rest_together(const pl_guards *m, uint32_t set, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                          real *work)
+{
+    pl_contact then = *c;
+    const uint32_t laid = seat(m, set, &then);
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (laid >> k & 1 && !is_pressed(m, then.region, m->impact[k].expression, x)) {
+            return;
+        }
+    }
+    list_rests(m, lay(m, laid, x, c, work), c, crossing, time);
+    settle(m, x, c, crossing, time, work);
+}
+
 /* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
 static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                 real *work)
+                         real *work)
 {
+    const real brief = (c->crossings > m->max_events - MOST ? 1 : BRIEF) * m->h;
+    uint32_t set;
     int k;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
         const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
         const real left = along / (1 - e);
-        const int full = c->crossings > m->max_events - MOST;
-        if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x)) {
+        if (!(left >= 0 && left <= brief) || !touches(m, c, p, x)) {
             continue;
         }
-        assign(m, p->still, x, work);
-        go_to(m, c, p, p->rest);
-        assign(m, m->hold[c->region], x, work); /* beside others that rest, and what they would leave it with */
-        (void)list(m->max_events, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
-        c->rested++;
+        list_rests(m, lay(m, (uint32_t)1 << k, x, c, work), c, crossing, time + left);
         settle(m, x, c, crossing, time, work);
+    }
+    set = near_rest(m, c, BRIEF * m->h, x, work);
+    if (struck != 0 && set != 0) {
+        rest_together(m, set, x, c, crossing, time, work);
     }
 }
 
 /* Into the region to which a guard leads, or by the impact that begins there */
 static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, pl_crossing *crossing, real time,
-                real *work)
+                pl_chain *chain, real *work)
 {
-    const int full = c->crossings == m->max_events;
+    const int rest = impact_of(m, g->expression, switch_of(m, c->region, g->expression).interval);
     uint32_t struck = 0;
     if (g->impact < 0) {
-        (void)list(m->max_events, c, crossing, time, g->expression, g->breakpoint, g->upward);
+        chain->full = !has_time(chain) ||
+                    !has_listed(m, rest >= 0 && m->impact[rest].restitution < 1, c, crossing, time, g->expression,
+                                g->breakpoint, g->upward);
+        c->status |= chain->full ? PL_TOO_MANY_EVENTS : 0;
     }
     if (g->impact < 0 || m->impact[g->impact].rest < 0) {
         enter(m->matrix, c, c->region + g->leads);
     }
     assign(m, m->hold[c->region], x, work);
     if (g->impact >= 0) {
-        struck = collide(m, g->impact, x, c, crossing, time, work);
-    }
-    if (g->impact >= 0) {
-        follow(m, x, c, crossing, time);
+        struck = collide(m, g->impact, x, c, crossing, time, chain, work);
+        follow(m, 0, x, c, crossing, time);
     }
     settle(m, x, c, crossing, time, work);
     come_to_rest(m, struck, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
-    return !full;
+    return !chain->full;
 }
 
 /* At the start, or behind a change of the loads: what holds may have moved, and what moves may have jumped. */
-static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+static void take_up(const pl_guards *m, int jumped, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                    pl_chain *chain, real *work)
 {
-    follow(m, x, c, crossing, time);
-    (void)collide(m, -1, x, c, crossing, time, work);
+    follow(m, jumped, x, c, crossing, time);
+    (void)collide(m, -1, x, c, crossing, time, chain, work);
     settle(m, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
 }
 
 void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
+    pl_chain chain = no_impact(m->h);
     c->crossings = 0;
-    take_up(m, x, c, crossing, time, work);
+    take_up(m, 1, x, c, crossing, time, &chain, work);
+}
+
+/* What is beyond the guard of a bounce by more than rounding is told. */
+static void check_places(const pl_guards *m, const real *x, pl_contact *c, real *work)
+{
+    const int n = m->size;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        const real *speed = m->speed + (ptrdiff_t)k * n;
+        const walk w = switch_of(m, c->region, p->expression);
+        real noise, e;
+        if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p))) {
+            continue;
+        }
+        e = excess(m, c, &w, p->breakpoint, x, &noise);
+        e = p->upward ? e : -e;
+        if (!(e > DEEP * noise)) {
+            continue;
+        }
+        pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
+        if (e > DEEP * (noise + m->h * noise_of(sizes(n, speed, x) + m->h * sizes(n, speed, work)))) {
+            c->status |= PL_PENETRATED;
+        }
+    }
 }
 
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
     real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
-    int splits = m->max_splits, fresh = 1;
+    int splits = m->max_splits, fresh = 1, clear = 1;
     climb at = at_top;
+    pl_chain chain = no_impact(m->h);
     clear_rest(n, rest);
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
-        take_up(m, x, c, crossing, 0, room);
+        take_up(m, 0, x, c, crossing, 0, &chain, room);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
@@ -726,9 +992,10 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         if (fall(&at)) {
             continue;
         }
+        clear = 0;
         if (fresh) { /* the region may be another one now */
             fresh = 0;
-            take_up(m, x, c, crossing, tau - left, room);
+            take_up(m, 0, x, c, crossing, tau - left, &chain, room);
             at.bent = 0;
             continue;
         }
@@ -743,12 +1010,15 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
             continue;
         }
         to_the_ground(&at);
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, room)) {
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, &chain, room)) {
             if (m->guard[first.guard].impact >= 0) {
                 break; /* x is held on the guard: beyond it the impact would not come any more */
             }
             splits = -1; /* no further search */
         }
+    }
+    if (!clear) {
+        check_places(m, x, c, room);
     }
 }
 

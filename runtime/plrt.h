@@ -656,6 +656,15 @@ typedef struct pl_events {
     int max_events;
 } pl_events;
 
+/* Impacts that follow each other in a step.  last: when the last one was; most: the fastest of those that follow each
+ * other in no time to speak of, close: so many they are; impacts: at this instant, acting: those that acted of late, as
+ * bits, ended: how often they were ended; all: events of the step; full: there is no more room */
+typedef struct pl_chain {
+    double last, most;
+    uint32_t acting;
+    int close, impacts, ended, all, full;
+} pl_chain;
+
 /* Where a series begins, and how it is made anew. */
 typedef struct pl_instant {
     void (*expand)(const void *from, const int *interval, const double *y, double *c, double *terms);
@@ -671,7 +680,8 @@ typedef struct pl_instant {
     double time;        /* after the start of the step [s] */
     pl_crossing next;   /* the event that pl_events_next has found, */
     int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
-    int status;         /* 0, PL_UNDECIDED */
+    int status;         /* 0, PL_UNDECIDED, PL_PENETRATED, PL_TOO_MANY_EVENTS */
+    pl_chain chain;     /* none yet: last is -h, else 0 */
 } pl_instant;
 
 /* The intervals of a state that was set.  What is on a breakpoint that stands twice is held where that can be, else
@@ -715,6 +725,12 @@ typedef struct pl_eventsf {
     int max_events;
 } pl_eventsf;
 
+typedef struct pl_chainf {
+    float last, most;
+    uint32_t acting;
+    int close, impacts, ended, all, full;
+} pl_chainf;
+
 typedef struct pl_instantf {
     void (*expand)(const void *from, const int *interval, const float *y, float *c, float *terms);
     const void *from;
@@ -726,6 +742,7 @@ typedef struct pl_instantf {
     float time;
     pl_crossingf next;
     int strike, freed, status;
+    pl_chainf chain;
 } pl_instantf;
 
 void pl_eventsf_place(const pl_eventsf *m, pl_instantf *at);
@@ -795,6 +812,9 @@ typedef struct pl_guards {
 /* what is to stick and what is to slip at an event has no answer that holds: some that was nearest was kept */
 enum { PL_UNDECIDED = 16 };
 
+/* a step has ended beyond the guard of a bounce, by more than rounding: its contact is lost */
+enum { PL_PENETRATED = 64 };
+
 /* Bounces that would all be over within this part of h come to rest: their number is infinite, their time is not. */
 #define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
@@ -811,10 +831,14 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  *
  * Impacts at one instant act in their order, each from the state that the one before has left, and again from the
  * first, until none is on its guard and comes closer; what is slower than 2^-48 of the fastest (float: 2^-20) is over,
- * and rests; the first 12 are listed.  Behind a bounce that leaves with the velocity v and is
- * pressed back by the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it
- * rests, listed T later; so too where T <= h and the list of crossings is full but for a few.  What rests is held
- * until it would have to be pulled. */
+ * and rests; so does, with e < 1, what still acts after 1000 of them.  The first 12 are listed; once the list is half
+ * full, of those within 2^-10 h (float: 2^-8).  Behind a bounce that leaves with the velocity v and is pressed back by
+ * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
+ * later; so too where T <= h and the list of crossings is full but for a few.  Several that touch and strike each other
+ * rest together where that holds of each with the largest a, or their bounces are lower than rounding, and all are
+ * pressed then.  Speeds of what comes to rest go by impacts with e = 0, so momentum stays.  What rests is held until
+ * it would have to be pulled.  Impacts with e < 1 go on beyond the list, to 65536 events in a step.  What rounding has
+ * taken beyond a bounce is still before it; PL_PENETRATED: at the end of a step it is there by more. */
 void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 

@@ -44,6 +44,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_guards pl_guardsf
 #define pl_strike pl_strikef
 #define pl_instant pl_instantf
+#define pl_chain pl_chainf
 #define pl_events pl_eventsf
 #define pl_events_place pl_eventsf_place
 #define pl_events_begin pl_eventsf_begin

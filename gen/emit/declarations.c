@@ -61,7 +61,8 @@ static void declare_state_functions(const struct emitter *e)
 	declare(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
 	declare(e, spell(e, "double $n_time(const $n *s);"), "[s]");
 	const char *note = e->model->switching && has_events(e->model->switching)
-			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED" : e->kind->status_note;
+			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED, PL_PENETRATED"
+			: e->kind->status_note;
 	declare(e, spell(e, "int    $n_status(const $n *s);"),
 		has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
 	e->kind->declare_state(e);

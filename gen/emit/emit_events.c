@@ -133,6 +133,7 @@ void emit_event_functions(const struct emitter *e)
 	       "static pl_instant $n_instant(const $n_from *from, double *y, double *rest, double *c, double *terms,\n"
 	       "    double *work, $n_contact *contact)\n"
 	       "{\n"
+	       "    static const pl_chain none = {-$N_H, 0.0, 0u, 0, 0, 0, 0, 0};\n"
 	       "    pl_instant at;\n"
 	       "    at.expand = $n_again;\n"
 	       "    at.from = from;\n"
@@ -151,6 +152,7 @@ void emit_event_functions(const struct emitter *e)
 	       "    at.next = contact->last;\n"
 	       "    at.strike = at.freed = -1;\n"
 	       "    at.status = 0;\n"
+	       "    at.chain = none;\n"
 	       "    return at;\n"
 	       "}\n");
 }

@@ -43,7 +43,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_divided_place", "pl_divided", false }, { "pl_divided_left", "pl_divided", false },
 	{ "pl_divided_rises", "pl_divided", false },
 	{ "pl_divided_next", "pl_divided", false }, { "pl_strike", "pl_strike", false },
-	{ "pl_instant", "pl_instant", false }, { "pl_events", "pl_events", false },
+	{ "pl_instant", "pl_instant", false }, { "pl_chain", "pl_chain", false }, { "pl_events", "pl_events", false },
 	{ "pl_events_place", "pl_events", false }, { "pl_events_begin", "pl_events", false },
 	{ "pl_events_next", "pl_events", false }, { "pl_events_pass", "pl_events", false },
 	{ "pl_events_end", "pl_events", false },

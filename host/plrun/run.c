@@ -85,10 +85,12 @@ static char *status_text(int status, double t, bool single)
 		text = format("%s the last terms of the step are above the tolerance", text);
 	if (status & PL_UNDECIDED)
 		text = format("%s what is to stick and what is to slip at an event had no answer", text);
+	if (status & PL_PENETRATED)
+		text = format("%s the step has ended beyond a stop", text);
 	if (status & PL_LEFT_RANGE)
 		text = format("%s a state has left the range that the spec gives it", text);
 	if (status & ~(PL_UNDECIDED | PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE |
-		       PL_LEFT_RANGE))
+		       PL_LEFT_RANGE | PL_PENETRATED))
 		text = format("%s status %d", text, status);
 	return text;
 }

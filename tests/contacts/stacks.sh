@@ -1,0 +1,65 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# stacks.sh PLGEN STACKS STANDS.C SOURCE FIRST COUNT VARIANT ...
+#
+# COUNT random scenes from seed FIRST on, the VARIANTs in turn: stacks, walls, wedges. What is emitted
+# keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants: exact,
+# float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring), float_curved. $CC
+# compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+plgen=$(realpath "$1")
+stacks=$(realpath "$2")
+stands=$(realpath "$3")
+source=$(realpath "$4")
+seed=$5
+last=$(($5 + $6))
+shift 6
+. "$source/tests/tap.sh"
+runtime_archive "$source/runtime"
+
+# stands_up VARIANT: whether the scene of this seed does; 2: it has more contacts than such a model may
+stands_up() {
+	real=double
+	digits=1e-11
+	scheme=exact
+	form=plain
+	options=
+	case $1 in
+		*float*) real=float; digits=5e-4 ;;
+	esac
+	case $1 in
+		*compensated) options="--accuracy compensated" ;;
+		tunable) form=tunable ;;
+		*taylor) scheme=taylor ;;
+		*curved) scheme=curved ;;
+	esac
+	$stacks $seed $scheme $form $real scene.spec drawn.h || return 1
+	if ! "$plgen" --real $real $options scene.spec -o scene.c >log 2>&1; then
+		grep -q 'more regions than the limit\|at most 4 frictions and contacts' log && return 2
+		return 1
+	fi
+	${CC:-cc} -O0 $([ $real = float ] && echo -DFLOAT) -I. -I"$source/runtime" -o stands "$stands" scene.c \
+		$archive -lm >>log 2>&1 || return 1
+	./stands $digits 2 >>log 2>&1
+}
+
+while [ $seed -lt $last ]; do
+	variant=$1                              # the next one comes first the next time
+	shift
+	set -- "$@" $variant
+	name="${variant}_$seed"
+	if chosen "$name"; then
+		stands_up $variant
+		status=$?
+		if [ $status -eq 2 ]; then
+			skip "$name" "$(head -n 1 log | cut -c 1-80)"
+		else
+			result $status "$name"
+		fi
+		if [ $status -eq 1 ] && [ "${KEEP:-}" ]; then
+			mkdir -p "$KEEP/$name"
+			cp scene.* drawn.h log "$KEEP/$name/"
+		fi
+	fi
+	seed=$((seed + 1))
+done
+tap_end
