@@ -143,10 +143,11 @@ batch_add() {
 		if ! make_c "$tuned" "$spec" \
 			"$less $(printf '%s\n' "$retune" |
 				sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
-			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
-			return
+			why=$(why_refused "$tuned" 1)
+			[ -z "$why" ] || { echo "with other params: $why" >"$id.wrong" && return; }
+			tuned=
 		fi
-		code="$code $tuned.c"
+		code="$code${tuned:+ $tuned.c}"
 	fi
 	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
 	solution=NULL
