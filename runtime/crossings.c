@@ -259,10 +259,9 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
     real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
     int splits = m->max_splits, fresh = 1;
     climb at = at_top;
-    clear_rest(n, rest);
     c->crossings = 0;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left);
+        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
         const int whole = left > longest * (1 - REST);
         const real dt = whole ? longest : left;
         found first;
@@ -291,6 +290,7 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
         }
         left -= first.s * dt;
         if (first.expression < 0) {
+            rise(&at);
             continue;
         }
         if (!list(m->max_events, c, crossing, tau - left, first.expression, first.breakpoint, first.upward)) {

@@ -965,14 +965,13 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     int splits = m->max_splits, fresh = 1, clear = 1;
     climb at = at_top;
     pl_chain chain = no_impact(m->h);
-    clear_rest(n, rest);
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
         take_up(m, 0, x, c, crossing, 0, &chain, room);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left);
+        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
         int whole = left > longest * (1 - REST);
         const real dt = shortened(m, c, x, whole ? longest : left, room);
         event first;
@@ -1007,6 +1006,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
         left -= first.s * dt;
         if (first.guard < 0) {
+            rise(&at);
             continue;
         }
         to_the_ground(&at);

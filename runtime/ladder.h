@@ -14,9 +14,10 @@ typedef struct climb {
     int steady, wait; /* pieces that stayed clear, of those that it takes before a longer one is tried */
     int tried;        /* this one is */
     int bent;         /* x'' is known */
+    int rested;       /* what rounding has taken from x is known */
 } climb;
 
-static const climb at_top = {TOP, 0, 0, 1, 0, 0};
+static const climb at_top = {TOP, 0, 0, 1, 0, 0, 0};
 
 /* What an event leaves may move as fast as any pole. */
 static void to_the_ground(climb *at)
@@ -31,13 +32,26 @@ static real length_of(const pl_ladder *l, const int *halvings, int matrix, int r
     return h / (real)((uint32_t)1 << (down > 0 ? down : 0));
 }
 
+static void clear_rest(int n, real *rest)
+{
+    int i;
+    for (i = 0; i < n; i++) {
+        rest[i] = 0;
+    }
+}
+
 /* The length of the piece to be tried, at most `left` unless it is the shortest */
-static real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix, real h, real left)
+static inline real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix, real h, real left, int n,
+                         real *rest)
 {
     real length;
     if (halvings[matrix] == 0) {
         at->rung = at->rungs = 0;
         return h;
+    }
+    if (!at->rested) {
+        clear_rest(n, rest);
+        at->rested = 1;
     }
     at->rungs = (halvings[matrix] - 1) / l->spacing[matrix] + 1;
     at->rung = at->rung < at->rungs ? at->rung : at->rungs;
@@ -50,8 +64,8 @@ static real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix
 }
 
 /* y: x a piece on.  rest: 2 n */
-static void take_piece(int n, const climb *at, const pl_ladder *l, const real *Phi, int matrix, const real *x, real *y,
-                       real *rest)
+static inline void take_piece(int n, const climb *at, const pl_ladder *l, const real *Phi, int matrix, const real *x,
+                              real *y, real *rest)
 {
     int i;
     if (at->rung < at->rungs) {
@@ -64,7 +78,7 @@ static void take_piece(int n, const climb *at, const pl_ladder *l, const real *P
     }
 }
 
-static void keep_piece(int n, const climb *at, const real *y, real *x, real *rest)
+static inline void keep_piece(int n, const climb *at, const real *y, real *x, real *rest)
 {
     int i;
     for (i = 0; i < WORDS * n; i++) {
@@ -75,16 +89,8 @@ static void keep_piece(int n, const climb *at, const real *y, real *x, real *res
     }
 }
 
-static void clear_rest(int n, real *rest)
-{
-    int i;
-    for (i = 0; i < n; i++) {
-        rest[i] = 0;
-    }
-}
-
-/* It stayed clear: a longer one is tried, or after as many as it takes where the last trial was in vain. */
-static void rise(climb *at)
+/* It was clear: a longer one is tried, or after as many as it takes where the last trial was in vain. */
+static inline void rise(climb *at)
 {
     at->bent = 0;
     if (at->rungs == 0) {
@@ -99,7 +105,7 @@ static void rise(climb *at)
 }
 
 /* It may not have: whether there is a shorter one to try */
-static int fall(climb *at)
+static inline int fall(climb *at)
 {
     if (at->rung == 0) {
         return 0;

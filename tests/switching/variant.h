@@ -5,7 +5,7 @@
 
 #include "plrt.h"
 
-enum { MOST_EVENTS = 64, MOST_STATES = 16 };    /* NAME_MAX_EVENTS, states: of the largest model here */
+enum { MOST_EVENTS = 128, MOST_STATES = 16 };    /* NAME_MAX_EVENTS, states: of the largest model here */
 
 struct variant {
     const pl_model *model;
