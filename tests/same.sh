@@ -3,9 +3,11 @@
 # same.sh OLD NEW: do two builds of plgen say the same, byte for byte?  C, header, --explain, --solution of every
 # model and every spec of the tests under the options below, and what is said of every case of tests/errors: exit
 # status, standard output and standard error. OLD or NEW may be a file of sums that `same.sh PLGEN >SUMS` has written
-# before.  Ends with a line that counts; lists what differs.
+# before.  Ends with a line that counts; lists what differs.  CASES is the program of tests/errors, where it is not that
+# of build/.
 set -u
 tests=$(cd "$(dirname "$0")" && pwd)
+cases=${CASES:-$tests/../build/tests/errors/cases}
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
@@ -37,8 +39,9 @@ commands() {
 			printf '%s|%s|%s\n' "${spec%/*}" "${spec##*/}" "$options"
 		done
 	done
-	find "$tests/errors" -name '*.expect' | LC_ALL=C sort | while IFS= read -r expect; do
-		printf '%s|%s|=\n' "${expect%/*}" "$(basename "$expect" .expect)"
+	mkdir "$work/cases" && "$cases" --write "$work/cases" || exit 99
+	for folder in "$work/cases"/*/*; do
+		printf '%s|%s|=\n' "$folder" "${folder##*/}"
 	done
 }
 
@@ -51,18 +54,12 @@ spec=${rest%%|*}
 options=${rest#*|}
 here=$(mktemp -d "$3/XXXXXX") || exit 1
 if [ "$options" = '=' ]; then
-	cd "$here" || exit 1
-	name=$spec
+	cd "$folder" || exit 1
 	set --
-	[ -f "$folder/$name.sh" ] && sh "$folder/$name.sh" >"$name.spec"
-	[ -f "$folder/$name.spec" ] && cp "$folder/$name.spec" .
-	[ -f "$folder/$name.mtx" ] && cp "$folder/$name.mtx" .
-	if [ -f "$folder/$name.args" ]; then
-		while IFS= read -r argument; do
-			set -- "$@" "$argument"
-		done <"$folder/$name.args"
-	fi
-	[ -f "$name.spec" ] && set -- "$@" "$name.spec"
+	while IFS= read -r argument; do
+		set -- "$@" "$argument"
+	done <"$spec.args"
+	[ -f "$spec.spec" ] && set -- "$@" "$spec.spec"
 	timeout 600 "$plgen" "$@" >"$here/said" 2>"$here/told" </dev/null
 else
 	cd "$folder" || exit 1

@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # NAME_selftest: small as emitted, and not with any one constant of the step wrong.
 #
-#     selftest.sh PLGEN SOURCE_ROOT
+#     selftest.sh PLGEN SOURCE_ROOT CASES
 #
 # As emitted it is below 60 units in the last place; with the leading digit of one constant wrong it is above 300.
 set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+cases=$3
+case $cases in /*) ;; *) cases=$PWD/$cases ;; esac
 here=$(cd "${0%/*}" && pwd) || exit 99
 . "$here/../run_cc.sh"
 . "$here/../tap.sh"
@@ -74,10 +76,11 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 done
 
 # What --reduce leaves, of fewer states than coordinates and of more than 16 states
+mkdir cases && "$cases" --write cases reduce_highest_good reduce_loops_good || exit 99
 for spec in reduce_highest_good reduce_loops_good; do
 	for type in double float; do
 		rm -f reduced.c
-		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/schemes/$spec.spec" \
+		"$plgen" --prefix subject --selftest --reduce --real "$type" "cases/schemes/$spec/$spec.spec" \
 			>reduced.c 2>log
 		subjects
 		subject reduced.c

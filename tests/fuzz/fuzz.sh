@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD BAD: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with
-# sanitizers), as TAP, one line for each hundred. They are made from the specs in the folders GOOD (drawn more often)
-# and BAD/*. What fails is kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as
-# well. Every finding belongs into ../errors as a case of its own.
+# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD CASES: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with
+# sanitizers), as TAP, one line for each hundred. They are made from the specs in the folder GOOD (drawn more often) and
+# those of the cases of ../errors that are no longer than people write them. What fails is kept if KEEP names a folder.
+# With CHECK_C (a compiler and its options) the C is compiled as well. Every finding belongs into ../errors as a case of
+# its own.
 set -u
 plgen=$1
 mutate=$2
 first=$3
 count=$4
 good=$5
-bad=$6
+cases=$6
 block=100
 LC_ALL=C
 ASAN_OPTIONS=exitcode=99:hard_rss_limit_mb=2048:allocator_may_return_null=1:${ASAN_OPTIONS:-}
@@ -25,6 +26,8 @@ if ! command -v timeout > "$work/path" 2>&1; then
 	echo '1..0 # SKIP no timeout command'
 	exit 0
 fi
+bad=$work/bad
+mkdir "$bad" && "$cases" --write "$bad" && find "$bad" -name '*.spec' -size +20k -exec rm '{}' + || exit 1
 echo "1..$(((count + block - 1) / block))"
 
 check()         # STATUS: prints what is wrong
@@ -70,7 +73,7 @@ options()       # SEED: sets the arguments, printed
 	arguments=$*
 }
 
-for data in "$bad"/*/*.mtx "$good"/*/*.mtx; do    # beside the spec, as the specs name them
+for data in "$bad"/*/*/*.mtx "$good"/*/*.mtx; do    # beside the spec, as the specs name them
 	if [ -f "$data" ]; then
 		folder=$work/$(basename "$(dirname "$data")")
 		case $data in "$bad"/*) folder=$work ;; esac
@@ -89,7 +92,7 @@ while [ "$seed" -lt $((first + count)) ]; do
 	failed=0
 	: > "$work/complaints"
 	while [ "$seed" -lt "$end" ]; do
-		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*/*.spec > "$work/in.spec" || exit 1
+		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*/*/*.spec > "$work/in.spec" || exit 1
 		options "$seed"
 		timeout 600 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
 		why=$(check $?)

@@ -1,1 +1,0 @@
-cp "${0%/*}/axle.spec" . && cat "${0%/*}/part_no_step.spec"

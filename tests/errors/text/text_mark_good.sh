@@ -1,3 +1,0 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-# a byte order mark is accepted
-printf "\357\273\277model m\nparam k = 1\ncoord x\nx'' + k*x = 0\nstep 0.01\n"
