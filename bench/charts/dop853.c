@@ -2,16 +2,19 @@
 /* DOP853: the explicit pair of order 8 with errors of order 5 and 3 and an interpolant of order 7 (Hairer, Norsett,
  * Wanner, Solving Ordinary Differential Equations I, II.5 and II.6), with its own step control. Outputs are read from
  * the interpolant, whose three stages are taken in steps that hold an output only. The smooth models have an instance
- * each with the right-hand side compiled in; all others go through NAME_rhs. */
+ * each with the right-hand side compiled in; all others go through NAME_rhs. The chart of any spec (own/kept.h)
+ * includes this file for one model, with ONE_MODEL and what an instance is made of. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "adaptive.h"
 #include "dop853_table.h"
-#include "equations.h"
 
+#ifndef ONE_MODEL
+#include "equations.h"
 enum { MOST_ENTRIES = 64 };
+#endif
 
 struct dop853 {
 	struct adaptive adaptive;
@@ -25,6 +28,9 @@ struct dop853 {
 
 /* ---- the instances ---- */
 
+#ifdef ONE_MODEL
+#define EQUATIONS(ROW)
+#else
 #define STEPPER "dop853_step.h"
 #include "instances.h"
 
@@ -34,11 +40,12 @@ static inline void ask(struct adaptive *a, double t, const double *y, double *f)
 	a->evaluations--;               /* counted by the stepper */
 }
 
-#define INSTANCE(part) other_##part
-#define COORDINATES d->adaptive.n
+#define SIZE d->adaptive.size
 #define EXTENT (MOST_ENTRIES / 2)
 #define SLOPES(t, y, f) ask(&d->adaptive, t, y, f)
-#define JACOBIAN(t, y, Jq, Jv)
+#endif
+
+#define INSTANCE(part) other_##part
 #include "dop853_step.h"
 
 struct instance {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* DOP853 for one right-hand side, compiled into it: included once a model (instances.h; `d` is the run). Loops over a
  * state's entries are unrolled where their number is a constant. */
+#ifndef SIZE
 #define SIZE (2 * COORDINATES)
+#endif
 
 #define EACH _Pragma("GCC unroll 4") for (int m = 0; m < SIZE; m++)
 #define A(i, j) dop853_a[i][j] * k[j][m]

@@ -7,8 +7,9 @@
  * compiled in; the beams' Jacobian is theirs, that of linear models their matrix, any other by differences.
  *
  * All numbers of the method are computed here, in long double: nodes, A, error weights; eigenvalues and eigenvectors,
- * which only steer Newton, by GSL. */
-#if defined __GNUC__ && !defined __clang__
+ * which only steer Newton, by GSL. The chart of any spec (own/kept.h) includes this file for one model, with ONE_MODEL
+ * and what an instance is made of. */
+#if defined __GNUC__ && !defined __clang__ && !defined ONE_MODEL
 #pragma GCC optimize("cx-limited-range")        /* complex products without tests for infinity */
 #endif
 #include <complex.h>
@@ -22,11 +23,14 @@
 #include <gsl/gsl_matrix.h>
 
 #include "adaptive.h"
+
+enum { RADAU_MOST = 7 };
+#ifndef ONE_MODEL
 #include "equations.h"
 #include "jacobian.h"
 #include "quad_beam.h"
-
-enum { RADAU_MOST = 7, MOST_COORDINATES = 32 };
+enum { MOST_COORDINATES = 32 };
+#endif
 
 struct radau_table {
 	int s;
@@ -272,6 +276,9 @@ void radau_numbers(int s, double *c, double *A)
 
 /* ---- the instances ---- */
 
+#ifdef ONE_MODEL
+#define ROWS_OF(ROW)
+#else
 #define STEPPER "radau_step.h"
 #include "instances.h"
 
@@ -318,11 +325,14 @@ static void other_jacobian(struct radau *d)
 	}
 }
 
-#define INSTANCE(part) other_##part
 #define COORDINATES d->adaptive.n
 #define EXTENT MOST_COORDINATES
 #define SLOPES(t, y, f) ask(&d->adaptive, t, y, f)
 #define JACOBIAN(t, y, Jq, Jv) other_jacobian(d)
+#define ROWS_OF(ROW) EQUATIONS(ROW) ROW(beam4, BEAM_N) ROW(beam15, BEAM_N)
+#endif
+
+#define INSTANCE(part) other_##part
 #include "radau_step.h"
 
 struct instance {
@@ -333,7 +343,7 @@ struct instance {
 #define ROW(NAME, COORDINATES) { #NAME, { NAME##_reach3, NAME##_reach5, NAME##_reach7 }, \
 	                         { NAME##_walk3, NAME##_walk5, NAME##_walk7 } },
 static const struct instance instances[] = {
-	EQUATIONS(ROW) ROW(beam4, BEAM_N) ROW(beam15, BEAM_N)
+	ROWS_OF(ROW)
 	{ NULL, { other_reach3, other_reach5, other_reach7 }, { other_walk3, other_walk5, other_walk7 } }
 };
 

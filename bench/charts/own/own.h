@@ -6,8 +6,9 @@
  *     rhs_double.h      NAME_rhs, static inline
  *     rhs_long.h        the same in long double, of what is true
  *
- * A peer goes through the whole history and writes a row of all states at each output. To add one: a function in
- * peers.h, and a line in `peers` of own.c. */
+ * SECOND_ORDER: whether the states are coordinates and then their velocities. A peer goes through the whole history and
+ * writes a row of all states at each output. To add one: a function in peers.h, and a line in `peers` of own.c; those
+ * of the kept charts, whose files are compiled with the equations once more, stand in files of their own. */
 #ifndef OWN_H
 #define OWN_H
 
@@ -36,7 +37,7 @@ enum { N = STATES, ROOM = INPUTS > 0 ? 2 * INPUTS : 1 };
 
 /* ---- the history ---- */
 
-static struct {
+struct history {
 	double every;                   /* [s] between outputs */
 	int units;                      /* outputs */
 	double start[N];
@@ -48,7 +49,8 @@ static struct {
 	int unit;                       /* that inputs are asked in; peers set it */
 	long evaluations, most;         /* of the right-hand side; beyond `most` a peer has given up */
 	jmp_buf gave_up;
-} history;
+};
+extern struct history history;
 
 /* Inputs, then their slopes */
 INLINE void inputs_at(double t, double *u)
@@ -90,5 +92,11 @@ struct peer {
 	const char *settings;
 	bool (*applies)(void);          /* to this model; NULL: to every one. A step of such a peer is an output */
 };
+
+/* Solvers of the kept charts: kept_dop853.c, kept_radau.c */
+bool own_dop853(double setting, double *rows);
+bool own_radau5(double setting, double *rows);
+bool own_radau9(double setting, double *rows);
+bool own_radau13(double setting, double *rows);
 
 #endif

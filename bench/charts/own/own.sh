@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # own.sh [-q] PLGEN SPEC FOLDER [UNTIL] [EVERY]: error against time on any spec, plgen's steps beside what else there
 # is; FOLDER/NAME.csv, .svg, .png and a verdict. UNTIL, EVERY [s]: the history's end and the time between outputs;
-# without them the spec's step, and 1000 of it or 300 where there are more than 12 states. -q: times are taken once, for
-# tests. Run at the top of the source tree. What plgen refuses is said in its own words, and the exit status is 1.
+# without them the spec's step, and 1000 of it or 300 where there are more than 12 states. -q: times are taken once, and
+# of plgen's tolerances the least alone, for tests. Run at the top of the source tree. What plgen refuses is said in its
+# own words, and the exit status is 1.
 set -e
 quick=
 [ "$1" != -q ] || { quick=-q; shift; }
@@ -34,6 +35,12 @@ if grep -q 'const pl_guards' "$work/subject_pl.c"; then
 		"so no peer follows it and nothing says what is true" >&2
 	exit 1
 fi
+if sed -n 's/^static const int subject_start_samples\[\] = {\(.*\)};.*/\1/p' "$work/subject_pl.c" |
+	grep -q '[2-9]'; then
+	echo "own.sh: $spec: inputs that are joined by polynomials of higher degree than 1 are not charted: they" \
+		"reach over several outputs, which no step of another method follows" >&2
+	exit 1
+fi
 name=$(sed -n 's/^model[ \t][ \t]*\([A-Za-z0-9_]*\).*/\1/p' "$spec" | sed -n 1p)
 [ -n "$every" ] || every=$(sed -n 's/^#define SUBJECT_H \([^ ]*\).*/\1/p' "$work/subject_pl.c")
 # of NAME, an enumerator at the head of the code
@@ -41,6 +48,11 @@ count_of() {
 	sed -n "s/^enum {.*SUBJECT_$1 = \([0-9]*\).*/\1/p" "$work/subject_pl.c"
 }
 states=$(count_of STATES) inputs=$(count_of INPUTS)
+# are its states coordinates, then their velocities in the same order?
+second=$(sed -n '/_state_names\[\] = {/{s/.*{//;s/}.*//;s/[ "]//g;p;q;}' "$work/subject_pl.c" | tr , '\n' |
+	awk '{ name[NR] = $0 } END { half = NR/2; same = NR % 2 == 0
+	       for (i = 1; i <= half; i++) same = same && name[half + i] == name[i] "\047"
+	       print same ? 1 : 0 }')
 if [ -n "$until" ]; then
 	units=$(awk -v every="$(number "$every")" -v end="$(number "$until")" \
 		'BEGIN { print every <= 0 || end <= 0 ? 0 : int(end/every + 0.5) }')
@@ -62,9 +74,12 @@ sed 's/rhs_double/rhs_long/; s/\([^A-Za-z0-9_]\)double\([^A-Za-z0-9_]\)/\1quad_o
 
 sh bench/charts/variant.sh "$plgen" "$work/model.so" "$spec" --step "$every"
 sh bench/charts/variant.sh "$plgen" "$work/exact-1.so" "$spec" --step "$every" --scheme exact
-if [ -f "$work/exact-1.so" ]; then kinds=exact; elif [ "$states" -le 12 ]; then kinds='small left'; else kinds=left; fi
+kinds='large left'
+[ "$states" -gt 12 ] || kinds='small left'
+[ ! -f "$work/exact-1.so" ] || kinds=exact
 grep -v '^#' $own/variants | while IFS='|' read -r method options setting values where; do
 	case " $kinds " in *" $where "*) ;; *) continue ;; esac
+	[ -z "$quick" ] || [ "$setting" != tolerance ] || values=${values##* }
 	for value in $values; do
 		file=$(echo "$method-$value" | tr -d ' ,').so
 		if [ "$setting" = tolerance ]; then
@@ -78,8 +93,11 @@ grep -v '^#' $own/variants | while IFS='|' read -r method options setting values
 done
 xargs -P "${JOBS:-2}" -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
 variants=$!
-$cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -Iruntime -I$own -I"$work" -DSTATES="$states" -DINPUTS="$inputs" \
-	$own/own.c -o "$work/own" \
+for part in own kept_dop853 kept_radau; do
+	echo "-c $own/$part.c -o $work/$part.o"
+done | xargs -P "${JOBS:-2}" -L1 $cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -fcx-limited-range -Iruntime -I$own \
+	-I"$work" -DSTATES="$states" -DINPUTS="$inputs" -DSECOND_ORDER="$second"
+$cc "$work/own.o" "$work/kept_dop853.o" "$work/kept_radau.o" -o "$work/own" \
 	-lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
 	-lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas -lm -ldl
 wait $variants
@@ -96,5 +114,4 @@ gnuplot -c $own/own.gp "$folder/$name.csv" "$folder" "$name" "$every" "$units" "
 echo "$name: $units outputs, one every $every s${signal:+; $signal}"
 grep -v '^title:' "$folder/$name.txt"
 grep ',refused,' "$folder/$name.csv" | awk -F, -f bench/charts/csv.awk -f $own/refused.awk
-[ "$kinds" != left ] || echo 'left out: taylor, whose series of more than 12 states compilers take minutes for'
 echo "$folder/$name.svg, $folder/$name.csv"

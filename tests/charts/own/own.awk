@@ -28,19 +28,20 @@ END {
 	if (index(" " smooth " ", " " name " ") && name != "oscillator" && orders == 0) say("no order of RK4 is seen")
 	if (index(" " smooth " ", " " name " ") && orders && (order[orders] < 3.7 || order[orders] > 4.5))
 		say("RK4: order of its finest steps found " order[orders] ", expected 4, tolerance -0.3, 0.5")
-	n = split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF", peers, ";")
+	n = split("RK4;Dormand-Prince;DOP853;RADAU5;RADAU9;RADAU13;GSL rk8pd;CVODE Adams;CVODE BDF", peers, ";")
 	for (i = 1; i <= n; i++)
 		if (rows[peers[i]] < 4 || !good[peers[i]])
 			say(peers[i] ": " rows[peers[i]] + 0 " rows, " good[peers[i]] + 0 " good")
 	if (!("exact" in good) && !("etdrk4" in good)) say("nothing of plgen's")
+	if (!("exact" in good) && (!("auto" in good) || !("radau" in good))) say("neither auto nor radau")
 	rival = "exp(A h), loop"
 	wanted = index(" scs sdcs scs_weak linear2dof quarter_car inertia ", " " name " ")
 	if (wanted ? least[rival] > 1e-9 || !good[rival] : rows[rival])
 		say(rival ": " rows[rival] + 0 " rows, least error " least[rival])
 	# What each reaches with its least tolerance; forces that jump cost digits
-	split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF", method_of, ";")
-	split("1e-6;2e-9;2e-9;1e-7;1e-7", limit_of, ";")
-	for (i = 1; i <= 5; i++) {
+	m = split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF;DOP853;RADAU5;RADAU9;RADAU13", method_of, ";")
+	split("1e-6;2e-9;2e-9;1e-7;1e-7;2e-9;1e-8;1e-8;2e-8", limit_of, ";")
+	for (i = 1; i <= m; i++) {
 		limit = name != "two_masses" ? limit_of[i] : i == 1 ? 1 : 1e-5
 		if (!(method_of[i] in least) || least[method_of[i]] > limit + 0)
 			say(method_of[i] ": least error " least[method_of[i]] ", expected 0, tolerance " limit)

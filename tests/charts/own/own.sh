@@ -57,7 +57,7 @@ refused() {
     result $? "refused: $what"
 }
 refused 'what plgen refuses, in its words' "unknown.spec:3:11: error: unknown name 'z'" "$here/unknown.spec" "$work"
-refused 'inputs joined by cubics' 'u: inputs that are joined by polynomials of higher degree' "$here/third.spec" "$work"
+refused 'inputs joined by cubics' 'inputs that are joined by polynomials of higher degree' "$here/third.spec" "$work"
 refused 'what bounces' 'what bounces is not charted' models/bouncing_ball.spec "$work"
 refused 'what sticks' 'has no formula for friction' models/stick_slip.spec "$work"
 refused 'no such file' 'no file nothing.spec' nothing.spec "$work"

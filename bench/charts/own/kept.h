@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Solvers of the kept charts, compiled for the model alone: a file that includes this says what an instance is made of,
+ * then includes the solver's, and has `kept_history` to go through the history with it. */
+#ifndef KEPT_H
+#define KEPT_H
+
+#include "own.h"
+
+INLINE void model_slope(double t, const double *y, double *f)
+{
+	slope(t, y, f);
+}
+
+/* adaptive.h has its own functions of these names */
+#define slope adaptive_slope
+#define all_finite adaptive_finite
+#define ONE_MODEL
+#include "../adaptive.h"
+#define adaptive_open NULL
+
+/* Inputs have corners at outputs, or jumps: it begins anew there with the length that it had. length: h of its struct;
+ * whole: makes its state of the model's, which stands behind `skip` entries of it */
+static inline bool kept_history(struct adaptive *a, const struct kind *kind, double setting, double *length,
+                                void (*whole)(const double *y, double *state), int skip, double *rows)
+{
+	const struct problem problem = {.name = "", .n = a->n, .unit = history.every};
+	const struct solver *solver = kind->solver;
+	double state[2 * N], now[2 * N];
+	a->run.method = &kind->method;
+	a->run.problem = &problem;
+	a->run.setting = setting;
+	a->now = now;
+	whole(history.start, state);
+	bool good = solver->make(a) && solver->begin(a, 0.0, state);
+	if (INPUTS == 0 && skip == 0)
+		return good && a->walk(a, history.units, rows);
+	for (int k = 0; k < history.units && good; k++, rows += N) {
+		const double last = *length;
+		history.unit = k;
+		if (INPUTS > 0 && k > 0) {
+			good = solver->begin(a, k * history.every, state);
+			*length = last;
+		}
+		good = good && solver->reach(a, (k + 1) * history.every, state);
+		memcpy(rows, state + skip, N * sizeof *rows);
+	}
+	return good && adaptive_finite(a->size, state);
+}
+
+#endif
