@@ -301,6 +301,12 @@ const struct kind *row_of_kind(enum step_kind kind);
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
+enum input_names { AS_PARAMETERS, AS_SAMPLES, AS_CALLED_HERE };   /* u; u, or start of ramps */
+/* What an expansion reads beside the instance, each with a comma behind it */
+const char *series_arguments(const struct emitter *e, const char *tau, const char *when, const char *segment,
+			     enum input_names names, const char *contact);
+const char *series_parameters(const struct emitter *e);
+void emit_slopes_function(const struct emitter *e);               /* NAME_slopes: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *emit_whole_size(const struct emitter *e, bool *made, int sequence);
@@ -321,6 +327,11 @@ void emit_expand_function(const struct emitter *e);               /* NAME_expand
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			const char *contact, const char *y, const char *c);
 
+void emit_meets_function(const struct emitter *e);                /* NAME_meets */
+/* C: a condition, whether c meets the equations over `size`, in h; the others as of expand_call */
+const char *meets_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
+		       const char *contact, const char *c, const char *size);
+
 bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
@@ -332,6 +343,11 @@ void emit_series_scales(const struct emitter *e, const char *indent);           
 
 /* ---- emit_reach.c: how far a series holds ---- */
 
+/* C: 1/size; none, where that is 0 */
+const char *one_over(const struct emitter *e, const char *size, const char *none);
+/* NAME_measure: scale and unit of all states, from s->NOW */
+void emit_measure(const struct emitter *e, const char *now);
+bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series: NAME_measure is there */
 bool looks_at_tolerance(const struct emitter *e);
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
@@ -342,9 +358,11 @@ const char *measured_columns(const struct emitter *e);           /* C: those who
 /* ---- emit_unseen.c: how far what coefficients do not show is followed ---- */
 
 bool has_unseen(const struct emitter *e);
+bool traces(const struct emitter *e);                            /* some of it by its argument */
+bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
 void emit_shows(const struct emitter *e);                        /* NAME_shows, of a series */
 void emit_shows_along(const struct emitter *e);                  /* NAME_shows_along, of a step by collocation */
-/* C: " && " and that it does not */
+/* C: that it does not */
 const char *shows_along(const struct emitter *e);
 
 /* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
@@ -374,6 +392,7 @@ bool has_choices(const struct emitter *e);                        /* of formulas
 const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
 const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
 const struct emitter *forcing(const struct emitter *e);           /* what is left over */
+const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
 /* within $n_whole: what is left over at a stage */
 const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
 

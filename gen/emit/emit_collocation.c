@@ -91,47 +91,6 @@ bool collocation_places(const struct emitter *e)
 	return true;
 }
 
-/* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
- * do. So the largest of its kind counts for each too, by a millionth. What is below all units, as the first trace of a
- * pulse that is to come, is measured by 1e-40. */
-static const char *one_over(const struct emitter *e, const char *size, const char *none)
-{
-	bool single = e->model->asked.single;
-	return format("%s > %s ? 1.0 / %s : %s > 0.0 ? %s : %s", size, single ? "1e-25" : "1e-40", size, size,
-		      single ? "1e25" : "1e40", none);
-}
-
-static void emit_scales(const struct emitter *e)
-{
-	const char *floored = !has_floors(e) ? "" : spell(e, "if ($n_floor[i] > 0.0) {\n"
-		"            s->scale[i] = pl_magnitude(s->start[i]) + $n_floor[i];\n"
-		"            grown = 1;\n"
-		"        } else ");
-	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
-	       "is 0 */\n"
-	       "static void $n_measure($n *s)\n"
-	       "{\n"
-	       "    double most[3] = {0.0, 0.0, 0.0};\n"
-	       "    int i, grown = 0;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        %sif (pl_magnitude(s->start[i]) > s->scale[i]) {\n"
-	       "            s->scale[i] = pl_magnitude(s->start[i]);\n"
-	       "            grown = 1;\n"
-	       "        }\n"
-	       "    if (!grown)\n"
-	       "        return;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        if (s->scale[i] > most[%s])\n"
-	       "            most[%s] = s->scale[i];\n"
-	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        const double least = %s%s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
-	       "        s->unit[i] = %s;\n"
-	       "    }\n"
-	       "}\n", floored, kind_text(e, "i"), kind_text(e, "i"),
-	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "", shortest(ldexp(1, -20)),
-	    kind_text(e, "i"), one_over(e, "size", "0.0"));
-}
-
 static void emit_anew(const struct emitter *e)
 {
 	say(e, "\n/* An internal step starts at the state now. */\n"
@@ -151,7 +110,7 @@ void emit_collocation_place(const struct emitter *e)
 	emit_state_table(e);
 	emit_floors(e);
 	emit_anew(e);
-	emit_scales(e);
+	emit_measure(e, "start");
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
 	       "{\n"
@@ -410,7 +369,7 @@ static void emit_limit(const struct emitter *e)
 /* What hides between the nodes makes a step half as long. */
 static const char *unshown(const struct emitter *e)
 {
-	return !has_unseen(e) ? "" : spell(e, "            if (good%s) {\n"
+	return !traces(e) && !crowds(e) ? "" : spell(e, "            if (good && (%s)) {\n"
 					      "                good = 0;\n"
 					      "                factor = 0.5;\n"
 					      "            }\n", shows_along(e));

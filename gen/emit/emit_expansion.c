@@ -137,6 +137,16 @@ static void emit_between_limit(const struct emitter *e)
 		       "            return PL_TOO_MANY_STEPS;\n", truncation(e)->substeps);
 }
 
+/* A part of a step that does not meet the equations is halved. */
+static const char *meets_between(const struct emitter *e)
+{
+	return !e->step->slopes ? "" : spell(e, "        while (size > 1e-9 && !%s)\n"
+						"            size *= 0.5;\n",
+					     meets_call(e, spell(e, "done * $N_H"),
+							spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment",
+							"contact->", spell(e, "(const double (*)[$c])c"), "size"));
+}
+
 static void emit_between_size(const struct emitter *e)
 {
 	if (!truncation(e)->adaptive) {
@@ -148,6 +158,7 @@ static void emit_between_size(const struct emitter *e)
 	       "            return PL_NOT_FINITE;\n"
 	       "        size = size < longest ? size : longest;\n"
 	       "        size = size < limit - done ? size : limit - done;\n"
+	       "%s"
 	       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
 	       "            double d[%d][$c], next[$N_STATES]%s;\n"
 	       "            $n_ahead((const double (*)[$c])c, size, gain);\n"
@@ -158,7 +169,7 @@ static void emit_between_size(const struct emitter *e)
 	       "(const double (*)[$c])d, size);\n"
 	       "            size *= fresh ? 0.5 : 1.0;\n"
 	       "            fresh = fresh && size > 1e-9;\n"
-	       "        }\n",
+	       "        }\n", meets_between(e),
 	    expansion(e)->order + 1, is_divided(e) ? format(", spare[%d]", terms_of_events(e)) : "",
 	    series_between(e, spell(e, "(done + size) * $N_H"), "next", "d"));
 }
@@ -234,11 +245,21 @@ bool expansion_places(const struct emitter *e)
 	return looks_at_tolerance(e) || spans_steps(e) || is_divided(e);
 }
 
+/* A state below it is as one that is 0. */
+static const char *least_scale(const struct emitter *e)
+{
+	return !truncation(e)->adaptive || shares_kinds(e) ? "0.0" : e->model->asked.single ? "1e-25" : "1e-40";
+}
+
 void emit_expansion_place(const struct emitter *e)
 {
 	if (!expansion_places(e))
 		return;
 	emit_floors(e);
+	if (shares_kinds(e)) {
+		emit_state_table(e);
+		emit_measure(e, "y");
+	}
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
 	       "{\n");
@@ -250,9 +271,12 @@ void emit_expansion_place(const struct emitter *e)
 		say(e, "    s->served = 0;\n");
 	if (looks_at_tolerance(e)) {
 		say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-		       "        s->scale[i] = s->unit[i] = 0.0;\n");
-		emit_series_scales(e, "        ");
-		say(e, "    }\n");
+		       "        s->scale[i] = %s;\n"
+		       "        s->unit[i] = 0.0;\n", least_scale(e));
+		if (!shares_kinds(e))
+			emit_series_scales(e, "        ");
+		say(e, "    }\n"
+		       "%s", shares_kinds(e) ? spell(e, "    $n_measure(s);\n") : "");
 		for (int i = 0; i < expansion(e)->measured; i++)
 			say(e, "    s->scale[$N_STATES + %d] = s->unit[$N_STATES + %d] = 0.0;\n", i, i);
 	}
@@ -395,6 +419,16 @@ static void emit_end(const struct emitter *e)
 	say(e, "}\n");
 }
 
+static void emit_scales_now(const struct emitter *e)
+{
+	if (shares_kinds(e)) {
+		say(e, "    $n_measure(s);\n");
+		return;
+	}
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
+	emit_series_scales(e, "        ");
+}
+
 /* A new series. The loads' next change bounds the steps that it serves; conditions on t are decided before it, in the
  * middle, where time is on one side of them also when it is late, or float. */
 static void emit_renew(const struct emitter *e)
@@ -413,8 +447,7 @@ static void emit_renew(const struct emitter *e)
 	if (is_divided(e))
 		say(e, "    double terms[%d];\n", terms_of_events(e));
 	emit_input_samples(e);
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
-	emit_series_scales(e, "        ");
+	emit_scales_now(e);
 	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->contact.", "s->y", "s->series"));
 	emit_column_scales(e);
 	say(e, "    i = s->most ? $n_reach(s) : 0;\n"
@@ -424,6 +457,11 @@ static void emit_renew(const struct emitter *e)
 		say(e, "    if (change < (double)s->valid * $N_H)\n"
 		       "        s->valid = (int)(change / $N_H);\n");
 	emit_divided_bound(e);
+	if (e->step->slopes)
+		say(e, "    while (s->valid && !%s)\n"
+		       "        s->valid /= 2;\n", meets_call(e, "0.0", when, "s->segment", "s->contact.",
+							       spell(e, "(const double (*)[$c])s->series"),
+							       "(double)s->valid"));
 	say(e, "    s->served = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        s->base[i] = s->left[i] = s->rest[i];\n"

@@ -35,6 +35,11 @@ const struct emitter *forcing(const struct emitter *e)
 	return look_by(e, e->step->cut->forces);
 }
 
+const struct emitter *sloping(const struct emitter *e)
+{
+	return look_by(e, e->step->slopes);
+}
+
 const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left)
 {
 	return frozen_call(forcing(e), "within", "s", tau, "p->", y, left);

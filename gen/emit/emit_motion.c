@@ -640,7 +640,7 @@ void emit_motion(const struct emitter *e)
 		emit_force_function(e, &r);
 	if (is_divided(e))
 		emit_watch(e, &r);
-	if (e->step->unseen)
+	if (traces(e))
 		emit_trace(e, &r);
 }
 

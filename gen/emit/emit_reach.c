@@ -62,6 +62,60 @@ static const char *tolerance_text(const struct emitter *e)
 	return shortest(round_rational(truncation(e)->tolerance));
 }
 
+/* ---- what counts as the size of a state ---- */
+
+/* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
+ * do. So the largest of its kind counts for each too, by a millionth. What is below all units, as the first trace of a
+ * pulse that is to come, is measured by 1e-40. */
+const char *one_over(const struct emitter *e, const char *size, const char *none)
+{
+	bool single = e->model->asked.single;
+	return format("%s > %s ? 1.0 / %s : %s > 0.0 ? %s : %s", size, single ? "1e-25" : "1e-40", size, size,
+		      single ? "1e25" : "1e40", none);
+}
+
+void emit_measure(const struct emitter *e, const char *now)
+{
+	const char *floored = !has_floors(e) ? "" : spell(e, "if ($n_floor[i] > 0.0) {\n"
+		"            s->scale[i] = pl_magnitude(s->%s[i]) + $n_floor[i];\n"
+		"            grown = 1;\n"
+		"        } else ", now);
+	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
+	       "is 0 */\n"
+	       "static void $n_measure($n *s)\n"
+	       "{\n"
+	       "    double most[3] = {0.0, 0.0, 0.0};\n"
+	       "    int i, grown = 0;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        %sif (pl_magnitude(s->%s[i]) > s->scale[i]) {\n"
+	       "            s->scale[i] = pl_magnitude(s->%s[i]);\n"
+	       "            grown = 1;\n"
+	       "        }\n"
+	       "    if (!grown)\n"
+	       "        return;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (s->scale[i] > most[%s])\n"
+	       "            most[%s] = s->scale[i];\n"
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        const double least = %s%s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
+	       "        s->unit[i] = %s;\n"
+	       "    }\n"
+	       "}\n", floored, now, now, kind_text(e, "i"), kind_text(e, "i"),
+	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "", shortest(ldexp(1, -20)), kind_text(e, "i"),
+	    one_over(e, "size", "0.0"));
+}
+
+/* Do several states share a kind? Else each is measured by itself. */
+bool shares_kinds(const struct emitter *e)
+{
+	int count[3] = { 0 };
+	for (int i = 0; i < e->system->states; i++) {
+		bool moved = i < e->system->n && e->system->velocity[i] >= 0;
+		count[moved ? 0 : i < e->system->n ? 2 : 1]++;
+	}
+	return truncation(e)->adaptive && (count[0] > 1 || count[1] > 1 || count[2] > 1);
+}
+
 /* ---- the last terms ---- */
 
 static void emit_reach_tables(const struct emitter *e)
@@ -103,12 +157,14 @@ static void emit_remainder(const struct emitter *e, int kept)
 	for (int j = 0; j < kept; j++)
 		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
 	say(e, "    for (i = 0; i < %s; i++) {\n"
-	       "        double p = pl_magnitude(c[0][i]), unit = %sp > s->scale[i] ? 1.0 / p : s->unit[i];\n"
+	       "        double p = pl_magnitude(c[0][i]), unit = %sp %s s->scale[i] ? 1.0 / p : s->unit[i];\n"
 	       "        if (unit == 0.0) {\n"
 	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
-	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
+	       "            const double size = p > one ? p : one > two ? one : two;\n"
+	       "            unit = %s;\n"
 	       "        }\n", measured_columns(e),
-	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 1.0 / (p + $n_floor[i])\n            : ") : "");
+	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 1.0 / (p + $n_floor[i])\n            : ") : "",
+	    shares_kinds(e) ? "* s->unit[i] > 1.0 && p >" : ">", one_over(e, "size", "1.0"));
 	for (int j = 0; j < 2 * kept; j++) {
 		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
 		if (order - j >= 2)
@@ -187,11 +243,12 @@ static void emit_steps_served(const struct emitter *e)
 	       "static double $n_unit(const $n *s, int i)\n"
 	       "{\n"
 	       "    const double one = pl_magnitude(s->series[1][i]), two = pl_magnitude(s->series[2][i]);\n"
-	       "    return s->unit[i] != 0.0 ? s->unit[i] : one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
+	       "    const double size = one > two ? one : two;\n"
+	       "    return s->unit[i] != 0.0 ? s->unit[i] : %s;\n"
 	       "}\n"
 	       "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
 	       "static int $n_reach(const $n *s)\n"
-	       "{\n", EXPANSION_SERVES);
+	       "{\n", one_over(e, "size", "1.0"), EXPANSION_SERVES);
 	if (e->system->states + e->step->expansion->measured <= WRITTEN_STATES)
 		emit_written_remainder(e);
 	else
@@ -238,11 +295,15 @@ static void emit_agrees(const struct emitter *e)
 	       "        for (k = %d; k > 0; k--)\n"
 	       "            slope = slope * size + (double)k * c[k][i];\n"
 	       "        large = s->scale[i] > large ? s->scale[i] : large;\n"
+	       "%s"
 	       "        if (!(pl_magnitude(slope - d[1][i]) * size <= %s * large + %s * most))\n"
 	       "            return 0;\n"
 	       "    }\n"
 	       "    return 1;\n"
-	       "}\n", order + 1, order + 1, order, shortest(round_rational(bound)),
+	       "}\n", order + 1, order + 1, order,
+	    !shares_kinds(e) ? "" : "        if (s->unit[i] > 0.0 && large * s->unit[i] < 1.0)\n"
+				    "            large = 1.0 / s->unit[i];\n",
+	    shortest(round_rational(bound)),
 	    e->model->asked.single ? "1e-6" : "1e-15");
 	mpq_clears(bound, times, NULL);
 }

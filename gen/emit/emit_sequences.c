@@ -40,11 +40,12 @@ bool has_choices(const struct emitter *e)
 
 /* ---- the expansion ---- */
 
-static const char *input_parameters(const struct emitter *e, bool typed)
+static const char *input_parameters(const struct emitter *e, enum input_names names)
 {
 	const struct expansion *x = expansion(e);
 	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
-	return format("%s%s", !input ? "" : typed ? "const double u[], " : e->ramps ? "start, " : "u, ",
+	bool typed = names == AS_PARAMETERS, started = names == AS_SAMPLES && e->ramps;
+	return format("%s%s", !input ? "" : typed ? "const double u[], " : started ? "start, " : "u, ",
 		      !slope && !(input && e->ramps) ? "" : typed ? "const double slope[], " : "slope, ");
 }
 
@@ -146,16 +147,32 @@ bool expands_in_step(const struct emitter *e)
 	return !has_offset(e) && !has_choices(e) && !e->ramps && expansion(e)->multiplications <= MOST;
 }
 
-void emit_expand_function(const struct emitter *e)
+static void emit_expansion_unread(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	bool tau = false;
+	for (int i = 0; i < e->system->inputs; i++)
+		tau = tau || (x->input[i] && e->system->input[i].hold);
+	if (!reads_instance(e) && !x->params)
+		say(e, "    (void)s;\n");
+	if (has_offset(e) && !reads_instance(e) && !tau)
+		say(e, "    (void)tau;\n");
+	if (changes(e) && !x->slots)
+		say(e, "    (void)segment;\n");
+	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
+		say(e, "    (void)slope;\n");
+}
+
+void emit_expand_function(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
 	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
 	       "static void $n_expand(const $n *s, %s%s%s%s%sconst double y[$N_STATES], double c[%d][$c]%s)\n"
 	       "{\n",
 	    has_offset(e) ? "tau after now" : "now", spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h",
 	    has_offset(e) ? "double tau, " : "",
-	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "", input_parameters(e, true),
+	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "",
+	    input_parameters(e, AS_PARAMETERS),
 	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
 	    is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
 	emit_coefficients(e);
@@ -176,16 +193,7 @@ void emit_expand_function(const struct emitter *e)
 		say(e, "    ");
 		say_wrapped(e, format("terms[%d] = %s;\n", x->expressions + i, size));
 	}
-	for (int i = 0; i < e->system->inputs; i++)
-		tau = tau || (x->input[i] && e->system->input[i].hold);
-	if (!reads_instance(e) && !x->params)
-		say(e, "    (void)s;\n");
-	if (has_offset(e) && !reads_instance(e) && !tau)
-		say(e, "    (void)tau;\n");
-	if (changes(e) && !x->slots)
-		say(e, "    (void)segment;\n");
-	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
-		say(e, "    (void)slope;\n");
+	emit_expansion_unread(e);
 	say(e, "}\n");
 }
 
@@ -195,7 +203,8 @@ void emit_expand_function(const struct emitter *e)
 static const char *part_parameters(const struct emitter *e)
 {
 	return format("%s%s%sconst int interval[%d], const double y[%s_STATES]", has_choices(e) ? "double when, " : "",
-		      expansion(e)->slots ? "int segment, " : "", input_parameters(e, true), expansion(e)->expressions,
+		      expansion(e)->slots ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
+		      expansion(e)->expressions,
 		      e->upper);
 }
 
@@ -265,13 +274,46 @@ const char *frozen_call(const struct emitter *e, const char *function, const cha
 		      x->slots ? format("%ssegment, ", from) : "", u, rate, from, y, result);
 }
 
+const char *series_arguments(const struct emitter *e, const char *tau, const char *when, const char *segment,
+			     enum input_names names, const char *contact)
+{
+	return format("%s%s%s%s%s", has_offset(e) ? format("%s, ", tau) : "",
+		      has_choices(e) ? format("%s, ", when) : "", changes(e) ? format("%s, ", segment) : "",
+		      input_parameters(e, names), is_divided(e) ? format("%sinterval, ", contact) : "");
+}
+
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			const char *contact, const char *y, const char *c)
 {
-	return format("%s_expand(s, %s%s%s%s%s%s, %s%s);", e->name, has_offset(e) ? format("%s, ", tau) : "",
-		      has_choices(e) ? format("%s, ", when) : "", changes(e) ? format("%s, ", segment) : "",
-		      input_parameters(e, false), is_divided(e) ? format("%sinterval, ", contact) : "", y, c,
+	const char *arguments = series_arguments(e, tau, when, segment, AS_SAMPLES, contact);
+	return format("%s_expand(s, %s%s, %s%s);", e->name, arguments, y, c,
 		      !is_divided(e) ? "" : strcmp(c, "d") == 0 ? ", spare" : ", terms");
+}
+
+/* ---- slopes further on ---- */
+
+const char *series_parameters(const struct emitter *e)
+{
+	return format("%s%s%s%s%s", has_offset(e) ? "double tau, " : "", has_choices(e) ? "double when, " : "",
+		      changes(e) ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
+		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
+}
+
+void emit_slopes_function(const struct emitter *e)
+{
+	say(e, "\n/* h times the slopes at state y, tau after now */\n"
+	       "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])\n"
+	       "{\n", series_parameters(e));
+	emit_coefficients(e);
+	for (int i = 0; i < e->system->states; i++) {
+		const char *name = coefficient(e, i, 1);
+		say(e, "    left[%d] = %s;\n", i, name ? name : "0.0");
+	}
+	emit_expansion_unread(e);
+	if (is_divided(e))
+		say(e, "    (void)interval;\n");
+	say(e, "    (void)y;\n"
+	       "}\n");
 }
 
 /* ---- its sum ---- */

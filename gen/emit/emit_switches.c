@@ -126,14 +126,16 @@ static void emit_finite_end(const struct emitter *e)
 }
 
 /* Half as long, and again, until the coefficients show what the equations do */
-static void emit_shown_length(const struct emitter *e)
+static void emit_shown_length(const struct emitter *e, const char *start, const char *when)
 {
 	if (!has_unseen(e))
 		return;
-	say(e, "    while (length > %s && !$n_shows((const double (*)[$c])s->poly, length))\n"
+	const char *poly = spell(e, "(const double (*)[$c])s->poly"), *size = "length < limit ? length : limit";
+	const char *meets = e->step->slopes ? meets_call(e, start, when, "s->leg", "s->contact.", poly, size) : "1";
+	say(e, "    while (length > %s && !($n_shows(%s, length) && %s))\n"
 	       "        length *= 0.5;\n"
 	       "    if (!(length > %s))\n"
-	       "        return PL_NOT_FINITE;\n", shortest_length(e), shortest_length(e));
+	       "        return PL_NOT_FINITE;\n", shortest_length(e), poly, meets, shortest_length(e));
 }
 
 /* A series in s->poly, up to where it serves or an expression passes a breakpoint */
@@ -169,7 +171,7 @@ static void emit_series_step(const struct emitter *e)
 	       "        return PL_NOT_FINITE;\n");
 	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
 	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n");
-	emit_shown_length(e);
+	emit_shown_length(e, start, when);
 	emit_finite_end(e);
 	say(e, "    s->want = length;\n"
 	       "    if (length < limit)\n"

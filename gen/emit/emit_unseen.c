@@ -11,9 +11,10 @@ static const struct expansion *unseens(const struct emitter *e)
 	return e->step->unseen;
 }
 
-bool has_unseen(const struct emitter *e)
+/* How many h of loads that may cancel each other are followed: so much of the phase of the fastest */
+static const char *crowded_length(const struct emitter *e, double phase)
 {
-	return unseens(e) != NULL;
+	return shortest(phase / (unseens(e)->crowded * mpq_get_d(e->model->h)));
 }
 
 /* Bounds: those of a quartic by its Bezier points, beside the most that later terms add */
@@ -75,6 +76,8 @@ static void emit_follows(const struct emitter *e)
 	       "    const double start = pl_magnitude(c[0]);\n"
 	       "    const double moves = $n_moves(c, stride, degree, size);\n"
 	       "    double bound[2], near, far;\n"
+	       "    if (kind == %d)  /* high powers of sin and cos */\n"
+	       "        return moves <= rise;\n"
 	       "    if (moves <= (kind < %d ? 0.5 * rise : 0.75 * start))\n"
 	       "        return 1;\n"
 	       "    $n_bounds(c, stride, degree, size, bound);\n"
@@ -92,7 +95,7 @@ static void emit_follows(const struct emitter *e)
 	       "    default:  /* what is divided by, and of log */\n"
 	       "        return start <= factor * near;\n"
 	       "    }\n"
-	       "}\n", UNSEEN_ARC, UNSEEN_RISE, nothing, UNSEEN_SPREAD, UNSEEN_TURN, flat, UNSEEN_ARC);
+	       "}\n", UNSEEN_TEETH, UNSEEN_ARC, UNSEEN_RISE, nothing, UNSEEN_SPREAD, UNSEEN_TURN, flat, UNSEEN_ARC);
 }
 
 /* The argument of each, by its kind */
@@ -101,35 +104,103 @@ static void emit_unseen_table(const struct emitter *e, const char *name, bool co
 	const struct expansion *x = unseens(e);
 	const char *text = "";
 	for (int i = 0; i < x->unseens; i++)
-		text = format("%s%s{%d, %d}", text, i == 0 ? "" : i % 8 ? ", " : ",\n    ",
-			      columns ? x->unseen[i].column : i, x->unseen[i].kind);
-	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, and the kind */\n"
-	       "static const int $n_%s[%d][2] = {\n    %s\n};\n", name, x->unseens, text);
+		text = format("%s%s{%d, %d, %d}", text, i == 0 ? "" : i % 6 ? ", " : ",\n    ",
+			      columns ? x->unseen[i].column : i, x->unseen[i].kind, x->unseen[i].power);
+	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, the kind, a power */\n"
+	       "static const int $n_%s[%d][3] = {\n    %s\n};\n", name, x->unseens, text);
 }
 
-static void emit_each(const struct emitter *e, const char *table, const char *stride, int degree, double rise)
+/* c: C of the first coefficient of the i-th argument */
+static void emit_each(const struct emitter *e, const char *table, const char *c, const char *stride, int degree,
+		      const char *size, double rise)
 {
-	say(e, "    int i;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        if (!$n_follows(&c[0][$n_%s[i][0]], %s, %d, size, $n_%s[i][1], %s, %s))\n"
+	say(e, "    for (i = 0; i < %d; i++)\n"
+	       "        if (!$n_follows(%s, %s, %d, %s, $n_%s[i][1], %s / (double)$n_%s[i][2], %s))\n"
 	       "            return 0;\n"
 	       "    return 1;\n"
-	       "}\n", unseens(e)->unseens, table, stride, degree, table, shortest(rise), shortest(exp(rise)));
+	       "}\n", unseens(e)->unseens, c, stride, degree, size, table, shortest(rise), table, shortest(exp(rise)));
+}
+
+static void emit_argument_functions(const struct emitter *e)
+{
+	if (!traces(e))
+		return;
+	emit_moves(e);
+	emit_bounds(e);
+	emit_follows(e);
+}
+
+void emit_meets_function(const struct emitter *e)
+{
+	int order = e->step->expansion->order;
+	mpq_t bound, times;
+	mpq_inits(bound, times, NULL);
+	mpq_set_si(times, 2 * order, 1);
+	mpq_mul(bound, e->model->truncation.tolerance, times);
+	say(e, "\n/* Whether the series c has, `size` and half of it from its start, the slopes that the equations "
+	       "have there */\n"
+	       "static int $n_meets(const $n *s, %sconst double c[%d][$c], double size)\n"
+	       "{\n"
+	       "    double gain[$N_STATES], y[$N_STATES], left[$N_STATES], theta = size;\n"
+	       "    int i, k, place;\n"
+	       "    for (place = 0; place < 2; place++) {\n"
+	       "        $n_ahead(c, theta, gain);\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            y[i] = c[0][i] + gain[i];\n"
+	       "        $n_slopes(s, %sy, left);\n", series_parameters(sloping(e)), order + 1,
+	    series_arguments(sloping(e), spell(e, "tau + theta * $N_H"), "when", "segment", AS_CALLED_HERE, ""));
+	say(e, "        for (i = 0; i < $N_STATES; i++) {\n"
+	       "            double slope_here = 0.0, large = pl_magnitude(y[i]);\n"
+	       "            for (k = %d; k > 0; k--)\n"
+	       "                slope_here = slope_here * theta + (double)k * c[k][i];\n"
+	       "            if (s->unit[i] > 0.0 && large * s->unit[i] < 1.0)\n"
+	       "                large = 1.0 / s->unit[i];\n"
+	       "            if (!(pl_magnitude(left[i] - slope_here) * theta <= %s * large + %s * "
+	       "pl_magnitude(left[i]) "
+	       "* theta))\n"
+	       "                return 0;\n"
+	       "        }\n"
+	       "        theta *= 0.5;\n"
+	       "    }\n"
+	       "    return 1;\n"
+	       "}\n", order, shortest(round_rational(bound)), e->model->asked.single ? "1e-5" : "1e-13");
+	mpq_clears(bound, times, NULL);
+}
+
+const char *meets_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
+		       const char *contact, const char *c, const char *size)
+{
+	enum input_names names = e->step->collocation ? AS_CALLED_HERE : AS_SAMPLES;
+	const char *arguments = series_arguments(sloping(e), tau, when, segment, names, contact);
+	return format("%s_meets(s, %s%s, %s)", e->name, arguments, c, size);
 }
 
 void emit_shows(const struct emitter *e)
 {
+	if (e->step->slopes) {
+		emit_slopes_function(sloping(e));
+		emit_meets_function(e);
+	}
 	if (!has_unseen(e))
 		return;
 	int order = unseens(e)->order;
-	emit_moves(e);
-	emit_bounds(e);
-	emit_follows(e);
-	emit_unseen_table(e, "hidden", true);
+	emit_argument_functions(e);
+	if (traces(e))
+		emit_unseen_table(e, "hidden", true);
 	say(e, "\n/* Whether the coefficients show what the equations do over `size` from their start */\n"
 	       "static int $n_shows(const double c[%d][$c], double size)\n"
-	       "{\n", order + 1);
-	emit_each(e, "hidden", spell(e, "$c"), order, 0.5 * order);
+	       "{\n"
+	       "%s", order + 1, traces(e) ? "    int i;\n" : "");
+	if (crowds(e))
+		say(e, "    if (size > %s)  /* loads that may cancel */\n"
+		       "        return 0;\n", crowded_length(e, 0.5 * order));
+	if (traces(e))
+		emit_each(e, "hidden", spell(e, "&c[0][$n_hidden[i][0]]"), spell(e, "$c"), order, "size", 0.5 * order);
+	else
+		say(e, "    (void)c;\n"
+		       "    (void)size;\n"
+		       "    return 1;\n"
+		       "}\n");
 }
 
 /* ---- along a step of the collocation ---- */
@@ -147,14 +218,17 @@ static const char *known_at(const struct emitter *e, const char *ahead, const ch
 const char *shows_along(const struct emitter *e)
 {
 	const char *samples = trace_reads_known(e) && e->system->inputs ? ", u, slope" : "";
-	return has_unseen(e) ? spell(e, " && !$n_shows_along(s%s, size, (const double (*)[$c])poly)", samples) : "";
+	const char *along = !traces(e) ? "0" : spell(e, "!$n_shows_along(s%s, size, (const double (*)[$c])poly)",
+						      samples);
+	int phase = 2 * e->step->collocation->stages;
+	return crowds(e) ? format("size > %s || %s", crowded_length(e, phase), along) : along;
 }
 
 /* Its nodes see what lies between them where an argument moves by less than would pass over it: an exponent of
  * (3 S / 2)^2 is one of exp(-z^2) for z from -3 S / 2 on, whose nodes are 3 apart. */
 void emit_shows_along(const struct emitter *e)
 {
-	if (!has_unseen(e))
+	if (!traces(e))
 		return;
 	int s = e->step->collocation->stages, n = unseens(e)->unseens;
 	bool known = trace_reads_known(e);
@@ -192,9 +266,5 @@ void emit_shows_along(const struct emitter *e)
 	       "        }\n"
 	       "    }\n"
 	       "%s", trace_call(e, "node", "y", "value"), n, s, known ? "" : "    (void)size;\n");
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        if (!$n_follows(&c[0][i], %d, %d, 1.0, $n_argument[i][1], %d.0, %s))\n"
-	       "            return 0;\n"
-	       "    return 1;\n"
-	       "}\n", n, n, s, 2 * s, shortest(exp(2 * s)));
+	emit_each(e, "argument", "&c[0][i]", format("%d", n), s, "1.0", 2 * s);
 }

@@ -327,3 +327,18 @@ void emit_get_kept_state(const struct emitter *e, const char *vector)
 		if (factor_of_momentum(e, i))
 			say(e, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
 }
+
+bool has_unseen(const struct emitter *e)
+{
+	return e->step->unseen != NULL;
+}
+
+bool traces(const struct emitter *e)
+{
+	return has_unseen(e) && e->step->unseen->unseens > 0;
+}
+
+bool crowds(const struct emitter *e)
+{
+	return has_unseen(e) && e->step->unseen->crowded > 0;
+}

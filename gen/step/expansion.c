@@ -229,7 +229,8 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
 	rank_breakpoints(w->x);
-	w->x->unseen = unseen_of(model, &w->x->unseens);
+	w->x->unseen = unseen_of(model, &w->x->unseens, &w->x->looks);
+	w->x->crowded = model->truncation.adaptive ? crowded_frequency(system) : 0;
 	place_unseen(w);
 	find_degrees(w);
 	find_tops(w);

@@ -237,11 +237,22 @@ static void need_all_known(const struct step *step)
 		      "one expansion is over several steps: a load or a condition on t changes its formula inside");
 }
 
+/* The slopes of all states from a state alone, by which a series is judged */
+static void find_slopes(struct step *step)
+{
+	int states = step->branch->system.states, *column = ARRAY(int, (size_t)states);
+	for (int i = 0; i < states; i++)
+		column[i] = i;
+	if (step->unseen && step->unseen->looks)
+		step->slopes = part_of_expansion(step, step->expansion, 1, states, column);
+}
+
 static void divide_step(struct step *step)
 {
 	step->divided = step->expansion->expressions > 0 ? step->expansion : NULL;
 	check_divided(step);
-	step->unseen = step->expansion->unseens > 0 ? step->expansion : NULL;
+	const struct expansion *x = step->expansion;
+	step->unseen = x->unseens > 0 || x->looks || x->crowded > 0 ? x : NULL;
 }
 
 static void build_expanded_step(struct step *step)
@@ -252,6 +263,7 @@ static void build_expanded_step(struct step *step)
 	read_table_if_there(step);
 	build_series(step);
 	divide_step(step);
+	find_slopes(step);
 	count_series(step);
 }
 
@@ -272,10 +284,12 @@ static void build_collocated_step(struct step *step)
 	divide_step(step);
 	step->collocation = collocation_of(step);
 	step->motion = motion_of(step);
-	if (switches)
+	if (switches) {
+		find_slopes(step);
 		count_series(step);
-	else
+	} else {
 		step->expansion = NULL;
+	}
 	count_collocation(step);
 }
 

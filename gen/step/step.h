@@ -305,6 +305,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
 	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
+	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
 	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
@@ -1061,15 +1062,19 @@ enum unseen_kind {                  /* what of the argument a series has to foll
 	UNSEEN_RISE,                /* exp: how far it rises, */
 	UNSEEN_SPREAD,              /* sinh, cosh: how far it goes off 0, */
 	UNSEEN_TURN,                /* tanh: how near it comes to 0, */
+	UNSEEN_TEETH,               /* high powers of sin and cos: how far it goes, */
 	UNSEEN_ARC,                 /* atan: likewise, */
 	UNSEEN_DIVISOR              /* log, and what is divided by: by which factor it falls */
 };
 struct unseen {
 	const struct form *form;
 	enum unseen_kind kind;
+	int power;                  /* of TEETH */
 	int column;                 /* as of an expression */
 };
-struct unseen *unseen_of(const struct model *model, int *count);
+/* *looks: there is what no argument bounds, or what is steep: the slope inside and at the end is looked at too */
+struct unseen *unseen_of(const struct model *model, int *count, bool *looks);
+double crowded_frequency(const struct linear *system);      /* 1/s: the highest of loads that may cancel; 0: of few */
 
 /* Impacts and what is held beside a series. Beside dividing expressions the search watches other sequences. */
 struct watch {
@@ -1130,6 +1135,8 @@ struct expansion {
 	int measured;               /* the first of them: their last terms count as those of states do */
 	int unseens;                /* what bounds how far a series serves beside its last terms */
 	struct unseen *unseen;
+	bool looks;                 /* at slopes further on */
+	double crowded;             /* 1/s, of loads that may cancel the highest frequency */
 	struct contacts *contacts;  /* NULL: there are none */
 	/* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
 	int *force;

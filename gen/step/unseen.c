@@ -92,6 +92,7 @@ struct finding {
 	bool *seen;                 /* per atom */
 	int count;
 	struct unseen *unseen;
+	bool looks;
 };
 
 /* Of one that time or the state has, by its logarithm */
@@ -119,36 +120,74 @@ static bool hides(const struct atom *atom, enum unseen_kind *kind)
 	}
 }
 
-static void add_unseen(struct finding *f, const struct form *form, enum unseen_kind kind)
+static void add_unseen(struct finding *f, const struct form *form, enum unseen_kind kind, int power)
 {
+	f->looks = f->looks || kind < UNSEEN_ARC;
 	for (int i = 0; i < f->count; i++)
-		if (f->unseen[i].form == form && f->unseen[i].kind == kind)
+		if (f->unseen[i].form == form && f->unseen[i].kind == kind && f->unseen[i].power >= power)
 			return;
 	ENLARGE(f->unseen, (size_t)f->count + 1);
-	f->unseen[f->count++] = (struct unseen){ .form = form, .kind = kind };
+	f->unseen[f->count++] = (struct unseen){ .form = form, .kind = kind, .power = power };
+}
+
+/* Powers so high that terms of the first orders are nothing where their base is small */
+static void find_in_product(struct finding *f, const struct atom *atom)
+{
+	enum { OF_WAVES = 4, HIGH = 8 };
+	for (int i = 0; i < atom->operands; i++) {
+		const struct form *base = atom->operand[i];
+		const struct atom *of = base->terms == 1 ? base->term[0].basis.atom : NULL;
+		bool wave = of && of->kind == ATOM_CALL && (of->function == FN_SIN || of->function == FN_COS);
+		if (wave && atom->exponent[i] >= OF_WAVES)
+			add_unseen(f, of->operand[0], UNSEEN_TEETH, (int)atom->exponent[i]);
+		f->looks = f->looks || (!wave && atom->exponent[i] >= HIGH);
+	}
+}
+
+static void find_in_atom(struct finding *f, const struct atom *atom)
+{
+	enum unseen_kind kind;
+	if (atom->kind == ATOM_PRODUCT)
+		find_in_product(f, atom);
+	if (hides(atom, &kind) && !(kind == UNSEEN_DIVISOR && stays_near(atom->operand[0])))
+		add_unseen(f, atom->operand[0], kind, 1);
+	else if (atom->kind == ATOM_POWER || (atom->kind == ATOM_CALL && atom->function == FN_SQRT))
+		f->looks = true;
 }
 
 static void find_in_form(struct finding *f, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *atom = form->term[i].basis.atom;
-		enum unseen_kind kind;
 		if (!atom || f->seen[atom->index])
 			continue;
 		f->seen[atom->index] = true;
-		if (hides(atom, &kind) && (atom->time || atom->state || atom->velocity || atom->input) &&
-		    !(kind == UNSEEN_DIVISOR && stays_near(atom->operand[0])))
-			add_unseen(f, atom->operand[0], kind);
+		if (atom->time || atom->state || atom->velocity || atom->input)
+			find_in_atom(f, atom);
 		for (int k = 0; k < atom->operands; k++)
 			find_in_form(f, atom->operand[k]);
 	}
 }
 
-struct unseen *unseen_of(const struct model *model, int *count)
+struct unseen *unseen_of(const struct model *model, int *count, bool *looks)
 {
-	struct finding f = { model, ARRAY(bool, (size_t)atoms_count(model->atoms)), 0, NULL };
+	struct finding f = { .model = model, .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
 	for (int e = 0; e < model->channels && model->truncation.adaptive; e++)
 		find_in_form(&f, model->operator[0].left[e]);
 	*count = f.count;
+	*looks = f.looks;
 	return f.unseen;
+}
+
+double crowded_frequency(const struct linear *system)
+{
+	enum { MANY = 3 };
+	double highest = 0;
+	int waves = 0;
+	for (int l = 0; l < system->loads; l++)
+		if (oscillates(system->load[l].wave)) {
+			highest = fmax(highest, mpq_get_d(system->load[l].wave->w));
+			waves++;
+		}
+	return waves >= MANY ? highest : 0;
 }

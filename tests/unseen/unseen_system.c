@@ -83,7 +83,7 @@ struct unseen unseen_of(unsigned seed)
     }
     if (u.kind == WELL || u.kind == SECANT || u.kind == SWITCH || u.kind == COSH)     /* within the largest number */
         u.steep = fmin(u.steep, 60);
-    u.power = 2 * (int)drawn(4, 20) + 1;
+    u.power = 2 * (int)drawn(4, 16) + 1;
     if (!is_in_time(u.kind))
         return u;
     u.at = number(1, 9);
