@@ -29,7 +29,7 @@ static inline pl_chain no_impact(real h)
 {
     pl_chain chain;
     chain.last = -h;
-    chain.most = 0;
+    chain.most = chain.least = 0;
     chain.acting = 0;
     chain.close = chain.impacts = chain.ended = chain.all = chain.full = 0;
     return chain;

@@ -2,17 +2,16 @@
 /* Impacts, contacts at rest and dry friction beside a Taylor series: from event to event, each found on the series of
  * the region before it.  What holds, what slips and what flies behind an event is found by looking at all combinations
  * of those that are at rest; the series of a combination says whether it can be. */
+#include "chain.h"
 #include "columns.h"
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
-enum { MOST = 4, MOST_AT_ONCE = 200 };
+/* How many at rest are looked at together: 3^MOST combinations */
+enum { MOST = 4 };
 
 #ifdef REAL_IS_FLOAT
-#define BRIEF PL_BRIEFF
 #define NEAR 0x1p-10f
 #else
-#define BRIEF PL_BRIEF
 #define NEAR 0x1p-20
 #endif
 
@@ -285,6 +284,19 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
     return 1;
 }
 
+/* Whether a bounce is on its guard, flying or at rest, or where rounding has taken it beyond */
+static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
+{
+    const int interval = at->interval[p->expression];
+    column w;
+    real noise;
+    if (p->hold < 0 || (interval != m->hold[p->hold].interval && interval != free_of(m, p))) {
+        return 0;
+    }
+    w = watched(m, at, p->place);
+    return off_start(&w, 0, &noise) >= -noise;
+}
+
 /* How long it flies that leaves the guard of this impact, in the unit of time of c; -1: for good */
 static real flight(const pl_events *m, const pl_instant *at, const pl_strike *p)
 {
@@ -340,7 +352,7 @@ real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
     int k;
     for (k = 0; k < m->strikes; k++) {
         const pl_strike *p = &m->strike[k];
-        const real along = is_near(m, at, p->place) ? flight(m, at, p) : -1;
+        const real along = p->hold >= 0 && touches(m, at, p) ? flight(m, at, p) : -1;
         if (along > 0 && at->interval[p->expression] == free_of(m, p)) {
             *size = smaller(*size, 2 * along);
         }
@@ -350,17 +362,11 @@ real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
 
 /* ---- impacts ---- */
 
-static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
-{
-    const int interval = at->interval[p->expression];
-    return p->hold >= 0 && (interval == m->hold[p->hold].interval || interval == free_of(m, p)) &&
-           is_near(m, at, p->place);
-}
-
 static real speed_of(const pl_events *m, const pl_instant *at, const pl_strike *p)
 {
     const column w = watched(m, at, p->speed);
-    return certain(&w);
+    const real speed = certain(&w);
+    return magnitude(speed) <= at->chain.least ? 0 : speed;
 }
 
 /* The states of these assignments, all from the same state */
@@ -374,34 +380,23 @@ static void assign(const pl_events *m, pl_instant *at, int first, int count)
     refresh(at);
 }
 
-/* All impacts at this instant; begins: the one whose guard was met.  Returns those that acted, as bits. */
-static uint32_t collide(const pl_events *m, int begins, pl_instant *at)
+/* Whether a bounce stops an expression that would go this way */
+static int is_stopped(const pl_events *m, const pl_instant *at, int expression, int way)
 {
-    uint32_t struck = 0;
-    int k, rounds = 0;
+    int k;
     for (k = 0; k < m->strikes; k++) {
         const pl_strike *p = &m->strike[k];
-        if (k != begins && !(touches(m, at, p) && speed_of(m, at, p) > 0)) {
-            continue;
+        if (p->expression == expression && p->hold >= 0 && p->upward == (way > 0) &&
+            (at->interval[expression] == m->hold[p->hold].interval || at->interval[expression] == free_of(m, p))) {
+            return 1;
         }
-        if (++rounds > MOST_AT_ONCE || !list(m, at, at->time, p->expression, p->breakpoint, p->upward)) {
-            break;
-        }
-        assign(m, at, p->jump, p->jumps);
-        if (p->hold >= 0) {
-            at->interval[p->expression] = free_of(m, p);
-            take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, p->place));
-            refresh(at);
-        }
-        struck |= (uint32_t)1 << k;
-        begins = k == begins ? -1 : begins;
-        k = -1;
     }
-    return struck;
+    return 0;
 }
 
-/* Into the intervals where a jump has put expressions */
-static void follow(const pl_events *m, pl_instant *at)
+/* Into the intervals where a jump has put expressions.  Past a bounce a jump of a state alone leads (`jumped`): what
+ * rounding has taken beyond one is still before it. */
+static void follow(const pl_events *m, pl_instant *at, int jumped)
 {
     const pl_divided *d = m->divided;
     const real *b = d->at;
@@ -420,6 +415,9 @@ static void follow(const pl_events *m, pl_instant *at)
                 off = off_start(&e, b[*interval - 1], &noise);
                 way = -off > noise ? -1 : 0;
             }
+            if (way != 0 && !jumped && is_stopped(m, at, i, way)) {
+                way = 0;
+            }
             if (way != 0) {
                 (void)list(m, at, at->time, i, *interval - (way < 0), way > 0);
             }
@@ -427,6 +425,176 @@ static void follow(const pl_events *m, pl_instant *at)
         }
     }
     refresh(at);
+}
+
+static void tell_rests(const pl_events *m, uint32_t laid, pl_instant *at)
+{
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        if (laid >> k & 1) {
+            (void)list(m, at, at->time, m->strike[k].expression, m->strike[k].breakpoint, m->strike[k].upward);
+            (*at->rested)++;
+        }
+    }
+}
+
+static int conflicts_now(const pl_events *m, const pl_instant *at)
+{
+    uint32_t held = 0;
+    int i;
+    for (i = 0; i < m->holds; i++) {
+        held |= (uint32_t)holds_now(m, at, i) << i;
+    }
+    for (i = 0; i < m->conflicts && (held & m->conflict[i].set) != m->conflict[i].set; i++) {
+        ;
+    }
+    return i < m->conflicts;
+}
+
+/* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
+static uint32_t seat(const pl_events *m, uint32_t set, pl_instant *at)
+{
+    uint32_t laid = 0;
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        if (!(set >> k & 1) || holds_now(m, at, p->hold)) {
+            continue;
+        }
+        at->interval[p->expression] = m->hold[p->hold].interval;
+        if (conflicts_now(m, at)) {
+            at->interval[p->expression] = free_of(m, p);
+        } else {
+            laid |= (uint32_t)1 << k;
+        }
+    }
+    refresh(at);
+    return laid;
+}
+
+/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
+ * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
+ * rest now. */
+static uint32_t lay(const pl_events *m, uint32_t set, pl_instant *at)
+{
+    uint32_t laid;
+    int k, sweeps, moving = 1;
+    for (k = 0; k < m->strikes; k++) {
+        set |= (uint32_t)(m->strike[k].hold >= 0 && holds_now(m, at, m->strike[k].hold)) << k;
+    }
+    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
+        moving = 0;
+        for (k = 0; k < m->strikes; k++) {
+            if (set >> k & 1) {
+                moving |= magnitude(speed_of(m, at, &m->strike[k])) > 0;
+                assign(m, at, m->strike[k].still, m->strike[k].jumps);
+                take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, m->strike[k].place));
+                refresh(at);
+            }
+        }
+    }
+    laid = seat(m, set, at);
+    keep(m, at);
+    return laid;
+}
+
+/* Impacts without an end become slower and slower: what has met and has at most this speed comes to rest together. */
+static void calm(const pl_events *m, real slow, uint32_t met, pl_instant *at)
+{
+    uint32_t set = 0;
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        if (met >> k & 1 && magnitude(speed_of(m, at, &m->strike[k])) <= slow) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    tell_rests(m, lay(m, set, at), at);
+}
+
+/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
+ * what has been parted for good.  0: nothing does. */
+static int give_up(const pl_events *m, uint32_t met, pl_instant *at)
+{
+    uint32_t set = 0;
+    real fastest = 0;
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        fastest = met >> k & 1 ? larger(fastest, speed_of(m, at, &m->strike[k])) : fastest;
+    }
+    for (k = 0; k < m->strikes; k++) {
+        const int loses = met >> k & 1 && m->strike[k].restitution < 1;
+        const real speed = loses ? speed_of(m, at, &m->strike[k]) : -16 * fastest;
+        if (speed > 0 || (at->chain.acting >> k & 1 && speed > -16 * fastest)) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    tell_rests(m, lay(m, set, at), at);
+    at->chain.impacts = MOST_AT_ONCE - SOME;
+    at->chain.ended++;
+    return set != 0;
+}
+
+/* Whether there is room for one more impact: what loses speed goes on beyond the list. */
+static int has_room(const pl_events *m, int k, pl_instant *at)
+{
+    const pl_strike *p = &m->strike[k];
+    if (is_listed(&at->chain, k, *at->crossings, m->max_events) &&
+        !list(m, at, at->time, p->expression, p->breakpoint, p->upward)) {
+        at->chain.full = !(p->restitution < 1);
+    }
+    return !at->chain.full && has_time(&at->chain);
+}
+
+/* All impacts at this instant; begins: the one whose guard was met.  Returns those that acted, as bits.  What has met
+ * once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
+static uint32_t collide(const pl_events *m, int begins, pl_instant *at)
+{
+    uint32_t struck = 0, met = 0;
+    real slow = 0;
+    int k, calms = 0;
+    go_on(&at->chain, at->time, m->h);
+    for (k = 0; k < m->strikes && !at->chain.full; k++) {
+        const pl_strike *p = &m->strike[k];
+        real speed = 0;
+        if (met >> k & 1 || touches(m, at, p)) {
+            const column w = watched(m, at, p->speed);
+            met |= (uint32_t)1 << k;
+            at->chain.least = larger(at->chain.least, noise_of(magnitude(column_at(&w, 1))));
+            speed = speed_of(m, at, p);
+            slow = larger(at->chain.least, CALM * at->chain.most);
+        }
+        if (k != begins && speed <= slow) {
+            calms |= speed > 0;
+            continue;
+        }
+        at->chain.most = larger(at->chain.most, speed);
+        if (at->chain.impacts == MOST_AT_ONCE) {
+            at->chain.full = !give_up(m, met, at);
+            begins = k = -1;
+            continue;
+        }
+        if (!has_room(m, k, at)) {
+            break;
+        }
+        assign(m, at, p->jump, p->jumps);
+        if (p->hold >= 0) {
+            at->interval[p->expression] = free_of(m, p);
+            take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, p->place));
+            refresh(at);
+            met |= (uint32_t)1 << k;
+        } else {
+            follow(m, at, 1);
+            met = 0;
+        }
+        struck |= (uint32_t)1 << k;
+        begins = k == begins ? -1 : begins;
+        calms = 0;
+        k = -1;
+    }
+    if (calms) {
+        calm(m, slow, met, at);
+    }
+    return struck;
 }
 
 /* ---- what is held, and what is not ---- */
@@ -584,6 +752,80 @@ static void settle(const pl_events *m, pl_instant *at, int listed)
     refresh(at);
 }
 
+/* Several contacts that are as good as at rest together, those of them that fly as bits: all that any of them could
+ * still do is over within BRIEF of h under the force that presses one of them, or lower than rounding. */
+static uint32_t near_rest(const pl_events *m, const pl_instant *at)
+{
+    uint32_t set = 0;
+    real most = 0, rounding = 0, noise, fastest;
+    int k, together = 0;
+    for (k = 0; k < m->strikes; k++) {
+        if (touches(m, at, &m->strike[k])) {
+            const column place = watched(m, at, m->strike[k].place), speed = watched(m, at, m->strike[k].speed);
+            (void)off_start(&place, 0, &noise);
+            most = larger(most, column_at(&speed, 1));
+            rounding = larger(rounding, noise);
+        }
+    }
+    fastest = most * BRIEF / 2;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        const real e = 1 - p->restitution;
+        real speed;
+        if (p->hold < 0 || (!holds_now(m, at, p->hold) && at->interval[p->expression] != free_of(m, p)) ||
+            value_of(m, at, p->place) < -larger(rounding, fastest * BRIEF * m->h)) {
+            continue;
+        }
+        speed = magnitude(speed_of(m, at, p));
+        if (holds_now(m, at, p->hold)) {
+            together++;
+        } else if (speed <= fastest * e || m->h * speed * speed <= 2 * most * rounding * e * e) {
+            set |= (uint32_t)1 << k;
+            together++;
+        }
+    }
+    return together > 1 ? set : 0;
+}
+
+/* Whether what rests there is pressed, by more than rounding */
+static int is_pressed(const pl_events *m, const pl_instant *at, int hold)
+{
+    int up, any = 0;
+    for (up = 0; up < 2; up++) {
+        const int watch = up ? m->hold[hold].up : m->hold[hold].down;
+        if (watch >= 0) {
+            const column w = watched(m, at, watch);
+            if (!(certain(&w) < 0)) {
+                return 0;
+            }
+            any = 1;
+        }
+    }
+    return any;
+}
+
+/* Several that strike each other come to rest together if all of them are pressed then. */
+static void rest_together(const pl_events *m, uint32_t struck, pl_instant *at)
+{
+    const uint32_t set = struck != 0 ? near_rest(m, at) : 0, laid = set != 0 ? seat(m, set, at) : 0;
+    int k, pressed = 1;
+    for (k = 0; k < m->strikes; k++) {
+        pressed = pressed && (!(laid >> k & 1) || is_pressed(m, at, m->strike[k].hold));
+    }
+    for (k = 0; k < m->strikes; k++) {
+        if (laid >> k & 1) {
+            at->interval[m->strike[k].expression] = free_of(m, &m->strike[k]);
+        }
+    }
+    if (laid != 0) {
+        refresh(at);
+    }
+    if (laid != 0 && pressed) {
+        tell_rests(m, lay(m, laid, at), at);
+        settle(m, at, 1);
+    }
+}
+
 /* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
 static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
 {
@@ -596,14 +838,13 @@ static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
         if (!(left >= 0 && left <= (full ? 1 : BRIEF)) || !touches(m, at, p) || holds_now(m, at, p->hold)) {
             continue;
         }
-        assign(m, at, p->still, p->jumps);
-        at->interval[p->expression] = m->hold[p->hold].interval;
-        refresh(at);
-        put_back(m, at, p->hold);
-        (void)list(m, at, at->time + left * m->h, p->expression, p->breakpoint, p->upward);
-        (*at->rested)++;
+        if (lay(m, (uint32_t)1 << k, at) != 0) {
+            (void)list(m, at, at->time + left * m->h, p->expression, p->breakpoint, p->upward);
+            (*at->rested)++;
+        }
         settle(m, at, 1);
     }
+    rest_together(m, struck, at);
 }
 
 /* ---- one event ---- */
@@ -611,7 +852,8 @@ static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
 int pl_events_pass(const pl_events *m, pl_instant *at)
 {
     const pl_crossing e = at->next;
-    const int full = *at->crossings == m->max_events, begins = at->strike;
+    const int begins = at->strike, loses = begins >= 0 && m->strike[begins].restitution < 1;
+    const int full = *at->crossings == m->max_events && !loses;
     int *interval = &at->interval[e.expression];
     uint32_t struck = 0;
     if (full) {
@@ -632,13 +874,13 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     }
     if (begins >= 0) {
         struck = collide(m, begins, at);
-        follow(m, at);
+        follow(m, at, 0);
     }
     settle(m, at, 1);
     at->freed = -1;
     come_to_rest(m, struck, at);
     keep(m, at);
-    return 1;
+    return !at->chain.full;
 }
 
 int pl_events_begin(const pl_events *m, pl_instant *at)

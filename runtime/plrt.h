@@ -657,10 +657,11 @@ typedef struct pl_events {
 } pl_events;
 
 /* Impacts that follow each other in a step.  last: when the last one was; most: the fastest of those that follow each
- * other in no time to speak of, close: so many they are; impacts: at this instant, acting: those that acted of late, as
- * bits, ended: how often they were ended; all: events of the step; full: there is no more room */
+ * other in no time to speak of, close: so many they are; least: a speed that is but rounding of forces over a step;
+ * impacts: at this instant, acting: those that acted of late, as bits, ended: how often they were ended; all: events of
+ * the step; full: there is no more room */
 typedef struct pl_chain {
-    double last, most;
+    double last, most, least;
     uint32_t acting;
     int close, impacts, ended, all, full;
 } pl_chain;
@@ -726,7 +727,7 @@ typedef struct pl_eventsf {
 } pl_eventsf;
 
 typedef struct pl_chainf {
-    float last, most;
+    float last, most, least;
     uint32_t acting;
     int close, impacts, ended, all, full;
 } pl_chainf;

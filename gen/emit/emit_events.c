@@ -133,7 +133,7 @@ void emit_event_functions(const struct emitter *e)
 	       "static pl_instant $n_instant(const $n_from *from, double *y, double *rest, double *c, double *terms,\n"
 	       "    double *work, $n_contact *contact)\n"
 	       "{\n"
-	       "    static const pl_chain none = {-$N_H, 0.0, 0u, 0, 0, 0, 0, 0};\n"
+	       "    static const pl_chain none = {-$N_H, 0.0, 0.0, 0u, 0, 0, 0, 0, 0};\n"
 	       "    pl_instant at;\n"
 	       "    at.expand = $n_again;\n"
 	       "    at.from = from;\n"
