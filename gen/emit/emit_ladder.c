@@ -131,7 +131,7 @@ const char *ladder_text(const struct emitter *e, const struct guards *g, const c
 {
 	const char *of = prefix_of_tables(e), *places = spell(e, "$o_first_rung");
 	if (!has_ladder(e->step))
-		return format("{%shalvings, %shalvings, %s, %s, %shalvings}", of, of, none, none, of);
+		return "{NULL, NULL, NULL, NULL, NULL}";        /* where no piece is halved it is not read */
 	const char *reach = rows_of_reach(e, g) > 0 ? format("%sbend[0]", of) : none;
 	return format("{%s, %sspacing, %srungs[0][0], %s, %s}", places, of, of, reach,
 		      g ? spell(e, "$o_gate_rung") : places);

@@ -524,7 +524,7 @@ static void emit_unseen_forms(const struct emitter *e, const struct reads *r)
 
 /* ---- functions of them: their text first, since what an interval decides is not read ---- */
 
-static bool mentions(const char *text, const char *name)
+bool mentions(const char *text, const char *name)
 {
 	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
 	size_t length = strlen(name);

@@ -299,16 +299,35 @@ const char *series_parameters(const struct emitter *e)
 		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
 }
 
+/* A state that is its own first coefficient, and that no slope reads */
+static void emit_unread_states(const struct emitter *e, const char *text)
+{
+	for (int i = 0; i < e->system->states; i++) {
+		const char *name = coefficient(e, i, 0);
+		const char *made = name ? strstr(text, format("const double %s = ", name)) : NULL;
+		if (made && !mentions(made + strlen("const double ") + strlen(name), name))
+			say(e, "    (void)%s;\n", name);
+	}
+}
+
 void emit_slopes_function(const struct emitter *e)
 {
+	char *text = NULL;
+	size_t length = 0;
+	struct emitter aside = *e;
 	say(e, "\n/* h times the slopes at state y, tau after now */\n"
 	       "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])\n"
 	       "{\n", series_parameters(e));
-	emit_coefficients(e);
+	aside.to = need_memory(open_memstream(&text, &length));
+	emit_coefficients(&aside);
 	for (int i = 0; i < e->system->states; i++) {
 		const char *name = coefficient(e, i, 1);
-		say(e, "    left[%d] = %s;\n", i, name ? name : "0.0");
+		say(&aside, "    left[%d] = %s;\n", i, name ? name : "0.0");
 	}
+	fclose(aside.to);
+	put(e->to, text, length);
+	emit_unread_states(e, text);
+	free(text);
 	emit_expansion_unread(e);
 	if (is_divided(e))
 		say(e, "    (void)interval;\n");

@@ -234,7 +234,7 @@ void emit_shows_along(const struct emitter *e)
 	bool known = trace_reads_known(e);
 	if (!e->step->expansion) {
 		emit_moves(e);
-	emit_bounds(e);
+		emit_bounds(e);
 		emit_follows(e);
 	}
 	emit_unseen_table(e, "argument", false);

@@ -237,6 +237,7 @@ compile_code() {
 	fi
 	for file in $2; do
 		$run_cc -I"$source/runtime" -c "$file" 2>"$id.cc_said" || return
+		echo "${file%.c}.o" >>run_only.list
 	done
 }
 
@@ -267,6 +268,7 @@ compile() {
 				2>"$id.cc_said" ||
 				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } \
 					>"$id.wrong"; continue; }
+			echo "$id.again.o" >>run_only.list
 		fi
 		echo "$id" >>"compiled_$cc.list"
 	done <"subjects_$cc.list"
@@ -275,6 +277,7 @@ compile() {
 batch_build() {
 	for cc in gcc clang; do
 		: >"compiled_$cc.list"
+		: >run_only.list
 		[ -s "subjects_$cc.list" ] || continue
 		compile "$cc"
 		[ -s "compiled_$cc.list" ] || continue
@@ -295,13 +298,13 @@ batch_build() {
 			objects="$objects $(sed -n 's/^#include "\(.*\)\.h"$/\1.o/p' "$id.subject" | tr '\n' ' ')"
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
-		rm -f objects.a
-		# shellcheck disable=SC2086
-		ar rcsD objects.a $objects
-		rm -rf passing && mkdir passing && finish_archive objects.a passing
+		# those by run_cc as an archive, of which the linker takes what belongs to a program
+		rm -rf run_only.a passing && mkdir passing
+		xargs ar rcsD run_only.a <run_only.list && finish_archive run_only.a passing
+		objects=$(echo "$objects" | tr ' ' '\n' | grep -v -x -F -f run_only.list)
 		# shellcheck disable=SC2086
 		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
-			objects.a "$folder/drive_$cc.a" \
+			$objects run_only.a "$folder/drive_$cc.a" \
 			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \
 				2>&1 ||
 				sed 's/^/# /' "link_$cc.said" | head -n 20

@@ -11,9 +11,9 @@ case $dropped in /*) ;; *) dropped=$PWD/$dropped ;; esac
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 here=$root/tests/modes
-. "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
 runtime_archive "$root/runtime"
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
 cp "$here"/*.spec "$here"/*.mtx .
 cp -r "$root/models/beam" .
 
@@ -22,14 +22,14 @@ made() {
 	prefix=$1
 	shift
 	"$plgen" --prefix "$prefix" -o "$prefix.c" "$@" &&
-		$run_cc -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
+		${CC:-cc} -std=c99 -O0 $warnings -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
 }
 
 # compiled PROGRAM FLAGS AND FILES ...
 compiled() {
 	program=$1
 	shift
-	$run_cc -I"$root/runtime" -I"$root/tests/emitted" -I. "$@" -lm -o "$program"
+	${CC:-cc} -std=c99 -O0 -Wall -I"$root/runtime" -I"$root/tests/emitted" -I. "$@" -lm -o "$program"
 }
 
 # closed NAME MODES KEPT FLAGS
@@ -84,7 +84,7 @@ against repeated 2 '-DINPUTS -DSETTLES=250'
 loses() {
 	{
 		"$dropped" "$1.spec" "$2" dropped >dropped.c && "$dropped" "$1.spec" "$2" dropped header >dropped.h &&
-			$run_cc -I"$root/runtime" -c dropped.c -o dropped.o
+			${CC:-cc} -std=c99 -O0 -I"$root/runtime" -c dropped.c -o dropped.o
 	} >log 2>&1
 	result $? "$1, modes $2: a model of what is lost"
 	archive="dropped.o $whole_archive"
