@@ -489,6 +489,7 @@ static void emit_whole_step(const struct emitter *e)
 	emit_clear_step(e);
 	emit_take_back(e);
 	emit_step_end(e);
+	emit_segment_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
 		emit_region_status(e);
 }

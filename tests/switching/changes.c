@@ -143,6 +143,23 @@ static void region_of_time(void)
 	run_free(&r);
 }
 
+/* What an output alone reads changes too. */
+static void only_told(int step)
+{
+	const struct variant *of = variant_of(changes_table, "told_%d", step);
+	struct run r = run_new(of);
+	double worst = 0;
+	while (of->model->time(r.state) < 1) {
+		double out[1];
+		run_step(&r, NULL);
+		of->model->out(r.state, out);
+		const double t = of->model->time(r.state);
+		worst = worse(worst, fabs(out[0] - (t < 0.344 ? 0.9 * t : t)));
+	}
+	is_close(worst, 0, 1e-15, "an output whose formula changes, h = %g", of->model->h);
+	run_free(&r);
+}
+
 int main(void)
 {
 	for (int step = 0; step < 4; step++) {
@@ -155,5 +172,7 @@ int main(void)
 	}
 	set_later();
 	region_of_time();
+	for (int step = 0; step < 2; step++)
+		only_told(step);
 	return tap_end();
 }

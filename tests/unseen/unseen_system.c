@@ -179,5 +179,5 @@ static void slopes(real t, const real *y, const real *unused, real *dydt)
 void follow_unseen(const struct unseen *u, real from, real to, real *y)
 {
     followed = u;
-    gragg(slopes, 2 * u->masses, from, to, 0.7L / (u->steep > 40 ? u->steep : 40), 0, NULL, y);
+    gragg(slopes, 2 * u->masses, from, to, 0.1L / (u->steep > 40 ? u->steep : 40), 0, NULL, y);
 }
