@@ -454,7 +454,6 @@ const char *known_call(const struct emitter *e, const char *tau, const char *ins
 const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left);
 const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
 			   const char *slope);
-bool mentions(const char *text, const char *name);               /* as a whole word */
 /* $n_watch: what chooses formulas into value, the sizes of what is added up there into terms */
 const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms);
 bool watch_reads_known(const struct emitter *e);                 /* more than the state */

@@ -524,16 +524,6 @@ static void emit_unseen_forms(const struct emitter *e, const struct reads *r)
 
 /* ---- functions of them: their text first, since what an interval decides is not read ---- */
 
-bool mentions(const char *text, const char *name)
-{
-	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-	size_t length = strlen(name);
-	bool found = false;
-	for (const char *at = text; !found && (at = strstr(at, name)); at += length)
-		found = (at == text || !strchr(letters, at[-1])) && (!at[length] || !strchr(letters, at[length]));
-	return found;
-}
-
 /* Blanks in place of comments, which name coordinates */
 static void blank_comments(char *text)
 {

@@ -2,6 +2,7 @@
 /* The function that expands the solution: what it is given, what of loads and inputs it reads, its coefficients. */
 #include "emit/emit.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const struct expansion *expansion(const struct emitter *e)

@@ -32,7 +32,8 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (4, 'the step needed more substeps than its bound'),
           (8, 'the last terms of the step are above the tolerance'),
           (16, 'what is to stick and what is to slip at an event had no answer'),
-          (32, 'a state has left the range that the spec gives it'))
+          (32, 'a state has left the range that the spec gives it'),
+          (64, 'the step has ended beyond a stop'))
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
            32: 'with these values the regions are others: a restitution not within 0 and 1, a gap or a force of '
@@ -426,7 +427,7 @@ class Model:
     @property
     def status(self):
         """0, or the bits of NAME_status: 1 not finite, 2 too many events, 4 too many substeps, 8 inaccurate, 16
-        undecided, 32 a range left."""
+        undecided, 32 a range left, 64 beyond a stop."""
         status = self._code.model.status
         return status(self._state) if status else 0
 
