@@ -972,7 +972,7 @@ enum {
     /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8,
     PL_NO_RATE = 16, /* a load's frequency is below 0 */
     /* of regions: breakpoints come in another order, or what decided about regions has another sign; a restitution is
-     * not within 0 and 1; a gap or a force of friction is below 0; a pole times h is above 2^16 */
+     * not within 0 and 1; a gap or a force of friction is below 0; a pole times h is above 2^30 */
     PL_OUT_OF_RANGE = 32
 };
 
