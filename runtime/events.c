@@ -883,33 +883,12 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     return !at->chain.full;
 }
 
-/* What is beyond the guard of a bounce by more than rounding is told, where a series begins. */
-static void check_places(const pl_events *m, pl_instant *at)
-{
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        const pl_strike *p = &m->strike[k];
-        const int interval = at->interval[p->expression];
-        column w;
-        real noise, off;
-        if (p->hold < 0 || (interval != m->hold[p->hold].interval && interval != free_of(m, p))) {
-            continue;
-        }
-        w = watched(m, at, p->place);
-        off = off_start(&w, 0, &noise);
-        if (off > DEEP * (noise + noise_of(magnitude(column_at(&w, 1)) + magnitude(column_at(&w, 2))))) {
-            at->status |= PL_PENETRATED;
-        }
-    }
-}
-
 int pl_events_begin(const pl_events *m, pl_instant *at)
 {
     refresh(at);
     at->freed = -1;
     keep(m, at);
     if (!has_left(m, at)) {
-        check_places(m, at);
         return 0;
     }
     return pl_events_pass(m, at) ? 1 : -1;

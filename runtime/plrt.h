@@ -681,7 +681,7 @@ typedef struct pl_instant {
     double time;        /* after the start of the step [s] */
     pl_crossing next;   /* the event that pl_events_next has found, */
     int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
-    int status;         /* 0, PL_UNDECIDED, PL_PENETRATED, PL_TOO_MANY_EVENTS */
+    int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS */
     pl_chain chain;     /* none yet: last is -h, else 0 */
 } pl_instant;
 
