@@ -465,6 +465,7 @@ const char *interval_argument(const struct emitter *e);
 const char *current_intervals(const struct emitter *e);
 /* Samples at the start and slopes, as the functions of an internal step take them and are handed them */
 const char *samples_parameter(const struct emitter *e);
+const char *unread_samples(const struct emitter *e);             /* of that parameter; "" */
 const char *samples_argument(const struct emitter *e);
 /* C that declares left and slope_of, and fills them where the internal step starts; samples are called u and slope */
 const char *start_jacobian(const struct emitter *e);

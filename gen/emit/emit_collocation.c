@@ -224,7 +224,8 @@ static void emit_solve(const struct emitter *e)
 	if (known)
 		say(e, "    double node[%d][%d];\n", s, known);
 	say(e, "%s"
-	       "    int i;\n", current_intervals(e));
+	       "    int i;\n"
+	       "%s", current_intervals(e), unread_samples(e));
 	if (known) {
 		struct emitter here = *e;
 		here.ramps = false;             /* samples are called u here */
@@ -462,12 +463,13 @@ static void emit_first_length(const struct emitter *e)
 	       "    double most = 1.0;\n"
 	       "    int i;\n"
 	       "%s"
+	       "%s"
 	       "    for (i = 0; i < $N_STATES; i++) {\n"
 	       "        const double speed = pl_magnitude(%s) * s->unit[i] * (100.0 * $N_H);\n"
 	       "        most = speed > most ? speed : most;\n"
 	       "    }\n"
 	       "    return most < %s ? 1.0 / most : %s;  /* far above the shortest that is tried */\n"
-	       "}\n", samples_parameter(e), start_jacobian(e), speed_text(e, "i"),
+	       "}\n", samples_parameter(e), start_jacobian(e), unread_samples(e), speed_text(e, "i"),
 	    e->model->asked.single ? "1e10" : "1e15", e->model->asked.single ? "1e-10" : "1e-15");
 }
 

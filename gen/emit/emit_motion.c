@@ -646,6 +646,12 @@ const char *samples_parameter(const struct emitter *e)
 	return e->system->inputs ? ", const double u[], const double slope[]" : "";
 }
 
+/* Where no force reads what is known, inputs neither */
+const char *unread_samples(const struct emitter *e)
+{
+	return e->system->inputs && known_values(e) == 0 ? "    (void)u;\n    (void)slope;\n" : "";
+}
+
 const char *start_jacobian(const struct emitter *e)
 {
 	int known = known_values(e), n = e->system->n, entries = e->step->motion->entries;

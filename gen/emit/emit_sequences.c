@@ -167,6 +167,9 @@ static void emit_expansion_unread(const struct emitter *e)
 void emit_expand_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
+	char *text = NULL;
+	size_t length = 0;
+	struct emitter aside = *e;
 	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
 	       "static void $n_expand(const $n *s, %s%s%s%s%sconst double y[$N_STATES], double c[%d][$c]%s)\n"
 	       "{\n",
@@ -176,7 +179,10 @@ void emit_expand_function(const struct emitter *e)
 	    input_parameters(e, AS_PARAMETERS),
 	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
 	    is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
-	emit_coefficients(e);
+	aside.to = need_memory(open_memstream(&text, &length));
+	emit_coefficients(&aside);
+	fclose(aside.to);
+	put(e->to, text, length);
 	for (int k = 0; k <= x->order; k++)
 		for (int i = 0; i < e->system->states + x->columns; i++) {
 			int states = e->system->states;
@@ -195,6 +201,9 @@ void emit_expand_function(const struct emitter *e)
 		say_wrapped(e, format("terms[%d] = %s;\n", x->expressions + i, size));
 	}
 	emit_expansion_unread(e);
+	if (has_choices(e) && !mentions(text, "when"))   /* a choice by time that nothing reads */
+		say(e, "    (void)when;\n");
+	free(text);
 	say(e, "}\n");
 }
 
@@ -328,6 +337,8 @@ void emit_slopes_function(const struct emitter *e)
 	fclose(aside.to);
 	put(e->to, text, length);
 	emit_unread_states(e, text);
+	if (has_choices(e) && !mentions(text, "when"))
+		say(e, "    (void)when;\n");
 	free(text);
 	emit_expansion_unread(e);
 	if (is_divided(e))
