@@ -179,7 +179,7 @@ static void slopes(real t, const real *y, const real *unused, real *dydt)
 /* What has powers inside bends more sharply than its slope tells: pieces a seventh as long follow it to all digits. */
 void follow_unseen(const struct unseen *u, real from, real to, real *y)
 {
-    const int sharp = u->kind == FLAT || u->kind == RIDGE || u->kind == COSH;
+    const int sharp = u->kind == STRIBECK || u->kind == FLAT || u->kind == RIDGE || u->kind == COSH;
     followed = u;
     gragg(slopes, 2 * u->masses, from, to, (sharp ? 0.1L : 0.7L) / (u->steep > 40 ? u->steep : 40), 0, NULL, y);
 }
