@@ -179,15 +179,20 @@ struct unseen *unseen_of(const struct model *model, int *count, bool *looks)
 	return f.unseen;
 }
 
+/* Of several loads that may cancel the highest frequency; of one that grows its rate: what it is says nothing of what
+ * it comes to. */
 double crowded_frequency(const struct linear *system)
 {
 	enum { MANY = 3 };
-	double highest = 0;
+	double highest = 0, growth = 0;
 	int waves = 0;
-	for (int l = 0; l < system->loads; l++)
-		if (oscillates(system->load[l].wave)) {
-			highest = fmax(highest, mpq_get_d(system->load[l].wave->w));
+	for (int l = 0; l < system->loads; l++) {
+		const struct wave *wave = system->load[l].wave;
+		growth = fmax(growth, wave ? mpq_get_d(wave->a) : 0);
+		if (oscillates(wave)) {
+			highest = fmax(highest, mpq_get_d(wave->w));
 			waves++;
 		}
-	return waves >= MANY ? highest : 0;
+	}
+	return fmax(growth, waves >= MANY ? highest : 0);
 }

@@ -51,6 +51,8 @@ static const struct unseen given[UNSEEN_GIVEN] = {
       .frequency = 1, .size = -50, .steep = 10, .at = 5 },
     { .kind = PULSE, .masses = 1, .tolerance = 1e-6, .step = 0.5, .stiffness = 1, .damping = 0.1, .cubic = 1,
       .frequency = 1, .size = -50, .steep = 100, .at = 5 },
+    { .kind = GROWTH, .masses = 1, .tolerance = 1e-9, .step = 0.25, .stiffness = 1.38, .damping = 0.257,
+      .cubic = 0.696, .frequency = 1, .size = 0.432, .steep = 170 },
 };
 
 struct unseen unseen_of(unsigned seed)
