@@ -4,8 +4,8 @@
 #
 # COUNT random scenes from seed FIRST on, the VARIANTs in turn: stacks, walls, wedges. What is emitted
 # keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants: exact,
-# float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring), float_curved. $CC
-# compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring), float_curved.
+# $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 stacks=$(realpath "$2")
 stands=$(realpath "$3")
@@ -13,6 +13,7 @@ source=$(realpath "$4")
 seed=$5
 last=$(($5 + $6))
 shift 6
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
 
@@ -37,7 +38,7 @@ stands_up() {
 		grep -q 'more regions than the limit\|at most 4 frictions and contacts' log && return 2
 		return 1
 	fi
-	${CC:-cc} -O0 $([ $real = float ] && echo -DFLOAT) -I. -I"$source/runtime" -o stands "$stands" scene.c \
+	$run_cc $([ $real = float ] && echo -DFLOAT) -I. -I"$source/runtime" -o stands "$stands" scene.c \
 		$archive -lm >>log 2>&1 || return 1
 	./stands $digits 2 >>log 2>&1
 }

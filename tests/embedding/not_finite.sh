@@ -10,6 +10,7 @@ set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
@@ -88,7 +89,7 @@ looks() {
     case $1 in taylor* | radau | auto) keeps=1 ;; *) keeps=0 ;; esac
     # shellcheck disable=SC2086
     "$plgen" --prefix the --real "$2" one.spec >one.c 2>log &&
-        ${CC:-cc} -std=c99 -O0 $flag -DKEEPS=$keeps -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log &&
+        $run_cc $flag -DKEEPS=$keeps -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log &&
         timeout 120 ./look >>log
     result $? "$title, $1, $2: what is not finite is told"
 }
