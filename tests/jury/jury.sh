@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# jury.sh PLGEN PLRUN SOURCE: cases that others have published, with their digits, as TAP. A case is NAME.spec and
-# NAME.jury beside it:
+# jury.sh PLGEN PLRUN SOURCE: cases that others have published, with their digits, as TAP. A case stands in
+# TOPIC.cases: its name behind `===`, its spec, a line `---`, and of these lines
 #
 #     case TEXT                   what it is
 #     source TEXT                 who published the digits, and where
@@ -38,13 +38,26 @@ if ! long; then
 	CFLAGS=${run_cc#* }
 	export CC CFLAGS
 fi
-here=$root/tests/jury
 page=$root/doc/jury.md
 runtime_archive "$root/runtime"
+
+# Each case as files: NAME.spec, beside its matrices, NAME.jury with what follows its spec, and in NAME.topic where it
+# stands
+here=$work/cases
+mkdir cases && ln -s "$root"/tests/jury/*.mtx cases || exit 99
+awk '/^=== / { name = "cases/" $2; part = ".spec"; next }
+	name == "" { next }
+	/^---$/ { part = ".jury"; topic = FILENAME; sub(/.*\//, "", topic); print topic >(name ".topic"); next }
+	NF > 0 { print >(name part) }' "$root"/tests/jury/*.cases || exit 99
 
 # key NAME WORD: what stands behind the word in NAME.jury
 key() {
 	sed -n "s/^$2 //p" "$here/$1.jury"
+}
+
+# link NAME: to the file in which it stands
+link() {
+	echo "[$1](../tests/jury/$(cat "$here/$1.topic"))"
 }
 
 # run_c NAME SCHEME END: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
@@ -107,7 +120,7 @@ one_scheme() {
 		*) echo "its C does not run to the end" >>log; cell=0; return ;;
 	esac
 	cp rows.csv "rows_$2.csv"
-	awk -v spare="$spare" -f "$here/judge.awk" "$here/$1.jury" rows.csv >judged.txt
+	awk -v spare="$spare" -f "$root/tests/jury/judge.awk" "$here/$1.jury" rows.csv >judged.txt
 	# shellcheck disable=SC2046
 	set -- "$1" "$2" $(fewest_of judged.txt)
 	published=$3
@@ -125,7 +138,7 @@ poles_of() {
 				for (k = 0; im > 0 && k < $0 + 0; k++) printf "%.17g\n", im }
 			/\],$/ { inside = 0 }' | sort -g >poles
 	cell=-
-	awk -v poles=poles -v spare="$spare" -f "$here/judge.awk" "$here/$1.jury" >judged.txt
+	awk -v poles=poles -v spare="$spare" -f "$root/tests/jury/judge.awk" "$here/$1.jury" >judged.txt
 	# shellcheck disable=SC2046
 	set -- "$1" $(fewest_of judged.txt)
 	published=$2
@@ -208,7 +221,7 @@ cases() {
 # row NAME NUMBER_OF_SOURCE: its line of the table; digits of what was not run as the page has them
 row() {
 	[ -s "cells_$1" ] || grep -F -e "| [$1](" "$page" | cut -d '|' -f 4-8 | sed 's/ $//' >"cells_$1"
-	printf '| [%s](../tests/jury/%s.jury) | %s |%s |\n' "$1" "$1" "$2" "$(cat "cells_$1")"
+	printf '| %s | %s |%s |\n' "$(link "$1")" "$2" "$(cat "cells_$1")"
 }
 
 # source_number NAME
@@ -226,7 +239,7 @@ print_page() {
 What others have published is entered here as they have it, before it is run: the equations as a spec, the values with
 their digits. plgen makes C of it by each scheme, the C is compiled and run, and the digits that it reaches are counted.
 A test does this anew and holds this page, which `tests/jury/jury.sh` prints, against it; `plrun` has the same rows.
-A name leads to the values; the spec lies beside it.
+A name leads to the file in which its spec and its values stand.
 
 - **published**: the fewest digits of a value of that case.
 - **exact, taylor, radau, auto**: `all` where every value has every published digit, of at most 15, which a double
@@ -250,7 +263,7 @@ END
 	printf '\n## What cannot be written today\n\n'
 	for name in $(cases); do
 		words=$(key "$name" refused)
-		[ -z "$words" ] || printf '%s\n' "- [$name](../tests/jury/$name.spec), $(key "$name" case), source\
+		[ -z "$words" ] || printf '%s\n' "- $(link "$name"), $(key "$name" case), source\
  $(source_number "$name"): \`$words\`" | fold_item
 	done
 	printf '\n## The cases\n\n'
@@ -270,7 +283,7 @@ fold_item() {
 
 # words_alone FILE: the page without the digits, which `told` compares
 words_alone() {
-	sed 's/^\(| \[.*jury) | [0-9]* |\).*/\1/' "$1"
+	sed 's/^\(| \[.*cases) | [0-9]* |\).*/\1/' "$1"
 }
 
 spare=1
