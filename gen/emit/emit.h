@@ -4,6 +4,7 @@
 #define PLGEN_EMIT_H
 
 #include "report/report.h"
+#include "tape/tape.h"
 
 /* ---- text.c: what all emitters write with ---- */
 
@@ -128,16 +129,25 @@ void emit_get_kept_state(const struct emitter *e, const char *vector);
 /* a table of what a step adds: the instance's own, or the model's */
 const char *of_step(const struct emitter *e, const char *table);
 
-/* ---- expression.c: forms with atoms as C ---- */
+/* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
-struct writer;                      /* declares locals for what several places use as it goes */
-typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
-struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
-const char *write_form(struct writer *w, const struct form *form, int indent);
-/* What the state chooses as interval[] says, the intervals of the step's expressions; else as the state is */
-void write_by_intervals(struct writer *w);
-void write_conditions_at(struct writer *w, const char *when);     /* those on time alone: C of a time; else each at t */
-const char *time_text(const struct emitter *e, const struct form *form, const char *when);
+struct formulas;
+enum formula_table { TABLE_NODE, TABLE_EXCESS, TABLE_TEXT };      /* of TAPE_TABLE: node[], excess[], any C */
+/* How forms are read: over y[], u[] and t as the equations are written, else by the locals of the step; what the state
+ * chooses as interval[] says, the intervals of the step's expressions, else as the state is; conditions on time alone
+ * as at the time that the C `when` is, NULL: at t */
+struct reading { bool written, by_intervals; const char *when; };
+const char *basis_now(const struct emitter *e, const struct basis *basis); /* its operand; NULL: 1 */
+/* What is to be formulas, all of it: what several read is computed once, under the name of a let where it has one. */
+struct formulas *formulas_new(const struct emitter *e, struct reading how, int count, const struct form *const *form);
+struct tape *formulas_tape(const struct formulas *f);             /* to set targets in */
+tape_ref formula(struct formulas *f, const struct form *form);
+tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum of the sizes of its terms */
+tape_ref formula_text(struct formulas *f, const char *text);      /* any C of a number */
+void formulas_finish(struct formulas *f);                         /* once all is set */
+struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
+void emit_formulas(struct formulas *f, int indent);
+const char *time_text(const struct emitter *e, const struct form *form, const char *when); /* numbers and that time */
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */
 
@@ -157,7 +167,6 @@ const char *leftover_call(const struct emitter *e, const char *node, const char 
 			  enum call_from from);
 const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
 const char *leftover_of_outputs(const struct emitter *e);
-const char *basis_now(const struct emitter *e, const struct basis *basis); /* of states, inputs, load states, t */
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
 void emit_leftover(const struct emitter *e);

@@ -228,10 +228,11 @@ void emit_function_values(const struct emitter *e)
 	if (r.time)
 		say(e, "    const double t = $n_time(s) + $n_node[node];\n");
 	emit_load_states(&here, r.load, true);
-	struct writer *writer = writer_new(&here, basis_now, count, form);
-	write_conditions_at(writer, has_changes(e) ? "start" : NULL);
+	struct reading how = { .when = has_changes(e) ? "start" : NULL };
+	struct formulas *f = formulas_new(&here, how, count, form);
 	for (int k = 0; k < count; k++)
-		say(e, "    left[%d] = %s;\n", k, write_form(writer, form[k], 14));
+		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 14, NULL);
+	emit_formulas(f, 4);
 	if (r.time && has_changes(e))   /* conditions alone may read it */
 		say(e, "    (void)t;\n");
 	say(e, "    (void)s;\n"
@@ -369,10 +370,11 @@ static void emit_rest_forces(const struct emitter *e)
 	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "", split->rests);
 	emit_locals_of(e, r.state, "y");
 	emit_param_locals(e, r.param);
-	struct writer *writer = writer_new(e, basis_now, split->rests, form);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, split->rests, form);
 	for (int k = 0; k < split->rests; k++)
-		say(e, "    left[%d] = %s;  /* %s */\n", k, write_form(writer, form[k], 15),
-		    e->model->coord_name[split->rest[k].coord]);
+		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 15,
+			 e->model->coord_name[split->rest[k].coord]);
+	emit_formulas(f, 4);
 	say(e, "}\n");
 }
 

@@ -464,19 +464,16 @@ const char *watch_call(const struct emitter *e, const char *node, const char *y,
 		     interval_argument(e), y, value, terms);
 }
 
-static struct writer *motion_writer(const struct emitter *e, const struct reads *r, int count,
-				    const struct form *const *form)
+static struct formulas *motion_formulas(const struct emitter *e, const struct reads *r, int count,
+					const struct form *const *form)
 {
-	struct writer *writer = writer_new(e, basis_now, count, form);
-	if (decides(e))
-		write_conditions_at(writer, format("node[%d]", known_places(e, r).when));
-	if (is_divided(e))
-		write_by_intervals(writer);
-	return writer;
+	struct reading how = { .by_intervals = is_divided(e),
+			       .when = decides(e) ? format("node[%d]", known_places(e, r).when) : NULL };
+	return formulas_new(e, how, count, form);
 }
 
 /* The highest derivatives, and where they are wanted the entries of their Jacobian */
-static void emit_motion_forms(const struct emitter *e, const struct reads *r, int entries)
+static struct formulas *force_formulas(const struct emitter *e, const struct reads *r, int entries)
 {
 	const struct motion *m = motion(e);
 	int driven = 0;
@@ -485,104 +482,69 @@ static void emit_motion_forms(const struct emitter *e, const struct reads *r, in
 		form[i] = m->force[i];
 	for (int k = 0; k < entries; k++)
 		form[m->coords + k] = m->entry[k].slope;
-	struct writer *writer = motion_writer(e, r, m->coords + entries, form);
+	struct formulas *f = motion_formulas(e, r, m->coords + entries, form);
+	struct tape *t = formulas_tape(f);
 	for (int i = 0; i < m->coords; i++) {
-		const char *text = write_form(writer, form[i], 15);
-		say(e, "    left[%d] = %s%s;  /* %s */\n", i, text,
-		    m->driven[i] ? format(" + node[%d]", driven++) : "", e->model->coord_name[i]);
+		tape_ref force = formula(f, form[i]);
+		if (m->driven[i])
+			force = tape_binary(t, TAPE_ADD, force, tape_operand(t, TAPE_TABLE, driven++, TABLE_NODE));
+		tape_set(t, format("left[%d]", i), force, 15, e->model->coord_name[i]);
 	}
-	for (int k = 0; k < entries; k++) {
-		const char *text = write_form(writer, form[m->coords + k], 15);
-		say(e, "    slope[%d] = %s;\n", k, text);
-	}
+	for (int k = 0; k < entries; k++)
+		tape_set(t, format("slope[%d]", k), formula(f, form[m->coords + k]), 15, NULL);
+	return f;
 }
 
 /* The expressions that choose formulas, and the sizes of what they are summed from */
-static void emit_watched_forms(const struct emitter *e, const struct reads *r)
+static struct formulas *watched_formulas(const struct emitter *e, const struct reads *r)
 {
 	int count;
 	const struct form **form = dividing_forms(e, &count);
-	struct writer *writer = motion_writer(e, r, count, form);
+	struct formulas *f = motion_formulas(e, r, count, form);
 	for (int i = 0; i < count; i++) {
-		const char **size = ARRAY(const char *, (size_t)form[i]->terms);
-		say(e, "    left[%d] = %s;\n", i, write_form(writer, form[i], 15));
-		for (int k = 0; k < form[i]->terms; k++)
-			size[k] = format("pl_magnitude(%s)",
-					 write_form(writer, &(struct form){ 1, form[i]->term + k, 0 }, 15));
-		say(e, "    excess[%d] = %s;\n", i, tree(form[i]->terms, size, 16));
+		tape_set(formulas_tape(f), format("left[%d]", i), formula(f, form[i]), 15, NULL);
+		tape_set(formulas_tape(f), format("excess[%d]", i), formula_sizes(f, form[i]), 16, NULL);
 	}
+	return f;
 }
 
-static void emit_unseen_forms(const struct emitter *e, const struct reads *r)
+static struct formulas *unseen_formulas(const struct emitter *e, const struct reads *r)
 {
 	int count;
 	const struct form **form = unseen_forms(e, &count);
-	struct writer *writer = motion_writer(e, r, count, form);
+	struct formulas *f = motion_formulas(e, r, count, form);
 	for (int i = 0; i < count; i++)
-		say(e, "    left[%d] = %s;\n", i, write_form(writer, form[i], 15));
+		tape_set(formulas_tape(f), format("left[%d]", i), formula(f, form[i]), 15, NULL);
+	return f;
 }
 
-/* ---- functions of them: their text first, since what an interval decides is not read ---- */
-
-/* Blanks in place of comments, which name coordinates */
-static void blank_comments(char *text)
-{
-	for (char *at = text; (at = strstr(at, "/*"));)
-		for (char *end = strstr(at, "*/") + 2; at < end; at++)
-			*at = ' ';
-}
-
-static struct reads named_reads(const struct emitter *e, const char *text)
-{
-	int states = e->system->states, inputs = e->system->inputs;
-	struct reads r = reads_of(e->model, 0, NULL);
-	for (int i = 0; i < states; i++)
-		r.state[i] = mentions(text, e->local[i]);
-	for (int i = 0; i < 2 * inputs; i++)
-		r.input[i] = mentions(text, input_name(e, i % inputs, i >= inputs));
-	for (int l = 0; l < e->system->loads; l++)
-		r.load[l] = mentions(text, format("load%d", l + 1));
-	for (int k = 0; k < e->model->spec->tunables; k++)
-		r.param[k] = mentions(text, param_local(e, k));
-	r.time = mentions(text, "t");
-	return r;
-}
+/* ---- functions of them: what an interval decides is not read ---- */
 
 enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 
 static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	char *text = NULL;
-	size_t length = 0;
-	struct emitter aside = *e;
-	aside.to = need_memory(open_memstream(&text, &length));
-	if (part == THE_EXPRESSIONS)
-		emit_watched_forms(&aside, r);
-	else if (part == THE_ARGUMENTS)
-		emit_unseen_forms(&aside, r);
-	else
-		emit_motion_forms(&aside, r, part == THE_SLOPES_TOO ? motion(e)->entries : 0);
-	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
-		say(&aside, "    slope[0] = 0.0;\n");
-	fclose(aside.to);
-	char *plain = ARRAY(char, length + 1);
-	strcpy(plain, text);
-	blank_comments(plain);
-	struct reads read = named_reads(e, plain);
+	struct formulas *f = part == THE_EXPRESSIONS ? watched_formulas(e, r)
+			     : part == THE_ARGUMENTS ? unseen_formulas(e, r)
+			     : force_formulas(e, r, part == THE_SLOPES_TOO ? motion(e)->entries : 0);
+	const struct tape *t = formulas_tape(f);
+	formulas_finish(f);
+	struct reads read = reads_of_formulas(f);
 	emit_motion_locals(e, r, &read);
-	put(e->to, text, length);
+	emit_formulas(f, 4);
+	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
+		say(e, "    slope[0] = 0.0;\n");
 	bool given = part == THE_EXPRESSIONS ? watch_reads_known(e)
 		     : part == THE_ARGUMENTS ? trace_reads_known(e)
 					     : known_values(e) > 0;
-	if (given && !any_known(e, &read) && !mentions(plain, "node"))
+	if (given && !any_known(e, &read) && !tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) &&
+	    !tape_reads(t, TAPE_TIME, -1, 1))
 		say(e, "    (void)node;\n");
-	if (is_divided(e) && !mentions(plain, "interval"))
+	if (is_divided(e) && !tape_reads(t, TAPE_ABOVE, -1, -1))
 		say(e, "    (void)interval;\n");
 	if (!any_of(read.state, e->system->states))
 		say(e, "    (void)y;\n");
 	say(e, "}\n");
-	discard(plain);
-	free(text);
 }
 
 static void emit_force_function(const struct emitter *e, const struct reads *r)

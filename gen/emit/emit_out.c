@@ -249,12 +249,13 @@ void emit_out(const struct emitter *e)
 			say(e, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1,
 			       linear_output(e, model->highest[k]), model->coord_name[k],
 			       model->frame.coord[k]->highest, "''");
-	struct writer *writer = writer_new(e, basis_now, forms, form);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, forms, form);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
-		const char *text = output->left ? write_form(writer, output->left, 13) : linear_output(e, output);
-		say(e, "    out[%d] = %s;  /* %s */\n", i, text, output->name);
+		tape_ref value = output->left ? formula(f, output->left) : formula_text(f, linear_output(e, output));
+		tape_set(formulas_tape(f), format("out[%d]", i), value, 13, output->name);
 	}
+	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");
 }

@@ -76,50 +76,14 @@ static void emit_unread_states(const struct emitter *e, bool read)
 
 /* ---- vectors and sketches: the collected equations ---- */
 
-static const char *join(const char *left, const char *right)
+/* Left side minus right side of a row, without its highest derivatives, of a form each */
+static void emit_residuals_of(const struct emitter *e, const struct form *const *form, int indent)
 {
-	return *left ? format("%s*%s", left, right) : right;
-}
-
-static const char *wave_expression(const struct basis *basis)
-{
-	const struct wave *wave = basis->wave;
-	const char *text = "", *p = shortest(round_rational(wave->p)), *w = shortest(round_rational(wave->w));
-	const char *phase = mpq_sgn(wave->p) ? format(" + %s", p) : "";
-	for (int k = 0; k < basis->power; k++)
-		text = join(text, "t");
-	if (mpq_sgn(wave->a) != 0)
-		text = join(text, format("exp(%s*t)", shortest(round_rational(wave->a))));
-	if (oscillates(wave))
-		text = join(text, format("%s(%s*t%s)", basis->sine ? "sin" : "cos", w, phase));
-	return text;
-}
-
-static const char *basis_expression(const struct emitter *e, const struct basis *basis)
-{
-	const int *velocity = e->model->written->system.velocity;
-	switch (basis->kind) {
-	case BASIS_ONE:   return NULL;
-	case BASIS_PI:    return "3.141592653589793";
-	case BASIS_WAVE:  return wave_expression(basis);
-	case BASIS_INPUT:
-		if (basis->index >= e->model->spec->inputs)
-			return param_local(e, param_of_input(e->model->spec, basis->index));
-		return format("u[%d]", basis->index + basis->order * given_inputs(e));
-	default:          return format("y[%d]", basis->order ? velocity[basis->index] : basis->index);
-	}
-}
-
-static const char *collected_residual(const struct emitter *e, const struct form *form)
-{
-	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
-	int terms = 0;
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (!is_highest(e->model, basis))
-			term[terms++] = scaled(finite_number(e, form->term[i].factor), basis_expression(e, basis));
-	}
-	return terms ? tree(terms, term, 18) : "0.0";
+	int rows = e->model->written->n;
+	struct formulas *f = formulas_new(e, (struct reading){ .written = true }, rows, form);
+	for (int i = 0; i < rows; i++)
+		tape_set(formulas_tape(f), format("residual[%d]", i), formula(f, form[i]), 18, NULL);
+	emit_formulas(f, indent);
 }
 
 static const struct node *side_of(const struct spec *spec, int equation, int side)
@@ -140,10 +104,10 @@ static bool is_scalar_text(const struct model *model)
 	return model->spec->elements == 0 && model->spec->equations == model->n;
 }
 
-static bool reads_states(const struct emitter *e, const struct form *form)
+static bool reads_states(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD && !is_highest(e->model, &form->term[i].basis))
+		if (form->term[i].basis.kind == BASIS_COORD)
 			return true;
 	return false;
 }
@@ -220,14 +184,10 @@ static void emit_whole_residuals(const struct emitter *e)
 	const struct form **form = whole_forms(model);
 	for (int i = 0; i < model->n; i++)
 		form[i] = without_highest(model, form[i]);
-	struct writer *writer = writer_new(e, basis_expression, model->n, form);
 	const struct reads reads = reads_of(model, model->n, form);
 	emit_nominal_params_read(e, &reads);
 	declare_residuals(e, model->n);
-	for (int i = 0; i < model->n; i++) {
-		const char *text = write_form(writer, form[i], 18);
-		say(e, "    residual[%d] = %s;\n", i, text);
-	}
+	emit_residuals_of(e, form, 4);
 	emit_unread(e, reading_of_rhs(model).time, given_inputs(e) > 0, any_of(reads.state, model->system.states));
 }
 
@@ -267,11 +227,12 @@ static void emit_collected_residuals(const struct emitter *e)
 		const struct residual *residual = e->model->snapshot[s].residual;
 		if (several)
 			emit_segment(e, s);
+		const struct form **form = ARRAY(const struct form *, (size_t)rows);
 		for (int i = 0; i < rows; i++) {
-			const char *text = collected_residual(e, residual[i].form);
-			say(e, "    %sresidual[%d] = %s;\n", several ? "    " : "", i, text);
-			read = read || reads_states(e, residual[i].form);
+			form[i] = without_highest(e->model, residual[i].form);
+			read = read || reads_states(form[i]);
 		}
+		emit_residuals_of(e, form, several ? 8 : 4);
 	}
 	if (several)
 		say(e, "    }\n");

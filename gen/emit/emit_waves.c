@@ -28,9 +28,8 @@ void emit_waves(const struct emitter *e)
 	       "static void $n_waves(const $n *s, double wave[%d])\n"
 	       "{\n", count);
 	emit_load_states(e, r.load, false);
-	struct writer *writer = writer_new(e, basis_now, count, form);
 	for (int k = 0; k < count; k++)
-		say(e, "    wave[%d] = %s;\n", k, is_there(e, k) ? write_form(writer, form[k], 14) : "0.0");
+		say(e, "    wave[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
 	say(e, "}\n");
 }
 

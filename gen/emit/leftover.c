@@ -128,45 +128,6 @@ const char *leftover_of_outputs(const struct emitter *e)
 	return leftover_call(e, "0", e->step->normal ? "now" : "s->y", "left", FROM_OUTPUTS);
 }
 
-/* ---- its text ---- */
-
-static int load_of_wave(const struct emitter *e, const struct wave *wave)
-{
-	int l = 0;
-	while (e->system->load[l].wave != wave)
-		l++;
-	return l;
-}
-
-static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
-{
-	const struct model *written = speaker(e->model);
-	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
-		return format("accel%d", basis->index + 1);
-	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
-	return e->local[e->model->reduction.place ? e->model->reduction.place[state] : state];
-}
-
-const char *basis_now(const struct emitter *e, const struct basis *basis)
-{
-	const char *text = "t";
-	int l;
-	switch (basis->kind) {
-	case BASIS_ONE:   return NULL;
-	case BASIS_PI:    return "3.141592653589793";
-	case BASIS_COORD: return coordinate_now(e, basis);
-	case BASIS_INPUT: return input_name(e, basis->index, basis->order);
-	default: break;
-	}
-	if (is_polynomial(basis->wave)) {
-		for (int k = 1; k < basis->power; k++)
-			text = format("%s * t", text);
-		return text;
-	}
-	l = load_of_wave(e, basis->wave);
-	return format("load%d[%d]", l + 1, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
-}
-
 /* ---- a bank: linear terms that differ from operator to operator ---- */
 
 static void emit_excess(const struct emitter *e, const struct bank *bank)
@@ -183,20 +144,22 @@ static void emit_excess(const struct emitter *e, const struct bank *bank)
 	say(e, "};\n");
 }
 
-static const char *with_excess(const struct emitter *e, int channel, const char *text, const struct bank *bank)
+/* A channel's form, and what the operator that serves does not have of its linear terms */
+static tape_ref with_excess(struct formulas *f, int channel, tape_ref form, const struct bank *bank)
 {
-	const char **term = ARRAY(const char *, (size_t)bank->count + 1);
+	struct tape *t = formulas_tape(f);
+	tape_ref *term = ARRAY(tape_ref, (size_t)bank->count + 1);
 	int terms = 0;
 	for (int i = 0; i < bank->count; i++) {
 		const struct excess *excess = &bank->excess[i];
-		struct basis basis = { .kind = BASIS_COORD, .index = excess->coord, .order = excess->order };
 		if (excess->channel == channel)
-			term[terms++] = format("excess[%d] * %s", i, basis_now(e, &basis));
+			term[terms++] = tape_binary(t, TAPE_MUL, tape_operand(t, TAPE_TABLE, i, TABLE_EXCESS),
+						    tape_operand(t, TAPE_COORD, excess->coord, excess->order));
 	}
 	if (terms == 0)
-		return text;
-	const char *sum = tree(terms, term, 15);
-	return strcmp(text, "0.0") == 0 ? sum : format("(%s)\n           + (%s)", text, sum);
+		return form;
+	tape_ref sum = tape_sum(t, terms, term);
+	return form == tape_number(t, 0) ? sum : tape_binary(t, TAPE_ADD, form, sum);
 }
 
 /* ---- the function ---- */
@@ -240,11 +203,13 @@ static const char *name_of_channel(const struct emitter *e, int channel)
 
 static void emit_lefts(const struct emitter *e, const struct bank *bank)
 {
-	struct writer *writer = writer_new(e, basis_now, e->model->channels, bank->common);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, e->model->channels, bank->common);
+	struct tape *t = formulas_tape(f);
 	for (int c = 0; c < e->model->channels; c++) {
-		const char *text = is_asked(e, c) ? write_form(writer, bank->common[c], 15) : "0.0";
-		say(e, "    left[%d] = %s;  /* %s */\n", c, with_excess(e, c, text, bank), name_of_channel(e, c));
+		tape_ref form = is_asked(e, c) ? formula(f, bank->common[c]) : tape_number(t, 0);
+		tape_set(t, format("left[%d]", c), with_excess(f, c, form, bank), 15, name_of_channel(e, c));
 	}
+	emit_formulas(f, 4);
 }
 
 void emit_leftover(const struct emitter *e)

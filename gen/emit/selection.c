@@ -28,10 +28,11 @@ void emit_selection(const struct emitter *e)
 	       "{\n", any_of(r.input, e->system->inputs) ? ", const double u[]" : "",
 	    reads_slope(e, &r) ? ", const double slope[]" : "");
 	emit_selection_locals(e, &r);
-	const char *text = write_form(writer_new(e, basis_now, 1, &selector), selector, 8);
-	say(e, "    const double now = %s;\n"
-	       "    (void)s;\n"
-	       "    return ", text);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 1, &selector);
+	tape_set(formulas_tape(f), "const double now", formula(f, selector), 8, NULL);
+	emit_formulas(f, 4);
+	say(e, "    (void)s;\n"
+	       "    return ");
 	for (int k = 0; k < last; k++)
 		say(e, "now <= %s ? %d : ", shortest(equation_number(e->model, operator[k].at).value), k);
 	say(e, "%d;\n"

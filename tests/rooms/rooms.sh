@@ -6,7 +6,7 @@ set -u
 root=$(cd "$1" && pwd) || exit 99
 listing=$(nm -A "$2" "$3".p/*.o)
 . "$root/tests/tap.sh"
-rooms='base math read collect model step report emit run fmu'
+rooms='base math read collect tape model step report emit run fmu'
 printf '%s\n' "$listing" >listing
 
 # judge LISTING PATTERN NAME: no line of the pattern may come out

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Forms with atoms as C: a tape of them, its operands under the names of the function that it is printed in. */
+#include "emit/emit.h"
+
+struct formulas {
+	const struct emitter *e;
+	struct tape *tape;
+	struct tape_forms *forms;
+	bool written;               /* over y[], u[] and t, as NAME_rhs has them */
+	const char *when;           /* C: the time at which conditions on time alone hold as they do; NULL: t */
+	int texts;
+	const char **text;          /* what emitters have as C */
+};
+
+/* ---- what a basis is called ---- */
+
+static int load_of_wave(const struct emitter *e, const struct wave *wave)
+{
+	int l = 0;
+	while (e->system->load[l].wave != wave)
+		l++;
+	return l;
+}
+
+static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
+{
+	const struct model *written = speaker(e->model);
+	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
+		return format("accel%d", basis->index + 1);
+	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
+	return e->local[e->model->reduction.place ? e->model->reduction.place[state] : state];
+}
+
+const char *basis_now(const struct emitter *e, const struct basis *basis)
+{
+	const char *text = "t";
+	int l;
+	switch (basis->kind) {
+	case BASIS_ONE:   return NULL;
+	case BASIS_PI:    return "3.141592653589793";
+	case BASIS_COORD: return coordinate_now(e, basis);
+	case BASIS_INPUT: return input_name(e, basis->index, basis->order);
+	default: break;
+	}
+	if (is_polynomial(basis->wave)) {
+		for (int k = 1; k < basis->power; k++)
+			text = format("%s * t", text);
+		return text;
+	}
+	l = load_of_wave(e, basis->wave);
+	return format("load%d[%d]", l + 1, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
+}
+
+/* ---- operands: from forms ---- */
+
+static tape_ref power_of_time(struct tape *t, int power)
+{
+	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power ? time : TAPE_NONE;
+	for (int k = 1; k < power; k++)
+		product = tape_binary(t, TAPE_MUL, product, time);
+	return product;
+}
+
+static tape_ref wave_now(struct tape *t, const struct emitter *e, const struct basis *basis)
+{
+	if (is_polynomial(basis->wave))
+		return power_of_time(t, basis->power);
+	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
+	return tape_operand(t, TAPE_LOAD, load_of_wave(e, basis->wave), column);
+}
+
+static tape_ref times_call(struct tape *t, tape_ref product, enum function function, tape_ref x)
+{
+	tape_ref value = tape_call(t, function, x);
+	return product == TAPE_NONE ? value : tape_binary(t, TAPE_MUL, product, value);
+}
+
+/* t^k e^{a t} cos(w t + p) */
+static tape_ref wave_written(struct tape *t, const struct basis *basis)
+{
+	const struct wave *wave = basis->wave;
+	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power_of_time(t, basis->power);
+	if (mpq_sgn(wave->a) != 0)
+		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, wave->a), time));
+	if (!oscillates(wave))
+		return product;
+	tape_ref angle = tape_binary(t, TAPE_MUL, tape_constant(t, wave->w), time);
+	if (mpq_sgn(wave->p) != 0)
+		angle = tape_binary(t, TAPE_ADD, angle, tape_constant(t, wave->p));
+	return times_call(t, product, basis->sine ? FN_SIN : FN_COS, angle);
+}
+
+static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
+{
+	const struct formulas *f = context;
+	if (basis->kind == BASIS_WAVE)
+		return f->written ? wave_written(t, basis) : wave_now(t, f->e, basis);
+	return tape_operand(t, basis->kind == BASIS_COORD ? TAPE_COORD : TAPE_INPUT, basis->index, basis->order);
+}
+
+static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)
+{
+	const struct formulas *f = context;
+	return tape_operand(t, TAPE_FRICTION, felt_of(f->e->model->switching, atom), 0);
+}
+
+/* ---- what interval[] says ---- */
+
+static const struct atom *choice_in(const struct form *form)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	bool plain = atom && atom->kind == ATOM_CHOOSE && mpq_cmp_ui(form->term[0].factor, 1, 1) == 0;
+	return plain ? atom : NULL;
+}
+
+/* Is a - b above 0? Of what is itself chosen on the right, as the best so far of min and max, by that choice. */
+static tape_ref above(struct tape_forms *forms, const void *context, const struct form *a, const struct form *b)
+{
+	const struct emitter *e = ((const struct formulas *)context)->e;
+	const struct expansion *x = e->step->divided;
+	const struct atom *chosen = choice_in(b);
+	struct tape *t = tape_of_forms(forms);
+	struct division d;
+	if (x && find_division(x, a, b, &d) && d.expression == NONE)
+		return tape_operand(t, d.above ? TAPE_TRUE : TAPE_FALSE, 0, 0);
+	if (x && find_division(x, a, b, &d)) {
+		int rank = upper_rank(x, d.expression, d.breakpoint);
+		tape_ref ref = tape_operand(t, TAPE_ABOVE, d.expression, rank);
+		return d.above ? ref : tape_unary(t, TAPE_NOT, ref);
+	}
+	if (!chosen)
+		internal_error(e->step, "a choice by the state that no expression stands for");
+	tape_ref first = above(forms, context, a, chosen->operand[1]);
+	tape_ref second = above(forms, context, a, chosen->operand[2]);
+	return tape_select(t, tape_condition(forms, chosen->operand[0]), first, second);
+}
+
+/* ---- operands: to C ---- */
+
+static const char *written_operand(const struct emitter *e, const struct tape_node *n)
+{
+	const struct linear *system = &e->model->written->system;
+	if (n->op == TAPE_COORD)
+		return format("y[%d]", n->part ? system->velocity[n->index] : n->index);
+	if (n->index >= e->model->spec->inputs)
+		return param_local(e, param_of_input(e->model->spec, n->index));
+	return format("u[%d]", n->index + n->part * given_inputs(e));
+}
+
+static const char *table_operand(const struct formulas *f, const struct tape_node *n)
+{
+	static const char *const table[] = { [TABLE_NODE] = "node", [TABLE_EXCESS] = "excess" };
+	return n->part == TABLE_TEXT ? f->text[n->index] : format("%s[%d]", table[n->part], n->index);
+}
+
+static const char *operand(const void *context, const struct tape_node *n)
+{
+	const struct formulas *f = context;
+	const struct emitter *e = f->e;
+	struct basis basis = { .kind = n->op == TAPE_COORD ? BASIS_COORD : BASIS_INPUT, .index = n->index,
+			       .order = n->part };
+	switch (n->op) {
+	case TAPE_COORD:
+	case TAPE_INPUT:    return f->written ? written_operand(e, n) : basis_now(e, &basis);
+	case TAPE_LOAD:     return format("load%d[%d]", n->index + 1, n->part);
+	case TAPE_PARAM:    return param_local(e, n->index);
+	case TAPE_TIME:     return n->part ? f->when : "t";
+	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_grip"), n->index);
+	case TAPE_ABOVE:    return format("interval[%d] > %d", n->index, n->part);
+	default:            return table_operand(f, n);
+	}
+}
+
+static const char *number(const void *context, mpq_srcptr value)
+{
+	const struct formulas *f = context;
+	return shortest(finite_number(f->e, value));
+}
+
+/* ---- the whole ---- */
+
+static const struct tape_let *lets_of(const struct emitter *e, int *count)
+{
+	int most = 0;
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
+		most += s->kind == SYMBOL_LET && s->whole;
+	struct tape_let *let = ARRAY(struct tape_let, (size_t)most + 1);
+	*count = 0;
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET && s->whole)
+			let[(*count)++] = (struct tape_let){ c_name(e->c, s, 0), s->whole };
+	return let;
+}
+
+struct formulas *formulas_new(const struct emitter *e, struct reading how, int count,
+			      const struct form *const *form)
+{
+	struct formulas *f = NEW(struct formulas);
+	*f = (struct formulas){ .e = e, .tape = tape_new(), .written = how.written, .when = how.when };
+	struct tape_reader reader = { leaf, how.by_intervals ? above : NULL, friction_now, f, how.when != NULL };
+	int lets;
+	const struct tape_let *let = lets_of(e, &lets);
+	int atoms = e->model->atoms ? atoms_count(e->model->atoms) : 0;
+	f->forms = tape_forms_new(f->tape, reader, atoms, count, form, lets, let);
+	return f;
+}
+
+struct tape *formulas_tape(const struct formulas *f)
+{
+	return f->tape;
+}
+
+tape_ref formula(struct formulas *f, const struct form *form)
+{
+	return tape_form(f->forms, form);
+}
+
+tape_ref formula_sizes(struct formulas *f, const struct form *form)
+{
+	tape_ref *size = ARRAY(tape_ref, (size_t)form->terms + 1);
+	for (int k = 0; k < form->terms; k++)
+		size[k] = tape_unary(f->tape, TAPE_SIZE, tape_term(f->forms, &form->term[k]));
+	return tape_sum(f->tape, form->terms, size);
+}
+
+tape_ref formula_text(struct formulas *f, const char *text)
+{
+	ENLARGE(f->text, (size_t)f->texts + 1);
+	f->text[f->texts] = text;
+	return tape_operand(f->tape, TAPE_TABLE, f->texts++, TABLE_TEXT);
+}
+
+static void note_read(struct reads *r, const struct emitter *e, const struct tape_node *n)
+{
+	const struct model *model = e->model;
+	if (n->op == TAPE_COORD && n->part > 0 && n->part >= model->frame.coord[n->index]->highest)
+		r->highest[n->index] = true;
+	else if (n->op == TAPE_COORD)
+		r->state[n->part ? model->system.velocity[n->index] : n->index] = true;
+	else if (n->op == TAPE_INPUT)
+		r->input[n->index + n->part * model->system.inputs] = true;
+	else if (n->op == TAPE_LOAD)
+		r->load[n->index] = true;
+	else if (n->op == TAPE_PARAM)
+		r->param[n->index] = true;
+	r->time = r->time || (n->op == TAPE_TIME && n->part == 0);
+}
+
+struct reads reads_of_formulas(const struct formulas *f)
+{
+	struct reads r = reads_of(f->e->model, 0, NULL);
+	int *uses = tape_uses(f->tape);
+	for (int i = 0; i < tape_length(f->tape); i++)
+		if (uses[i])
+			note_read(&r, f->e, tape_node(f->tape, i));
+	return r;
+}
+
+void formulas_finish(struct formulas *f)
+{
+	tape_name_lets(f->forms);
+	const char *broken = tape_check(f->tape);
+	if (broken)
+		internal_error(f->e->step, broken);
+}
+
+void emit_formulas(struct formulas *f, int indent)
+{
+	formulas_finish(f);
+	struct tape_target to = { "double", number, operand, "pl_magnitude", f, indent };
+	tape_print(f->tape, &to, f->e->to);
+}
+
+/* Numbers and the time `when` */
+const char *time_text(const struct emitter *e, const struct form *form, const char *when)
+{
+	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const char *operand = basis->kind == BASIS_PI				? "3.141592653589793"
+				      : basis->kind == BASIS_WAVE && basis->power > 0 ? when
+										      : NULL;
+		term[i] = scaled(finite_number(e, form->term[i].factor), operand);
+	}
+	return form->terms ? tree(form->terms, term, 18) : "0.0";
+}

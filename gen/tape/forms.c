@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Forms with atoms as nodes of a tape. */
+#include "tape/tape.h"
+
+struct tape_forms {
+	struct tape *tape;
+	struct tape_reader reader;
+	int *uses;                  /* per atom: by how many terms */
+	tape_ref *made;             /* per atom; TAPE_NONE: not yet */
+	int lets;
+	const struct tape_let *let;
+};
+
+/* ---- what is read how often ---- */
+
+static void count_form(struct tape_forms *f, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		if (!atom || f->uses[atom->index]++ > 0)
+			continue;
+		for (int k = 0; k < atom->operands; k++)
+			count_form(f, atom->operand[k]);
+	}
+}
+
+static const struct atom *only_atom(const struct form *form)
+{
+	bool plain = form->terms == 1 && mpq_cmp_ui(form->term[0].factor, 1, 1) == 0;
+	return plain ? form->term[0].basis.atom : NULL;
+}
+
+struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int atoms, int count,
+				  const struct form *const *form, int lets, const struct tape_let *let)
+{
+	struct tape_forms *f = NEW(struct tape_forms);
+	*f = (struct tape_forms){ .tape = t, .reader = reader, .lets = lets, .let = let };
+	f->uses = ARRAY(int, (size_t)atoms + 1);
+	f->made = ARRAY(tape_ref, (size_t)atoms + 1);
+	for (int i = 0; i < atoms; i++)
+		f->made[i] = TAPE_NONE;
+	for (int i = 0; i < count; i++)
+		count_form(f, form[i]);
+	for (int i = 0; i < lets; i++) {        /* where a let stands its factor does not go into it */
+		const struct atom *atom = only_atom(let[i].form);
+		if (atom)
+			f->uses[atom->index] += 2;
+	}
+	return f;
+}
+
+struct tape *tape_of_forms(const struct tape_forms *f)
+{
+	return f->tape;
+}
+
+/* ---- atoms ---- */
+
+static tape_ref atom_ref(struct tape_forms *f, const struct atom *a);
+
+static const struct form *divisor_of(const struct form *form)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	return atom && atom->kind == ATOM_RECIPROCAL ? atom->operand[0] : NULL;
+}
+
+static tape_ref times(struct tape *t, tape_ref product, tape_ref factor)
+{
+	return product == TAPE_NONE ? factor : tape_binary(t, TAPE_MUL, product, factor);
+}
+
+/* product * a^n, squares of what is multiplied more often found first */
+static tape_ref times_power(struct tape *t, tape_ref product, tape_ref a, unsigned n)
+{
+	if (n > 3) {
+		tape_ref half = tape_power(t, a, n / 2);
+		product = times(t, times(t, product, half), half);
+		return n % 2 ? times(t, product, a) : product;
+	}
+	for (unsigned k = 0; k < n; k++)
+		product = times(t, product, a);
+	return product;
+}
+
+/* `before` times the factors, from the left to the right, over the divisors; before TAPE_NONE: 1 */
+static tape_ref product_ref(struct tape_forms *f, const struct atom *a, tape_ref before)
+{
+	struct tape *t = f->tape;
+	tape_ref product = before, *below = ARRAY(tape_ref, (size_t)a->operands);
+	int divisors = 0;
+	for (int i = 0; i < a->operands; i++) {
+		const struct form *operand = a->operand[i], *divisor = divisor_of(operand);
+		const struct atom *inner = a->exponent[i] == 1 ? only_atom(operand) : NULL;
+		if (inner && inner->kind == ATOM_PRODUCT && f->uses[inner->index] <= 1)
+			product = product_ref(f, inner, product);
+		else if (divisor && f->made[operand->term[0].basis.index] == TAPE_NONE)
+			below[divisors++] = tape_power(t, tape_form(f, divisor), a->exponent[i]);
+		else
+			product = times_power(t, product, tape_form(f, operand), a->exponent[i]);
+	}
+	if (product == TAPE_NONE)
+		product = tape_number(t, 1);
+	for (int i = 0; i < divisors; i++)
+		product = tape_binary(t, TAPE_DIV, product, below[i]);
+	discard(below);
+	return product;
+}
+
+/* Do conditions on these hold as the step says, not as their numbers do? */
+static bool is_decided_by_state(const struct tape_forms *f, const struct form *left, const struct form *right)
+{
+	return f->reader.above && !(is_linear_in_time(left) && is_linear_in_time(right));
+}
+
+/* left < right or the like; at equality the functions that ask are the same on either side */
+static tape_ref side(struct tape_forms *f, const struct form *left, enum comparison comparison,
+		     const struct form *right)
+{
+	struct tape *t = f->tape;
+	if (!is_decided_by_state(f, left, right))
+		return tape_compare(t, comparison, tape_form(f, left), tape_form(f, right));
+	tape_ref above = f->reader.above(f, f->reader.context, left, right);
+	return comparison <= CMP_LE ? tape_unary(t, TAPE_NOT, above) : above;
+}
+
+/* The largest or smallest where the order of each two is known: each with each other */
+static tape_ref best_ref(struct tape_forms *f, const struct atom *a, int next, int champion)
+{
+	if (next == a->operands)
+		return tape_form(f, a->operand[champion]);
+	tape_ref better = side(f, a->operand[next], a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[champion]);
+	tape_ref other = best_ref(f, a, next + 1, next);
+	return tape_select(f->tape, better, other, best_ref(f, a, next + 1, champion));
+}
+
+static tape_ref extreme_ref(struct tape_forms *f, const struct atom *a)
+{
+	if (f->reader.above)
+		return best_ref(f, a, 1, 0);
+	tape_ref best = tape_form(f, a->operand[0]);
+	for (int i = 1; i < a->operands; i++) {
+		tape_ref x = tape_form(f, a->operand[i]);
+		tape_ref better = tape_compare(f->tape, a->function == FN_MIN ? CMP_LT : CMP_GT, x, best);
+		best = tape_select(f->tape, better, x, best);
+	}
+	return best;
+}
+
+/* y0 + slope*(x - x0) between each two points, the end ones extended */
+static tape_ref table_ref(struct tape_forms *f, const struct atom *a)
+{
+	struct tape *t = f->tape;
+	struct straight *piece;
+	tape_ref x = tape_form(f, a->operand[0]), value = TAPE_NONE;
+	mpq_t back;
+	mpq_init(back);
+	for (int p = pieces_of_atom(a, &piece) - 1; p >= 0; p--) {
+		mpq_neg(back, piece[p].x);
+		tape_ref beyond = tape_binary(t, TAPE_ADD, x, tape_constant(t, back));
+		tape_ref rise = tape_binary(t, TAPE_MUL, tape_constant(t, piece[p].slope), beyond);
+		tape_ref own = tape_binary(t, TAPE_ADD, tape_constant(t, piece[p].y), rise);
+		value = !piece[p].end ? own : tape_select(t, side(f, a->operand[0], CMP_LT,
+								  form_constant(piece[p].end)), own, value);
+	}
+	mpq_clear(back);
+	return value;
+}
+
+/* Of numbers and the time at which conditions on time hold as they do */
+static tape_ref form_in_time(struct tape_forms *f, const struct form *form)
+{
+	struct tape *t = f->tape;
+	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		tape_ref factor = tape_constant(t, form->term[i].factor), when = tape_operand(t, TAPE_TIME, 0, 1);
+		term[i] = basis->kind == BASIS_WAVE && basis->power > 0 ? times(t, factor, when)
+			  : basis->kind == BASIS_PI			? tape_term(f, &form->term[i])
+									: factor;
+	}
+	return tape_sum(t, form->terms, term);
+}
+
+static bool is_decided_in_time(const struct tape_forms *f, const struct atom *a)
+{
+	bool timed = f->reader.timed;
+	for (int i = 0; i < a->operands; i++)
+		timed = timed && is_linear_in_time(a->operand[i]);
+	return timed;
+}
+
+static tape_ref operand_of_condition(struct tape_forms *f, const struct atom *a, int k)
+{
+	return is_decided_in_time(f, a) ? form_in_time(f, a->operand[k]) : tape_form(f, a->operand[k]);
+}
+
+static tape_ref sign_ref(struct tape_forms *f, const struct atom *a)
+{
+	struct tape *t = f->tape;
+	const struct form *zero = form_number(0);
+	if (is_decided_by_state(f, a->operand[0], zero))
+		return tape_select(t, side(f, a->operand[0], CMP_GT, zero), tape_number(t, 1), tape_number(t, -1));
+	return tape_unary(t, TAPE_SIGN, operand_of_condition(f, a, 0));
+}
+
+/* The piece below the limits, between and above them */
+static tape_ref limited_ref(struct tape_forms *f, const struct atom *a)
+{
+	struct tape *t = f->tape;
+	bool clips = a->function == FN_CLIP;
+	tape_ref x = tape_form(f, a->operand[0]), low = tape_form(f, a->operand[1]), high = tape_form(f, a->operand[2]);
+	tape_ref below = side(f, a->operand[0], CMP_LT, a->operand[1]);
+	tape_ref beyond = side(f, a->operand[0], CMP_GT, a->operand[2]);
+	tape_ref under = clips ? low : tape_binary(t, TAPE_ADD, x, tape_unary(t, TAPE_NEG, low));
+	tape_ref over = clips ? high : tape_binary(t, TAPE_ADD, x, tape_unary(t, TAPE_NEG, high));
+	return tape_select(t, below, under, tape_select(t, beyond, over, clips ? x : tape_number(t, 0)));
+}
+
+static tape_ref call_ref(struct tape_forms *f, const struct atom *a)
+{
+	struct tape *t = f->tape;
+	tape_ref x;
+	switch (a->function) {
+	case FN_TABLE:    return table_ref(f, a);
+	case FN_FRICTION:
+	case FN_SLIDE:    return f->reader.friction(t, f->reader.context, a);
+	case FN_MIN:
+	case FN_MAX:      return extreme_ref(f, a);
+	case FN_SGN:      return sign_ref(f, a);
+	case FN_CLIP:
+	case FN_DEADZONE: return limited_ref(f, a);
+	case FN_ABS:
+		x = tape_form(f, a->operand[0]);
+		return tape_select(t, side(f, a->operand[0], CMP_LT, form_number(0)), tape_unary(t, TAPE_NEG, x), x);
+	case FN_ATAN2:
+		x = tape_form(f, a->operand[0]);
+		return tape_binary(t, TAPE_ATAN2, x, tape_form(f, a->operand[1]));
+	default:          return tape_call(t, a->function, tape_form(f, a->operand[0]));
+	}
+}
+
+static tape_ref comparison_ref(struct tape_forms *f, const struct atom *a)
+{
+	if (is_decided_by_state(f, a->operand[0], a->operand[1]))
+		return side(f, a->operand[0], a->comparison, a->operand[1]);
+	tape_ref left = operand_of_condition(f, a, 0);
+	return tape_compare(f->tape, a->comparison, left, operand_of_condition(f, a, 1));
+}
+
+tape_ref tape_condition(struct tape_forms *f, const struct form *condition)
+{
+	const struct atom *atom = only_atom(condition);
+	if (atom && atom->kind == ATOM_COMPARE)
+		return comparison_ref(f, atom);
+	return tape_binary(f->tape, TAPE_UNEQUAL, tape_form(f, condition), tape_number(f->tape, 0));
+}
+
+static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
+{
+	struct tape *t = f->tape;
+	tape_ref x, condition;
+	switch (a->kind) {
+	case ATOM_PARAM:      return tape_operand(t, TAPE_PARAM, a->param->tunable - 1, 0);
+	case ATOM_PRODUCT:    return product_ref(f, a, TAPE_NONE);
+	case ATOM_RECIPROCAL: return tape_binary(t, TAPE_DIV, tape_number(t, 1), tape_form(f, a->operand[0]));
+	case ATOM_POWER:
+		x = tape_form(f, a->operand[0]);
+		return tape_binary(t, TAPE_POWER, x, tape_form(f, a->operand[1]));
+	case ATOM_CALL:       return call_ref(f, a);
+	case ATOM_COMPARE:    return tape_select(t, comparison_ref(f, a), tape_number(t, 1), tape_number(t, 0));
+	default:
+		condition = tape_condition(f, a->operand[0]);
+		x = tape_form(f, a->operand[1]);
+		return tape_select(t, condition, x, tape_form(f, a->operand[2]));
+	}
+}
+
+static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
+{
+	if (f->made[a->index] == TAPE_NONE)
+		f->made[a->index] = new_atom_ref(f, a);
+	return f->made[a->index];
+}
+
+/* ---- forms ---- */
+
+static tape_ref pi_ref(struct tape *t)
+{
+	mpq_t pi;
+	mpq_init(pi);
+	constant_pi(pi);
+	tape_ref ref = tape_constant(t, pi);
+	mpq_clear(pi);
+	return ref;
+}
+
+/* `before` times each factor of a product, from the left to the right */
+static tape_ref times_product(struct tape *t, tape_ref before, tape_ref product)
+{
+	const struct tape_node n = *tape_node(t, product);
+	return n.op == TAPE_MUL ? times(t, times_product(t, before, n.a), n.b) : times(t, before, product);
+}
+
+/* A factor goes into a product that nothing else reads, so that both take one multiplication less. */
+tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
+{
+	struct tape *t = f->tape;
+	const struct basis *basis = &term->basis;
+	const struct atom *atom = basis->atom;
+	bool plus = mpq_cmp_si(term->factor, 1, 1) == 0, minus = mpq_cmp_si(term->factor, -1, 1) == 0;
+	if (basis->kind == BASIS_ONE)
+		return tape_constant(t, term->factor);
+	if (atom && atom->kind == ATOM_PRODUCT && f->uses[atom->index] <= 1 && !plus && !minus)
+		return product_ref(f, atom, tape_constant(t, term->factor));
+	tape_ref x = atom			? atom_ref(f, atom)
+		     : basis->kind == BASIS_PI	? pi_ref(t)
+						: f->reader.leaf(t, f->reader.context, basis);
+	if (plus || minus)
+		return plus ? x : tape_unary(t, TAPE_NEG, x);
+	tape_ref factor = tape_constant(t, term->factor);
+	return atom ? times(t, factor, x) : times_product(t, factor, x);
+}
+
+tape_ref tape_form(struct tape_forms *f, const struct form *form)
+{
+	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++)
+		term[i] = tape_term(f, &form->term[i]);
+	tape_ref sum = tape_sum(f->tape, form->terms, term);
+	discard(term);
+	return sum;
+}
+
+void tape_name_lets(struct tape_forms *f)
+{
+	for (int i = 0; i < f->lets; i++)
+		tape_name(f->tape, tape_form(f, f->let[i].form), f->let[i].name);
+}

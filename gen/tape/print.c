@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A tape as C: locals for what is read more than once, the rest inside one another. */
+#include "tape/tape.h"
+
+#include <string.h>
+
+/* What the place of a text binds by: a choice stands in brackets everywhere */
+enum level { CHOICE, COMPARISON, SUM, PRODUCT, PRIMARY };
+enum { WIDTH = 100, LONG = 400 };           /* of a line; of an argument: compilers limit how deep brackets nest */
+
+struct printing {
+	const struct tape *t;
+	const struct tape_target *to;
+	FILE *out;                  /* NULL: no locals can be declared */
+	int *uses, parts;           /* locals so far that have no name of their own */
+	const char **local;         /* per node: what holds it; NULL: nothing yet */
+};
+
+static const char *text_of(struct printing *p, tape_ref ref, enum level level, int indent);
+
+static const char *enclosed(bool needed, const char *text)
+{
+	return needed ? format("(%s)", text) : text;
+}
+
+/* ---- locals ---- */
+
+static bool is_shared(const struct printing *p, tape_ref ref)
+{
+	bool plain = tape_is_operand(p->t, ref) || (tape_is_cheap(p->t, ref) && !tape_node(p->t, ref)->name);
+	return p->out && !plain && (p->uses[ref] > 1 || tape_node(p->t, ref)->name);
+}
+
+static const char *declare(struct printing *p, tape_ref ref, const char *text)
+{
+	const char *name = tape_node(p->t, ref)->name;
+	name = name ? name : format("part%d", ++p->parts);
+	fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", p->to->real, name, text);
+	return p->local[ref] = name;
+}
+
+static bool is_word(const char *text)
+{
+	return text[strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.[]")] == 0;
+}
+
+/* What a text needs more than once is a name. */
+static const char *word_of(struct printing *p, tape_ref ref)
+{
+	const char *text = text_of(p, ref, CHOICE, 18);
+	return is_word(text) || !p->out ? enclosed(!is_word(text), text) : declare(p, ref, text);
+}
+
+static const char *argument_of(struct printing *p, tape_ref ref)
+{
+	const char *text = text_of(p, ref, CHOICE, 18);
+	return strlen(text) > LONG && p->out && !tape_node(p->t, ref)->choice ? declare(p, ref, text) : text;
+}
+
+/* ---- operations ---- */
+
+/* What is negative is subtracted; lines break at the middle of what is too long for one. */
+static const char *sum_text(struct printing *p, const struct tape_node *n, int indent)
+{
+	const char *left = text_of(p, n->a, PRODUCT, indent + 1), *right = text_of(p, n->b, PRODUCT, indent + 1);
+	const char *sign = *right == '-' ? "-" : "+";
+	right += *right == '-';
+	bool wide = (int)(strlen(left) + strlen(right)) + indent > WIDTH;
+	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
+}
+
+static const char *product_text(struct printing *p, const struct tape_node *n, int indent)
+{
+	const char *left = text_of(p, n->a, PRODUCT, indent);
+	return format("%s %s %s", left, n->op == TAPE_MUL ? "*" : "/", text_of(p, n->b, PRIMARY, indent));
+}
+
+static const char *comparison_text(struct printing *p, const struct tape_node *n)
+{
+	static const char *const sign[2][4] = { { "<", "<=", "==", "!=" }, { ">", ">=", "==", "!=" } };
+	bool turned = tape_node(p->t, n->a)->op == TAPE_CONSTANT;       /* x > 0.0, not 0.0 < x */
+	const char *left = text_of(p, turned ? n->b : n->a, SUM, 18);
+	return format("%s %s %s", left, sign[turned][n->op - TAPE_LESS], text_of(p, turned ? n->a : n->b, SUM, 18));
+}
+
+static const char *select_text(struct printing *p, const struct tape_node *n)
+{
+	const char *condition = text_of(p, n->a, COMPARISON, 18), *first = argument_of(p, n->b);
+	return format("(%s ? %s : %s)", condition, first, argument_of(p, n->c));
+}
+
+static const char *call_text(struct printing *p, const char *function, const struct tape_node *n)
+{
+	const char *first = argument_of(p, n->a);
+	return n->b == TAPE_NONE ? format("%s(%s)", function, first)
+				 : format("%s(%s, %s)", function, first, argument_of(p, n->b));
+}
+
+static const char *bare_text(struct printing *p, tape_ref ref, int indent)
+{
+	const struct tape_node *n = tape_node(p->t, ref);
+	const char *x;
+	switch (n->op) {
+	case TAPE_CONSTANT: return p->to->number(p->to->context, n->value);
+	case TAPE_TRUE:     return "1";
+	case TAPE_FALSE:    return "0";
+	case TAPE_NEG:
+		x = text_of(p, n->a, PRODUCT, indent);
+		return format(*x == '-' ? "-(%s)" : "-%s", x);
+	case TAPE_NOT:      return format("!%s", text_of(p, n->a, PRIMARY, indent));
+	case TAPE_SIGN:
+		x = word_of(p, n->a);
+		return format("(%s)((%s > 0.0) - (%s < 0.0))", p->to->real, x, x);
+	case TAPE_SIZE:     return call_text(p, p->to->size, n);
+	case TAPE_CALL:     return call_text(p, function_name((enum function)n->index), n);
+	case TAPE_POWER:    return call_text(p, "pow", n);
+	case TAPE_ATAN2:    return call_text(p, "atan2", n);
+	case TAPE_ADD:      return sum_text(p, n, indent);
+	case TAPE_MUL:
+	case TAPE_DIV:      return product_text(p, n, indent);
+	case TAPE_SELECT:   return select_text(p, n);
+	default:            break;
+	}
+	return n->op >= TAPE_LESS ? comparison_text(p, n) : p->to->operand(p->to->context, n);
+}
+
+static enum level level_of(const struct tape_node *n, const char *text)
+{
+	switch (n->op) {
+	case TAPE_ADD:      return SUM;
+	case TAPE_NEG:
+	case TAPE_MUL:
+	case TAPE_DIV:      return PRODUCT;
+	case TAPE_CONSTANT: return *text == '-' ? PRODUCT : PRIMARY;
+	case TAPE_NOT:      return PRIMARY;
+	case TAPE_ABOVE:    return COMPARISON;
+	default:            return n->op >= TAPE_LESS && n->op <= TAPE_UNEQUAL ? COMPARISON : PRIMARY;
+	}
+}
+
+static const char *text_of(struct printing *p, tape_ref ref, enum level level, int indent)
+{
+	if (p->local[ref])
+		return p->local[ref];
+	bool shared = is_shared(p, ref);
+	const char *text = bare_text(p, ref, shared ? 18 : indent);
+	if (shared)
+		return declare(p, ref, text);
+	return enclosed(level_of(tape_node(p->t, ref), text) < level, text);
+}
+
+/* ---- the whole ---- */
+
+static struct printing printing_of(const struct tape *t, const struct tape_target *to, FILE *out)
+{
+	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
+	p.local = ARRAY(const char *, (size_t)tape_length(t) + 1);
+	return p;
+}
+
+void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
+{
+	struct printing p = printing_of(t, to, out);
+	for (int i = 0; i < tape_outs(t); i++) {
+		const struct tape_out *set = tape_out(t, i);
+		const char *text = text_of(&p, set->ref, CHOICE, set->indent);
+		fprintf(out, "%*s%s = %s;%s\n", to->indent, "", set->target, text,
+			set->note ? format("  /* %s */", set->note) : "");
+	}
+}
+
+const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent)
+{
+	struct printing p = printing_of(t, to, NULL);
+	return text_of(&p, ref, CHOICE, indent);
+}

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The numbers of a tape: in double, and at any precision. */
+#include "tape/tape.h"
+
+#include <math.h>
+
+/* ---- double ---- */
+
+static double function_double(enum function function, double x)
+{
+	switch (function) {
+	case FN_SIN:  return sin(x);
+	case FN_COS:  return cos(x);
+	case FN_TAN:  return tan(x);
+	case FN_EXP:  return exp(x);
+	case FN_LOG:  return log(x);
+	case FN_SQRT: return sqrt(x);
+	case FN_SINH: return sinh(x);
+	case FN_COSH: return cosh(x);
+	case FN_TANH: return tanh(x);
+	case FN_ASIN: return asin(x);
+	case FN_ACOS: return acos(x);
+	case FN_ATAN: return atan(x);
+	default:      return NAN;
+	}
+}
+
+static double node_double(const struct tape_node *n, const struct tape_values *from, const double *value)
+{
+	double a = n->a == TAPE_NONE ? 0 : value[n->a], b = n->b == TAPE_NONE ? 0 : value[n->b];
+	switch (n->op) {
+	case TAPE_CONSTANT: return round_rational(n->value);
+	case TAPE_TRUE:     return 1;
+	case TAPE_FALSE:    return 0;
+	case TAPE_NEG:      return -a;
+	case TAPE_SIGN:     return (double)((a > 0) - (a < 0));
+	case TAPE_SIZE:     return fabs(a);
+	case TAPE_CALL:     return function_double((enum function)n->index, a);
+	case TAPE_NOT:      return a == 0;
+	case TAPE_ADD:      return a + b;
+	case TAPE_MUL:      return a * b;
+	case TAPE_DIV:      return a / b;
+	case TAPE_POWER:    return pow(a, b);
+	case TAPE_ATAN2:    return atan2(a, b);
+	case TAPE_LESS:     return a < b;
+	case TAPE_AT_MOST:  return a <= b;
+	case TAPE_EQUAL:    return a == b;
+	case TAPE_UNEQUAL:  return a != b;
+	case TAPE_SELECT:   return a != 0 ? b : value[n->c];
+	default:            return from->operand_double(from->context, n);
+	}
+}
+
+void tape_run_double(const struct tape *t, const struct tape_values *from, double *value)
+{
+	for (int i = 0; i < tape_length(t); i++)
+		value[i] = node_double(tape_node(t, i), from, value);
+}
+
+/* ---- any precision ---- */
+
+/* Of numbers one of which is not defined there is no order: what is chosen by it is not defined either. */
+static void compare_mpfr(enum tape_op op, mpfr_srcptr a, mpfr_srcptr b, mpfr_ptr value)
+{
+	if (mpfr_nan_p(a) || mpfr_nan_p(b)) {
+		mpfr_set_nan(value);
+		return;
+	}
+	int order = mpfr_cmp(a, b);
+	bool holds = op == TAPE_LESS	  ? order < 0
+		     : op == TAPE_AT_MOST ? order <= 0
+		     : op == TAPE_EQUAL	  ? order == 0
+					  : order != 0;
+	mpfr_set_ui(value, holds, MPFR_RNDN);
+}
+
+static void judge_mpfr(enum tape_op op, mpfr_srcptr a, mpfr_ptr value)
+{
+	if (mpfr_nan_p(a))
+		mpfr_set_nan(value);
+	else
+		mpfr_set_si(value, op == TAPE_SIGN ? mpfr_sgn(a) : mpfr_zero_p(a) != 0, MPFR_RNDN);
+}
+
+static void choose_mpfr(const struct tape_node *n, mpfr_t *value, mpfr_ptr result)
+{
+	if (mpfr_nan_p(value[n->a]))
+		mpfr_set_nan(result);
+	else
+		mpfr_set(result, value[mpfr_zero_p(value[n->a]) ? n->c : n->b], MPFR_RNDN);
+}
+
+static void node_mpfr(const struct tape_node *n, const struct tape_values *from, mpfr_t *value, mpfr_ptr result)
+{
+	mpfr_srcptr a = n->a == TAPE_NONE ? NULL : value[n->a], b = n->b == TAPE_NONE ? NULL : value[n->b];
+	switch (n->op) {
+	case TAPE_CONSTANT: mpfr_set_q(result, n->value, MPFR_RNDN); return;
+	case TAPE_TRUE:
+	case TAPE_FALSE:    mpfr_set_ui(result, n->op == TAPE_TRUE, MPFR_RNDN); return;
+	case TAPE_NEG:      mpfr_neg(result, a, MPFR_RNDN); return;
+	case TAPE_SIGN:
+	case TAPE_NOT:      judge_mpfr(n->op, a, result); return;
+	case TAPE_SIZE:     mpfr_abs(result, a, MPFR_RNDN); return;
+	case TAPE_CALL:
+		mpfr_set(result, a, MPFR_RNDN);
+		wide_value((enum function)n->index, result);
+		return;
+	case TAPE_ADD:      mpfr_add(result, a, b, MPFR_RNDN); return;
+	case TAPE_MUL:      mpfr_mul(result, a, b, MPFR_RNDN); return;
+	case TAPE_DIV:      mpfr_div(result, a, b, MPFR_RNDN); return;
+	case TAPE_POWER:    mpfr_pow(result, a, b, MPFR_RNDN); return;
+	case TAPE_ATAN2:    mpfr_atan2(result, a, b, MPFR_RNDN); return;
+	case TAPE_LESS:
+	case TAPE_AT_MOST:
+	case TAPE_EQUAL:
+	case TAPE_UNEQUAL:  compare_mpfr(n->op, a, b, result); return;
+	case TAPE_SELECT:   choose_mpfr(n, value, result); return;
+	default:            from->operand(from->context, n, result);
+	}
+}
+
+void tape_run_mpfr(const struct tape *t, const struct tape_values *from, mpfr_t *value)
+{
+	for (int i = 0; i < tape_length(t); i++)
+		node_mpfr(tape_node(t, i), from, value, value[i]);
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Nodes, each made once; what they cost and read. */
+#include "tape/tape.h"
+
+enum { BUCKETS = 1 << 10 };
+
+struct tape {
+	int nodes, outs;
+	struct tape_node *node;
+	struct tape_out *out;
+	int *next, bucket[BUCKETS]; /* nodes of one hash; first + 1, 0: none */
+};
+
+struct tape *tape_new(void)
+{
+	return NEW(struct tape);
+}
+
+int tape_length(const struct tape *t)
+{
+	return t->nodes;
+}
+
+const struct tape_node *tape_node(const struct tape *t, tape_ref ref)
+{
+	return &t->node[ref];
+}
+
+int tape_outs(const struct tape *t)
+{
+	return t->outs;
+}
+
+const struct tape_out *tape_out(const struct tape *t, int out)
+{
+	return &t->out[out];
+}
+
+/* ---- nodes ---- */
+
+static bool is_alike(const struct tape_node *a, const struct tape_node *b)
+{
+	bool same = a->op == b->op && a->index == b->index && a->part == b->part && a->a == b->a && a->b == b->b &&
+		    a->c == b->c;
+	return same && (a->op != TAPE_CONSTANT || mpq_equal(a->value, b->value));
+}
+
+static unsigned hash_of(const struct tape_node *n)
+{
+	unsigned hash = (unsigned)n->op;
+	const int word[] = { n->index, n->part, n->a, n->b, n->c };
+	for (size_t i = 0; i < sizeof word / sizeof *word; i++)
+		hash = hash * 31 + (unsigned)word[i];
+	if (n->op == TAPE_CONSTANT)
+		hash = hash * 31 + (unsigned)mpz_get_ui(mpq_numref(n->value)) * 7 +
+		       (unsigned)mpz_get_ui(mpq_denref(n->value));
+	return (hash ^ hash >> 15) % BUCKETS;
+}
+
+static tape_ref enter(struct tape *t, struct tape_node n)
+{
+	unsigned hash = hash_of(&n);
+	for (int i = t->bucket[hash] - 1; i >= 0; i = t->next[i] - 1)
+		if (is_alike(&t->node[i], &n))
+			return i;
+	if ((t->nodes & (t->nodes - 1)) == 0) {         /* room for a power of two */
+		size_t room = t->nodes ? 2 * (size_t)t->nodes : 1;
+		ENLARGE(t->node, room);
+		ENLARGE(t->next, room);
+	}
+	t->next[t->nodes] = t->bucket[hash];
+	t->bucket[hash] = t->nodes + 1;
+	t->node[t->nodes] = n;
+	return t->nodes++;
+}
+
+tape_ref tape_constant(struct tape *t, mpq_srcptr value)
+{
+	mpq_t *own = NEW(mpq_t);
+	mpq_init(*own);
+	mpq_set(*own, value);
+	return enter(t, (struct tape_node){ .op = TAPE_CONSTANT, .a = TAPE_NONE, .b = TAPE_NONE, .c = TAPE_NONE,
+					    .value = *own });
+}
+
+tape_ref tape_number(struct tape *t, long value)
+{
+	mpq_t exact;
+	mpq_init(exact);
+	mpq_set_si(exact, value, 1);
+	tape_ref ref = tape_constant(t, exact);
+	mpq_clear(exact);
+	return ref;
+}
+
+static bool is_choice(enum tape_op op)
+{
+	return op == TAPE_ABOVE || op == TAPE_TRUE || op == TAPE_FALSE || op == TAPE_NOT ||
+	       (op >= TAPE_LESS && op <= TAPE_UNEQUAL);
+}
+
+tape_ref tape_operand(struct tape *t, enum tape_op kind, int index, int part)
+{
+	return enter(t, (struct tape_node){ .op = kind, .choice = is_choice(kind), .index = index, .part = part,
+					    .a = TAPE_NONE, .b = TAPE_NONE, .c = TAPE_NONE });
+}
+
+static tape_ref make(struct tape *t, enum tape_op op, int index, tape_ref a, tape_ref b)
+{
+	return enter(t, (struct tape_node){ .op = op, .choice = is_choice(op), .index = index, .a = a, .b = b,
+					    .c = TAPE_NONE });
+}
+
+tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a)
+{
+	bool twice = (op == TAPE_NEG || op == TAPE_NOT) && t->node[a].op == op;
+	if (op != TAPE_NEG || t->node[a].op != TAPE_CONSTANT)
+		return twice ? t->node[a].a : make(t, op, 0, a, TAPE_NONE);
+	mpq_t negative;
+	mpq_init(negative);
+	mpq_neg(negative, t->node[a].value);
+	tape_ref ref = tape_constant(t, negative);
+	mpq_clear(negative);
+	return ref;
+}
+
+tape_ref tape_call(struct tape *t, enum function function, tape_ref a)
+{
+	return make(t, TAPE_CALL, (int)function, a, TAPE_NONE);
+}
+
+tape_ref tape_binary(struct tape *t, enum tape_op op, tape_ref a, tape_ref b)
+{
+	return make(t, op, 0, a, b);
+}
+
+tape_ref tape_compare(struct tape *t, enum comparison comparison, tape_ref a, tape_ref b)
+{
+	static const enum tape_op op[] = { TAPE_LESS, TAPE_AT_MOST, TAPE_LESS, TAPE_AT_MOST, TAPE_EQUAL, TAPE_UNEQUAL };
+	bool turned = comparison == CMP_GT || comparison == CMP_GE;
+	return tape_binary(t, op[comparison], turned ? b : a, turned ? a : b);
+}
+
+tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b)
+{
+	enum tape_op op = t->node[condition].op;
+	if (a == b || op == TAPE_TRUE || op == TAPE_FALSE)
+		return op == TAPE_FALSE ? b : a;
+	return enter(t, (struct tape_node){ .op = TAPE_SELECT, .choice = t->node[a].choice, .a = condition, .b = a,
+					    .c = b });
+}
+
+tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term)
+{
+	if (terms <= 1)
+		return terms ? term[0] : tape_number(t, 0);
+	int half = (terms + 1) / 2;
+	half += terms > 3 && half % 2;          /* pairs stay together */
+	tape_ref left = tape_sum(t, half, term);
+	return tape_binary(t, TAPE_ADD, left, tape_sum(t, terms - half, term + half));
+}
+
+tape_ref tape_power(struct tape *t, tape_ref a, unsigned n)
+{
+	if (n == 1)
+		return a;
+	if (n <= 3) {
+		tape_ref square = tape_binary(t, TAPE_MUL, a, a);
+		return n == 2 ? square : tape_binary(t, TAPE_MUL, square, a);
+	}
+	tape_ref half = tape_power(t, a, n / 2), square = tape_binary(t, TAPE_MUL, half, half);
+	return n % 2 ? tape_binary(t, TAPE_MUL, square, a) : square;
+}
+
+bool tape_is_operand(const struct tape *t, tape_ref ref)
+{
+	return t->node[ref].op < TAPE_NEG;
+}
+
+void tape_name(struct tape *t, tape_ref ref, const char *name)
+{
+	if (!tape_is_operand(t, ref) && !t->node[ref].name && !t->node[ref].choice)
+		t->node[ref].name = name;
+}
+
+void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note)
+{
+	ENLARGE(t->out, (size_t)t->outs + 1);
+	t->out[t->outs++] = (struct tape_out){ target, note, ref, indent };
+}
+
+/* ---- what has to hold ---- */
+
+static int operands_of(enum tape_op op)
+{
+	return op < TAPE_NEG ? 0 : op < TAPE_ADD ? 1 : op < TAPE_SELECT ? 2 : 3;
+}
+
+static const char *check_node(const struct tape *t, int i)
+{
+	const struct tape_node *n = &t->node[i];
+	const tape_ref ref[3] = { n->a, n->b, n->c };
+	for (int k = 0; k < 3; k++) {
+		if (k >= operands_of(n->op)) {
+			if (ref[k] != TAPE_NONE)
+				return "a node reads more than its operation has operands";
+			continue;
+		}
+		if (ref[k] < 0 || ref[k] >= i)
+			return "a node reads what is not before it";
+		bool wanted = n->op == TAPE_NOT || (n->op == TAPE_SELECT && (k == 0 || n->choice));
+		if (t->node[ref[k]].choice != wanted)
+			return "a condition is read as a number, or a number as a condition";
+	}
+	if ((n->op == TAPE_CONSTANT) != (n->value != NULL))
+		return "a constant has no value, or something else has one";
+	return NULL;
+}
+
+const char *tape_check(const struct tape *t)
+{
+	for (int i = 0; i < t->nodes; i++) {
+		const char *broken = check_node(t, i);
+		if (broken)
+			return broken;
+		for (int k = t->next[i] - 1; k >= 0; k = t->next[k] - 1)
+			if (is_alike(&t->node[k], &t->node[i]))
+				return "two nodes are alike";
+	}
+	for (int i = 0; i < t->outs; i++)
+		if (t->out[i].ref < 0 || t->out[i].ref >= t->nodes || t->node[t->out[i].ref].choice)
+			return "what is set is no number of the tape";
+	return NULL;
+}
+
+/* ---- what is read, and what it costs ---- */
+
+bool tape_is_cheap(const struct tape *t, tape_ref ref)
+{
+	const struct tape_node *n = &t->node[ref];
+	return n->choice || n->op == TAPE_NEG || (n->op == TAPE_MUL && t->node[n->a].op == TAPE_CONSTANT);
+}
+
+int *tape_uses(const struct tape *t)
+{
+	int *uses = ARRAY(int, (size_t)t->nodes + 1);
+	for (int i = 0; i < t->outs; i++)
+		uses[t->out[i].ref]++;
+	for (int i = t->nodes - 1; i >= 0; i--) {
+		const tape_ref ref[3] = { t->node[i].a, t->node[i].b, t->node[i].c };
+		for (int k = 0; k < 3 && uses[i]; k++)
+			if (ref[k] != TAPE_NONE)
+				uses[ref[k]] += tape_is_cheap(t, i) ? uses[i] : 1;
+	}
+	return uses;
+}
+
+bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part)
+{
+	bool reads = false;
+	int *uses = tape_uses(t);
+	for (int i = 0; i < t->nodes && !reads; i++) {
+		const struct tape_node *n = &t->node[i];
+		reads = uses[i] && n->op == kind && (index < 0 || n->index == index) && (part < 0 || n->part == part);
+	}
+	discard(uses);
+	return reads;
+}
+
+struct tape_cost tape_cost(const struct tape *t)
+{
+	struct tape_cost cost = { 0 };
+	int *uses = tape_uses(t);
+	for (int i = 0; i < t->nodes; i++) {
+		enum tape_op op = uses[i] ? t->node[i].op : TAPE_CONSTANT;
+		cost.multiplications += op == TAPE_MUL;
+		cost.divisions += op == TAPE_DIV;
+		cost.additions += op == TAPE_ADD;
+		cost.calls += op == TAPE_CALL || op == TAPE_POWER || op == TAPE_ATAN2;
+	}
+	discard(uses);
+	return cost;
+}

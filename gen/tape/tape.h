@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Straight-line programs, as of automatic differentiation (Griewank and Walther, Evaluating Derivatives, 2008): a list
+ * of nodes in the order of their evaluation, each made once, that read nodes before them. Forms become tapes; tapes
+ * are printed as C, run, counted and differentiated. */
+#ifndef PLGEN_TAPE_H
+#define PLGEN_TAPE_H
+
+#include "collect/collect.h"
+
+/* ---- tape.c: nodes ---- */
+
+enum tape_op {
+	/* Operands, which read nothing: what they are called is the reader's matter (struct tape_target) */
+	TAPE_CONSTANT,              /* an exact number */
+	TAPE_COORD, TAPE_INPUT,     /* coordinate or input `index`, differentiated `part` times */
+	TAPE_LOAD,                  /* column `part` of load `index` */
+	TAPE_PARAM,                 /* tunable param `index` */
+	TAPE_TIME,                  /* t; `part` 1: the time at which conditions on time hold as they do */
+	TAPE_TABLE,                 /* entry `index` of table `part` of the reader's */
+	TAPE_FRICTION,              /* a friction force of the model */
+	TAPE_ABOVE,                 /* a choice: expression `index` is above its breakpoint of rank `part` */
+	TAPE_TRUE, TAPE_FALSE,      /* choices */
+	/* of a */
+	TAPE_NEG, TAPE_SIGN, TAPE_SIZE, TAPE_CALL, /* -a; -1, 0 or 1; |a|; function `index` of a */
+	TAPE_NOT,                   /* a choice, of a choice */
+	/* of a and b */
+	TAPE_ADD, TAPE_MUL, TAPE_DIV, TAPE_POWER, TAPE_ATAN2,
+	TAPE_LESS, TAPE_AT_MOST, TAPE_EQUAL, TAPE_UNEQUAL, /* choices */
+	TAPE_SELECT,                /* a ? b : c; b and c are of one type */
+	TAPE_OPS
+};
+typedef int tape_ref;               /* place of a node */
+enum { TAPE_NONE = -1 };
+struct tape_node {
+	enum tape_op op;
+	bool choice;                /* its type: a condition, else a number */
+	int index, part;
+	tape_ref a, b, c;           /* before this node, or TAPE_NONE */
+	mpq_srcptr value;           /* of TAPE_CONSTANT */
+	const char *name;           /* of the local that holds it; NULL: it needs none */
+};
+struct tape_out {                   /* target = node; printed in this order */
+	const char *target, *note;  /* NULL: no comment behind it */
+	tape_ref ref;
+	int indent;                 /* of the lines that a long sum goes on in */
+};
+struct tape;
+struct tape *tape_new(void);
+int  tape_length(const struct tape *t);
+const struct tape_node *tape_node(const struct tape *t, tape_ref ref);
+int  tape_outs(const struct tape *t);
+const struct tape_out *tape_out(const struct tape *t, int out);
+/* Each is the node that was made alike before, where there is one. */
+tape_ref tape_constant(struct tape *t, mpq_srcptr value);
+tape_ref tape_number(struct tape *t, long value);
+tape_ref tape_operand(struct tape *t, enum tape_op kind, int index, int part);
+tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a);
+tape_ref tape_call(struct tape *t, enum function function, tape_ref a);
+tape_ref tape_binary(struct tape *t, enum tape_op op, tape_ref a, tape_ref b);
+tape_ref tape_compare(struct tape *t, enum comparison comparison, tape_ref a, tape_ref b);
+tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b);
+/* (a + b) + (c + d): the shortest chain of dependent additions; of no terms 0 */
+tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term);
+tape_ref tape_power(struct tape *t, tape_ref a, unsigned n); /* a^n, n >= 1, with few multiplications */
+void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is an operand or has one */
+void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note);
+bool tape_is_operand(const struct tape *t, tape_ref ref);
+/* The first invariant that is broken: operands before their reader, as many as it has, of the types that it reads;
+ * no two nodes alike; NULL: none is. Every pass leaves it NULL. */
+const char *tape_check(const struct tape *t);
+/* Conditions, changes of sign and multiples by a number are made anew where they are read, and no locals of their own;
+ * what they read counts as often as they do. */
+bool tape_is_cheap(const struct tape *t, tape_ref ref);
+/* How often each node is read, by live nodes and outs; 0: it is dead */
+int *tape_uses(const struct tape *t);
+/* Does what is set read such an operand? index, part: any where negative */
+bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part);
+struct tape_cost { int multiplications, divisions, additions, calls; };
+struct tape_cost tape_cost(const struct tape *t); /* of what is set, each node once; negations cost nothing */
+
+/* ---- forms.c: forms as nodes ---- */
+
+struct tape_let { const char *name; const struct form *form; };
+struct tape_forms;
+/* What a basis is that is no constant and no atom, an operand or a product of some; where an event-driven step chooses
+ * formulas, the choice whether left is above right (NULL: their numbers decide); a friction force; do conditions on
+ * time alone hold as they do at another time, TAPE_TIME of `part` 1? */
+struct tape_reader {
+	tape_ref (*leaf)(struct tape *t, const void *context, const struct basis *basis);
+	tape_ref (*above)(struct tape_forms *f, const void *context, const struct form *left, const struct form *right);
+	tape_ref (*friction)(struct tape *t, const void *context, const struct atom *atom);
+	const void *context;
+	bool timed;
+};
+/* Forms are counted first: what several terms read is kept apart from their factors. A let's value has its name. */
+struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int atoms, int count,
+				  const struct form *const *form, int lets, const struct tape_let *let);
+struct tape *tape_of_forms(const struct tape_forms *f);
+tape_ref tape_form(struct tape_forms *f, const struct form *form);
+tape_ref tape_term(struct tape_forms *f, const struct form_term *term);
+/* Is `condition` met? As an atom, or where its number is not 0 */
+tape_ref tape_condition(struct tape_forms *f, const struct form *condition);
+void tape_name_lets(struct tape_forms *f);      /* once all forms are in */
+
+/* ---- print.c: a tape as C ---- */
+
+struct tape_target {
+	const char *real;           /* the type of a number */
+	const char *(*number)(const void *context, mpq_srcptr value);
+	const char *(*operand)(const void *context, const struct tape_node *node);
+	const char *size;           /* the function that TAPE_SIZE is */
+	const void *context;
+	int indent;
+};
+/* Locals for what is read more than once, outs in their order */
+void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);
+/* Without locals: one expression */
+const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent);
+
+/* ---- run.c: its numbers ---- */
+
+struct tape_values {                /* what operands are; NULL where the tape has none of that kind */
+	void (*operand)(const void *context, const struct tape_node *node, mpfr_ptr value);
+	double (*operand_double)(const void *context, const struct tape_node *node);
+	const void *context;
+};
+/* value: one a node. Where a condition is undefined so is what it chooses; only what is chosen has to be defined. */
+void tape_run_double(const struct tape *t, const struct tape_values *from, double *value);
+void tape_run_mpfr(const struct tape *t, const struct tape_values *from, mpfr_t *value);
+
+/* ---- slopes.c: derivatives, as further nodes ---- */
+
+/* d ref / d that operand; 0 where it is not read. Of SIGN and of conditions they are 0. */
+tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index, int part);
+/* ... with respect to all operands of this kind, by one sweep backwards: slope[index] */
+void tape_reverse(struct tape *t, tape_ref ref, enum tape_op kind, int count, tape_ref *slope);
+
+#endif
