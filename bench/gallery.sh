@@ -67,28 +67,6 @@ record() {
 			printf "%.6g,%.9g%s\n", t, u, columns ~ /top/ ? ",0" : "" } }'
 }
 
-# small: gnuplot's SVG on standard input with what it says at each tick said once, and a tenth of a pixel as the unit
-small() {
-	awk '
-		{ gsub(/^[ \t]+|[ \t]+$/, "") }
-		/^<desc>/ {
-			print "<style>.l{fill:none;color:black;stroke:currentColor;stroke-linejoin:miter}"
-			print ".t{stroke:none;fill:black;font:11px sans-serif}</style>"
-			next
-		}
-		/^<g fill="none" color="black" stroke="currentColor" / { held = "<g class=\"l\">"; next }
-		held != "" && $0 == "</g>" { held = ""; next }
-		$0 == "" { next }
-		{
-			gsub(/stroke="none" fill="black" font-family="sans" font-size="11.00" */, "class=\"t\" ")
-			gsub(/ class="gridline" */, " ")
-			while (!/<text>/ && match($0, /[0-9]\.[0-9][0-9]/))
-				$0 = substr($0, 1, RSTART + 2) substr($0, RSTART + 4)
-			print held $0
-			held = ""
-		}'
-}
-
 echo "$lengths" | while read -r name end step scheme; do
 	record "$name" "$end" "$step" >"$work/record.csv"
 	case $name in
@@ -106,5 +84,5 @@ echo "$lengths" | while read -r name end step scheme; do
 	[ -z "$scheme" ] || set -- "$@" --scheme "$scheme"
 	[ ! -s "$work/record.csv" ] || set -- "$@" --input "$work/record.csv"
 	"$plrun" "$@" -o "$work/rows.csv" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
-	small <"$work/picture.svg" >"$folder/$name.svg"
+	awk -f bench/svg.awk "$work/picture.svg" >"$folder/$name.svg"
 done

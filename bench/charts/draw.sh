@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# draw.sh FOLDER [--png]: pictures and pages from the tables in FOLDER, where nothing is measured: what follows from the
-# tables (matrix.csv, break_even.csv, precision_check.csv), every picture whose tables are there, and the pages. Run at
-# the top of the source tree. A picture NAME.gp of tables that are not told here is drawn of NAME.csv.
+# draw.sh FOLDER [--png]: pictures and pages from the tables in FOLDER, where nothing is measured: what pictures and
+# pages need of the large tables that programs wrote (NAME_raw.csv, which doc/charts does not keep), what follows from
+# the tables (matrix.csv, break_even.csv, precision_check.csv), every picture whose tables are there, and the pages. Run
+# at the top of the source tree. A picture NAME.gp of tables that are not told here is drawn of NAME.csv.
 set -e
 folder=$1 png=$2
 charts=bench/charts
@@ -12,23 +13,34 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 
-# derive PROGRAM TABLE FROM...: TABLE by PROGRAM.awk
+# derive TABLE TABLES PROGRAM [OPTION...]: TABLE by PROGRAM.awk of others, if they are there
 derive() {
-	program=$1 table=$2
-	shift 2
-	for from; do
-		[ -f "$folder/$from" ] || return 0
+	table=$1 from=$2 program=$3
+	shift 3
+	for name in $from; do
+		[ -f "$folder/$name" ] || return 0
 	done
-	(cd "$folder" && exec awk -f "$csv" -f "$here/$program.awk" "$@") >"$work/$table"
+	# Words
+	# shellcheck disable=SC2086
+	(cd "$folder" && exec awk "$@" -f "$csv" -f "$here/$program.awk" $from) >"$work/$table"
 	mv "$work/$table" "$folder/$table"
 }
 here=$PWD/$charts
 csv=$here/csv.awk
-derive matrix matrix.csv precision.csv
-derive break_even break_even.csv generation.csv precision.csv
-if sed -n 1p "$folder/precision.csv" 2>/dev/null | grep -q ns_pass; then
-	derive precision_check precision_check.csv precision.csv
-fi
+
+derive precision.csv precision_raw.csv fold -v lists=setting,largest,ns_median \
+	-v by=model,method,family,setting_kind,unit_s,history_s,truth_agreement
+derive precision_methods.csv precision_raw.csv told -v columns=method,family,setting_kind,settings
+derive energy.csv energy_raw.csv fold -v by=case,method,family,real,step_s -v lists=steps,largest
+derive hard.csv hard_raw.csv told -v columns=case,method,family,setting_kind,setting,error,word
+derive hard_methods.csv hard_raw.csv told -v columns=method,family,settings
+derive stability_map.csv stability_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.01 -1e-12 1e-12 0.01 0.1 1 10'
+derive operator_map.csv operator_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.001 -1e-6 1e-6 0.001 0.1 1 10'
+derive pl_map.csv pl_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.001 0 1e-6 0.001 0.1 1 10'
+derive plmap.csv plmap_raw.csv ratios
+derive matrix.csv precision.csv matrix
+derive break_even.csv 'generation.csv precision.csv' break_even
+derive precision_check.csv precision_raw.csv precision_check
 
 # tables_of NAME: what NAME.gp draws
 tables_of() {
@@ -58,7 +70,8 @@ FOLDER=$folder WORK=$work xargs -P "${JOBS:-2}" -L 1 \
 
 # Text and axes turn light where the reader's style is dark; areas keep their colours
 for picture in "$work"/pictures/*.svg; do
-	awk -f $charts/dark.awk "$picture" >"$work/picture" && mv "$work/picture" "$folder/$(basename "$picture")"
+	awk -f bench/svg.awk "$picture" >"$work/small" && awk -f $charts/dark.awk "$work/small" >"$work/picture"
+	mv "$work/picture" "$folder/$(basename "$picture")"
 done
 [ -z "$png" ] || cp "$work"/pictures/*.png "$folder"
 sh $charts/page.sh "$folder"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* energy [--quick] VARIANTS FOLDER: what must stay constant, over 1e8 steps (--quick: 1e6), in FOLDER/energy.csv and
- * FOLDER/decay.csv.
+/* energy [--quick] VARIANTS FOLDER: what must stay constant, over 1e8 steps (--quick: 1e6), in FOLDER/energy_raw.csv
+ * and FOLDER/decay.csv.
  *
  *     undamped   scs: the energy, relative to that at the start
  *     moving     free_pair with v2 = 0: the momentum, relative to sum m |v| at the start
@@ -212,7 +212,7 @@ int main(int argc, char **argv)
 	const double steps = quick ? 1e6 : 1e8;
 	int count;
 	const struct code *all = codes_read(argv[1 + quick], &count);
-	FILE *changes = open_in(argv[2 + quick], "energy.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv",
+	FILE *changes = open_in(argv[2 + quick], "energy_raw.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv",
 		"w");
 	fputs("case,method,family,real,step_s,steps,change,largest,word\n", changes);
 	fputs("method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,measured_per_s,error_percent,word\n", decays);

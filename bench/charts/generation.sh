@@ -3,7 +3,7 @@
 # generation.sh [--quick] BUILD FOLDER: what generating costs. Run at the top of the source tree,
 # after precision.
 #
-# FOLDER/generation.csv: for each model of FOLDER/precision.csv the time of plgen and of cc -O2 -c on what it wrote,
+# FOLDER/generation.csv: for each model of FOLDER/precision_raw.csv the time of plgen and of cc -O2 -c on what it wrote,
 # whole processes in turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured:
 # the empty one's stand beside them.
 set -e
@@ -30,7 +30,7 @@ measure() {
 columns=model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max
 columns=$columns,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples
 echo "$columns" >"$folder/generation.csv"
-awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" >"$work/models"
+awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision_raw.csv" >"$work/models"
 while read -r model; do
 	echo "generation: $model" >&2
 	spec=bench/charts/specs/$model.spec

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* hard [--quick] VARIANTS FOLDER: where methods fail. Every method on every hard case, in FOLDER/hard.csv: the largest
- * error of any displacement and velocity at the ends of units, relative to the largest displacement and velocity of
- * the history, or why there is none:
+/* hard [--quick] VARIANTS FOLDER: where methods fail. Every method on every hard case, in FOLDER/hard_raw.csv: the
+ * largest error of any displacement and velocity at the ends of units, relative to the largest displacement and
+ * velocity of the history, or why there is none:
  *
  *     ok            the error is below a thousandth
  *     poor          it is not, but below a tenth
@@ -407,7 +407,7 @@ int main(int argc, char **argv)
 	}
 	gsl_set_error_handler_off();            /* its statuses say it too */
 	FILE *list = open_in(argv[1 + scales + quick], "hard.list", "r"), *out = scales ? stdout
-	             : open_in(argv[2 + quick], "hard.csv", "w");
+	             : open_in(argv[2 + quick], "hard_raw.csv", "w");
 	if (!scales)
 		fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
 	struct problem *p = NULL;
@@ -431,7 +431,7 @@ int main(int argc, char **argv)
 	}
 	fclose(list);
 	if (ferror(out) | fclose(out)) {
-		perror("hard.csv");
+		perror("hard_raw.csv");
 		return 1;
 	}
 	return 0;

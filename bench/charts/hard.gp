@@ -2,10 +2,9 @@
 # hard.csv: methods down, cases across, what came of it
 here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = ARG3 eq 'narrow'
 csv = folder.'/hard.csv'
-count = int(system("awk -F'\"' 'NR > 1 && !seen[$4]++ { n++ } END { print n }' '".csv."'"))
-size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + (narrow ? 19 : 23)*count)
-load here.'/style.gp'
 load "< awk -v narrow=".narrow." -f '".here."/csv.awk' -f '".here."/hard_grid.awk' '".csv."'"
+size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + (narrow ? 19 : 23)*rows)
+load here.'/style.gp'
 name = 'hard'
 unset logscale
 unset grid

@@ -24,16 +24,16 @@ END {
 		text = steps[cases[c]]
 		sub(/^ /, "", text)
 		gsub(/ /, ", ", text)
-		printf "<th>%s<br><small>h = %s s</small></th>", cases[c], text
+		printf "<th>%s<br><small>h = %s s</small>", cases[c], text
 	}
-	print "</tr>"
+	print ""
 	split("ours fixed adaptive propagator", order, " ")
 	for (f = 1; f <= 4; f++)
 		for (m = 1; m <= method_count; m++) {
 			if (known_method[methods[m]] != order[f]) continue
-			printf "<tr class=%s><th>%s</th>", order[f], methods[m]
-			for (c = 1; c <= case_count; c++) printf "<td>%s</td>", cells[cases[c], methods[m]]
-			print "</tr>"
+			printf "<tr class=%s><th>%s", order[f], methods[m]
+			for (c = 1; c <= case_count; c++) printf "<td>%s", cells[cases[c], methods[m]]
+			print ""
 		}
 	print "</table></div>"
 }

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How the maps look: classes of growth in eleven colours, blue below and orange to red above, neutral in grey; x is
-# log10. `bounds`: ten of them, between the classes.
-cells(file, name, options) = "< awk -F, -v name='".name."' -v bounds='".bounds."' ".options." -f ".\
-	"'".here."/cells.awk' '".file."'"
-set style fill solid 1 noborder
+# log10. Between the classes stand the bounds by which draw.sh makes letters of growth.
+cells(file, name, options) = "< awk -F, -v name='".name."' ".options." -f '".here."/cells.awk' '".file."'"
 set key off
 set palette defined (-0.5 '#08306b', 0.5 '#08306b', 0.5 '#2f79b5', 1.5 '#2f79b5', 1.5 '#73b2d8', 2.5 '#73b2d8', 2.5 \
 	'#b2d4ea', 3.5 '#b2d4ea', \

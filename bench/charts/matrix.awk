@@ -3,8 +3,7 @@
 # peers that keeps it (largest error of the history at most that), in double, as CSV. Times are medians, as wherever the
 # charts show one. factor: the peer's time over ours; word: who is ahead, by more than the 10 % that times hold.
 function offer(key) {
-	if (!(key in ns) || cost < ns[key]) { ns[key] = cost; who[key] = method; had[key] = error
-		setting[key] = row[column["setting"]] }
+	if (!(key in ns) || cost < ns[key]) { ns[key] = cost; who[key] = method; had[key] = error; setting[key] = tried[k] }
 }
 function found(key) {
 	return key in ns ? "\"" who[key] "\"," setting[key] "," had[key] "," ns[key] : "none,none,none,none"
@@ -16,11 +15,15 @@ NR == 1 { read_head($0, column); next }
 	split_row($0, row)
 	model = row[column["model"]]; method = row[column["method"]]
 	if (!(model in known)) { known[model] = 1; models[++count] = model }
-	error = row[column["largest"]]; cost = row[column["ns_median"]] + 0
-	if (row[column["failed"]] == "1" || !is_number(error) || cost <= 0 || method ~ /float/) next
 	side = row[column["family"]] == "ours" ? "ours" : "peer"
-	for (i = 1; i <= errors; i++)
-		if (error + 0 <= wanted[i] + 0) offer(model SUBSEP i SUBSEP side)
+	if (method ~ /float/) next
+	count_of = split(row[column["setting"]], tried, " ")
+	split(row[column["largest"]], largest, " "); split(row[column["ns_median"]], median, " ")
+	for (k = 1; k <= count_of; k++) {
+		error = largest[k]; cost = median[k] + 0
+		for (i = 1; i <= errors && is_number(error) && cost > 0; i++)
+			if (error + 0 <= wanted[i] + 0) offer(model SUBSEP i SUBSEP side)
+	}
 }
 END {
 	print "model,error,ours,ours_setting,ours_error,ours_ns,peer,peer_setting,peer_error,peer_ns,factor,word"

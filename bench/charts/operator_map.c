@@ -4,9 +4,9 @@
  *
  * What happens when the exact part of a step is not the whole motion?
  *   etd1 ... bm3: x'' + w^2 x = 0 under an operator of frequency wA, the difference left to the scheme, over
- *   (w h, wA/w): operator_map.csv
+ *   (w h, wA/w): operator_map_raw.csv
  *   pl: two equal masses, each on a spring k1 and with k2 between them; each one's own (k1 + k2) x is exact, k2 times
- *   the other one is held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map.csv
+ *   the other one is held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map_raw.csv
  * rho: growth per step; growth: of the amplitude within one true period 2 pi/w, 0: none.  Both by the schemes of
  * tests/leftover/hand.c in long double; generated code at a few points beside it: operator_check.csv.  Where stability
  * ends: operator_boundary.csv.
@@ -110,13 +110,13 @@ static void charts(const char *folder, bool quick)
 {
 	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
 	FILE *ends = table_open(folder, "operator_boundary.csv", "method,wh,across");
-	FILE *map = table_open(folder, "operator_map.csv", "method,wh,ratio,rho,growth");
+	FILE *map = table_open(folder, "operator_map_raw.csv", "method,wh,ratio,rho,growth");
 	for (int k = 0; k < 7; k++)
 		chart(map, ends, schemes[k], quick ? (struct grid){22, 13, -1, 1} : (struct grid){71, 41, -1, 1});
-	table_close(map, "operator_map.csv");
-	map = table_open(folder, "pl_map.csv", "method,wh,coupling,rho,growth");
+	table_close(map, "operator_map_raw.csv");
+	map = table_open(folder, "pl_map_raw.csv", "method,wh,coupling,rho,growth");
 	chart(map, ends, "pl", quick ? (struct grid){29, 17, -3, 1} : (struct grid){71, 49, -3, 1});
-	table_close(map, "pl_map.csv");
+	table_close(map, "pl_map_raw.csv");
 	table_close(ends, "operator_boundary.csv");
 }
 

@@ -6,7 +6,6 @@ load here.'/style.gp'
 load here.'/map.gp'
 ends = folder.'/operator_boundary.csv'
 array names = ['etd1', 'etdrk2', 'etdrk4', 'nc2', 'nc3', 'dq4', 'bm3']
-bounds = '-0.9 -0.5 -0.1 -0.001 -1e-6 1e-6 0.001 0.1 1 10'
 ticks = "set cbtics ('-90 %%' 0.5, '-50 %%' 1.5, '-10 %%' 2.5, '-0.1 %%' 3.5, '±10^{-6}' 5, '0.1 %%' 6.5, '10 %%' ".\
 	"7.5, '×2' 8.5, '×11' 9.5)"
 unset logscale
@@ -28,8 +27,7 @@ do for [form=1:forms] {
 		set xlabel (k > 3 ? 'w h  [rad]' : '')
 		set xtics ('0.01' -2, '0.1' -1, '1' 0, '10' 1)
 		set ytics ('0.1' -1, '0.2' log10(0.2), '0.5' log10(0.5), '1' 0, '2' log10(2), '5' log10(5), '10' 1)
-		plot cells(folder.'/operator_map.csv', names[k], "-v x=wh -v y=ratio -v ylog=1 -v value=growth") \
-			using 1:3:1:2:3:4:5 with boxxyerror lc palette, \
+		plot cells(folder.'/operator_map.csv', names[k], '-v ylog=1') using 1:2:3 with image, \
 			ends using (strcol(1) eq names[k] ? log10($2) : NaN):(log10($3)) skip 1 with points pt 7 ps \
 			0.22 lc rgb 'black'
 	}
@@ -71,8 +69,7 @@ do for [form=1:forms] {
 	eval ticks
 	set cbtics font ',9'
 	unset cblabel
-	plot cells(folder.'/pl_map.csv', 'pl', "-v x=wh -v y=coupling -v ylog=1 -v value=growth") using 1:3:1:2:3:4:5 \
-		with boxxyerror lc palette, \
+	plot cells(folder.'/pl_map.csv', 'pl', '-v ylog=1') using 1:2:3 with image, \
 		ends using (strcol(1) eq 'pl' ? log10($2) : NaN):(log10($3)) skip 1 with points pt 7 ps 0.3 lc rgb \
 		'black', \
 		for [p in "0.1 10 100 1000"] '+' using 1:(coupling($1, p + 0)) with lines dt 2 lw 2 lc rgb 'black'

@@ -66,6 +66,13 @@ table() {
 	awk -v name="$1" -v where="$2" -f $charts/csv.awk -f $charts/table.awk "$folder/$1"
 }
 
+# numbers FILE.csv: a link to it; what it has in its rows is for programs
+numbers() {
+	there "$1" || return 0
+	echo "$1" >>"$shown"
+	printf '<p class=numbers>Numbers: <a href="%s">%s</a></p>\n' "$1" "$1"
+}
+
 # rows FILE.csv COLUMN VALUE HEADING: the table of those rows, if there are any
 rows() {
 	there "$1" || return 0
@@ -118,12 +125,13 @@ short_title_of() {
 stability() {
 	picture hard
 	there hard.csv && caption hard_table && awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
-	table hard.csv
+	numbers hard.csv
+	table hard_methods.csv
 	picture friction
 	table friction_times.csv
 	table friction.csv
 	picture stability_map
-	table stability_map.csv
+	numbers stability_map.csv
 	table stability_boundary.csv
 	table stability_check.csv
 	picture quality
@@ -131,10 +139,10 @@ stability() {
 	table quality.csv
 	table quality_check.csv
 	picture operator_map
-	table operator_map.csv
+	numbers operator_map.csv
 	table operator_boundary.csv
 	picture pl_map
-	table pl_map.csv
+	numbers pl_map.csv
 	table operator_check.csv
 	there largest_step.csv && printf '<h2>The largest stable step</h2>\n' && caption largest_step
 	table largest_step.csv
@@ -154,14 +162,10 @@ structural() {
 
 energy() {
 	picture energy_double
-	table energy.csv 'case=undamped;real=double'
 	picture energy_float
-	table energy.csv 'case=undamped;real=float;step_s=0.01'
 	picture energy_float_short
-	table energy.csv 'case=undamped;real=float;step_s=0.0001'
 	picture momentum_double
-	table energy.csv 'case=moving'
-	table energy.csv 'case=resting'
+	numbers energy.csv
 	there decay.csv && printf '<h2>Light damping</h2>\n' && caption decay
 	table decay.csv
 }
@@ -177,7 +181,7 @@ papers() {
 				picture papers_times
 				table papers_times.csv
 				picture plmap
-				table plmap.csv
+				numbers plmap.csv
 				table plmap_check.csv ;;
 			004)
 				picture papers_beam_tip
@@ -215,7 +219,7 @@ more() {
 		name=$(basename "$file")
 		if [ -f "$file" ] && ! grep -qxF "$name" "$shown"; then
 			case $name in
-				*_narrow.svg) ;;
+				*_narrow.svg | *_raw.csv) ;;
 				*.svg) picture "${name%.svg}" ;;
 				*) caption "${name%.csv}"; table "$name" ;;
 			esac
@@ -250,16 +254,13 @@ model() {
 			*_narrow | "$1_*") ;;
 			*)
 				picture "$name"
-				there "$name.csv" && echo "$name.csv" >>"$shown" &&
-					printf '<p class=numbers><a href="%s.csv">%s.csv</a></p>\n' "$name" "$name" ;;
+				numbers "$name.csv" ;;
 		esac
 	done
 	printf '<h2>Every method at its cheapest setting</h2>\n<p>Time of an output.</p>\n'
 	awk -v model="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/ranking.awk "$folder/precision.csv"
-	rows break_even.csv model "$1" 'After how many steps generating pays'
+	numbers precision.csv
 	rows largest_step.csv model "$1" 'The largest stable step'
-	printf '<h2>All settings</h2>\n'
-	table precision.csv "model=$1"
 	echo '</html>'
 }
 
@@ -274,8 +275,7 @@ index() {
 	if there matrix.csv; then
 		awk -f $charts/csv.awk -f $charts/verdict.awk "$folder/matrix.csv"
 		awk -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
-		echo matrix.csv >>"$shown"
-		echo '<p class=numbers>Numbers: <a href="matrix.csv">matrix.csv</a></p>'
+		numbers matrix.csv
 	fi
 	for name in $stories; do
 		picture "$name"
@@ -287,6 +287,13 @@ index() {
 				! there "$name.csv" || echo '</details>' ;;
 		esac
 	done
+	if there precision_methods.csv; then
+		echo '<h2 id="methods">Methods</h2>'
+		caption precision
+		printf '<details><summary>Settings</summary>'
+		table precision_methods.csv
+		echo '</details>'
+	fi
 	if there machine.csv; then
 		echo '<h2 id="machine">Measured on</h2>'
 		table machine.csv

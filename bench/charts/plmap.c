@@ -2,7 +2,7 @@
 /* plmap [--quick] VARIANTS FOLDER: the Piecewise-Laplace method with its coupling held (pl) against RK4 at the same
  * step, on two masses of 1 between walls, undamped, the first let go (wall -k1- m -k2- m -k3- wall): the ratio of
  * their largest displacement errors over w h and k2/k1, w = sqrt(k1/m), until 6 and 60 periods 2 pi/w, for equal walls
- * (k3 = k1) and for unequal ones (k3 = k1/2), in FOLDER/plmap.csv. Errors are over the initial displacement, at the
+ * (k3 = k1) and for unequal ones (k3 = k1/2), in FOLDER/plmap_raw.csv. Errors are over the initial displacement, at the
  * ends of steps, in long double. Below 1: pl is the more accurate. FOLDER/plmap_check.csv: this step of pl beside the
  * generated code, on what plmap.sh made in VARIANTS. */
 #include <math.h>
@@ -223,7 +223,7 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++)
 		check(csv, &points[i], variants);
 	finish(csv);
-	csv = create(folder, "plmap.csv",
+	csv = create(folder, "plmap_raw.csv",
 	             "layout,periods,w_h,coupling_k2_over_k1,error_pl,error_RK4,ratio_pl_over_RK4");
 	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
 		say_progress("plmap: %s", layouts[i].name);

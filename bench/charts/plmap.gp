@@ -9,18 +9,16 @@ unset key
 set format '%g'
 set grid noxtics noytics
 
-# log10 of w h, of k2/k1, and of the ratio within 4 decades; a blank line between rows of the map. Where both errors
-# are beyond half the initial displacement there is nothing to compare
-block(layout, periods, masked) = "< awk -F, -v layout='".layout."' -v periods=".periods." -v masked=".masked." '".\
-	"$1 == layout && $2 == periods { if ($4 != last) print \"\"; last = $4; r = \"NaN\"; ".\
-	"if ($7 != \"none\") { r = log($7)/log(10); if (r < -4) r = -4; if (r > 4) r = 4 } ".\
-	"if (masked && ($5 == \"diverged\" || $5 > 0.5) && ($6 == \"diverged\" || $6 > 0.5)) r = \"NaN\"; ".\
-	"print log($3)/log(10), log($4)/log(10), r }' '".csv."'"
+# log10 of w h, of k2/k1, and of the ratio; a blank line between rows of the map
+block(layout, periods) = "< awk -F, -v layout='".layout."' -v periods=".periods." '".\
+	"$1 == layout && $2 == periods { n = split($6, r, \" \"); print \"\"; ".\
+	"for (i = 1; i <= n; i++) print (log($4) + (i - 1)*log($5))/log(10), log($3)/log(10), ".\
+	"r[i] == \"-\" ? \"NaN\" : r[i] }' '".csv."'"
 
 # Where the ratio is 1, and where it is 100 and 1/100
 set datafile separator whitespace
 contour(name, layout, periods) = "set table ".name."; set contour base; set cntrparam levels discrete -2, 0, 2; ".\
-	"unset surface; splot block('".layout."', ".periods.", 1) using 1:2:3; unset table; unset contour; set surface"
+	"unset surface; splot block('".layout."', ".periods.") using 1:2:3; unset table; unset contour; set surface"
 eval contour('$c1', 'k3 = k1', 6)
 eval contour('$c2', 'k3 = k1', 60)
 eval contour('$c3', 'k3 = k1/2', 6)
@@ -38,7 +36,7 @@ set cbtics ('10^{-4}' -4, '10^{-2}' -2, '1' 0, '10^{2}' 2, '10^{4}' 4)
 title(layout, periods) = layout." (".(layout eq 'k3 = k1' ? "equal walls" : \
 	"unequal walls").'), until '.periods.' periods'
 panel(contours, layout, periods) = "set title title('".layout."', ".periods.") offset 0,-0.8 font ',11'; ".\
-	"plot block('".layout."', ".periods.", 1) using 1:2:3 with image, ".\
+	"plot block('".layout."', ".periods.") using 1:2:3 with image, ".\
 	contours." index 2 using 1:2 with lines lw 1 dt 2 lc rgb 'black', ".contours." index 0 using 1:2 with lines ".\
 	"lw 1 dt 2 lc rgb 'black', ".\
 	contours." index 1 using 1:2 with lines lw 3 lc rgb 'black', ".\

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # precision.sh PLGEN PRECISION OUTDIR [--quick] [--errors] [MODEL...]: the variants, their errors and the table
-# OUTDIR/precision.csv; --errors: without the table and its times (OUTDIR/variants/MODEL.errors), which a later run
+# OUTDIR/precision_raw.csv; --errors: without the table and its times (OUTDIR/variants/MODEL.errors), which a later run
 # without it then takes as they are. Run at the top of the source tree; draw.sh then draws.
 set -e
 plgen=$1 program=$2 out=$3
@@ -36,4 +36,4 @@ for model in $(missing "$@"); do
 			exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
 	"$program" --errors $quick "$variants" "$model"
 done
-[ -n "$errors" ] || "$program" $quick "$variants" "$out/precision.csv" "$@"
+[ -n "$errors" ] || "$program" $quick "$variants" "$out/precision_raw.csv" "$@"

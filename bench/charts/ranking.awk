@@ -18,16 +18,18 @@ NR == 1 { read_head($0, column); next }
 	name = f[column["method"]]
 	if (!(name in number)) { number[name] = ++rows; method[rows] = name; family[rows] = f[column["family"]] }
 	k = number[name]
-	error = f[column["largest"]]; cost = f[column["ns_median"]] + 0
-	if (f[column["ns_median"]] == "dear" && is_number(error)) {
+	count = split(f[column["setting"]], tried, " ")
+	split(f[column["largest"]], largest, " "); split(f[column["ns_median"]], median, " ")
+	for (s = 1; s <= count; s++) {
+		error = largest[s]; cost = median[s] + 0
+		if (!is_number(error) || (cost <= 0 && median[s] != "dear")) continue
 		if (!(k in least) || error + 0 < least[k]) least[k] = error + 0
-		for (i = 1; i <= errors; i++) if (error + 0 <= wanted[i] + 0) dear[k, i] = 1
+		for (i = 1; i <= errors; i++) {
+			if (error + 0 > wanted[i] + 0) continue
+			if (cost <= 0) dear[k, i] = 1
+			else if (!((k, i) in ns) || cost < ns[k, i]) { ns[k, i] = cost; setting[k, i] = tried[s] }
+		}
 	}
-	if (f[column["failed"]] == "1" || !is_number(error) || cost <= 0) next
-	if (!(k in least) || error + 0 < least[k]) least[k] = error + 0
-	for (i = 1; i <= errors; i++)
-		if (error + 0 <= wanted[i] + 0 && (!((k, i) in ns) || cost < ns[k, i])) {
-			ns[k, i] = cost; setting[k, i] = f[column["setting"]] }
 }
 END {
 	for (k = 1; k <= rows; k++) {
@@ -35,17 +37,16 @@ END {
 		for (i = 1; i <= rows; i++) at += i != k && before(i, k)
 		place[at] = k
 	}
-	print "<div class=wide><table><tr><th>method</th>"
-	for (i = 1; i <= errors; i++) print "<th>error at most " wanted[i] "</th>"
-	print "<th>least error</th></tr>"
+	print "<div class=wide><table class=ranking><tr><th>method"
+	for (i = 1; i <= errors; i++) print "<th>error at most " wanted[i]
+	print "<th>least error"
 	for (r = 1; r <= rows; r++) {
 		k = place[r]
-		printf "<tr class=%s><th>%s</th>", family[k], escaped(method[k])
+		printf "<tr class=%s><th>%s", family[k], escaped(method[k])
 		for (i = 1; i <= errors; i++)
-			if ((k, i) in ns) printf "<td class=n title=\"setting %s\">%s</td>", setting[k, i],
-				time_text(ns[k, i])
-			else printf "<td class=none>%s</td>", (k, i) in dear ? "dear" : "not reached"
-		print "<td class=" (k in least ? "n>" short(least[k]) : "bad>failed") "</td></tr>"
+			if ((k, i) in ns) printf "<td title=%s>%s", setting[k, i], time_text(ns[k, i])
+			else printf "<td class=none>%s", (k, i) in dear ? "dear" : "not reached"
+		print "<td" (k in least ? ">" short(least[k]) : " class=bad>failed")
 	}
 	print "</table></div>"
 }

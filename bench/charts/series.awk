@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v palette=palette.list -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method]
 #     [-v xfactor=1e-3] [-v yfactor=1] [-v skip=REGEX] [-v with=lines|points] [-v abs=1] [-v any=1] [-v xzero=1e-12]
-#     [-v most=10 [-v rank=last] [-v keep=REGEX]] -f csv.awk -f series.awk FILE.csv
+#     [-v most=10 [-v rank=last] [-v keep=REGEX] [-v rest=no]] -f csv.awk -f series.awk FILE.csv
 # prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with
 # -v any=1), and `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis.
+# A column may hold a list in each row (fold.awk).
 # A method has the colour of its group and, in one picture, a mark of its own: ours filled marks and unbroken lines,
 # peers open marks and thin lines, dashed by group, so they stay apart in black and white too.
 # most: no more entries in the legend than that. Of ours and of the peers those stay that come nearest to the cheapest
 # of their side at some error (rank=last: those with the least y at their last x), and peers whose name fits keep; all
-# others become one grey entry.
+# others become one grey entry, or with rest=no nothing.
 
 function group(pattern, name) { groups++; pattern_of[groups] = pattern; group_name[groups] = name }
 function wanted(field,    i) {
@@ -82,6 +83,21 @@ function choose_all(    k, ours, of_ours, of_peers) {
 	choose(1, of_ours)
 	choose(0, of_peers)
 }
+function point(at, value,    k) {
+	if (!is_number(at) || !is_number(value)) return
+	if (abs && value < 0) value = -value
+	if (xzero != "" && at == 0) at = xzero
+	if (!any && (at + 0 <= 0 || value + 0 <= 0)) return
+	if (!(name in number)) {
+		number[name] = ++names; name_of[names] = name
+		of[names] = group_of(name, "family" in column ? row[column["family"]] : "")
+		family_of[names] = of[names] == "exact" || of[names] == "scheme" ? "ours" : "peer"
+	}
+	k = number[name]
+	abscissa[k, ++count[k]] = at * xfactor
+	ordinate[k, count[k]] = value * yfactor
+	points[k] = points[k] sprintf("%.10g,%.10g\n", at * xfactor, value * yfactor)
+}
 BEGIN {
 	by = by == "" ? "method" : by
 	xfactor = xfactor == "" ? 1 : xfactor
@@ -114,29 +130,19 @@ NR == 1 {
 {
 	split("", row)
 	split_row($0, row)
-	name = row[column[by]]; at = row[column[x]]; value = row[column[y]]
+	name = row[column[by]]
 	if (!wanted(row) || (skip != "" && name ~ skip)) next
-	if (!is_number(at) || !is_number(value)) next
-	if (abs && value < 0) value = -value
-	if (xzero != "" && at == 0) at = xzero
-	if (!any && (at + 0 <= 0 || value + 0 <= 0)) next
-	if (!(name in number)) {
-		number[name] = ++names; name_of[names] = name
-		of[names] = group_of(name, "family" in column ? row[column["family"]] : "")
-		family_of[names] = of[names] == "exact" || of[names] == "scheme" ? "ours" : "peer"
-	}
-	k = number[name]
-	abscissa[k, ++count[k]] = at * xfactor
-	ordinate[k, count[k]] = value * yfactor
-	points[k] = points[k] sprintf("%.10g,%.10g\n", at * xfactor, value * yfactor)
+	n = split(row[column[x]], at_of, " ")
+	split(row[column[y]], value_of, " ")
+	for (i = 1; i <= n; i++) point(at_of[i], value_of[i])
 }
 END {
 	choose_all()
 	text = ""
 	for (k = 1; k <= names; k++)
-		if (!(k in chosen)) { others++; rest = rest (rest == "" ? "" : "\n") points[k] }
-	if (others) {
-		printf "$others << EOD\n%sEOD\n", rest
+		if (!(k in chosen)) { others++; grey = grey (grey == "" ? "" : "\n") points[k] }
+	if (others && rest != "no") {
+		printf "$others << EOD\n%sEOD\n", grey
 		text = "$others using 1:2 with " (with == "points" ? "points pt 7 ps 0.4" : "lines lw 0.7") \
 			" lc rgb '" colour["other"] "' title \"" others " others, in the table\""
 	}

@@ -3,7 +3,7 @@
  * stability [--quick] OUTDIR VARIANTS
  *
  * Where does each method stay bounded on x'' + 2 zeta w x' + w^2 x = 0?  The spectral radius of one step over (w h,
- * zeta), and where it passes 1: stability_map.csv, stability_boundary.csv; what is known of these boundaries beside
+ * zeta), and where it passes 1: stability_map_raw.csv, stability_boundary.csv; what is known of these boundaries beside
  * what is measured: stability_check.csv. `exact` is e^{A h} by hand, compared with generated code at a few points
  * (VARIANTS/oscillator_*.so, where they are).
  */
@@ -60,7 +60,7 @@ static void row_of_map(FILE *map, FILE *ends, const char *name, const struct sub
 
 static void chart(const char *folder, struct grid g)
 {
-	FILE *map = table_open(folder, "stability_map.csv", "method,wh,zeta,rho,growth");
+	FILE *map = table_open(folder, "stability_map_raw.csv", "method,wh,zeta,rho,growth");
 	FILE *ends = table_open(folder, "stability_boundary.csv", "method,branch,wh,zeta");
 	bool more = true;
 	for (int k = 0; more; k++) {
@@ -73,7 +73,7 @@ static void chart(const char *folder, struct grid g)
 		}
 		more = s.method;
 	}
-	table_close(map, "stability_map.csv");
+	table_close(map, "stability_map_raw.csv");
 	table_close(ends, "stability_boundary.csv");
 }
 

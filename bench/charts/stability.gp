@@ -10,7 +10,6 @@ high = 60 + 205*lines
 size = sprintf('900,%d', high)
 load here.'/style.gp'
 load here.'/map.gp'
-bounds = '-0.9 -0.5 -0.1 -0.01 -1e-12 1e-12 0.01 0.1 1 10'
 unset logscale
 set xrange [-2:2]
 set yrange [-0.016:1.5]         # the row of zeta = 0 is seen whole
@@ -32,8 +31,7 @@ do for [form=1:forms] {
 		set xlabel (k > count - 4 ? 'w h  [rad]' : '')
 		set xtics ('0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)
 		set ytics 0,0.5,1.5
-		plot cells(map, method, "-v x=wh -v y=zeta -v value=growth") using 1:3:1:2:3:4:5 with boxxyerror lc \
-			palette, \
+		plot cells(map, method, '') using 1:2:3 with image, \
 			for [b=1:4] ends using (strcol(1) eq method && $2 == b ? log10($3) : NaN):4 skip 1 with \
 			lines lw 2.6 lc rgb 'black'
 	}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk [-v where='model=scs;real=float'] -v name=FILE.csv -f csv.awk -f table.awk FILE.csv: its rows as an HTML table;
-# more than 30 are folded, more than 3000 stay in the file, which is linked. Words for a failure are marked. A column
-# `settings` becomes a list below, once a method.
+# more than 60 stay in the file, which is linked. Words for a failure are marked. A column `settings` becomes a list
+# below, once a method. What HTML lets a page leave open is left open.
 function escaped(text) {
 	gsub(/&/, "\\&amp;", text)
 	gsub(/</, "\\&lt;", text)
@@ -18,7 +18,7 @@ function class_of(head, text) {
 function cell(head, text,    class) {
 	if (head == "failed") text = text == "1" ? "failed" : text == "0" ? "" : text
 	class = class_of(head, text)
-	return "<td" (class == "" ? "" : " class=" class) ">" escaped(text) "</td>"
+	return "<td" (class == "" ? "" : " class=" class) ">" escaped(text)
 }
 NR == 1 {
 	columns = split_row($0, head)
@@ -40,7 +40,7 @@ NR == 1 {
 	for (i in chosen) if (row[i] != chosen[i]) next
 	line = "<tr>"
 	for (i = 1; i <= columns; i++) if (!(i in hidden)) line = line cell(head[i], row[i])
-	lines[++count] = line "</tr>"
+	lines[++count] = line
 	if ("settings" in column && row[column["settings"]] != "") {
 		setting = (("method" in column) ? row[column["method"]] ": " : "") row[column["settings"]]
 		if (!(setting in listed)) { listed[setting] = 1; settings[++setting_count] = setting }
@@ -51,18 +51,16 @@ END {
 	gsub(/;/, ", ", where)
 	if (count == 0) { print "<p class=bad>" link " has no rows" (where == "" ? "" : " of " escaped(where)) ".</p>";
 		exit }
-	if (count > 3000) { print "<p class=numbers>Numbers: " link ", " count " rows.</p>"; exit }
-	if (count > 30) print "<details><summary>Numbers: " count " rows</summary>"
+	if (count > 60) { print "<p class=numbers>Numbers: " link ", " count " rows.</p>"; exit }
 	print "<p class=numbers>" link (where == "" ? "" : ": " escaped(where)) "</p><div class=wide><table><tr>"
 	for (i = 1; i <= columns; i++) if (!(i in hidden)) { title = head[i]; gsub(/_/, "_<wbr>", title);
-		printf "<th>%s</th>", title }
-	print "</tr>"
+		printf "<th>%s", title }
+	print ""
 	for (i = 1; i <= count; i++) print lines[i]
 	print "</table></div>"
-	if (count > 30) print "</details>"
 	if (setting_count) {
 		print "<details><summary>Settings</summary><ul class=settings>"
-		for (i = 1; i <= setting_count; i++) print "<li>" escaped(settings[i]) "</li>"
+		for (i = 1; i <= setting_count; i++) print "<li>" escaped(settings[i])
 		print "</ul></details>"
 	}
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f exact.awk precision.csv: on scs every form of exact in double that plgen does not refuse
+# awk -f csv.awk -f exact.awk precision_raw.csv: on scs every form of exact in double that plgen does not refuse
 NR == 1 { read_head($0, column); next }
 {
 	split("", row)

@@ -14,8 +14,7 @@ stories='headline_integrators headline_equal_step energy_double hard less needs'
 
 # entries PICTURE.svg: of its legend
 entries() {
-	sed -n 's/.*<g id="gnuplot_plot_[0-9]*[a-z]*" ><title>\(.*\)<\/title>.*/\1/p' "$1" | grep -v '^gnuplot_plot' |
-		sort -u | grep -c .
+	sed -n 's/^<g><title>\(.*\)<\/title>$/\1/p' "$1" | sort -u | grep -c .
 }
 
 # at_most_ten FOLDER: legends of stories and models
@@ -55,6 +54,7 @@ whole() {
 		cat links >>all
 	done
 	for file in "$1"/*.svg "$1"/*.csv; do
+		case $file in *_raw.csv) continue ;; esac
 		grep -qxF "$(basename "$file")" all || echo "no page has $(basename "$file")" >>log
 	done
 	rm -f all
@@ -105,7 +105,9 @@ sed 's/^other #....../other #c8c8c8/' "$charts/palette.list" | awk -f "$here/pal
 grep -q 'contrast 1.6.* with paper' log
 result $? 'palette: a pale colour is noticed'
 
-awk -f "$csv" -f "$charts/matrix.awk" "$here/matrix/precision.csv" >given.csv 2>log
+awk -v by=model,method,family -v lists=setting,largest,ns_median -f "$csv" -f "$charts/fold.awk" \
+	"$here/matrix/precision.csv" >folded.csv 2>log
+awk -f "$csv" -f "$charts/matrix.awk" folded.csv >given.csv 2>>log
 diff given.csv "$here/matrix/expect.csv" >>log
 result $? 'matrix of given times: as worked out by hand'
 awk -f "$csv" -f "$charts/words.awk" -f "$charts/matrix_html.awk" given.csv | grep -o '<td class=[a-z]*>\(<b>[^<]*\)*' |
@@ -123,15 +125,41 @@ at_most_ten "$kept"
 result $? 'doc/charts: legends of stories and models have at most 10 entries'
 compared "$kept"
 result $? 'doc/charts: the matrix agrees with precision.csv by another road'
+
+# What follows from the tables once more, then pages; LONG: pictures too, which are those of one gnuplot
+drawing_of() {
+	sed -n 's/^<!-- \(.*\) -->$/\1/p' "$1/precision_scs.svg"
+}
 mkdir again
-cp "$kept"/*.csv "$kept"/*.svg again
-(cd "$root" && sh bench/charts/page.sh "$work/again") >log 2>&1
-for page in "$kept"/*.html "$kept"/style.css; do
-	cmp "$page" "again/$(basename "$page")" >>log 2>&1
+for file in "$kept"/*.csv; do
+	case $file in *_raw.csv | */matrix.csv | */break_even.csv) ;; *) cp "$file" again ;; esac
+done
+if [ -n "${LONG:-}" ]; then
+	(cd "$root" && sh bench/charts/draw.sh "$work/again") >log 2>&1
+else
+	cp "$kept"/*.svg again
+	(cd again && awk -f "$csv" -f "$charts/matrix.awk" precision.csv >matrix.csv &&
+		awk -f "$csv" -f "$charts/break_even.awk" generation.csv precision.csv >break_even.csv &&
+		cd "$root" && sh bench/charts/page.sh "$work/again") >log 2>&1
+fi
+for file in "$kept"/*.html "$kept"/style.css "$kept"/matrix.csv "$kept"/break_even.csv; do
+	cmp "$file" "again/$(basename "$file")" >>log 2>&1
 done
 [ "$(ls again/*.html | wc -l)" = "$(ls "$kept"/*.html | wc -l)" ] || echo 'not the same pages' >>log
 [ ! -s log ]
-result $? 'doc/charts: pages made of its tables are those that lie there'
+result $? 'doc/charts: tables and pages made of its tables are those that lie there'
+if [ -n "${LONG:-}" ]; then
+	for file in "$kept"/*.svg; do
+		cmp "$file" "again/$(basename "$file")"
+	done >log 2>&1
+	name='doc/charts: pictures drawn of its tables are those that lie there'
+	if [ "$(drawing_of "$kept")" = "$(drawing_of again)" ]; then
+		[ ! -s log ]
+		result $? "$name"
+	else
+		skip "$name" "drawn by $(drawing_of "$kept"), here is $(drawing_of again)"
+	fi
+fi
 
 # Two models, one of them unknown, and more methods than a legend holds, some of families nobody has heard of
 few() {
@@ -140,9 +168,9 @@ few() {
 	awk -F, '$1 == "pendulum"' OFS=, "$kept/precision.csv" | sed 's/^pendulum/new_thing/' >new
 	cat new >>"$1/precision.csv"
 	for k in 1 2 3 4 5 6 7 8 9; do
-		sed "s/\"RK4\",fixed/\"Solver $k\",fixed/; s/\"etdrk4\"/\"etdam$k\"/
-			s/\"GSL msadams\",adaptive/\"DOP$k\",strange/" new
-	done | grep -e '"Solver' -e '"etdam' -e '"DOP' >>"$1/precision.csv"
+		sed "s/,RK4,fixed/,Solver $k,fixed/; s/,etdrk4,/,etdam$k,/
+			s/,GSL msadams,adaptive/,DOP$k,strange/" new
+	done | grep -e ',Solver' -e ',etdam' -e ',DOP[1-9]' >>"$1/precision.csv"
 	cp "$kept/hard.csv" "$kept"/headline_*.csv "$1"
 }
 few one

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # No line of what people read and write is longer than 120 columns, in characters, a tab as up to 8. As TAP, a case a
-# folder.
+# folder; and all that is kept is below 12 MB, so that no table of megabytes comes back.
 #
 #     lines.sh SOURCE_ROOT
 #
@@ -49,4 +49,13 @@ look tests tests '(' $code ')'
 look specs tests -name '*.spec' ! -path '*/tests/fuzz/*'
 look doc doc ! -path '*/doc/charts/*' ! -path '*/doc/gallery/*' ! -name '*.csv' ! -name combinations.md
 look top . -maxdepth 1 '(' -name '*.md' -o -name Makefile -o -name meson.build ')'
+name='what git keeps is below 12000000 bytes'
+if files=$(git -C "$root" ls-files -z 2>log | tr '\0' '\n') && [ -n "$files" ]; then
+	echo "$files" | (cd "$root" && tr '\n' '\0' | xargs -0 ls -ln) | awk '{ n += $5 } END { printf "%.0f\n", n }' >bytes
+	: >log
+	[ "$(cat bytes)" -lt 12000000 ]
+	result $? "$name: $(cat bytes)"
+else
+	skip "$name" 'not a working copy of git'
+fi
 tap_end

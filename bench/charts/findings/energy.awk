@@ -7,8 +7,9 @@ NR == 1 { read_head($0, column); next }
 	real = name ~ /float/ ? "float" : "double"; h = name ~ /short/ ? 0.0001 : 0.01
 	if (f[column["case"]] != "undamped" || f[column["real"]] != real || f[column["step_s"]] + 0 != h) next
 	m = f[column["method"]]
-	if (!is_number(f[column["largest"]])) next
-	last[m] = f[column["largest"]] + 0; steps = f[column["steps"]] + 0
+	n = split(f[column["steps"]], after, " ")
+	split(f[column["largest"]], largest, " ")
+	for (i = 1; i <= n; i++) if (is_number(largest[i])) { last[m] = largest[i] + 0; steps = after[i] + 0 }
 	family[m] = f[column["family"]]
 }
 function part(x) { return x >= 0.001 ? short(100 * x) " %" : short(x) }

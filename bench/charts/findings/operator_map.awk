@@ -6,8 +6,9 @@ NR == 1 { read_head($0, column); next }
 	split($0, f, ",")
 	m = f[1]
 	if (!(m in all)) order[++methods] = m
-	all[m]++
-	if (f[column["growth"]] + 0 > 1e-6 || f[column["growth"]] !~ /^[-+0-9.]/) grows[m]++
+	classes = f[column["class_of_growth"]]
+	all[m] += length(classes)
+	grows[m] += gsub(/[g-k-]/, "", classes)         # above 1e-6
 }
 END {
 	for (i = 1; i <= methods; i++)

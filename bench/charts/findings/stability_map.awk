@@ -6,7 +6,7 @@ NR == 1 { read_head($0, column); next }
 	split(f_line = $0, f, ",")
 	m = f[1]
 	if (!(m in bad)) { bad[m] = 0; order[++methods] = m }
-	if (f[column["growth"]] + 0 > 1e-12 || f[column["growth"]] !~ /^[-+0-9.]/) bad[m]++
+	if (f[column["class_of_growth"]] ~ /[g-k-]/) bad[m]++
 }
 END {
 	for (i = 1; i <= methods; i++)
