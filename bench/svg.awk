@@ -251,8 +251,8 @@ function define(id,    within) {
 }
 END {
 	end_of_segment()
-	print "<svg" said("width", wide) said("height", high) " viewBox=\"" view "\" xmlns=\"http://www.w3.org/2000/svg\" " \
-		"xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
+	print "<svg" said("width", wide) said("height", high) said("viewBox", view) \
+		" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
 	print "<!-- " by " -->"
 	if (markers) {
 		printf "<defs>\n"
@@ -262,8 +262,9 @@ END {
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker id=\"m" m "\" fill=\"none\" overflow=\"visible\" markerUnits=\"userSpaceOnUse\"><use xlink:href=\"#" \
-				part[1] "\" transform=\"scale(" part[2] ")\"" said("color", part[3]) "/></marker>"
+			print "<marker" said("id", "m" m) said("fill", "none") said("overflow", "visible") \
+				said("markerUnits", "userSpaceOnUse") "><use" said("xlink:href", "#" part[1]) \
+				said("transform", "scale(" part[2] ")") said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
 	}

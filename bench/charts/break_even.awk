@@ -40,7 +40,8 @@ file == 1 {
 		error = largest[k]; ns = median[k] + 0
 		if (!is_number(error) || error + 0 > target[real] + 0) continue
 		if (median[k] == "dear") dear[model SUBSEP "rival" SUBSEP method] = 1
-		if (ns > 0) offer(family == "ours" ? model SUBSEP "ours" SUBSEP real : model SUBSEP "rival" SUBSEP method)
+		if (ns <= 0) continue
+		offer(family == "ours" ? model SUBSEP "ours" SUBSEP real : model SUBSEP "rival" SUBSEP method)
 	}
 }
 END {

@@ -10,7 +10,8 @@ function letter(growth,    i, class) {
 }
 function unload() {
 	if (classes != "")
-		printf "%s,%s,%s,%.6g,%s\n", method, across, first, (last / first) ^ (1 / (length(classes) - 1)), classes
+		printf "%s,%s,%s,%.6g,%s\n", method, across, first, (last / first) ^ (1 / (length(classes) - 1)),
+			classes
 	classes = ""
 }
 BEGIN { FS = ","; letters = "abcdefghijklmnopqrstuvwxyz"; count = split(bounds, bound, " ") }

@@ -3,7 +3,8 @@
 # peers that keeps it (largest error of the history at most that), in double, as CSV. Times are medians, as wherever the
 # charts show one. factor: the peer's time over ours; word: who is ahead, by more than the 10 % that times hold.
 function offer(key) {
-	if (!(key in ns) || cost < ns[key]) { ns[key] = cost; who[key] = method; had[key] = error; setting[key] = tried[k] }
+	if (!(key in ns) || cost < ns[key]) {
+		ns[key] = cost; who[key] = method; had[key] = error; setting[key] = tried[k] }
 }
 function found(key) {
 	return key in ns ? "\"" who[key] "\"," setting[key] "," had[key] "," ns[key] : "none,none,none,none"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v list=methods.list -v special=special.list -f csv.awk -f methods.awk precision_raw.csv: every model of a quick run
-# has every method of the list (propagators and structural ones only where it is linear), those of special.list by
+# awk -v list=methods.list -v special=special.list -f csv.awk -f methods.awk precision_raw.csv: every model of a quick
+# run has every method of the list (propagators and structural ones only where it is linear), those of special.list by
 # model, and of ours those that there are for it; each row has numbers, or a word and the flag `failed`.
 function ours_of(model) {
 	if (model == "scs")
