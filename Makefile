@@ -10,8 +10,8 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy octave octave-dev \
 	libopenmpi-dev openmpi-bin cmake cppcheck
 
-.PHONY: all setup deps demo-deps check-deps demo tests check quick check-long faults bench charts charts-quick \
-	charts-twice charts-page chart gallery firmware-report bare install clean
+.PHONY: all setup deps demo-deps check-deps demo tests check quick check-merge check-long faults bench charts \
+	charts-quick charts-twice charts-page chart gallery firmware-report bare install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun libplrt.a
@@ -73,7 +73,11 @@ QUICK = runtime_double runtime_float memory mtx math walk modes poles number ato
 quick: tests
 	DEAR=skip EVERY=8 sh tests/check.sh $(BUILD) $(QUICK) errors
 
-# What only long runs show: more random models, more seeds. Before a piece of work is called finished.
+# More compilers, boards and random models, charts, installations: before a piece of work is finished
+check-merge: tests
+	sh tests/check.sh $(BUILD) --suite merge
+
+# What only long runs show: more random models, more seeds
 check-long: tests
 	sh tests/check.sh $(BUILD) --suite long
 

@@ -4,10 +4,6 @@
 # everything with every compiler; without it no more than shows a warning, and what is alike goes to one or two of the
 # four by turns.
 
-long() {
-	[ -n "${LONG:-}" ]
-}
-
 # list_compilers: a line each, with options, of which by_turns and gcc_and_another choose
 list_compilers() {
 	echo 'gcc -std=c99 -O1 -c -o object.o'

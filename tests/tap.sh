@@ -13,6 +13,14 @@ count=0
 failed=0
 : >log
 
+# long: whether this is for `make check-long`. merging: for that or for `make check-merge`, not for `make check` alone
+long() {
+	[ -n "${LONG:-}" ]
+}
+merging() {
+	[ -n "${LONG:-}${MERGE:-}" ]
+}
+
 # chosen NAME: whether it is one of those that CASE asks for
 chosen() {
 	case $1 in

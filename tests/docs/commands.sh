@@ -5,8 +5,9 @@
 #
 #     commands.sh PLGEN SOURCE_ROOT PLRUN RUNTIME_M4F.a
 #
-# The runtime's sources, most of the work of a compiler, are compiled as typed the first time; commands after that, and
-# that for the board, get them compiled before: PLRT, and the runtime for Cortex-M4F.
+# The runtime's sources, most of the work of a compiler, are compiled before: PLRT, and the runtime for Cortex-M4F. `cc`
+# is what run_cc.sh says, but with MERGE=1 in the environment: then all is compiled as typed, the runtime for the host
+# the first time only.
 #
 # ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it; elsewhere, of pages that are typed from their first
 #               line on: what they need of it they have to make themselves
@@ -25,6 +26,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 case $board in /*) ;; *) board=$PWD/$board ;; esac
 . "${0%/*}/../sparing.sh"
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
@@ -41,7 +43,16 @@ runtime_archive "$root/runtime"
 cp "$archive" runtime.a || exit 99
 
 ln -s "$root/runtime" runtime
-sparing cc runtime "$work/runtime.a" "$work/typed"
+if merging; then
+	sparing cc runtime "$work/runtime.a" "$work/typed"
+else
+	mkdir quick
+	# shellcheck disable=SC2016
+	printf '#!/bin/sh\nexec %s "$@"\n' "$run_cc" >quick/cc
+	chmod +x quick/cc
+	PATH=$PWD/quick:$PATH
+	sparing cc runtime "$work/runtime.a"
+fi
 sparing arm-none-eabi-gcc runtime "$board"
 PATH=$PWD/bin:$PATH
 

@@ -5,17 +5,16 @@
 #
 #     bundle.sh PLGEN SOURCE_ROOT
 #
-# The compilers are gcc and clang as C99, g++ and clang++ as C++17, all four for the first model, for the others one of
-# them in turn, with LONG=1 all; what is not installed is skipped.
+# Compiled to be run, and with MERGE=1 for warnings: by gcc and clang as C99, g++ and clang++ as C++17, all four for the
+# first model, for the others one of them in turn, with LONG=1 all; what is not installed is skipped.
 set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "${0%/*}/../tap.sh"
-. "$root/tests/compilers.sh"
-level=-O0                       # its bits do not depend on it
-! long || level=-O1
+. "$root/tests/run_cc.sh"
+! long || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
 runtime_archive "$root/runtime"
 
 cat >compilers <<'EOT'
@@ -85,6 +84,28 @@ int main(void)
 }
 EOT
 
+# own_names OBJECT: what it shows beside names of its own
+own_names() {
+    nm "$1" | grep -E ' [A-TV-Z] ' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
+    nm "$1" | grep -E ' U pl_' >>log
+}
+
+# warns: what the compilers say of model.c
+warns() {
+    line=0
+    : >log
+    while read -r compiler options; do
+        line=$((line + 1))
+        long || [ $number -eq 1 ] || [ $line -eq $((number % 4 + 1)) ] || continue
+        command -v "$compiler" >/dev/null 2>&1 || continue
+        # shellcheck disable=SC2086
+        "$compiler" $warnings $options -c model.c -o warned.o >>log 2>&1 || echo "$compiler" >>log
+        own_names warned.o
+    done <compilers
+    [ ! -s log ]
+    result $? "$title, $real: no warning"
+}
+
 number=0
 # bundles TITLE SPEC OPTIONS: in double and float
 bundles() {
@@ -100,26 +121,19 @@ bundles() {
             continue
         fi
         number=$((number + 1))
-        line=0
         : >log
-        while read -r compiler options; do
-            line=$((line + 1))
-            long || [ $number -eq 1 ] || [ $line -eq $((number % 4 + 1)) ] || continue
-            command -v "$compiler" >/dev/null 2>&1 || continue
-            # shellcheck disable=SC2086
-            "$compiler" $warnings $options -c model.c -o model.o >>log 2>&1 || echo "$compiler" >>log
-            nm model.o | grep -E ' [A-TV-Z] ' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
-            nm model.o | grep -E ' U pl_' >>log
-        done <compilers
-        [ ! -s log ]
-        result $? "$title, $real: no warning, no name of the runtime outside"
         # shellcheck disable=SC2086
-        ${CC:-cc} -std=c99 $level -ffp-contract=off $own -DMODEL=scene_model show.c model.c -lm -o inside >log 2>&1 &&
-            ./inside >inside.bits
+        $run_cc $own -c model.c -o model.o >>log 2>&1 && own_names model.o
+        [ ! -s log ]
+        result $? "$title, $real: no name of the runtime outside"
+        ! merging || warns
+        # shellcheck disable=SC2086
+        $run_cc $own -DMODEL=scene_model -c show.c -o show.o >log 2>&1 &&
+            $run_cc show.o model.o -lm -o inside >>log 2>&1 && ./inside >inside.bits
         # shellcheck disable=SC2086
         "$plgen" --real $real --prefix scene "$@" -o model.c "$spec" >>log 2>&1 &&
-            ${CC:-cc} -std=c99 $level -ffp-contract=off $own -DMODEL=scene_model -I"$root/runtime" show.c model.c \
-                "$archive" -lm -o linked >>log 2>&1 && ./linked >linked.bits
+            $run_cc $own -DMODEL=scene_model -I"$root/runtime" show.c model.c "$archive" -lm -o linked >>log 2>&1 &&
+            ./linked >linked.bits
         cmp inside.bits linked.bits >>log 2>&1 && [ "$(wc -l <inside.bits)" -gt 40 ]
         result $? "$title, $real: the bits of a model that is linked with the runtime"
     done
@@ -144,7 +158,7 @@ bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
 for name in real two add multiply rounded growth point walk words_pair sizes clear found; do
     for spec in "$root/models/quarter_car_bumps.spec" "$root/tests/tunable/changes.spec"; do
         "$plgen" --bundle --prefix $name -o $name.c "$spec" 2>>log &&
-            ${CC:-cc} $warnings -std=c99 -c $name.c -o named.o >>log 2>&1 || echo "$name" >>log
+            $run_cc -c $name.c -o named.o >>log 2>&1 || echo "$name" >>log
     done
 done
 [ ! -s log ]
@@ -195,6 +209,7 @@ result $? '--bundle goes with C alone'
 
 # ---- sizes: printed, and never larger ----
 
+merging || tap_end
 : >log
 mkdir small
 # small_runtime: into plrt.a what the linker takes of the runtime's sources for model.o, compiled when it is first taken

@@ -154,7 +154,7 @@ run_suite()
 		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
-	timeout 600 meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" \
+	timeout 600 meson test -C "$1/build" --setup all --timeout-multiplier 5 --print-errorlogs "$suite" \
 		--test-args="$(head_of "$2" case)" >>"$3" 2>&1
 	case $? in
 	0) return 0 ;;

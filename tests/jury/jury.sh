@@ -12,6 +12,7 @@
 #     OUTPUT VALUE [within X]     with as many digits as are published; within: what the source says of its error
 #     hertz N VALUE, rad N VALUE  the N-th natural frequency, in Hz or rad/s
 #     refused TEXT                instead of all values: plgen's message about the spec
+#     merge                       only with MERGE=1 or LONG=1: it takes long
 #     long                        only with LONG=1
 #
 # Each scheme makes its C, which is compiled and run; plrun runs what plgen chooses by itself, with the same rows. All
@@ -291,6 +292,7 @@ spare=1
 for name in $(cases); do
 	chosen "$name" || continue
 	[ "$mode" = --page ] || long || ! grep -q '^long$' "$here/$name.jury" || continue
+	[ "$mode" = --page ] || merging || ! grep -q '^merge$' "$here/$name.jury" || continue
 	try "$name" >>tried
 done
 print_page >page
