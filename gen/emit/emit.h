@@ -4,7 +4,6 @@
 #define PLGEN_EMIT_H
 
 #include "report/report.h"
-#include "tape/tape.h"
 
 /* ---- text.c: what all emitters write with ---- */
 
@@ -32,7 +31,6 @@ struct emitter {
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
-	struct lines *series;       /* lines of coefficients that are being made, and which are read; else NULL */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
  * name and place, $d that of the first part of its degree, $c the columns of a series, $$ a dollar. */
@@ -318,15 +316,16 @@ const char *series_parameters(const struct emitter *e);
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
-const char *emit_whole_size(const struct emitter *e, bool *made, int sequence);
-const char *size_of_terms(const struct emitter *e, int sequence); /* C: of a sum at its start, of each its size */
 void emit_column_scales(const struct emitter *e);                 /* of what stands beside the states in s->series */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
 void emit_unread_samples(const struct emitter *e);                /* where it reads no input */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
-void emit_series_lines(const struct emitter *e);
+struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
+void series_set(struct recurrences *r, const char *target, int sequence, int k);
+void emit_series_tape(const struct emitter *e, const struct recurrences *r);
+void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
 void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */

@@ -2,7 +2,6 @@
 /* The function that expands the solution: what it is given, what of loads and inputs it reads, its coefficients. */
 #include "emit/emit.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const struct expansion *expansion(const struct emitter *e)
@@ -139,7 +138,7 @@ static bool reads_instance(const struct emitter *e)
 void emit_coefficients(const struct emitter *e)
 {
 	emit_expansion_locals(e);
-	emit_series_lines(e);
+	emit_series_locals(e);
 }
 
 bool expands_in_step(const struct emitter *e)
@@ -164,12 +163,38 @@ static void emit_expansion_unread(const struct emitter *e)
 		say(e, "    (void)slope;\n");
 }
 
+/* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
+static void set_kept_coefficients(const struct emitter *e, struct recurrences *r)
+{
+	const struct expansion *x = expansion(e);
+	struct tape *t = tape_of_recurrences(r);
+	int states = e->system->states;
+	for (int k = 0; k <= x->order; k++)
+		for (int i = 0; i < states + x->columns; i++) {
+			const char *target = format("c[%d][%d]", k, i);
+			if (i < states || k <= x->column_top[i - states])
+				series_set(r, target, i < states ? i : x->column[i - states], k);
+			else
+				tape_set(t, target, tape_number(t, 0), 10, NULL);
+		}
+	for (int i = 0; i < x->expressions; i++)
+		tape_set(t, format("terms[%d]", i), recurrence_size(r, x->expression[i].sequence), 10, NULL);
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++)
+		tape_set(t, format("terms[%d]", x->expressions + i),
+			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
+}
+
+/* A choice by time that nothing reads */
+static void emit_unread_when(const struct emitter *e, const struct recurrences *r)
+{
+	if (has_choices(e) && !tape_reads(tape_of_recurrences(r), TAPE_TIME, -1, 1))
+		say(e, "    (void)when;\n");
+}
+
 void emit_expand_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	char *text = NULL;
-	size_t length = 0;
-	struct emitter aside = *e;
+	struct recurrences *r = series_new(e);
 	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
 	       "static void $n_expand(const $n *s, %s%s%s%s%sconst double y[$N_STATES], double c[%d][$c]%s)\n"
 	       "{\n",
@@ -179,31 +204,11 @@ void emit_expand_function(const struct emitter *e)
 	    input_parameters(e, AS_PARAMETERS),
 	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
 	    is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
-	aside.to = need_memory(open_memstream(&text, &length));
-	emit_coefficients(&aside);
-	fclose(aside.to);
-	put(e->to, text, length);
-	for (int k = 0; k <= x->order; k++)
-		for (int i = 0; i < e->system->states + x->columns; i++) {
-			int states = e->system->states;
-			bool kept = i < states || k <= x->column_top[i - states];
-			const char *name = kept ? coefficient(e, i < states ? i : x->column[i - states], k) : NULL;
-			say(e, "    c[%d][%d] = %s;\n", k, i, name ? name : "0.0");
-		}
-	for (int i = 0; i < x->expressions; i++) {
-		say(e, "    ");
-		say_wrapped(e, format("terms[%d] = %s;\n", i, size_of_terms(e, x->expression[i].sequence)));
-	}
-	bool *made = ARRAY(bool, (size_t)x->count);
-	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
-		const char *size = emit_whole_size(e, made, x->contacts->watch[i].sequence);
-		say(e, "    ");
-		say_wrapped(e, format("terms[%d] = %s;\n", x->expressions + i, size));
-	}
+	emit_expansion_locals(e);
+	set_kept_coefficients(e, r);
+	emit_series_tape(e, r);
 	emit_expansion_unread(e);
-	if (has_choices(e) && !mentions(text, "when"))   /* a choice by time that nothing reads */
-		say(e, "    (void)when;\n");
-	free(text);
+	emit_unread_when(e, r);
 	say(e, "}\n");
 }
 
@@ -242,11 +247,11 @@ void emit_frozen_function(const struct emitter *e)
 	       "static void $n_within(const $n *s, double tau, %s,\n"
 	       "    double left[%d])\n"
 	       "{\n", part_parameters(e), x->columns);
-	emit_coefficients(e);
-	for (int c = 0; c < x->columns; c++) {
-		const char *name = coefficient(e, x->column[c], 0);
-		say(e, "    left[%d] = %s;\n", c, name ? name : "0.0");
-	}
+	struct recurrences *r = series_new(e);
+	emit_expansion_locals(e);
+	for (int c = 0; c < x->columns; c++)
+		series_set(r, format("left[%d]", c), x->column[c], 0);
+	emit_series_tape(e, r);
 	emit_part_unread(e);
 }
 
@@ -258,16 +263,14 @@ void emit_ends_function(const struct emitter *e)
 	       "static void $n_end(const $n *s, double tau, %s,\n"
 	       "    double e[][%d], double terms[%d])\n"
 	       "{\n", part_parameters(e), x->columns, x->columns);
-	emit_coefficients(e);
+	struct recurrences *r = series_new(e);
+	emit_expansion_locals(e);
 	for (int k = 0; k <= 1; k++)
-		for (int c = 0; c < x->columns; c++) {
-			const char *name = coefficient(e, x->column[c], k);
-			say(e, "    e[%d][%d] = %s;\n", k, c, name ? name : "0.0");
-		}
-	for (int c = 0; c < x->columns; c++) {
-		say(e, "    ");
-		say_wrapped(e, format("terms[%d] = %s;\n", c, size_of_terms(e, x->column[c])));
-	}
+		for (int c = 0; c < x->columns; c++)
+			series_set(r, format("e[%d][%d]", k, c), x->column[c], k);
+	for (int c = 0; c < x->columns; c++)
+		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
+	emit_series_tape(e, r);
 	emit_part_unread(e);
 }
 
@@ -309,37 +312,17 @@ const char *series_parameters(const struct emitter *e)
 		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
 }
 
-/* A state that is its own first coefficient, and that no slope reads */
-static void emit_unread_states(const struct emitter *e, const char *text)
-{
-	for (int i = 0; i < e->system->states; i++) {
-		const char *name = coefficient(e, i, 0);
-		const char *made = name ? strstr(text, format("const double %s = ", name)) : NULL;
-		if (made && !mentions(made + strlen("const double ") + strlen(name), name))
-			say(e, "    (void)%s;\n", name);
-	}
-}
-
 void emit_slopes_function(const struct emitter *e)
 {
-	char *text = NULL;
-	size_t length = 0;
-	struct emitter aside = *e;
+	struct recurrences *r = series_new(e);
 	say(e, "\n/* h times the slopes at state y, tau after now */\n"
 	       "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])\n"
 	       "{\n", series_parameters(e));
-	aside.to = need_memory(open_memstream(&text, &length));
-	emit_coefficients(&aside);
-	for (int i = 0; i < e->system->states; i++) {
-		const char *name = coefficient(e, i, 1);
-		say(&aside, "    left[%d] = %s;\n", i, name ? name : "0.0");
-	}
-	fclose(aside.to);
-	put(e->to, text, length);
-	emit_unread_states(e, text);
-	if (has_choices(e) && !mentions(text, "when"))
-		say(e, "    (void)when;\n");
-	free(text);
+	emit_expansion_locals(e);
+	for (int i = 0; i < e->system->states; i++)
+		series_set(r, format("left[%d]", i), i, 1);
+	emit_series_tape(e, r);
+	emit_unread_when(e, r);
 	emit_expansion_unread(e);
 	if (is_divided(e))
 		say(e, "    (void)interval;\n");

@@ -267,7 +267,7 @@ void formulas_finish(struct formulas *f)
 void emit_formulas(struct formulas *f, int indent)
 {
 	formulas_finish(f);
-	struct tape_target to = { "double", number, operand, "pl_magnitude", f, indent };
+	struct tape_target to = { "double", number, operand, "pl_magnitude", f, indent, false };
 	tape_print(f->tape, &to, f->e->to);
 }
 

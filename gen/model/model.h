@@ -5,6 +5,7 @@
 
 #include "collect/collect.h"
 #include "math/math.h"
+#include "tape/tape.h"
 
 /* ---- linear.c: linear systems of coordinates ---- */
 

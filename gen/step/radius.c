@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far a Taylor series reaches from the start, for a reader: its coefficients at t = 0, inputs 0, in long double;
+/* How far a Taylor series reaches from the start, for a reader: its coefficients at t = 0, inputs 0;
  * from how they fall an estimate of the radius of convergence; how many steps they serve. Nothing emitted reads it. */
 #include "step/step.h"
 
@@ -13,132 +13,36 @@ struct values {
 	const struct linear *system;
 	const struct expansion *x;
 	int segment;
-	long double *load;          /* per column of the loads */
-	long double **c;            /* per sequence */
+	long double **c;            /* per state */
 };
 
 /* ---- the coefficients ---- */
 
-static long double column_at_start(const struct load *load, int column)
+static double column_at_start(const struct linear *system, int column)
 {
+	const struct load *load = system->load;
+	for (; column >= load->columns; load++)
+		column -= load->columns;
 	bool turns = oscillates(load->wave);
 	double phase = mpq_get_d(load->wave->p);
 	if (column / (turns ? 2 : 1) > 0)               /* t^k */
 		return 0;
-	return turns ? column ? sinl(phase) : cosl(phase) : 1;
+	return turns ? column ? sin(phase) : cos(phase) : 1;
 }
 
-static long double sum_value(const struct values *v, const struct sequence *s, int k)
+/* At t = 0; conditions on time as they are just after it */
+static void operand_at_start(const void *context, const struct tape_node *n, mpfr_ptr value)
 {
-	const struct expansion *x = v->x;
-	long double sum = 0;
-	for (int i = 0; i < s->terms; i++) {
-		const struct sequence_term *t = &s->term[i];
-		if (t->slot >= 0) {
-			int at = (t->slot * v->system->segments + v->segment) * (x->order + 1) + k;
-			sum += x->changing[at] * v->load[t->a];
-			continue;
-		}
-		long double operand = 0;
-		if (t->kind == TERM_TIME)
-			operand = t->a == 0;
-		else if (t->kind == TERM_PARAM)
-			operand = mpq_get_d(v->step->model->held->nominal[t->a]);
-		else if (t->kind == TERM_LOAD)
-			operand = v->load[t->a];
-		else if (t->kind == TERM_SEQUENCE)
-			operand = v->c[t->a][k];
-		else if (t->kind == TERM_PRODUCT)
-			for (int j = 0; j <= k; j++)
-				operand += v->c[t->a][j] * v->c[t->b][k - j];
-		sum += t->factor[k] * operand;
-	}
-	return sum;
-}
-
-static long double function_at_start(const struct values *v, const struct sequence *s)
-{
-	long double a = v->c[s->a][0];
-	switch (s->function) {
-	case FN_SIN:   return sinl(a);
-	case FN_COS:   return cosl(a);
-	case FN_TAN:   return tanl(a);
-	case FN_EXP:   return expl(a);
-	case FN_LOG:   return logl(a);
-	case FN_SINH:  return sinhl(a);
-	case FN_COSH:  return coshl(a);
-	case FN_TANH:  return tanhl(a);
-	case FN_ASIN:  return asinl(a);
-	case FN_ACOS:  return acosl(a);
-	case FN_ATAN:  return atanl(a);
-	case FN_ATAN2: return atan2l(a, v->c[s->b][0]);
-	default:       return NAN;
-	}
-}
-
-/* Linear in t, just after t = 0 */
-static long double form_at_start(const struct values *v, const struct form *form)
-{
-	long double sum = 0, soon = 1e-9L * mpq_get_d(v->step->model->h);
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		long double factor = mpq_get_d(form->term[i].factor);
-		sum += factor * (basis->kind == BASIS_PI ? acosl(-1) : basis->power > 0 ? soon : 1);
-	}
-	return sum;
-}
-
-static bool holds_at_start(const struct values *v, const struct sequence *s)
-{
-	if (s->choice == CHOICE_BY_SEQUENCE)
-		return v->c[s->test][0] != 0;
-	if (s->choice == CHOICE_BY_HOLD) {
-		const struct divided *d = &v->x->expression[s->expression];
-		return v->c[d->sequence][0] == (long double)mpq_get_d(d->at[s->breakpoint]);
-	}
-	if (s->choice == CHOICE_BY_STATE) {
-		const struct divided *d = &v->x->expression[s->expression];
-		return v->c[d->sequence][0] > (long double)mpq_get_d(d->at[s->breakpoint]);
-	}
-	long double a = form_at_start(v, s->left), b = form_at_start(v, s->right);
-	switch (s->comparison) {
-	case CMP_LT: return a < b;
-	case CMP_LE: return a <= b;
-	case CMP_GT: return a > b;
-	case CMP_GE: return a >= b;
-	case CMP_EQ: return a == b;
-	default:     return a != b;
-	}
-}
-
-static long double recurrence(const struct values *v, const struct sequence *s, int sequence, int k)
-{
-	const long double *a = s->a == NONE ? NULL : v->c[s->a], *b = s->b == NONE ? NULL : v->c[s->b];
-	const long double *c = v->c[sequence];
-	long double sum = 0;
-	switch (s->kind) {
-	case SEQUENCE_SUM:
-		return sum_value(v, s, k);
-	case SEQUENCE_INTEGRAL:
-		if (k > 0)
-			return sum_value(v, s, k - 1);
-		return s->state != NONE ? mpq_get_d(v->step->model->initial[s->state]) : function_at_start(v, s);
-	case SEQUENCE_QUOTIENT:
-		for (int j = 0; j < k; j++)
-			sum += c[j] * b[k - j];
-		return ((a ? a[k] : k == 0) - sum) / b[0];
-	case SEQUENCE_ROOT:
-		for (int j = 1; j < k; j++)
-			sum += c[j] * c[k - j];
-		return k ? (a[k] - sum) / (2 * c[0]) : sqrtl(a[0]);
-	case SEQUENCE_POWER:
-		for (int j = 0; j < k; j++)
-			sum += ((long double)s->exponent * (k - j) - j) * a[k - j] * c[j];
-		return k ? sum / (k * a[0]) : powl(a[0], s->exponent);
-	case SEQUENCE_RATE:
-		return (k + 1) * a[k + 1];
-	default:
-		return holds_at_start(v, s) ? a[k] : b[k];
+	const struct values *v = context;
+	const struct model *model = v->step->model;
+	int place = (n->index * v->system->segments + v->segment) * (v->x->order + 1) + n->part;
+	switch (n->op) {
+	case TAPE_STATE: mpfr_set_q(value, model->initial[n->index], MPFR_RNDN); break;
+	case TAPE_LOAD:  mpfr_set_d(value, column_at_start(v->system, n->index), MPFR_RNDN); break;
+	case TAPE_PARAM: mpfr_set_q(value, model->held->nominal[n->index], MPFR_RNDN); break;
+	case TAPE_TIME:  mpfr_set_d(value, n->part ? 1e-9 * mpq_get_d(model->h) : 0, MPFR_RNDN); break;
+	case TAPE_TABLE: mpfr_set_d(value, v->x->changing[place], MPFR_RNDN); break;
+	default:         mpfr_set_zero(value, 1);
 	}
 }
 
@@ -146,23 +50,29 @@ static struct values evaluate(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct values v = { .step = step, .system = system, .x = expansion_of(step, LOOKED_AT) };
-	const struct expansion *x = v.x;
-	v.load = ARRAY(long double, (size_t)load_columns(system));
-	v.c = ARRAY(long double *, (size_t)x->count);
-	for (int i = 0; i < x->count; i++)
-		v.c[i] = ARRAY(long double, (size_t)x->order + 2);
-	for (int l = 0, column = 0; l < system->loads; l++)
-		for (int j = 0; j < system->load[l].columns; j++)
-			v.load[column++] = column_at_start(&system->load[l], j);
 	while (v.segment < system->segments - 1 && mpq_sgn(system->change[v.segment]) <= 0)
 		v.segment++;
-	for (int k = 0; k <= x->order; k++)
-		for (int i = 0; i < x->count; i++) {
-			const struct sequence *s = &x->sequence[i];
-			int own = k - s->late;
-			if (own >= 0 && own <= s->top && own <= s->degree)
-				v.c[i][own] = recurrence(&v, s, i, own);
-		}
+	struct recurrences *r = recurrences_new(step, v.x, (struct series_names){ NULL, NULL });
+	int order = v.x->order, states = system->states;
+	tape_ref *ref = ARRAY(tape_ref, (size_t)(states * (order + 1)));
+	for (int k = 0; k <= order; k++)
+		for (int i = 0; i < states; i++)
+			ref[i * (order + 1) + k] = recurrence(r, i, k);
+	struct tape_values from = { operand_at_start, NULL, &v };
+	int length = tape_length(tape_of_recurrences(r));
+	mpfr_t *value = ARRAY(mpfr_t, (size_t)length + 1);
+	for (int i = 0; i < length; i++)
+		mpfr_init2(value[i], LDBL_MANT_DIG);
+	tape_run_mpfr(tape_of_recurrences(r), &from, value);
+	v.c = ARRAY(long double *, (size_t)states);
+	for (int i = 0; i < states; i++) {
+		v.c[i] = ARRAY(long double, (size_t)order + 1);
+		for (int k = 0; k <= order; k++)
+			if (ref[i * (order + 1) + k] != TAPE_NONE)
+				v.c[i][k] = mpfr_get_ld(value[ref[i * (order + 1) + k]], MPFR_RNDN);
+	}
+	for (int i = 0; i < length; i++)
+		mpfr_clear(value[i]);
 	return v;
 }
 

@@ -1143,6 +1143,21 @@ struct expansion {
 	bool alone;                 /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
+/* ---- recurrences.c: the coefficients as nodes of a tape ---- */
+
+/* Operands: TAPE_STATE, TAPE_LOAD of a column, TAPE_INPUT, TAPE_PARAM, TAPE_TIME, TAPE_TABLE of slot `index` at the k
+ * `part`; what the state chooses TAPE_ABOVE and TAPE_HELD, where nodes have no names by their numbers. */
+struct series_names {               /* of a sequence's nodes, x of x_3; NULL: they have none */
+	const char *(*name)(const void *context, int sequence);
+	const void *context;
+};
+struct recurrences;
+struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
+struct tape *tape_of_recurrences(const struct recurrences *r);
+tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0 */
+tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
+tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
+
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
 
 struct key {                        /* of a sum, before its factors are numbers; kind, a and b as in sequence_term */

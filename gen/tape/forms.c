@@ -333,6 +333,9 @@ tape_ref tape_form(struct tape_forms *f, const struct form *form)
 
 void tape_name_lets(struct tape_forms *f)
 {
-	for (int i = 0; i < f->lets; i++)
-		tape_name(f->tape, tape_form(f, f->let[i].form), f->let[i].name);
+	for (int i = 0; i < f->lets; i++) {
+		tape_ref ref = tape_form(f, f->let[i].form);
+		if (!tape_is_operand(f->tape, ref))
+			tape_name(f->tape, ref, f->let[i].name);
+	}
 }

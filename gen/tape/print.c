@@ -27,8 +27,8 @@ static const char *enclosed(bool needed, const char *text)
 
 static bool is_shared(const struct printing *p, tape_ref ref)
 {
-	bool plain = tape_is_operand(p->t, ref) || (tape_is_cheap(p->t, ref) && !tape_node(p->t, ref)->name);
-	return p->out && !plain && (p->uses[ref] > 1 || tape_node(p->t, ref)->name);
+	bool plain = tape_is_operand(p->t, ref) || tape_is_cheap(p->t, ref), named = tape_node(p->t, ref)->name != NULL;
+	return p->out && (named || (!plain && p->uses[ref] > 1));
 }
 
 static const char *declare(struct printing *p, tape_ref ref, const char *text)
@@ -59,13 +59,22 @@ static const char *argument_of(struct printing *p, tape_ref ref)
 
 /* ---- operations ---- */
 
-/* What is negative is subtracted; lines break at the middle of what is too long for one. */
+static bool is_sum(const struct printing *p, tape_ref ref)
+{
+	return tape_node(p->t, ref)->op == TAPE_ADD && !is_shared(p, ref);
+}
+
+/* What is negative is subtracted. Of (a + b) + (c + d) lines break at the middle of what is too long for one, of
+ * a + b + c + d before what would not fit. */
 static const char *sum_text(struct printing *p, const struct tape_node *n, int indent)
 {
-	const char *left = text_of(p, n->a, PRODUCT, indent + 1), *right = text_of(p, n->b, PRODUCT, indent + 1);
-	const char *sign = *right == '-' ? "-" : "+";
+	bool halves = is_sum(p, n->b);
+	const char *left = text_of(p, n->a, halves ? PRODUCT : SUM, indent + halves);
+	const char *right = text_of(p, n->b, PRODUCT, indent + 1), *sign = *right == '-' ? "-" : "+";
 	right += *right == '-';
-	bool wide = (int)(strlen(left) + strlen(right)) + indent > WIDTH;
+	const char *line = strrchr(left, '\n');
+	int width = line && !halves ? (int)strlen(line + 1) : (int)strlen(left) + indent;
+	bool wide = width + (int)strlen(right) > WIDTH;
 	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
 }
 
@@ -158,15 +167,27 @@ static struct printing printing_of(const struct tape *t, const struct tape_targe
 	return p;
 }
 
+static void print_out(const struct printing *p, const struct tape_out *set, const char *text)
+{
+	const char *note = set->note ? format("  /* %s */", set->note) : "";
+	if (!set->local)
+		fprintf(p->out, "%*s%s = %s;%s\n", p->to->indent, "", set->target, text, note);
+	else if (strcmp(text, set->target) != 0)
+		fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", p->to->real, set->target, text);
+}
+
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 {
 	struct printing p = printing_of(t, to, out);
-	for (int i = 0; i < tape_outs(t); i++) {
-		const struct tape_out *set = tape_out(t, i);
-		const char *text = text_of(&p, set->ref, CHOICE, set->indent);
-		fprintf(out, "%*s%s = %s;%s\n", to->indent, "", set->target, text,
-			set->note ? format("  /* %s */", set->note) : "");
+	int outs = tape_outs(t);
+	const char **text = ARRAY(const char *, (size_t)outs + 1);
+	for (int i = 0; i < outs; i++) {
+		text[i] = text_of(&p, tape_out(t, i)->ref, CHOICE, tape_out(t, i)->indent);
+		if (!to->locals_first)
+			print_out(&p, tape_out(t, i), text[i]);
 	}
+	for (int i = 0; i < outs && to->locals_first; i++)
+		print_out(&p, tape_out(t, i), text[i]);
 }
 
 const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent)

@@ -95,7 +95,7 @@ tape_ref tape_number(struct tape *t, long value)
 
 static bool is_choice(enum tape_op op)
 {
-	return op == TAPE_ABOVE || op == TAPE_TRUE || op == TAPE_FALSE || op == TAPE_NOT ||
+	return op == TAPE_ABOVE || op == TAPE_HELD || op == TAPE_TRUE || op == TAPE_FALSE || op == TAPE_NOT ||
 	       (op >= TAPE_LESS && op <= TAPE_UNEQUAL);
 }
 
@@ -179,14 +179,20 @@ bool tape_is_operand(const struct tape *t, tape_ref ref)
 
 void tape_name(struct tape *t, tape_ref ref, const char *name)
 {
-	if (!tape_is_operand(t, ref) && !t->node[ref].name && !t->node[ref].choice)
+	if (t->node[ref].op != TAPE_CONSTANT && !t->node[ref].name && !t->node[ref].choice)
 		t->node[ref].name = name;
 }
 
 void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note)
 {
 	ENLARGE(t->out, (size_t)t->outs + 1);
-	t->out[t->outs++] = (struct tape_out){ target, note, ref, indent };
+	t->out[t->outs++] = (struct tape_out){ target, note, ref, false, indent };
+}
+
+void tape_set_local(struct tape *t, const char *name, tape_ref ref)
+{
+	tape_set(t, name, ref, 0, NULL);
+	t->out[t->outs - 1].local = true;
 }
 
 /* ---- what has to hold ---- */
@@ -250,7 +256,7 @@ int *tape_uses(const struct tape *t)
 		const tape_ref ref[3] = { t->node[i].a, t->node[i].b, t->node[i].c };
 		for (int k = 0; k < 3 && uses[i]; k++)
 			if (ref[k] != TAPE_NONE)
-				uses[ref[k]] += tape_is_cheap(t, i) ? uses[i] : 1;
+				uses[ref[k]] += tape_is_cheap(t, i) && !t->node[i].name ? uses[i] : 1;
 	}
 	return uses;
 }

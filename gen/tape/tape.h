@@ -13,12 +13,14 @@ enum tape_op {
 	/* Operands, which read nothing: what they are called is the reader's matter (struct tape_target) */
 	TAPE_CONSTANT,              /* an exact number */
 	TAPE_COORD, TAPE_INPUT,     /* coordinate or input `index`, differentiated `part` times */
+	TAPE_STATE,                 /* `index`, as the step keeps it */
 	TAPE_LOAD,                  /* column `part` of load `index` */
 	TAPE_PARAM,                 /* tunable param `index` */
 	TAPE_TIME,                  /* t; `part` 1: the time at which conditions on time hold as they do */
 	TAPE_TABLE,                 /* entry `index` of table `part` of the reader's */
 	TAPE_FRICTION,              /* a friction force of the model */
 	TAPE_ABOVE,                 /* a choice: expression `index` is above its breakpoint of rank `part` */
+	TAPE_HELD,                  /* a choice: expression `index` is held in interval `part` */
 	TAPE_TRUE, TAPE_FALSE,      /* choices */
 	/* of a */
 	TAPE_NEG, TAPE_SIGN, TAPE_SIZE, TAPE_CALL, /* -a; -1, 0 or 1; |a|; function `index` of a */
@@ -42,6 +44,7 @@ struct tape_node {
 struct tape_out {                   /* target = node; printed in this order */
 	const char *target, *note;  /* NULL: no comment behind it */
 	tape_ref ref;
+	bool local;                 /* the target is a local of that name, which may be the node's own */
 	int indent;                 /* of the lines that a long sum goes on in */
 };
 struct tape;
@@ -62,8 +65,9 @@ tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b)
 /* (a + b) + (c + d): the shortest chain of dependent additions; of no terms 0 */
 tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term);
 tape_ref tape_power(struct tape *t, tape_ref a, unsigned n); /* a^n, n >= 1, with few multiplications */
-void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is an operand or has one */
+void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is a constant or has one */
 void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note);
+void tape_set_local(struct tape *t, const char *name, tape_ref ref);
 bool tape_is_operand(const struct tape *t, tape_ref ref);
 /* The first invariant that is broken: operands before their reader, as many as it has, of the types that it reads;
  * no two nodes alike; NULL: none is. Every pass leaves it NULL. */
@@ -111,8 +115,9 @@ struct tape_target {
 	const char *size;           /* the function that TAPE_SIZE is */
 	const void *context;
 	int indent;
+	bool locals_first;          /* before the first target is set, which what they read may be part of */
 };
-/* Locals for what is read more than once, outs in their order */
+/* Locals for what is read more than once or has a name, outs in their order */
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);
 /* Without locals: one expression */
 const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent);

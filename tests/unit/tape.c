@@ -260,7 +260,7 @@ static const char *name_text(const void *context, const struct tape_node *n)
 	return n->op == TAPE_ABOVE ? format("above[%d]", n->index) : format("x%d", n->index);
 }
 
-static const struct tape_target c_text = { "double", number_text, name_text, "fabs", NULL, 4 };
+static const struct tape_target c_text = { "double", number_text, name_text, "fabs", NULL, 4, false };
 
 static void assert_text(const struct tape *t, const char *wanted)
 {
@@ -280,7 +280,7 @@ static void tape_text_of_sums(void **state)
 	tape_ref term[] = { x(t, 0), twice, tape_unary(t, TAPE_NEG, x(t, 2)) };
 	tape_set(t, "y", tape_sum(t, 3, term), 4, "a sum");
 	tape_set(t, "z", tape_unary(t, TAPE_NEG, twice), 4, NULL);
-	assert_text(t, "    y = (x0 - 2.0 * x1) - x2;  /* a sum */\n"
+	assert_text(t, "    y = x0 - 2.0 * x1 - x2;  /* a sum */\n"
 		       "    z = -(-2.0 * x1);\n");
 	(void)state;
 }
