@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=sh disable=SC2154
-# Sourced before tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`):
-# everything with every compiler; without it no more than shows a warning, and what is alike goes to one or two of the
-# four by turns.
+# Sourced before tap.sh by tests that ask compilers about what plgen emits, most of them only with LONG=1 in the
+# environment (`make check-long`); `make check` asks for warnings in tests/warnings.
 
-# list_compilers: a line each, with options, of which by_turns and gcc_and_another choose
+# list_compilers: a line each, with options, of which by_turns chooses
 list_compilers() {
 	echo 'gcc -std=c99 -O1 -c -o object.o'
 	echo 'g++ -std=c++17 -fsyntax-only -x c++'
@@ -46,17 +45,6 @@ by_turns() {
 		cat "$1"
 	else
 		sed -n "$(echo 1 4 1 3 2 | cut -d ' ' -f $turn)p" "$1"
-	fi
-}
-
-# gcc_and_another FILE: of the same lines the first, and one of the others by turns; with LONG all
-another=1
-gcc_and_another() {
-	another=$((another % 3 + 1))
-	if long; then
-		cat "$1"
-	else
-		sed -n "1p; $((another + 1))p" "$1"
 	fi
 }
 

@@ -1,12 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits compiles without a warning, as C99 and as C++17, needs nothing but the runtime, and runs.
+# What plgen emits needs nothing but the runtime, runs, and goes into a C++ program; with LONG=1 it compiles without a
+# warning, as C99 and as C++17, every file with code by every compiler (without, ../warnings asks that).
 #
 #     compile.sh PLGEN SOURCE_ROOT SOLUTIONS MODEL ...
 #
 # SOLUTIONS is a folder with MODEL_solution.csv, of --solution 30.
-#
-# With LONG=1 every file with code for every compiler (see compilers.sh).
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
@@ -25,6 +24,7 @@ case $solutions in
 esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 installed() {
@@ -41,47 +41,31 @@ languages() {
 
 languages >compilers
 
-# effort COMPILER FILE.c: what it is to make of the file; gcc warns as an optimiser does of standard output
-effort() {
-    if long || [ "${1##*/} ${2##*/}" = "gcc stdout.c" ]; then
-        echo "-O1 -c -o ${2%.c}.o"
-    else
-        without_code "$1"
-        ahead "$1" "$2"
-    fi
-}
-
-# compiles FILE.c NAME: one result for each compiler and language; without LONG for all of them of the first file only
+# compiles FILE.c NAME: with LONG=1 one result for each compiler and language
 compiles() {
-    if [ -z "${all_seen:-}" ]; then
-        cp compilers some
-        all_seen=yes
-    else
-        by_turns compilers >some
-    fi
+    long || return 0
     while read -r compiler options; do
         if ! installed "$compiler"; then
             skip "$2, $compiler" "$compiler is not installed"
             continue
         fi
-        # shellcheck disable=SC2046,SC2086
-        $compiler $warnings -I"$root/runtime" $(effort "$compiler" "$1") $options "$1" >log 2>&1
+        # shellcheck disable=SC2086
+        $compiler $warnings -I"$root/runtime" -O1 -c -o "${1%.c}.o" $options "$1" >log 2>&1
         result $? "$2, $compiler $options"
-    done <some
+    done <compilers
 }
 
-# all_compile FILE.c NAME [CHOICE [OPTIONS]]: without code, as one result, by one compiler after the other by turns, or
-# by what CHOICE prints of the compilers
+# all_compile FILE.c NAME [OPTIONS]: with LONG=1, or `always`, without code, as one result
 all_compile() {
+    long || [ -n "${always-}" ] || return 0
     status=0
     : >log
-    ${3:-by_turns} compilers >some
     while read -r compiler options; do
         installed "$compiler" || continue
         # shellcheck disable=SC2046,SC2086
-        $compiler $warnings -I"$root/runtime" ${4-} -fsyntax-only $([ -n "${4-}" ] || ahead "$compiler" "$1") \
+        $compiler $warnings -I"$root/runtime" ${3-} -fsyntax-only $([ -n "${3-}" ] || ahead "$compiler" "$1") \
             $options "$1" >>log 2>&1 || status=1
-    done <some
+    done <compilers
     result $status "$2"
 }
 
@@ -125,7 +109,7 @@ for m in $models; do
         printf '#include "%s.h"\n#include "stdout.c"\n' "$m" >"$kind/both.c"
         all_compile "$kind/both.c" "$kind: the C on standard output repeats the header under the same guard"
     done
-    all_compile "$m/stdout.c" "$m: freestanding" by_turns -ffreestanding
+    all_compile "$m/stdout.c" "$m: freestanding" -ffreestanding
 done
 
 # ---- the runtime ----
@@ -135,7 +119,7 @@ for f in "$root"/runtime/*.c; do
     f=$(basename "$f" .c)
     runtime="$runtime $f"
     cp "$root/runtime/$f.c" "$f.c"
-    all_compile "$f.c" "runtime: $f.c" by_turns -ffreestanding
+    all_compile "$f.c" "runtime: $f.c" -ffreestanding
 done
 
 mkdir runtime models
@@ -156,32 +140,28 @@ needs() {
     result $status "$title, $compiler $level"
 }
 
-# sixth NUMBER WORD ...: every sixth word, the first of them that with this number from 0; with LONG all
-sixth() {
-    from=$1
-    shift
-    for word; do
-        ! long && [ $((from % 6)) -ne 0 ] || echo "$word"
-        from=$((from + 5))
+if ! merging; then
+    nm -u "$archive" >names && only_runtime names
+    result $? 'runtime: needs memcpy and memset at most, as it was built'
+    compiler=${GCCS:-gcc} level=-O2
+    compiler=${compiler% *}
+    # shellcheck disable=SC2086
+    needs models 'models without --rhs: need the runtime, memcpy and memset at most' $models
+else
+    for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
+        compiler=${pair% *}
+        for level in -O0 -O2 -Os; do
+            if ! installed "$compiler"; then
+                skip "nm, $compiler $level" "$compiler is not installed"
+                continue
+            fi
+            # shellcheck disable=SC2086
+            needs runtime 'runtime: needs memcpy and memset at most' $runtime
+            # shellcheck disable=SC2086
+            needs models 'models without --rhs: need the runtime, memcpy and memset at most' $models
+        done
     done
-}
-
-number=0        # every file at one of the levels by one compiler, with LONG at all by both
-for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-    compiler=${pair% *}
-    for level in -O0 -O2 -Os; do
-        number=$((number + 1))
-        if ! installed "$compiler"; then
-            skip "nm, $compiler $level" "$compiler is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2046,SC2086
-        needs runtime 'runtime: needs memcpy and memset at most' $(sixth $number $runtime)
-        # shellcheck disable=SC2046,SC2086
-        needs models 'models without --rhs: need the runtime, memcpy and memset at most' \
-            $(sixth $number $models)
-    done
-done
+fi
 
 # ---- force code only where there is a force ----
 
@@ -233,6 +213,7 @@ for m in $models; do
 done | awk '{ printf "%.17g\n", $1 }' >expected
 mkdir program_c
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
+    merging || [ "$pair" = "${GCCS:-gcc g++}" ] || continue
     c=${pair% *}
     cpp=${pair#* }
     if ! installed "$c" || ! installed "$cpp"; then
@@ -290,31 +271,14 @@ done
 
 # ---- names ----
 
-# one_by_turns FILE: of its lines but the first, gcc, which compiles what runs, one; with LONG all
-one_by_turns() {
-    if long; then
-        cat "$1"
-    else
-        next=$(((next + 1) % 3))
-        sed -n "$((next + 2))p" "$1"
-    fi
-}
-next=0
-# theirs: whether the next of many names is one that another compiler than gcc sees: every third; with LONG all
-names_seen=0
-theirs() {
-    names_seen=$((names_seen + 1))
-    long || [ $((names_seen % 3)) -eq 1 ]
-}
-
-# right FILE.spec NAME TITLE: it compiles everywhere, and what its driver says is what --solution says
+# right FILE.spec NAME TITLE: it compiles, and what its driver says is what --solution says
 right() {
     : >log
     "$plgen" --rhs "$1" >collide.c 2>log
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    all_compile collide.c "$3: compiles" one_by_turns
+    all_compile collide.c "$3: compiles"
     : >log
     "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m "$warnings" -lm &&
         ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
@@ -428,20 +392,24 @@ EOF
 # one object for all: the linker gives it the names of the model
 ${CC:-cc} -I"$root/runtime" -DPROBE=PROBED -c probe.c 2>log || exit 99
 
-# probe FILE.c NAME OUT.csv: in the compiler's own dialect, as a user would
+# probe FILE.c NAME OUT.csv: in the compiler's own dialect, as a user would; or only to be run
 probe() {
+    if ! merging && [ -z "${always-}" ]; then
+        $run_cc -I"$root/runtime" "-DPROBE=$2" probe.c "$1" "$archive" -lm -o probed >>log 2>&1 && ./probed >"$3"
+        return
+    fi
     # shellcheck disable=SC2086
     ${CC:-cc} $warnings -I"$root/runtime" probe.o "$1" "$archive" -lm \
         "-Wl,--defsym=PROBED_model=$2_model,--defsym=PROBED_rhs=$2_rhs" -o probed >>log 2>&1 && ./probed >"$3"
 }
 
-# alike NAME NEUTRAL.spec TITLE: names.spec compiles everywhere and does what NEUTRAL.spec does
+# alike NAME NEUTRAL.spec TITLE: names.spec compiles and does what NEUTRAL.spec does
 alike() {
     "$plgen" --rhs --prefix "$1" names.spec >collide.c 2>log
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    ! theirs || all_compile collide.c "$3: compiles" one_by_turns
+    all_compile collide.c "$3: compiles"
     : >log
     # the same neutral model often
     cmp -s "$2" probed.spec || { "$plgen" --rhs --prefix probe "$2" >probed.c 2>>log &&
@@ -453,11 +421,13 @@ alike() {
 # shellcheck disable=SC2046,SC2086
 {
     as_params $locals $macros $functions >names.spec
+    always=yes
     as_params $(neutral $locals $macros $functions) >neutral.spec
     alike probe neutral.spec 'params with names of every kind'
     as_lets $locals $macros $functions >names.spec
     as_lets $(neutral $locals $macros $functions) >neutral.spec
     alike probe neutral.spec 'lets with names of every kind'
+    always=
     set -- $locals $macros $functions
     while [ $# -ge 6 ]; do
         as_coordinates "$1" "$2" "$3" "$4" "$5" "$6" >names.spec

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # compile.sh PLGEN CASES RUNTIME COMPILER...: the C of every good case (status 0, see cases.c) that prints C, as TAP: it
-# compiles without a warning, whatever the names in its spec are. Those of dear.list, and every second of the others,
-# only with LONG=1 in the environment, but for those whose names are what matters.
+# compiles without a warning, whatever the names in its spec are. Those about names; with MERGE=1 in the environment every
+# second of the others but those of dear.list too, with LONG=1 all.
 set -u
 plgen=$1
 cases=$2
@@ -18,7 +18,10 @@ export LC_ALL
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
-mkdir "$work/cases" "$work/out" && "$cases" --write "$work/cases" && cd "$work/out" || exit 1
+topics=names
+[ -z "${LONG:-}${MERGE:-}" ] || topics=
+# shellcheck disable=SC2086
+mkdir "$work/cases" "$work/out" && "$cases" --write "$work/cases" $topics && cd "$work/out" || exit 1
 
 prints_c()      # PATH, without ending
 {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits in every form, for double and for float: it compiles without a warning, as C99 and as C++17; float
-# code names no double and does nothing with one.
+# What plgen emits in every form, for double and for float: float code names no double and does nothing with one; with
+# LONG=1 it compiles without a warning, as C99 and as C++17 (without, ../warnings asks that).
 #
 #     compile.sh PLGEN SOURCE_ROOT VARIANTS_double.c VARIANTS_float.c
 #
@@ -28,23 +28,19 @@ switching='gear1 two_masses quarter_car_bumps'
     done
 } >compilers
 
-# compiles FILE.c NAME [OPTIONS]: by one compiler, of C or of C++, after the other by turns, with LONG=1 by each
+# compiles FILE.c NAME [OPTIONS]: with LONG=1
 compiles() {
-    by_turns compilers >some
+    long || return 0
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$2, $compiler" "$compiler is not installed"
             continue
         fi
-        # what is looked at for instructions is made code of there, with the same warnings; all else with LONG=1
-        if ! long && [ "${3-}" != -ffreestanding ]; then
-            options="$options -fsyntax-only $(ahead "$compiler" "$1")"
-        fi
         # shellcheck disable=SC2086
         "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" \
             -o out.o >log 2>&1
         result $? "$2, $compiler ${options%% *}"
-    done <some
+    done <compilers
 }
 
 without_comments() {
@@ -75,6 +71,7 @@ no_double() {
 no_double_instruction() {
     for compiler in "${GCCS:-gcc}" "${CLANGS:-clang}"; do
         compiler=${compiler% *}
+        merging || [ "$compiler" = "${GCCS:-gcc}" ] || continue
         if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 ||
             [ "$(uname -m)" != x86_64 ]; then
             skip "$2, $compiler" 'no such compiler, no objdump, or another processor'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The emitted C of models with a leftover: no warning in any compiler, the same bytes twice, nothing from <math.h> that
-# the model does not call; and what plgen says while it makes them.
+# The emitted C of models with a leftover: the same bytes twice, nothing from <math.h> that the model does not call, and
+# what plgen says while it makes them; with LONG=1 no warning in any compiler (without, ../warnings asks that).
 #
 #     leftover.sh PLGEN SOURCE_ROOT NAME_variants.c ...
 set -u
@@ -22,37 +22,26 @@ done
 here=$root/tests/leftover
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 # ---- compilers ----
 
-# options_of COMPILER FILE: code, for the warnings that take an optimiser, of models of every kind but not of each of
-# their variants; with LONG=1 of all
-options_of() {
-    case $1,${2##*/} in
-        *-fsyntax-only*) echo "${1#* }" ;;
-        *-c\ *,solvers_variants.c) long && echo "${1#* }" || echo '-std=c99 -Og -c -o object.o' ;;
-        *) long && echo "${1#* }" || echo '-std=c99 -fsyntax-only' ;;
-    esac
-}
-
 list_compilers >compilers
 
-# gcc and one of the others by turns, with LONG=1 all
 for file in $files; do
+    long || break
     name=${file##*/}
-    gcc_and_another compilers >some
     while read -r compiler; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
             count=$((count + 1))
             echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
             continue
         fi
-        # shellcheck disable=SC2046,SC2086
-        ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" $(options_of "$compiler" "$file") \
-            "$file" >log 2>&1
+        # shellcheck disable=SC2086
+        ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" ${compiler#* } "$file" >log 2>&1
         result $? "$name, $compiler: not a warning"
-    done <some
+    done <compilers
 done
 
 # series: the model of kind.spec by its series too, in float to single.c, of fixed order to all.c; none where it has a
@@ -99,12 +88,12 @@ while read -r kind; do
     done
     rm -f single.c
     series || { status=1; cat log >>said; }
-    by_turns compilers >some
+    long && cp compilers some || echo "$run_cc -c -o object.o" >some
     while read -r compiler; do
         command -v "${compiler%% *}" >/dev/null 2>&1 || continue
         # shellcheck disable=SC2046,SC2086
         for file in all.c single.c; do
-            [ ! -e $file ] || ${compiler%% *} $warnings -I"$root/runtime" $(options_of "$compiler" $file) $file \
+            [ ! -e $file ] || ${compiler%% *} $(! long || echo $warnings) -I"$root/runtime" ${compiler#* } $file \
                 >>said 2>&1 || status=1
         done
     done <some
@@ -115,7 +104,7 @@ done <kinds
 # ---- the same bytes twice ----
 
 # shellcheck disable=SC2086
-for file in $(third 1 $files); do
+for file in $files; do
     name=${file##*/}
     list=${name%_variants.c}
     "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" \

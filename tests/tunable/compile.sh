@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits for models with tunable params, for double and for float, in the forms delta and direct: it compiles
-# without a warning, as C99 and as C++17; the same bytes twice; no double in floats; no libm, no allocation, nothing but
-# the runtime called.  And runtime/host/plmain.c: NAME=VALUE arguments, and what is said of bad ones.
+# What plgen emits for models with tunable params, for double and for float, in the forms delta and direct: the same
+# bytes twice; no double in floats; no libm, no allocation, nothing but the runtime called; with LONG=1 it compiles
+# without a warning, as C99 and as C++17 (without, ../warnings asks that).  And runtime/host/plmain.c: NAME=VALUE
+# arguments, and what is said of bad ones.
 #
 #     compile.sh PLGEN SOURCE_ROOT MODEL.spec ...
 #
@@ -20,6 +21,7 @@ for spec; do
 done
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 {
@@ -29,37 +31,37 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
     done
 } >compilers
 
-# compiles NAME FILE.c ...: by gcc and one of the others by turns, with LONG=1 by each
+# compiles NAME FILE.c ...: each becomes an object, whose names are looked at; with LONG=1 by each compiler, without a
+# warning
 compiles() {
-    gcc_and_another compilers >some
     what=$1
     shift
-    cat "$@" >all.c
+    if ! long; then
+        : >log
+        for file; do
+            $run_cc -I"$root/runtime" -c "$file" >>log 2>&1 || echo "$file" >>log
+        done
+        [ ! -s log ]
+        result $? "$what: compiles"
+        return
+    fi
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$what, $compiler" "$compiler is not installed"
             continue
         fi
-        # by gcc each becomes an object, whose names are looked at, optimised in one form of double; for the others they
-        # are one file without code, but with LONG=1
-        these=$*
-        if ! long; then
-            case $compiler,$what in
-                *clang* | *++*) options="$options -O0 -fsyntax-only" these=all.c ;;
-                *,*direct | *,float*) options="$options -O0" ;;
-            esac
-        fi
         # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" $options -c $these >log 2>&1
+        "$compiler" $warnings -I"$root/runtime" $options -c "$@" >log 2>&1
         result $? "$what, $compiler ${options%% *}"
-    done <some
+    done <compilers
 }
 
-# What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments
+# What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments, as tcc
+# makes memmove, and calls of its own library of conversions
 calls_only_the_runtime() {
     [ -s "$1" ] || return 1
     nm -u "$1" | awk '{print $NF}' | grep -v -e '^pl_' -e '^memcpy$' -e '^memset$' -e '^_GLOBAL_OFFSET_TABLE_$' \
-        -e '^__stack_chk_fail$' >log
+        -e '^__stack_chk_fail$' -e '^memmove$' -e '^__floatun[sd]i[sd]f$' >log
     [ ! -s log ]
 }
 
@@ -102,7 +104,7 @@ done
 for spec in $specs; do
     name=$(basename "$spec" .spec)
     "$plgen" -o "$name.c" "$spec" >log 2>&1 &&
-        ${CC:-cc} -std=c99 $warnings -I"$root/runtime" -O0 -S "$name.c" -o apart.s >>log 2>&1
+        $run_cc -I"$root/runtime" -c "$name.c" -o apart.o >>log 2>&1
     result $? "$name: -o writes C and header"
 done
 
@@ -124,9 +126,7 @@ for real in double float; do
             else
                 "$plgen" --real $real "$spec" >drive.c 2>log
             fi
-            ${CC:-cc} -std=c99 $warnings $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" \
-                drive.c \
-                "$archive" -o "run_$name$suffix$other" >>log 2>&1
+            $run_cc $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" drive.c "$archive" -lm -o "run_$name$suffix$other" >>log 2>&1
             result $? "plmain of $name, $real${other:+, with the values as -D}"
         done
     done
