@@ -106,8 +106,8 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
         while read -r compiler options; do
             installed "$compiler" || continue
             # shellcheck disable=SC2046,SC2086
-            $compiler $warnings $(long && echo -O1 || echo -O0) -ffreestanding -I"$root/runtime" $options -c "$kind/$m.std.c" -o nm.o >>log 2>&1 &&
-                only_runtime nm.o || status=1
+            $compiler $warnings $(long && echo -O1 || echo -O0) -ffreestanding -I"$root/runtime" $options \
+                -c "$kind/$m.std.c" -o nm.o >>log 2>&1 && only_runtime nm.o || status=1
         done <some
         result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
         if [ -z "$inputs_of" ]; then

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # compile.sh PLGEN CASES RUNTIME COMPILER...: the C of every good case (status 0, see cases.c) that prints C, as TAP: it
-# compiles without a warning, whatever the names in its spec are. Those about names; with MERGE=1 in the environment every
-# second of the others but those of dear.list too, with LONG=1 all.
+# compiles without a warning, whatever the names in its spec are. Those about names; with MERGE=1 in the environment
+# every second of the others but those of dear.list too, with LONG=1 all.
 set -u
 plgen=$1
 cases=$2

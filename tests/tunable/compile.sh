@@ -126,7 +126,8 @@ for real in double float; do
             else
                 "$plgen" --real $real "$spec" >drive.c 2>log
             fi
-            $run_cc $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" drive.c "$archive" -lm -o "run_$name$suffix$other" >>log 2>&1
+            $run_cc $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" drive.c "$archive" -lm \
+                -o "run_$name$suffix$other" >>log 2>&1
             result $? "plmain of $name, $real${other:+, with the values as -D}"
         done
     done
