@@ -529,7 +529,9 @@ void emit_to_modes(const struct emitter *e);                      /* NAME_modes_
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
-const char *instance_of_rest(const struct emitter *e);            /* "s, " where NAME_forces takes the instance; "" */
+/* Of functions of time that are in `f`: models without any have none */
+const char *mode_forces_call(const struct emitter *e, const char *f, const char *eta, const char *rate,
+			     const char *force);
 
 /* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
 

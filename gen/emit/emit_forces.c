@@ -351,9 +351,16 @@ static struct reads reads_of_rest(const struct emitter *e)
 }
 
 /* "s, " of a function that reads the instance's own params, else "" */
-const char *instance_of_rest(const struct emitter *e)
+static const char *instance_of_rest(const struct emitter *e)
 {
 	return any_of(reads_of_rest(e).param, e->model->spec->tunables) ? "s, " : "";
+}
+
+const char *mode_forces_call(const struct emitter *e, const char *f, const char *eta, const char *rate,
+			     const char *force)
+{
+	const char *functions = functions_of_time(e) ? format("%s, ", f) : "";
+	return spell(e, "$n_forces(%swhich, %s%s, %s, %s);", instance_of_rest(e), functions, eta, rate, force);
 }
 
 static void emit_rest_forces(const struct emitter *e)
@@ -482,10 +489,11 @@ void emit_forces(const struct emitter *e)
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
 	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
-	       "static void $n_forces(%sint which, const double f[%d], const double eta[%d],\n"
+	       "static void $n_forces(%sint which, %sconst double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
 	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "",
-	    functions_of_time(e) ? functions_of_time(e) : 1, m->width, m->width, m->width);
+	    functions_of_time(e) ? format("const double f[%d], ", functions_of_time(e)) : "", m->width, m->width,
+	    m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
 		if (m->force[f])
@@ -495,8 +503,7 @@ void emit_forces(const struct emitter *e)
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
 	say(e, "    (void)which;\n"
-	       "    (void)f;\n"
-	       "    (void)eta;\n"
+	       "%s    (void)eta;\n"
 	       "    (void)rate;\n"
-	       "}\n");
+	       "}\n", functions_of_time(e) ? "    (void)f;\n" : "");
 }

@@ -70,11 +70,11 @@ static void emit_first_forces(const struct emitter *e)
 		       "    } else {\n");
 	}
 	const char *indent = m->points ? "" : "    ";
-	say(e, "%s    $n_forces(%swhich, f[0], s->eta, s->rate, force[0]);\n"
+	say(e, "%s    %s\n"
 	       "%s    for (k = 1; k <= %d; k++)\n"
 	       "%s        for (i = 0; i < %d; i++)\n"
-	       "%s            force[k][i] = force[0][i];\n", indent, instance_of_rest(e), indent, m->stages, indent,
-	    width, indent);
+	       "%s            force[k][i] = force[0][i];\n", indent,
+	    mode_forces_call(e, "f[0]", "s->eta", "s->rate", "force[0]"), indent, m->stages, indent, width, indent);
 	if (m->points == 0)
 		say(e, "    }\n");
 }
@@ -89,9 +89,11 @@ static void emit_sweeps(const struct emitter *e, const struct stage_tables *tabl
 		       "            eta[%d][i] = %s;\n"
 		       "            rate[%d][i] = %s;\n"
 		       "        }\n"
-		       "        $n_forces(%swhich, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
+		       "        %s\n", m->width, i + 1,
 		    stage_sum(e, &table[i], 0, nodes, "force[%d][i]"), i + 1,
-		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"), instance_of_rest(e), i + 1, i + 1, i + 1, i + 1);
+		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"),
+		    mode_forces_call(e, format("f[%d]", i + 1), format("eta[%d]", i + 1), format("rate[%d]", i + 1),
+			     format("force[%d]", i + 1)));
 	say(e, "    }\n");
 }
 
@@ -99,7 +101,7 @@ static void emit_collocation(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	int stages = m->stages, nodes = stages + 1, width = m->width;
-	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
+	int functions = functions_of_time(e);
 	struct stage_tables *table = ARRAY(struct stage_tables, (size_t)stages);
 	for (int i = 0; i < stages; i++) {
 		table[i].flow = emit_bank_table(e, format("flow%d", i + 1),
@@ -112,14 +114,15 @@ static void emit_collocation(const struct emitter *e)
 	say(e, "\n/* A step by collocation: forces are a polynomial through the nodes, found by so many sweeps */\n"
 	       "static void $n_collocate($n *s%s)\n"
 	       "{\n"
-	       "    double f[%d][%d], %seta[%d][%d], rate[%d][%d];\n"
+	       "    double %s%seta[%d][%d], rate[%d][%d];\n"
 	       "    const int which = s->which;\n"
 	       "    int i, k, sweep, sweeps = %d;\n", m->points ? format(", double force[%d][%d]", nodes, width) : "",
-	    nodes, functions, m->points ? "" : format("force[%d][%d], ", nodes, width), nodes, width, nodes, width,
+	    functions ? format("f[%d][%d], ", nodes, functions) : "",
+	    m->points ? "" : format("force[%d][%d], ", nodes, width), nodes, width, nodes, width,
 	    m->first_sweeps);
 	say(e, "%s", wave_array(e));
 	emit_waves_now(e);
-	if (functions_of_time(e))
+	if (functions)
 		say(e, "    for (k = 0; k <= %d; k++)\n"
 		       "        %s\n", stages, functions_call(e, "k", false, "f[k]"));
 	emit_first_forces(e);
@@ -213,10 +216,10 @@ static void emit_bank(const struct emitter *e)
 	       "    for (k = 0; k < s->known; k++) {\n"
 	       "        for (d = 0; d < 2; d++)\n"
 	       "            $n_turn(s->which, which, s->past[k][d]);\n"
-	       "        $n_forces(%swhich, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
+	       "        %s\n"
 	       "    }\n"
 	       "    s->which = which;\n"
-	       "}\n", instance_of_rest(e));
+	       "}\n", mode_forces_call(e, "s->f[k]", "s->past[k][0]", "s->past[k][1]", "s->force[k]"));
 }
 
 /* ---- the step ---- */
@@ -239,11 +242,11 @@ static void emit_multistep(const struct emitter *e)
 	say(e, "\n/* A step from past forces: predict, evaluate, correct%s */\n"
 	       "static void $n_advance($n *s%s)\n"
 	       "{\n"
-	       "    double eta[%d], rate[%d], force[%d], expected[%d], f[%d];\n"
+	       "    double eta[%d], rate[%d], force[%d], expected[%d]%s;\n"
 	       "    const int which = s->which;\n"
 	       "    int i, at = s->newest;\n%s", m->twice ? ", evaluate; first: the force of the first time" : "",
 	    m->twice ? format(", double first[%d]", width) : "", width, width, width, width,
-	    functions_of_time(e) ? functions_of_time(e) : 1, wave_array(e));
+	    functions_of_time(e) ? format(", f[%d]", functions_of_time(e)) : "", wave_array(e));
 	for (int k = 0; k < points; k++)
 		say(e, "    const double *const force%d = s->force[at];\n%s", k,
 		    k + 1 < points ? format("    at = at ? at - 1 : %d;\n", points - 1) : "");
@@ -257,16 +260,16 @@ static void emit_multistep(const struct emitter *e)
 	emit_step_end(e);
 	if (functions_of_time(e))
 		say(e, "    %s\n", functions_call(e, "0", true, "f"));
-	say(e, "    $n_forces(%swhich, f, eta, rate, force);\n"
+	say(e, "    %s\n"
 	       "    for (i = 0; i < %d; i++) {\n"
 	       "        const double excess = force[i] - expected[i];\n"
 	       "        s->eta[i] = eta[i] + %s[0][i] * excess;\n"
 	       "        s->rate[i] = rate[i] + %s[1][i] * excess;\n"
-	       "    }\n", instance_of_rest(e), width, correct, correct);
+	       "    }\n", mode_forces_call(e, "f", "eta", "rate", "force"), width, correct, correct);
 	if (m->twice)
 		say(e, "    for (i = 0; i < %d; i++)\n"
 		       "        first[i] = force[i];\n"
-		       "    $n_forces(%swhich, f, s->eta, s->rate, force);\n", width, instance_of_rest(e));
+		       "    %s\n", width, mode_forces_call(e, "f", "s->eta", "s->rate", "force"));
 	emit_keep_point(e, "force", "f");
 	say(e, "}\n");
 }
@@ -418,15 +421,15 @@ void emit_normal_step(const struct emitter *e)
 void emit_normal_members(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
 	const char *where = m->points ? "ends of the last steps" : "nodes of the last step";
 	bool past = m->points || has_bank(e);
 	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
 	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
 	if (past)
 		say(e, "    double past[%d][2][%d];  /* what they were there */\n", m->kept, m->width);
-	say(e, "    double f[%d][%d];       /* functions of time there */\n"
-	       "    int which;            /* operator whose modes they are */\n", m->kept, functions);
+	if (functions_of_time(e))
+		say(e, "    double f[%d][%d];       /* functions of time there */\n", m->kept, functions_of_time(e));
+	say(e, "    int which;            /* operator whose modes they are */\n");
 	if (m->points)
 		say(e, "    int newest;           /* of those ends the last */\n");
 	say(e, "    int known;            /* how many there are */\n");

@@ -44,10 +44,10 @@ static void emit_term_force(const struct emitter *e)
 	const char *indent = m->settled ? "    " : "";
 	if (m->settled)
 		say(e, "            if (f)\n"
-		       "                $n_forces(%swhich, f, x, v, force);\n"
+		       "                %s\n"
 		       "            for (i = 0; f && i < %d; i++)\n"
 		       "                force[i] -= k ? still[i] : 0.0;\n"
-		       "            if (!f)\n", instance_of_rest(e), m->width);
+		       "            if (!f)\n", mode_forces_call(e, "f", "x", "v", "force"), m->width);
 	say(e, "%s            for (i = 0; i < %d; i++)\n"
 	       "%s                force[i] = k <= degree ? scale * power[k][i] : 0.0;\n", indent, m->width, indent);
 }
@@ -83,7 +83,7 @@ static void emit_inside(const struct emitter *e)
 		       "    for (i = 0; i < %d; i++)\n"
 		       "        x[i] = v[i] = 0.0;\n"
 		       "    if (f)\n"
-		       "        $n_forces(%swhich, f, x, v, still);\n", width, width, instance_of_rest(e));
+		       "        %s\n", width, width, mode_forces_call(e, "f", "x", "v", "still"));
 	say(e, "    for (part = 0; part < parts; part++) {\n"
 	       "        double scale = 1.0;\n"
 	       "        for (i = 0; i < %d; i++) {\n"
