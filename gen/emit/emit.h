@@ -70,20 +70,12 @@ bool is_named(const char *text, size_t length, const char *name); /* is a word o
 const char *behind_quoted(const char *text, bool line_start);
 const char *behind(const char *text, char last);                  /* the first `last` that is in no braces */
 
-/* ---- cprint.c: expressions as C ---- */
+/* ---- identifiers.c: what symbols are called in C ---- */
 
-/* What every symbol is called in C; `local` receives the same of every state. */
+/* What every symbol is called; `local` receives the same of every state. */
 struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local);
 const char *c_name(const struct identifiers *c, const struct symbol *s, int order); /* of it, of its first derivative */
 const char *written_local(const struct identifiers *c, const struct model *written, int state); /* of a written state */
-/* fit for a term of a sum; accelerations count as 0 */
-const char *c_expression(const struct identifiers *c, const struct node *node);
-bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
-void forget_used(struct identifiers *c);
-/* the symbols that it needs; *math: it needs <math.h> */
-void mark_used(struct identifiers *c, const struct node *node, bool *math);
-/* since they were forgotten: it, its first derivative */
-bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 
 /* ---- state.c: the state in emitted code ---- */
 

@@ -4,86 +4,10 @@
 
 #include <string.h>
 
-/* Params that the equations name */
-static void emit_used_constants(const struct emitter *e)
+/* What a row leaves, left side minus right side, without its highest derivatives */
+static const char *residual(int row)
 {
-	mpq_t value;
-	mpq_init(value);
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!is_used(e->c, s, 0) || s->kind != SYMBOL_PARAM)
-			continue;
-		param_value(s, value);
-		say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), finite_text(s->at, value));
-	}
-	mpq_clear(value);
-}
-
-static bool uses_time(const struct node *node);
-
-static bool let_uses_time(struct symbol *let)
-{
-	if (let->time == TIME_UNKNOWN)
-		let->time = uses_time(let->value) ? TIME_READ : TIME_NOT_READ;
-	return let->time == TIME_READ;
-}
-
-static bool uses_time(const struct node *node)
-{
-	bool let = node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET;
-	bool found = node->kind == NODE_TIME || (let && let_uses_time(node->symbol));
-	for (int i = 0; i < node->children && !found; i++)
-		found = uses_time(node->child[i]);
-	return found;
-}
-
-static int state_of_node(const struct model *written, const struct node *node)
-{
-	int coord = node->symbol->index + (node->component ? node->component - 1 : 0);
-	return node->primes ? written->system.velocity[coord] : coord;
-}
-
-/* Flags the written states that an expression reads. */
-static void mark_states(const struct model *written, const struct node *node, bool *reads)
-{
-	if (vanishes(node))
-		return;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes < node->symbol->highest)
-		reads[state_of_node(written, node)] = true;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && !node->symbol->marked) {
-		node->symbol->marked = true;
-		mark_states(written, node->symbol->value, reads);
-	}
-	for (int i = 0; i < node->children; i++)
-		mark_states(written, node->child[i], reads);
-}
-
-static const char *residual_text(const struct identifiers *c, const struct equation *equation)
-{
-	const char *left = c_expression(c, equation->left), *right = c_expression(c, equation->right);
-	if (vanishes(equation->left))
-		return format("-(%s)", right);
-	return vanishes(equation->right) || strcmp(right, "0.0") == 0 ? left : format("%s - (%s)", left, right);
-}
-
-/* Of models of first order alone the residuals may read no state, and nothing else does */
-static void emit_unread_states(const struct emitter *e, bool read)
-{
-	for (int i = 0; i < e->model->written->n; i++)
-		read = read || e->model->written->system.velocity[i] >= 0;
-	if (!read)
-		say(e, "    (void)y;\n");
-}
-
-/* ---- vectors and sketches: the collected equations ---- */
-
-/* Left side minus right side of a row, without its highest derivatives, of a form each */
-static void emit_residuals_of(const struct emitter *e, const struct form *const *form, int indent)
-{
-	int rows = e->model->written->n;
-	struct formulas *f = formulas_new(e, (struct reading){ .written = true }, rows, form);
-	for (int i = 0; i < rows; i++)
-		tape_set(formulas_tape(f), format("residual[%d]", i), formula(f, form[i]), 18, NULL);
-	emit_formulas(f, indent);
+	return format("residual[%d]", row);
 }
 
 static const struct node *side_of(const struct spec *spec, int equation, int side)
@@ -104,109 +28,122 @@ static bool is_scalar_text(const struct model *model)
 	return model->spec->elements == 0 && model->spec->equations == model->n;
 }
 
-static bool reads_states(const struct form *form)
+/* ---- scalar equations: their own text ---- */
+
+static const char *let_name(const void *context, const struct symbol *let)
 {
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD)
-			return true;
-	return false;
+	return c_name(((const struct emitter *)context)->c, let, 0);
 }
 
-static bool any_wave(const struct model *model, bool *math)
+static const struct symbol *symbol_of(const struct spec *spec, int number)
 {
-	bool any = false;
-	for (int i = 0; i < model->n * model->system.segments; i++) {
-		const struct form *form = model->snapshot[i / model->n].residual[i % model->n].form;
-		for (int k = 0; k < form->terms; k++) {
-			const struct basis *basis = &form->term[k].basis;
-			any = any || basis->kind == BASIS_WAVE;
-			*math = *math || (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave));
-		}
+	const struct symbol *s = spec->first;
+	while (s->number != number)
+		s = s->next;
+	return s;
+}
+
+static const char *operand(const void *context, const struct tape_node *n)
+{
+	const struct emitter *e = context;
+	const struct model *written = e->model->written;
+	switch (n->op) {
+	case TAPE_PARAM: return c_name(e->c, symbol_of(e->model->spec, n->index), 0);
+	case TAPE_INPUT: return input_name(e, n->index, n->part);
+	case TAPE_COORD: return written_local(e->c, written, n->part ? written->system.velocity[n->index] : n->index);
+	default:         return "t";
 	}
-	return any;
 }
 
-/* ---- the same with atoms: for all time ---- */
-
-struct rhs_reading { bool time, math; };
-
-static void read_waves(struct rhs_reading *reading, bool *seen, const struct form *form)
+static const char *number(const void *context, mpq_srcptr value)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		reading->time = reading->time || basis->kind == BASIS_WAVE;
-		reading->math = reading->math || (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave));
-		if (!basis->atom || seen[basis->atom->index])
+	return shortest(finite_number(context, value));
+}
+
+static struct tape *written_tape(const struct emitter *e)
+{
+	const struct spec *spec = e->model->spec;
+	struct tape *t = tape_new();
+	struct tape_expressions *x = tape_expressions_new(t, spec->symbols, let_name, e);
+	for (int i = 0; i < spec->equations; i++) {
+		tape_ref left = tape_expression(x, spec->equation[i].left), zero = tape_number(t, 0);
+		tape_ref right = tape_unary(t, TAPE_NEG, tape_expression(x, spec->equation[i].right));
+		tape_ref both = left == zero ? right : right == zero ? left : tape_binary(t, TAPE_ADD, left, right);
+		tape_set(t, residual(i), both, 10, NULL);
+	}
+	return t;
+}
+
+static void emit_read_params(const struct emitter *e, const struct tape *t)
+{
+	bool *read = ARRAY(bool, (size_t)e->model->spec->symbols + 1);
+	mpq_t value;
+	mpq_init(value);
+	tape_mark(t, TAPE_PARAM, 0, read);
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
+		if (!read[s->number])
 			continue;
-		seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			read_waves(reading, seen, basis->atom->operand[k]);
+		param_value(s, value);
+		say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), finite_text(s->at, value));
+	}
+	mpq_clear(value);
+}
+
+static void emit_read_states(const struct emitter *e, const struct tape *t)
+{
+	const struct model *written = e->model->written;
+	bool *read[2];
+	for (int order = 0; order < 2; order++) {
+		read[order] = ARRAY(bool, (size_t)written->n + 1);
+		tape_mark(t, TAPE_COORD, order, read[order]);
+	}
+	for (int i = 0; i < written->system.states; i++)
+		if (read[i >= written->n][written->system.coord[i]])
+			say(e, "    const double %s = y[%d];\n", written_local(e->c, written, i), i);
+}
+
+static void emit_read_inputs(const struct emitter *e, const struct tape *t)
+{
+	int inputs = e->model->spec->inputs;
+	for (int order = 0; order < 2; order++) {
+		bool *read = ARRAY(bool, (size_t)inputs + 1);
+		tape_mark(t, TAPE_INPUT, order, read);
+		for (int i = 0; i < inputs; i++)
+			if (read[i])
+				say(e, "    const double %s = u[%d];\n", input_name(e, i, order),
+				    i + order * given_inputs(e));
 	}
 }
 
-static const struct form **whole_forms(const struct model *model)
+static void emit_written_residuals(const struct emitter *e, const struct tape *t)
 {
-	const struct form **form = ARRAY(const struct form *, (size_t)model->n);
-	for (int i = 0; i < model->n; i++)
-		form[i] = model->whole->residual[i].form;
-	return form;
+	const struct tape_target to = { "double", number, operand, "pl_magnitude", e, 4, false };
+	emit_read_params(e, t);
+	emit_read_states(e, t);
+	emit_read_inputs(e, t);
+	tape_print(t, &to, e->to);
 }
 
-static struct rhs_reading reading_of_rhs(const struct model *model)
-{
-	struct rhs_reading reading = { false, false };
-	bool *seen = ARRAY(bool, (size_t)atoms_count(model->atoms));
-	const struct form **form = whole_forms(model);
-	for (int i = 0; i < model->n; i++)
-		read_waves(&reading, seen, form[i]);
-	reading.math = reading.math || reads_of(model, model->n, form).math;
-	return reading;
-}
+/* ---- vectors, sketches, and what is not linear in them: the collected equations ---- */
 
-static void declare_residuals(const struct emitter *e, int count)
-{
-	say(e, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", count);
-}
-
-/* What the function is handed and does not read */
-static void emit_unread(const struct emitter *e, bool time, bool inputs, bool states)
-{
-	if (!time)
-		say(e, "    (void)t;\n");
-	if (inputs)
-		say(e, "    (void)u;\n");
-	emit_unread_states(e, states);
-}
-
-static void emit_whole_residuals(const struct emitter *e)
+/* Of a segment of time; with atoms: for all time */
+static struct formulas *collected(const struct emitter *e, int segment, int indent)
 {
 	const struct model *model = e->model;
-	const struct form **form = whole_forms(model);
-	for (int i = 0; i < model->n; i++)
-		form[i] = without_highest(model, form[i]);
-	const struct reads reads = reads_of(model, model->n, form);
-	emit_nominal_params_read(e, &reads);
-	declare_residuals(e, model->n);
-	emit_residuals_of(e, form, 4);
-	emit_unread(e, reading_of_rhs(model).time, given_inputs(e) > 0, any_of(reads.state, model->system.states));
+	int rows = model->written->n;
+	const struct residual *from = model->whole ? model->whole->residual : model->snapshot[segment].residual;
+	const struct form **form = ARRAY(const struct form *, (size_t)rows);
+	for (int i = 0; i < rows; i++)
+		form[i] = without_highest(model, from[i].form);
+	struct formulas *f = formulas_new(e, (struct reading){ .written = true }, rows, form);
+	for (int i = 0; i < rows; i++)
+		tape_set(formulas_tape(f), residual(i), formula(f, form[i]), indent + 14, NULL);
+	return f;
 }
 
-bool rhs_needs_math(const struct emitter *e)
+static int segments_of(const struct emitter *e)
 {
-	const struct model *model = e->model->written;
-	bool math = false;
-	if (!is_scalar_text(model) && model->whole)
-		return reading_of_rhs(model).math;
-	if (!is_scalar_text(model)) {
-		any_wave(model, &math);
-		return math;
-	}
-	forget_used(e->c);
-	for (int i = 0; i < model->spec->equations; i++) {
-		mark_used(e->c, model->spec->equation[i].left, &math);
-		mark_used(e->c, model->spec->equation[i].right, &math);
-	}
-	return math;
+	return e->model->whole ? 1 : e->system->segments;
 }
 
 /* if (t < ...) {, } else if ..., } else { */
@@ -218,76 +155,69 @@ static void emit_segment(const struct emitter *e, int segment)
 		say(e, "    } else {\n");
 }
 
-static void emit_collected_residuals(const struct emitter *e)
+/* What is left of the equations, segment after segment; returns what reads t, u and y */
+struct read { bool time, inputs, states; };
+
+static void note(struct read *read, const struct tape *t)
 {
-	int rows = e->model->written->n, segments = e->system->segments;
-	bool math = false, several = segments > 1, read = false;
-	declare_residuals(e, rows);
-	for (int s = 0; s < segments; s++) {
-		const struct residual *residual = e->model->snapshot[s].residual;
+	read->time = read->time || tape_reads(t, TAPE_TIME, -1, -1);
+	read->inputs = read->inputs || tape_reads(t, TAPE_INPUT, -1, -1);
+	read->states = read->states || tape_reads(t, TAPE_COORD, -1, -1);
+}
+
+static struct read emit_collected_residuals(const struct emitter *e)
+{
+	bool several = segments_of(e) > 1;
+	struct read read = { .time = several };
+	for (int s = 0; s < segments_of(e); s++) {
+		struct formulas *f = collected(e, s, several ? 8 : 4);
+		note(&read, formulas_tape(f));
 		if (several)
 			emit_segment(e, s);
-		const struct form **form = ARRAY(const struct form *, (size_t)rows);
-		for (int i = 0; i < rows; i++) {
-			form[i] = without_highest(e->model, residual[i].form);
-			read = read || reads_states(form[i]);
-		}
-		emit_residuals_of(e, form, several ? 8 : 4);
+		struct reads reads = reads_of_formulas(f);
+		if (e->model->whole)
+			emit_nominal_params_read(e, &reads);
+		emit_formulas(f, several ? 8 : 4);
 	}
 	if (several)
 		say(e, "    }\n");
-	emit_unread(e, any_wave(e->model->written, &math) || several, given_inputs(e) > 0, read);
+	return read;
 }
 
-/* ---- scalar equations: their own text ---- */
-
-/* Returns whether there is any */
-static bool emit_rhs_inputs(const struct emitter *e)
+static struct read emit_residuals(const struct emitter *e)
 {
-	bool inputs = false;
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!is_used(e->c, s, 0) || s->kind != SYMBOL_INPUT)
-			continue;
-		say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 0), s->index);
-		if (is_used(e->c, s, 1))
-			say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 1), given_inputs(e) + s->index);
-		say(e, "    (void)%s;\n", c_name(e->c, s, 0));
-		inputs = true;
-	}
-	return inputs;
+	struct read read = { false, false, false };
+	say(e, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n",
+	    e->model->written->n);
+	if (!is_scalar_text(e->model->written))
+		return emit_collected_residuals(e);
+	struct tape *t = written_tape(e);
+	emit_written_residuals(e, t);
+	note(&read, t);
+	return read;
 }
 
-static void emit_rhs_locals(const struct emitter *e, const bool *reads)
+/* What the function is handed and does not read. Of models of first order alone the residuals may read no state, and
+ * nothing else does. */
+static void emit_unread(const struct emitter *e, struct read read)
 {
-	emit_used_constants(e);
-	for (int i = 0; i < e->model->written->system.states; i++)
-		if (reads[i])
-			say(e, "    const double %s = y[%d];\n", written_local(e->c, e->model->written, i), i);
-	if (!emit_rhs_inputs(e) && given_inputs(e))
-		say(e, "    (void)u;\n");
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && is_used(e->c, s, 0))
-			say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), c_expression(e->c, s->value));
+	for (int i = 0; i < e->model->written->n; i++)
+		read.states = read.states || e->model->written->system.velocity[i] >= 0;
+	say(e, "%s%s%s", read.time ? "" : "    (void)t;\n", read.inputs || !given_inputs(e) ? "" : "    (void)u;\n",
+	    read.states ? "" : "    (void)y;\n");
 }
 
-static void emit_written_residuals(const struct emitter *e)
+bool rhs_needs_math(const struct emitter *e)
 {
-	const struct spec *spec = e->model->spec;
-	int states = e->model->written->system.states;
-	bool math = false, *reads = ARRAY(bool, (size_t)states), time = false;
-	forget_used(e->c);
-	for (int i = 0; i < spec->equations; i++)
-		for (int side = 0; side < 2; side++) {
-			const struct node *node = side_of(spec, i, side);
-			mark_used(e->c, node, &math);
-			mark_states(e->model->written, node, reads);
-			time = time || uses_time(node);
-		}
-	emit_rhs_locals(e, reads);
-	declare_residuals(e, spec->equations);
-	for (int i = 0; i < spec->equations; i++)
-		say(e, "    residual[%d] = %s;\n", i, residual_text(e->c, &spec->equation[i]));
-	emit_unread(e, time, false, any_of(reads, states));
+	bool calls = false;
+	struct emitter written = *e;
+	written.model = e->model->written;
+	written.system = &written.model->system;
+	if (is_scalar_text(written.model))
+		return tape_cost(written_tape(&written)).calls > 0;
+	for (int s = 0; s < segments_of(&written); s++)
+		calls = calls || tape_cost(formulas_tape(collected(&written, s, 4))).calls > 0;
+	return calls;
 }
 
 /* ---- the highest derivatives ---- */
@@ -320,12 +250,7 @@ void emit_rhs(const struct emitter *stepped)
 	say(e, "\n/* The equations as written, for checking against any ODE solver. */\n"
 	       "void $n_rhs(double t, const double y[], %sdouble dydt[])\n"
 	       "{\n", given_inputs(e) ? "const double u[], " : "");
-	if (is_scalar_text(e->model->written))
-		emit_written_residuals(e);
-	else if (e->model->whole)
-		emit_whole_residuals(e);
-	else
-		emit_collected_residuals(e);
+	emit_unread(e, emit_residuals(e));
 	emit_derivatives(e);
 	say(e, "}\n");
 }

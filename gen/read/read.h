@@ -96,8 +96,6 @@ struct symbol {
 	int hold;                   /* of an input: degree of what goes through its samples; 0: held */
 	/* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
 	int highest;
-	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
-	bool marked;                /* of a let: its states are marked */
 	bool peak;                  /* of an output: peak(value) */
 	bool connected;             /* of a let: an input of a part, to which the scene gives its value */
 	/* of an input that is another one as it was some time ago, declared by u(t - d): that one, and t - d; else

@@ -146,24 +146,14 @@ static tape_ref extreme_ref(struct tape_forms *f, const struct atom *a)
 	return best;
 }
 
-/* y0 + slope*(x - x0) between each two points, the end ones extended */
 static tape_ref table_ref(struct tape_forms *f, const struct atom *a)
 {
-	struct tape *t = f->tape;
 	struct straight *piece;
-	tape_ref x = tape_form(f, a->operand[0]), value = TAPE_NONE;
-	mpq_t back;
-	mpq_init(back);
-	for (int p = pieces_of_atom(a, &piece) - 1; p >= 0; p--) {
-		mpq_neg(back, piece[p].x);
-		tape_ref beyond = tape_binary(t, TAPE_ADD, x, tape_constant(t, back));
-		tape_ref rise = tape_binary(t, TAPE_MUL, tape_constant(t, piece[p].slope), beyond);
-		tape_ref own = tape_binary(t, TAPE_ADD, tape_constant(t, piece[p].y), rise);
-		value = !piece[p].end ? own : tape_select(t, side(f, a->operand[0], CMP_LT,
-								  form_constant(piece[p].end)), own, value);
-	}
-	mpq_clear(back);
-	return value;
+	int pieces = pieces_of_atom(a, &piece);
+	tape_ref x = tape_form(f, a->operand[0]), *below = ARRAY(tape_ref, (size_t)pieces + 1);
+	for (int p = 0; p < pieces && piece[p].end; p++)
+		below[p] = side(f, a->operand[0], CMP_LT, form_constant(piece[p].end));
+	return tape_table(f->tape, x, pieces, piece, below);
 }
 
 /* Of numbers and the time at which conditions on time hold as they do */
@@ -284,16 +274,6 @@ static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
 
 /* ---- forms ---- */
 
-static tape_ref pi_ref(struct tape *t)
-{
-	mpq_t pi;
-	mpq_init(pi);
-	constant_pi(pi);
-	tape_ref ref = tape_constant(t, pi);
-	mpq_clear(pi);
-	return ref;
-}
-
 /* `before` times each factor of a product, from the left to the right */
 static tape_ref times_product(struct tape *t, tape_ref before, tape_ref product)
 {
@@ -313,7 +293,7 @@ tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
 	if (atom && atom->kind == ATOM_PRODUCT && f->uses[atom->index] <= 1 && !plus && !minus)
 		return product_ref(f, atom, tape_constant(t, term->factor));
 	tape_ref x = atom			? atom_ref(f, atom)
-		     : basis->kind == BASIS_PI	? pi_ref(t)
+		     : basis->kind == BASIS_PI	? tape_pi(t)
 						: f->reader.leaf(t, f->reader.context, basis);
 	if (plus || minus)
 		return plus ? x : tape_unary(t, TAPE_NEG, x);

@@ -93,6 +93,16 @@ tape_ref tape_number(struct tape *t, long value)
 	return ref;
 }
 
+tape_ref tape_pi(struct tape *t)
+{
+	mpq_t pi;
+	mpq_init(pi);
+	constant_pi(pi);
+	tape_ref ref = tape_constant(t, pi);
+	mpq_clear(pi);
+	return ref;
+}
+
 static bool is_choice(enum tape_op op)
 {
 	return op == TAPE_ABOVE || op == TAPE_HELD || op == TAPE_TRUE || op == TAPE_FALSE || op == TAPE_NOT ||
@@ -170,6 +180,22 @@ tape_ref tape_power(struct tape *t, tape_ref a, unsigned n)
 	}
 	tape_ref half = tape_power(t, a, n / 2), square = tape_binary(t, TAPE_MUL, half, half);
 	return n % 2 ? tape_binary(t, TAPE_MUL, square, a) : square;
+}
+
+tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straight *piece, const tape_ref *below)
+{
+	tape_ref value = TAPE_NONE;
+	mpq_t back;
+	mpq_init(back);
+	for (int p = pieces - 1; p >= 0; p--) {
+		mpq_neg(back, piece[p].x);
+		tape_ref beyond = tape_binary(t, TAPE_ADD, x, tape_constant(t, back));
+		tape_ref rise = tape_binary(t, TAPE_MUL, tape_constant(t, piece[p].slope), beyond);
+		tape_ref own = tape_binary(t, TAPE_ADD, tape_constant(t, piece[p].y), rise);
+		value = piece[p].end ? tape_select(t, below[p], own, value) : own;
+	}
+	mpq_clear(back);
+	return value;
 }
 
 bool tape_is_operand(const struct tape *t, tape_ref ref)
@@ -271,6 +297,15 @@ bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part)
 	}
 	discard(uses);
 	return reads;
+}
+
+void tape_mark(const struct tape *t, enum tape_op kind, int part, bool *flag)
+{
+	int *uses = tape_uses(t);
+	for (int i = 0; i < t->nodes; i++)
+		if (uses[i] && t->node[i].op == kind && t->node[i].part == part)
+			flag[t->node[i].index] = true;
+	discard(uses);
 }
 
 struct tape_cost tape_cost(const struct tape *t)

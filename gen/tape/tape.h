@@ -56,6 +56,7 @@ const struct tape_out *tape_out(const struct tape *t, int out);
 /* Each is the node that was made alike before, where there is one. */
 tape_ref tape_constant(struct tape *t, mpq_srcptr value);
 tape_ref tape_number(struct tape *t, long value);
+tape_ref tape_pi(struct tape *t);
 tape_ref tape_operand(struct tape *t, enum tape_op kind, int index, int part);
 tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a);
 tape_ref tape_call(struct tape *t, enum function function, tape_ref a);
@@ -65,6 +66,8 @@ tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b)
 /* (a + b) + (c + d): the shortest chain of dependent additions; of no terms 0 */
 tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term);
 tape_ref tape_power(struct tape *t, tape_ref a, unsigned n); /* a^n, n >= 1, with few multiplications */
+/* y + slope (x - x0) of the piece that x is on: below[p], is it below the end of piece p? */
+tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straight *piece, const tape_ref *below);
 void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is a constant or has one */
 void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note);
 void tape_set_local(struct tape *t, const char *name, tape_ref ref);
@@ -79,6 +82,8 @@ bool tape_is_cheap(const struct tape *t, tape_ref ref);
 int *tape_uses(const struct tape *t);
 /* Does what is set read such an operand? index, part: any where negative */
 bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part);
+/* flag[index] = true of each operand of this kind and part that is read */
+void tape_mark(const struct tape *t, enum tape_op kind, int part, bool *flag);
 struct tape_cost { int multiplications, divisions, additions, calls; };
 struct tape_cost tape_cost(const struct tape *t); /* of what is set, each node once; negations cost nothing */
 
@@ -105,6 +110,16 @@ tape_ref tape_term(struct tape_forms *f, const struct form_term *term);
 /* Is `condition` met? As an atom, or where its number is not 0 */
 tape_ref tape_condition(struct tape_forms *f, const struct form *condition);
 void tape_name_lets(struct tape_forms *f);      /* once all forms are in */
+
+/* ---- nodes.c: expressions as they are written ---- */
+
+/* Operands: TAPE_COORD and TAPE_INPUT by the place of a component, TAPE_PARAM by the symbol's number, TAPE_TIME. A
+ * highest derivative counts as 0. */
+struct tape_expressions;
+struct tape_expressions *tape_expressions_new(struct tape *t, int symbols,
+					      const char *(*let_name)(const void *context, const struct symbol *let),
+					      const void *context);
+tape_ref tape_expression(struct tape_expressions *x, const struct node *node);
 
 /* ---- print.c: a tape as C ---- */
 
