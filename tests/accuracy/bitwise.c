@@ -4,7 +4,7 @@
  * transfer matrix, the load columns of every segment of time and the input columns of schemes exact and pl (both words
  * of each), the closed-form solution, and the models that --reduce makes.
  *
- *     bitwise [-n RANDOM] [-r REDUCED] [-s SEED] [-q] [-v] exponentials.txt MODEL.spec ...
+ *     bitwise [-n RANDOM] [-r REDUCED] [-e EVERY] [-s SEED] [-q] [-v] exponentials.txt MODEL.spec ...
  *
  * Shared with the generator: its parser and the matrices M, C, K and loads that it reads from a spec.  From there on
  * the judge has its own algebra: the augmented matrix A of y' = A y is made here.  Each case runs in a process of its
@@ -1130,12 +1130,14 @@ static void run_reduction(void *seed)
 
 int main(int argc, char **argv)
 {
-    unsigned long random_count = 200, reduced_count = 100, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:r:s:qv")) != -1;) {
+    unsigned long random_count = 200, reduced_count = 100, every = 1, seed = 1;
+    for (int option; (option = getopt(argc, argv, "n:r:e:s:qv")) != -1;) {
         if (option == 'n')
             random_count = strtoul(optarg, NULL, 10);
         else if (option == 'r')
             reduced_count = strtoul(optarg, NULL, 10);
+        else if (option == 'e')
+            every = strtoul(optarg, NULL, 10);
         else if (option == 's')
             seed = strtoul(optarg, NULL, 10);
         else if (option == 'q')
@@ -1146,19 +1148,21 @@ int main(int argc, char **argv)
             return 2;
     }
     if (optind == argc) {
-        fputs("usage: bitwise [-n RANDOM] [-r REDUCED] [-s SEED] [-q] [-v] exponentials.txt MODEL.spec ...\n", stderr);
+        fputs("usage: bitwise [-n RANDOM] [-r REDUCED] [-e EVERY] [-s SEED] [-q] [-v] exponentials.txt "
+              "MODEL.spec ...\n", stderr);
         return 2;
     }
     memory_open();
     size_t matrices;
     struct matrix_case *matrix = read_matrices(argv[optind++], &matrices);
-    printf("1..%zu\n", matrices + (size_t)(argc - optind) + bitwise_spec_count + random_count + reduced_count);
+    printf("1..%zu\n", matrices + (size_t)(argc - optind) + (bitwise_spec_count + every - 1) / every + random_count +
+           reduced_count);
     for (size_t i = 0; i < matrices; i++)
         run(format("matrix %s, tau = %s", matrix[i].name, exact_text(matrix[i].tau)), run_matrix, &matrix[i]);
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), run_spec, read_text(argv[i]));
     static void (*const run_kind[])(void *) = { [PLAIN] = run_spec, [CRITICAL] = run_critical, [EXACT] = run_exact };
-    for (size_t i = 0; i < bitwise_spec_count; i++)
+    for (size_t i = 0; i < bitwise_spec_count; i += every)
         run(bitwise_specs[i].name, run_kind[bitwise_specs[i].kind], (void *)bitwise_specs[i].text);
     for (unsigned long i = 0; i < random_count; i++) {
         uint64_t one = seed + i;

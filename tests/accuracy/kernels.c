@@ -5,8 +5,9 @@
  * what multiplies the leftover, each combination rounded once.  A number carries the mark of zero if and only if it is
  * zero.
  *
- *     kernels [-n RANDOM] [-l LARGE] [-s SEED] [-w] [-v] MODEL.spec ...
+ *     kernels [-n RANDOM] [-l LARGE] [-e EVERY] [-s SEED] [-w] [-v] MODEL.spec ...
  *
+ * EVERY: of the specs that stand here, each so many-th.
  * Shared with the generator: its parser, the matrices M, C, K, loads and inputs that it reads from a spec, the C and K
  * of each operator, and which equations have a leftover.  From there on the judge has its own algebra and its own list
  * of what each scheme needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of
@@ -1045,12 +1046,14 @@ static void run(const char *name, const char *path, const char *text)
 
 int main(int argc, char **argv)
 {
-    unsigned long random_count = 80, large_count = 5, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:l:s:wv")) != -1;) {
+    unsigned long random_count = 80, large_count = 5, every = 1, seed = 1;
+    for (int option; (option = getopt(argc, argv, "n:l:e:s:wv")) != -1;) {
         if (option == 'n')
             random_count = strtoul(optarg, NULL, 10);
         else if (option == 'l')
             large_count = strtoul(optarg, NULL, 10);
+        else if (option == 'e')
+            every = strtoul(optarg, NULL, 10);
         else if (option == 's')
             seed = strtoul(optarg, NULL, 10);
         else if (option == 'w')
@@ -1061,10 +1064,10 @@ int main(int argc, char **argv)
             return 2;
     }
     memory_open();
-    printf("1..%lu\n", (unsigned long)(argc - optind) + SPECS + random_count + large_count);
+    printf("1..%lu\n", (unsigned long)(argc - optind) + (SPECS + every - 1) / every + random_count + large_count);
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), argv[i], read_text(argv[i]));
-    for (int i = 0; i < SPECS; i++)
+    for (unsigned long i = 0; i < SPECS; i += every)
         run(specs[i].name, "spec", specs[i].text);
     for (unsigned long i = 0; i < random_count; i++)
         run(format("random model %lu", seed + i), "spec", random_text(seed + i));
