@@ -18,7 +18,7 @@
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     blocks.c    the same of one independent block of a large model
  *     cut.c       a part of a step: schemes with a leftover, from crossing to crossing
- *     rate.c      the rate of a load's phase from another frequency
+ *     rate.c      the rate of a load's phase from another frequency; phases that go on where one changes
  *     root.c      rough roots: the length of a step by its error
  *     dense.c     linear equations: Newton's method of implicit schemes
  *
@@ -1131,6 +1131,35 @@ int pl_cutf_advance(const pl_cutf *m, const float *A, const float *acting, const
  * leave of w. */
 pl_rate pl_rate_of(pl_two w);
 pl_ratef pl_ratef_of(pl_twof w); /* 2^-86 */
+
+/* What the phase of a sine has gained over w t where its frequency w was changed: it went on from where it was. */
+typedef struct pl_lead {
+    pl_turn turn;
+    double angle; /* the same [rad], from -pi to pi */
+} pl_lead;
+
+typedef struct pl_leadf {
+    pl_turnf turn;
+    float angle;
+} pl_leadf;
+
+/* None: w has been the same since t = 0. */
+static inline void pl_lead_start(pl_lead *lead)
+{
+    lead->turn.hi = lead->turn.lo = 0;
+    lead->angle = 0.0;
+}
+
+static inline void pl_leadf_start(pl_leadf *lead)
+{
+    lead->turn = 0;
+    lead->angle = 0.0f;
+}
+
+/* w was `before` and is `after` [rad/s] from t [s] on: the turn gains (before - after) t, which is off by less than
+ * 2^-115 of it, or 2^-86, and 2^-129 turn, or 2^-65; so nothing adds up over many changes, however late. */
+void pl_lead_change(pl_lead *lead, double before, double after, double t);
+void pl_leadf_change(pl_leadf *lead, float before, float after, float t);
 
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 

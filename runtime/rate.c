@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* The rate of a load's phase from an angular frequency that is known on the target only. */
+/* The rate of a load's phase from an angular frequency that is known on the target only, and phases that go on where
+ * such a frequency changes. */
+#include "two.h"
 #include "words.h"
 
 enum { INVERSE = 4, WIDE = 6, RATE = sizeof ((pl_rate *)0)->word / sizeof(uint64_t) };
@@ -76,4 +78,22 @@ pl_rate pl_rate_of(pl_two w)
     }
     rate.exponent = product[top] == 0 ? 0 : 64 + 258 - e - 64 * (top - RATE + 1) + shift;
     return rate;
+}
+
+/* In the top 64 bits of a turn an angle has all digits that a number of radians can show. */
+#ifdef REAL_IS_FLOAT
+#define TOP(turn) (turn)
+#define RADIANS 0x1.921fb6p-62f
+#else
+#define TOP(turn) ((turn).hi)
+#define RADIANS 0x1.921fb54442d18p-62
+#endif
+
+void pl_lead_change(pl_lead *lead, real before, real after, real t)
+{
+    const pl_two less = two_sum(before, -after);
+    const int falls = less.hi > 0;
+    const pl_rate rate = pl_rate_of(falls ? less : two(-less.hi, -less.lo));
+    lead->turn = pl_turn_add(lead->turn, pl_turn_at(&rate, falls ? t : -t));
+    lead->angle = (real)(int64_t)TOP(lead->turn) * RADIANS;
 }

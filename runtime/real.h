@@ -24,6 +24,12 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 
 #define pl_rate pl_ratef
 #define pl_rate_of pl_ratef_of
+#define pl_turn pl_turnf
+#define pl_turn_at pl_turnf_at
+#define pl_turn_add pl_turnf_add
+#define pl_lead pl_leadf
+#define pl_lead_start pl_leadf_start
+#define pl_lead_change pl_leadf_change
 #define pl_series pl_seriesf
 #define pl_series_advance pl_seriesf_advance
 #define pl_two pl_twof

@@ -65,6 +65,8 @@ static struct form *not_a_load(struct collector *c, const struct node *node, str
 {
 	if (!keeps(c))
 		not_linear(c, node, "is not linear");
+	if (node->function == FN_SIN || node->function == FN_COS || node->function == FN_TAN)
+		x = with_lead(c, node, x);
 	return kept_call(c, node, node->function, 1, &x);
 }
 

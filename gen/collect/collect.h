@@ -96,6 +96,7 @@ struct collector {
 	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;
 	bool reading;               /* an output is being collected */
 	int inputs;
+	struct leads *leads;        /* of sines whose frequency such params change */
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;
 };
@@ -203,6 +204,21 @@ struct sample *sample_new(int precision, void (*leaf)(void *context, const struc
 long sample_work(const struct sample *sample);             /* terms that were taken so far */
 void sample_at(struct sample *sample, mpfr_srcptr t);       /* a new point: what was found at the last is forgotten */
 void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value); /* NaN where it is not defined */
+
+/* ---- lead.c: phases that go on where the frequency of a sine changes ---- */
+
+struct lead {
+	const struct form *rate;    /* d/dt of what t and tunable params are in the argument of a sine */
+	const struct symbol *symbol; /* what the phase has gained over it, 0 at first, as if it were a tunable param */
+};
+struct leads {
+	int params;                 /* of the spec, tunable; the leads are numbered behind them */
+	int count;
+	struct lead *lead;
+	const struct node *jumps;   /* the first whose phase jumps all the same; NULL: none */
+};
+/* x, the argument of a sine, and its lead; itself, where no tunable param makes its frequency alone */
+struct form *with_lead(struct collector *c, const struct node *node, struct form *x);
 
 /* ---- piecewise.c: functions and conditions that divide time ---- */
 

@@ -50,6 +50,7 @@ static void emit_rest_of_state(const struct emitter *e)
 	if (keeps_status(e))
 		say(e, "    s->status = 0;\n");
 	emit_load_set(e);
+	emit_held_set(e);
 	if (e->step->anchors)
 		say(e, "    s->since = 0;\n"
 		       "    $n_drop_anchor(s);\n");

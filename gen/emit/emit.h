@@ -99,7 +99,8 @@ void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
 int place_of_state(const struct emitter *e, int state);
-const char *param_text(int param);                                /* a tunable param in an instance s; */
+/* a tunable param, or a lead, in an instance s; */
+const char *param_text(const struct emitter *e, int param);
 const char *param_local(const struct emitter *e, int param);      /* its C name */
 int given_inputs(const struct emitter *e);                        /* samples of a step: without params that act so */
 const char *sample_now(const struct emitter *e, int input);       /* of the whole: what a step is given, or a param */
@@ -810,6 +811,7 @@ void emit_param_locals(const struct emitter *e, const bool *reads); /* of those 
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 void emit_held_types(const struct emitter *e);
 void emit_held_member(const struct emitter *e);
+void emit_held_set(const struct emitter *e);
 void emit_held_start(const struct emitter *e, const char *s);
 void emit_held_declarations(const struct emitter *e);
 void banner_held(const struct emitter *e);

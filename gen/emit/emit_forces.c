@@ -353,7 +353,7 @@ static struct reads reads_of_rest(const struct emitter *e)
 /* "s, " of a function that reads the instance's own params, else "" */
 static const char *instance_of_rest(const struct emitter *e)
 {
-	return any_of(reads_of_rest(e).param, e->model->spec->tunables) ? "s, " : "";
+	return any_of(reads_of_rest(e).param, held_values(e->model)) ? "s, " : "";
 }
 
 const char *mode_forces_call(const struct emitter *e, const char *f, const char *eta, const char *rate,

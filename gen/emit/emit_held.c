@@ -7,6 +7,11 @@ static const struct tuning *held(const struct emitter *e)
 	return e->model->held;
 }
 
+static int leads(const struct emitter *e)
+{
+	return e->model->held ? e->model->leads.count : 0;
+}
+
 void emit_held_types(const struct emitter *e)
 {
 	if (!held(e))
@@ -26,6 +31,16 @@ void emit_held_member(const struct emitter *e)
 {
 	if (held(e))
 		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+	if (leads(e))
+		say(e, "    pl_lead lead[%d];     /* what phases have gained where $n_use changed frequencies */\n",
+		    leads(e));
+}
+
+void emit_held_set(const struct emitter *e)
+{
+	if (leads(e))
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        pl_lead_start(&s->lead[i]);\n", leads(e));
 }
 
 void emit_held_start(const struct emitter *e, const char *s)
@@ -56,12 +71,13 @@ void emit_held_declarations(const struct emitter *e)
 		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
 	       "\n"
-	       "/* From now on with c. State and time stay%s. */\n"
+	       "/* From now on with c. State and time stay%s%s. */\n"
 	       "void   $n_use($n *s, const $n_coeffs *c);\n"
 	       "\n"
 	       "/* Of the spec's values: what $n_init starts with */\n"
 	       "extern const $n_coeffs $n_nominal;\n"
-	       "\n", starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
+	       "\n", leads(e) ? ", and phases of sines in t" : "",
+	    starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
 }
 
 void banner_held(const struct emitter *e)
@@ -108,6 +124,52 @@ static void emit_plain_retune(const struct emitter *e)
 	       "}\n");
 }
 
+/* Angular frequencies of the sines that have a lead */
+static void emit_frequencies(const struct emitter *e)
+{
+	const struct form **rate = ARRAY(const struct form *, (size_t)leads(e));
+	for (int k = 0; k < leads(e); k++)
+		rate[k] = e->model->leads.lead[k].rate;
+	const struct reads reads = reads_of(e->model, leads(e), rate);
+	say(e, "\n/* Of sines, as params have them [rad/s] */\n"
+	       "static void $n_frequencies(const $n *s, double slope[%d])\n"
+	       "{\n", leads(e));
+	emit_param_locals(e, reads.param);
+	for (int i = 0; i < e->system->inputs; i++)
+		if (reads.input[i])
+			say(e, "    const double %s = %s;\n", input_name(e, i, 0), sample_kept(e, i));
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, leads(e), rate);
+	for (int k = 0; k < leads(e); k++)
+		tape_set(formulas_tape(f), format("slope[%d]", k), formula(f, rate[k]), 15, NULL);
+	emit_formulas(f, 4);
+	say(e, "}\n");
+}
+
+static void emit_use(const struct emitter *e)
+{
+	if (leads(e))
+		emit_frequencies(e);
+	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
+	       "{\n");
+	if (leads(e))
+		say(e, "    const double t = $n_time(s);\n"
+		       "    double before[%d], after[%d];\n"
+		       "    int i;\n"
+		       "    $n_frequencies(s, before);\n"
+		       "    s->coeffs = *c;\n"
+		       "    $n_frequencies(s, after);\n"
+		       "    for (i = 0; i < %d; i++)\n"
+		       "        pl_lead_change(&s->lead[i], before[i], after[i], t);\n", leads(e), leads(e), leads(e));
+	else
+		say(e, "    s->coeffs = *c;\n");
+	if (e->step->normal)                    /* s->y is the state that was set */
+		say(e, "    if (s->k) {\n"
+		       "        $n_of_modes(s->which, s->eta, s->y);\n"
+		       "        $n_of_modes(s->which, s->rate, s->y + %d);\n"
+		       "    }\n", e->step->normal->modes);
+	say(e, "%s}\n", starts_anew(e) ? spell(e, "    $n_place(s);\n") : "");
+}
+
 void emit_held_retune(const struct emitter *e)
 {
 	if (!held(e))
@@ -116,10 +178,7 @@ void emit_held_retune(const struct emitter *e)
 		emit_retuned(e);
 	else
 		emit_plain_retune(e);
-	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
-	       "{\n"
-	       "    s->coeffs = *c;\n"
-	       "%s}\n", starts_anew(e) ? spell(e, "    $n_place(s);\n") : "");
+	emit_use(e);
 }
 
 void emit_held_wrapper(const struct emitter *e)

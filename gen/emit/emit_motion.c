@@ -214,7 +214,7 @@ static struct place_of_known known_places(const struct emitter *e, const struct 
 	for (int i = 0; i < e->system->inputs; i++)
 		p.count += r->input[e->system->inputs + i];
 	p.param = p.count;
-	for (int k = 0; k < e->model->spec->tunables; k++)
+	for (int k = 0; k < held_values(e->model); k++)
 		p.count += r->param[k];
 	return p;
 }
@@ -318,9 +318,9 @@ static void emit_known_values(const struct emitter *e, const struct reads *r)
 	for (int i = 0; i < inputs; i++)
 		if (r->input[inputs + i])
 			say(e, "    node[%d] = slope[%d];\n", p.slope++, i);
-	for (int k = 0; k < e->model->spec->tunables; k++)
+	for (int k = 0; k < held_values(e->model); k++)
 		if (r->param[k])
-			say(e, "    node[%d] = %s;\n", p.param++, param_text(k));
+			say(e, "    node[%d] = %s;\n", p.param++, param_text(e, k));
 }
 
 const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node)
@@ -377,7 +377,7 @@ static void emit_motion_locals(const struct emitter *e, const struct reads *r, c
 		if (r->input[i])
 			(*(slope ? &p.slope : &p.value))++;
 	}
-	for (int k = 0; k < e->model->spec->tunables; k++)
+	for (int k = 0; k < held_values(e->model); k++)
 		if (r->param[k]) {
 			if (read->param[k])
 				say(e, "    const double %s = node[%d];\n", param_local(e, k), p.param);
@@ -388,7 +388,7 @@ static void emit_motion_locals(const struct emitter *e, const struct reads *r, c
 static bool any_known(const struct emitter *e, const struct reads *read)
 {
 	return read->time || any_of(read->load, e->system->loads) || any_of(read->input, 2 * e->system->inputs) ||
-	       any_of(read->param, e->model->spec->tunables);
+	       any_of(read->param, held_values(e->model));
 }
 
 const char *interval_parameter(const struct emitter *e)

@@ -45,9 +45,9 @@ void emit_tuning_wrapper(const struct emitter *e)
 
 void emit_param_locals(const struct emitter *e, const bool *reads)
 {
-	for (int k = 0; k < e->model->spec->tunables; k++)
+	for (int k = 0; k < held_values(e->model); k++)
 		if (reads[k])
-			say(e, "    const double %s = %s;\n", param_local(e, k), param_text(k));
+			say(e, "    const double %s = %s;\n", param_local(e, k), param_text(e, k));
 }
 
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads)
@@ -65,6 +65,9 @@ void emit_nominal_params_read(const struct emitter *e, const struct reads *reads
 		if (read[k])
 			say(e, "    const double %s = %s;\n", param_local(e, k),
 			    finite_text(t->param[k].at, t->nominal[k]));
+	for (int k = t->params; k < held_values(e->model); k++)
+		if (reads->param[k])
+			say(e, "    const double %s = 0.0;\n", param_local(e, k));
 }
 
 /* ---- the C ---- */

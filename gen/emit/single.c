@@ -11,7 +11,9 @@
 static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "double", "", false }, { "pl_turn", "pl_turn", false }, { "pl_turn_add", "pl_turn", false },
 	{ "pl_turn_times", "pl_turn", false }, { "pl_turn_at", "pl_turn", false }, { "pl_rate", "pl_rate", false },
-	{ "pl_rate_of", "pl_rate", false }, { "pl_cossin", "pl_cossin", false }, { "pl_growth", "pl_growth", false },
+	{ "pl_rate_of", "pl_rate", false }, { "pl_lead", "pl_lead", false }, { "pl_lead_start", "pl_lead", false },
+	{ "pl_lead_change", "pl_lead", false },
+	{ "pl_cossin", "pl_cossin", false }, { "pl_growth", "pl_growth", false },
 	{ "pl_growth_add", "pl_growth", false }, { "pl_growth_times", "pl_growth", false },
 	{ "pl_growth_at", "pl_growth", false }, { "pl_growth_value", "pl_growth", false },
 	{ "pl_series", "pl_series", false }, { "pl_series_advance", "pl_series", false },

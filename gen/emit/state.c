@@ -93,14 +93,16 @@ int most_taps_before(const struct emitter *e)
 	return most;
 }
 
-const char *param_text(int param)
+const char *param_text(const struct emitter *e, int param)
 {
-	return format("s->coeffs.params[%d]", param);
+	const int lead = param - e->model->spec->tunables;
+	return lead >= 0 ? format("s->lead[%d].angle", lead) : format("s->coeffs.params[%d]", param);
 }
 
 const char *param_local(const struct emitter *e, int param)
 {
-	return c_name(e->c, e->model->spec->tunable[param].symbol, 0);
+	const struct symbol *symbol = held_symbol(e->model, param);
+	return param < e->model->spec->tunables ? c_name(e->c, symbol, 0) : symbol->name;
 }
 
 int given_inputs(const struct emitter *e)
@@ -114,13 +116,13 @@ int given_inputs(const struct emitter *e)
 const char *sample_now(const struct emitter *e, int input)
 {
 	const int param = param_of_input(e->model->spec, input);
-	return param < 0 ? format("u[%d]", input) : param_text(param);
+	return param < 0 ? format("u[%d]", input) : param_text(e, param);
 }
 
 const char *sample_kept(const struct emitter *e, int input)
 {
 	const int param = param_of_input(e->model->spec, input);
-	return param < 0 ? format("s->u[%d]", input) : param_text(param);
+	return param < 0 ? format("s->u[%d]", input) : param_text(e, param);
 }
 
 const char *input_name(const struct emitter *e, int input, int order)

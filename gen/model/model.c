@@ -498,6 +498,8 @@ static void begin_model(struct building *b)
 		b->collector.irrationals = model->written->irrationals;
 	b->collector.frame = &model->frame;
 	model->atoms = b->collector.atoms = atoms_new();
+	model->leads.params = b->spec->tunables;
+	b->collector.leads = &model->leads;
 	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
 	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
 	model->name = request->prefix ? request->prefix : b->spec->name;

@@ -235,6 +235,7 @@ struct model {
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
 	bool keeps_params;
+	struct leads leads;         /* what the instance has behind them */
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
 	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
 	const struct retuned *retuned; /* how these follow from them; NULL: no param is such */
@@ -530,10 +531,12 @@ void find_delays(struct building *b);                       /* model->delays; af
 
 /* ---- reads.c: what forms read ---- */
 
+int held_values(const struct model *model);     /* that an instance has: tunable params, then leads */
+const struct symbol *held_symbol(const struct model *model, int held);
 struct reads {                    /* what forms read */
 	bool *state, *input, *load; /* inputs, then their slopes */
 	bool *highest;              /* per coordinate: its highest derivative */
-	bool *param;                /* of the spec's tunables, where the instance has their values */
+	bool *param;                /* of held_values, where the instance has the spec's params */
 	bool time, math;            /* t itself; <math.h> */
 };
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */

@@ -10,6 +10,17 @@ bool calls_libm(const struct atom *a)
 	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
 }
 
+int held_values(const struct model *model)
+{
+	return model->spec->tunables + model->leads.count;
+}
+
+const struct symbol *held_symbol(const struct model *model, int held)
+{
+	const int lead = held - model->spec->tunables;
+	return lead < 0 ? model->spec->tunable[held].symbol : model->leads.lead[lead].symbol;
+}
+
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -50,7 +61,7 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 				 ARRAY(bool, 2 * (size_t)model->system.inputs),
 				 ARRAY(bool, (size_t)model->system.loads),
 				 ARRAY(bool, (size_t)model->n),
-				 ARRAY(bool, (size_t)model->spec->tunables + 1),
+				 ARRAY(bool, (size_t)held_values(model) + 1),
 				 false,
 				 false };
 	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);

@@ -155,11 +155,18 @@ static const char *add_term(struct spelling *s, const char *text, const struct f
 		      factor, *factor && *what ? "*" : "", what);
 }
 
+/* It is 0 but where a frequency was changed: nobody wrote it. */
+static bool is_lead(const struct model *model, const struct basis *basis)
+{
+	return basis->atom && basis->atom->kind == ATOM_PARAM && basis->atom->param->tunable > model->spec->tunables;
+}
+
 static const char *spell_form(struct spelling *s, const struct form *form)
 {
 	const char *text = "";
 	for (int i = 0; i < form->terms; i++)
-		text = add_term(s, text, &form->term[i], false);
+		if (!is_lead(s->model, &form->term[i].basis))
+			text = add_term(s, text, &form->term[i], false);
 	return *text ? text : "0";
 }
 

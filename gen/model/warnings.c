@@ -478,6 +478,15 @@ static void check_guards(struct building *b)
 			}
 }
 
+/* Other phases go on. */
+static void check_phases(const struct model *model)
+{
+	const struct node *sine = model->leads.jumps;
+	if (sine)
+		say_note(sine->start, "the phase of '%s' jumps where tunable params change while the model runs: of t "
+			 "times such params it goes on", text_between(sine->start, sine->end));
+}
+
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
@@ -491,6 +500,7 @@ void warn(struct building *b)
 				 : "",
 			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text,
 			 passed_over(has_contacts(model) ? NULL : b->request->passed_over));
+	check_phases(model);
 	check_need(b, left);
 	check_truncation(b);
 	check_smoothness(b);

@@ -353,7 +353,7 @@ static const char *term_text(const struct step *step, const struct sequence_term
 	case TERM_LOAD:     return load_column_text(system, t->a);
 	case TERM_INPUT:    return system->input[t->a].name;
 	case TERM_SLOPE:    return format("%s'", system->input[t->a].name);
-	case TERM_PARAM:    return step->model->spec->tunable[t->a].symbol->name;
+	case TERM_PARAM:    return held_symbol(step->model, t->a)->name;
 	case TERM_SEQUENCE: return sequence_text(step, t->a);
 	default:            return format("%s %s", sequence_text(step, t->a), sequence_text(step, t->b));
 	}

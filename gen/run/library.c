@@ -17,6 +17,8 @@ const char library_types[] =
 	"typedef int64_t pl_growthf;\n"
 	"typedef struct pl_series { int size; int states; int degree; int halvings; const double *A; } pl_series;\n"
 	"typedef struct pl_seriesf { int size, states, degree, halvings; const float *A; } pl_seriesf;\n"
+	"typedef struct pl_lead { pl_turn turn; double angle; } pl_lead;\n"
+	"typedef struct pl_leadf { pl_turnf turn; float angle; } pl_leadf;\n"
 	"typedef struct pl_two { double hi, lo; } pl_two;\n"
 	"typedef struct pl_twof { float hi, lo; } pl_twof;\n"
 	"typedef struct pl_ladder { const int *first, *spacing; const double *pieces, *reach; const int *gates; }\n"
@@ -64,6 +66,8 @@ CALL(turn_add, STRUCT(pl_turn), pl_turn_add(S(0, pl_turn), S(1, pl_turn)))
 CALL(turn_times, STRUCT(pl_turn), pl_turn_times(S(0, pl_turn), U(1)))
 CALL(turn_at, STRUCT(pl_turn), pl_turn_at(P(0), R(1)))
 CALL(cossin, NOTHING, pl_cossin(S(0, pl_turn), P(1)))
+CALL(lead_start, NOTHING, pl_lead_start(P(0)))
+CALL(leadf_start, NOTHING, pl_leadf_start(P(0)))
 CALL(turnf_add, WHOLE, (int64_t)pl_turnf_add(U(0), U(1)))
 CALL(turnf_times, WHOLE, (int64_t)pl_turnf_times(U(0), U(1)))
 CALL(turnf_at, WHOLE, (int64_t)pl_turnf_at(P(0), F(1)))
@@ -158,7 +162,7 @@ SINGLE(atan)
 
 static const struct library_function functions[] = {
 	RUNTIME_STRUCT(turn_add, "sss", "pl_turn"), RUNTIME_STRUCT(turn_times, "ssi", "pl_turn"),
-	RUNTIME_STRUCT(turn_at, "spd", "pl_turn"),
+	RUNTIME_STRUCT(turn_at, "spd", "pl_turn"), RUNTIME(lead_start, "vp"), RUNTIME(leadf_start, "vp"),
 	RUNTIME_OF(cossin, "vsp", PL_COSSIN_MUL, PL_COSSIN_ADD, TAKES_NO_MORE), RUNTIME(turnf_add, "uuu"),
 	RUNTIME(turnf_times, "uuu"), RUNTIME(turnf_at, "upd"),
 	RUNTIME_OF(cossinf, "vup", PL_COSSINF_MUL, PL_COSSINF_ADD, TAKES_NO_MORE),

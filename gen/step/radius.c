@@ -30,6 +30,15 @@ static double column_at_start(const struct linear *system, int column)
 	return turns ? column ? sin(phase) : cos(phase) : 1;
 }
 
+static void set_param(const struct model *model, int held, mpfr_ptr value)
+{
+	mpq_t exact;
+	mpq_init(exact);
+	param_value(held_symbol(model, held), exact);
+	mpfr_set_q(value, exact, MPFR_RNDN);
+	mpq_clear(exact);
+}
+
 /* At t = 0; conditions on time as they are just after it */
 static void operand_at_start(const void *context, const struct tape_node *n, mpfr_ptr value)
 {
@@ -39,7 +48,7 @@ static void operand_at_start(const void *context, const struct tape_node *n, mpf
 	switch (n->op) {
 	case TAPE_STATE: mpfr_set_q(value, model->initial[n->index], MPFR_RNDN); break;
 	case TAPE_LOAD:  mpfr_set_d(value, column_at_start(v->system, n->index), MPFR_RNDN); break;
-	case TAPE_PARAM: mpfr_set_q(value, model->held->nominal[n->index], MPFR_RNDN); break;
+	case TAPE_PARAM: set_param(model, n->index, value); break;
 	case TAPE_TIME:  mpfr_set_d(value, n->part ? 1e-9 * mpq_get_d(model->h) : 0, MPFR_RNDN); break;
 	case TAPE_TABLE: mpfr_set_d(value, v->x->changing[place], MPFR_RNDN); break;
 	default:         mpfr_set_zero(value, 1);

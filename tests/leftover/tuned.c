@@ -47,7 +47,7 @@ static double largest_difference(const pl_model *a, void *s, const pl_model *b, 
 static void both_ways(const pl_model *a, const pl_model *b, const double *values, double tolerance)
 {
     void *s = calloc(1, a->size), *r = calloc(1, b->size);
-    double worst, y[STATES];
+    double worst, y[STATES], before[STATES], moved = 0;
     a->init(s);
     b->init(r);
     ok(a->retune(s, values, a->h) == 0, "%s takes other values", a->name);
@@ -57,8 +57,12 @@ static void both_ways(const pl_model *a, const pl_model *b, const double *values
     a->init(s);
     for (int k = 0; k < STEPS; k++)
         a->step(s, &(double){sample(k)});
+    a->get(s, before);
     a->retune(s, values, a->h);
     a->get(s, y);
+    for (int i = 0; i < a->states; i++)
+        moved = worse(moved, fabs(y[i] - before[i]) / fmax(fabs(before[i]), 1e-3));
+    ok(moved <= 1e-13, "%s: its state stays as it is (largest difference %.2g)", a->name, moved);
     b->set(r, a->time(s), y);
     worst = largest_difference(a, s, b, r, STEPS);
     ok(worst <= tolerance, "%s: on its way too (largest difference %.2g)", a->name, worst);

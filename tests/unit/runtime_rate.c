@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/rate.c against w / (2 pi) of 400 bits. */
+/* runtime/rate.c against w / (2 pi), and sums of (before - after) t / (2 pi), of 400 bits. */
 #include "runtime.h"
 
 #ifdef REAL_IS_FLOAT
@@ -99,6 +99,79 @@ static void none(void **state)
         assert_int_equal(r.word[i], 0);
 }
 
+/* part <- the turn of a lead, from 0 to 1 */
+static void part_of_turn(const pl_lead *lead, mpfr_t part)
+{
+#ifdef REAL_IS_FLOAT
+    mpfr_set_ui_2exp(part, lead->turn, -64, MPFR_RNDN);
+#else
+    mpfr_set_ui_2exp(part, lead->turn.hi, -64, MPFR_RNDN);
+    mpfr_set_ui_2exp(found, lead->turn.lo, -128, MPFR_RNDN);
+    mpfr_add(part, part, found, MPFR_RNDN);
+#endif
+}
+
+/* a to the nearest of a + whole turns, from -1/2 to 1/2 */
+static double nearest(mpfr_t a)
+{
+    mpfr_rint_round(found, a, MPFR_RNDN);
+    mpfr_sub(found, a, found, MPFR_RNDN);
+    return mpfr_get_d(found, MPFR_RNDN);
+}
+
+/* Frequencies and times of either sign, alike and far apart: the turn is off by what each product may be off by, and
+ * nothing else adds up. */
+static void leads(void **state)
+{
+    enum { MANY = 2000 };
+    pl_lead lead;
+    real w = 3;
+    double worst = 0, bound = 0, angle = 0;
+    mpfr_t sum, product, part;
+    (void)state;
+    mpfr_inits2(BITS, sum, product, part, (mpfr_ptr)0);
+    mpfr_set_zero(sum, 1);
+    pl_lead_start(&lead);
+    for (int k = 0; k < MANY; k++) {
+        const real next = (real)((uniform() - 0.3) * ldexp(1, (int)(uniform() * 30) - 10));
+        const real t = (real)((uniform() - 0.1) * ldexp(1, (int)(uniform() * 30)));
+        pl_lead_change(&lead, w, next, t);
+        mpfr_set_d(product, (double)w, MPFR_RNDN);
+        mpfr_sub_d(product, product, (double)next, MPFR_RNDN);
+        mpfr_mul_d(product, product, (double)t, MPFR_RNDN);
+        mpfr_div(product, product, turn, MPFR_RNDN);
+        mpfr_add(sum, sum, product, MPFR_RNDN);
+        bound += fabs(mpfr_get_d(product, MPFR_RNDN)) * ldexp(1, BOUND) + ldexp(1, -1 - 64 * (WORDS - 1));
+        part_of_turn(&lead, part);
+        angle = fmax(angle, fabs((double)lead.angle - 6.283185307179586 * nearest(part)));
+        mpfr_sub(part, part, sum, MPFR_RNDN);
+        const double off = fabs(nearest(part));
+        if (off > bound)
+            fail_msg("change %d: off by %g turns, bound %g", k, off, bound);
+        worst = fmax(worst, off / bound);
+        w = next;
+    }
+    if (angle > 4 * (double)REAL_EPSILON)
+        fail_msg("the angle is off by %g", angle);
+    print_message("# %d changes: off by %.2g of the bound, %g turns, at most; angles by %g\n", MANY, worst, bound,
+                  angle);
+    mpfr_clears(sum, product, part, (mpfr_ptr)0);
+}
+
+/* One that does not change leaves the lead as it is, and changes back take it away, to the last bit. */
+static void leads_back(void **state)
+{
+    pl_lead lead;
+    (void)state;
+    pl_lead_start(&lead);
+    pl_lead_change(&lead, 7, 7, 1000);
+    assert_true(lead.angle == 0);
+    pl_lead_change(&lead, 7, 11, 1000);
+    assert_true(lead.angle != 0);
+    pl_lead_change(&lead, 11, 7, 1000);
+    assert_true(lead.angle == 0);
+}
+
 static void start(void)
 {
     mpfr_inits2(BITS, turn, expected, found, (mpfr_ptr)0);
@@ -114,4 +187,6 @@ static void end(void)
 ROOM_WITH(rate, start, end,
     cmocka_unit_test(any_frequency),
     cmocka_unit_test(one_word),
-    cmocka_unit_test(none))
+    cmocka_unit_test(none),
+    cmocka_unit_test(leads),
+    cmocka_unit_test(leads_back))

@@ -1,0 +1,48 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# phase.sh PLGEN SOURCE REAL: frequencies that change while a model runs, in every scheme that takes tunable params;
+# phase.c says what is compared.
+plgen=$(realpath "$1")
+source=$(realpath "$2")
+real=$3
+. "$source/tests/tap.sh"
+runtime_archive "$source/runtime"
+float=''
+[ "$real" = double ] || float=-DREAL_FLOAT
+
+# drive MODEL TOLERANCE SCHEME: of double; float has its own digits
+drive() {
+	tolerance=$2
+	[ "$real" = double ] || tolerance=$(echo "$2" | awk '{ print $1 < 2e-5 ? "2e-5f" : $1 "f" }')
+	# shellcheck disable=SC2086
+	"$plgen" --real "$real" ${3:+--scheme "$3"} -o phase_pl.c "$source/tests/tunable/phase/$1.spec" >log 2>&1 &&
+		${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize-recover $float \
+			-DTOLERANCE="$tolerance" -I. -I"$source/runtime" -I"$source/tests/emitted" -o phase \
+			"$source/tests/tunable/phase/phase.c" phase_pl.c "$source/tests/emitted/tap.c" "$archive" -lm \
+			>>log 2>&1 &&
+		./phase >>log 2>&1
+	status=$?
+	grep '^not ok' log | sed 's/^/# /'
+	result $status "$real, $1 ${3:-exact}"
+}
+
+drive linear 1e-12 ''
+drive regions 1e-12 ''
+drive series 2e-8 taylor
+drive series 2e-8 radau
+drive series 1e-6 etdrk4
+drive series 1e-8 etdam6
+drive series 1e-10 etdcol
+if [ "$real" = double ]; then
+	drive series 1e-12 'taylor 12'
+	drive series 1e-12 'taylor 12 over 3'
+	drive series 2e-8 auto
+	drive series 5e-2 etd1
+	drive series 1e-3 etdrk2
+	drive series 1e-6 nc2
+	drive series 1e-6 nc3
+	drive series 1e-6 dq4
+	drive series 1e-6 bm3
+	drive series 1e-6 etdam4
+fi
+tap_end
