@@ -79,7 +79,8 @@ void emit_batch_declarations(const struct emitter *e)
 	say(e, "void   $n_batch_init($n_instances *b);%31s/* t = 0; of each the spec's initial values%s */\n", "",
 	    b.factors ? " and coefficients" : "");
 	say(e, "void   $n_batch_set($n_instances *b, size_t j, const double y[$N_STATES]);  /* of instance j, now */\n"
-	       "void   $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES]);\n");
+	       "void   $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES]);\n"
+	       "int    $n_batch_status(const $n_instances *b, size_t j);%24s/* of instance j, as $n_status */\n", "");
 	if (b.factors)
 		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
@@ -405,6 +406,13 @@ static void emit_batch_access(const struct batch *b)
 	       "    size_t i;\n");
 	say_rows(e, false);
 	say(e, "    $n_get(&one, y);\n"
+	       "}\n"
+	       "\nint $n_batch_status(const $n_instances *b, size_t j)\n"
+	       "{\n"
+	       "    $n one = b->shared;\n"
+	       "    size_t i;\n");
+	say_rows(e, false);
+	say(e, "    return $n_status(&one);\n"
 	       "}\n");
 }
 

@@ -2,7 +2,8 @@
 /* NAME_batch against NAME_step of each instance alone: states, outputs and peaks, with counts of instances that fill no
  * group of lanes, and steps in several calls. -DTUNED: with coefficients of its own in each instance. The sums are
  * the same, so are the bits; where products are contracted, 2 units in the last place of the largest value a step.
- * With every other count no outputs are wanted: then NAME_batch looks for extremes inside steps another way. */
+ * With every other count no outputs are wanted: then NAME_batch looks for extremes inside steps another way. And
+ * instances that are not finite, which their status says, beside others. */
 #include "m.h"
 
 #include <math.h>
@@ -146,11 +147,49 @@ static void judge(const m_instances *b)
         compare("the time", 0, (double)m_time(&b->shared), (double)m_time(&alone[0]), 1e-300);
 }
 
+/* What is not a number in one instance, or infinite in another, is told of these two, and no other has it. */
+static int told(size_t count, int outputs)
+{
+    m_instances b = {0};
+    size_t j;
+    int wrong = 0;
+    b.count = count;
+    b.y = y;
+    b.peak = peak;
+#ifdef TUNED
+    b.factors = factors;
+#endif
+    start(&b);
+    for (j = 1; j < count; j += 4) {
+        real now[M_STATES];
+        m_batch_get(&b, j, now);
+        now[j % M_STATES] = j % 8 == 1 ? (real)NAN : (real)HUGE_VAL;
+        m_batch_set(&b, j, now);
+        wrong += m_batch_status(&b, j) != PL_NOT_FINITE;
+    }
+    step_together(&b, outputs);
+    step_alone(count, 0);
+    for (j = 0; j < count; j++) {
+        const int status = m_batch_status(&b, j), expected = j % 4 == 1 ? PL_NOT_FINITE : 0;
+        real together[M_STATES], single[M_STATES];
+        int i;
+        wrong += status != expected;
+        if (status != expected)
+            printf("# status of instance %zu of %zu: %d, expected %d\n", j, count, status, expected);
+        m_batch_get(&b, j, together);
+        m_get(&alone[j], single);
+        for (i = 0; i < M_STATES && expected == 0; i++)
+            compare("a state beside what is not finite", j, (double)together[i], (double)single[i], widest[j][i]);
+    }
+    return wrong;
+}
+
 int main(int argc, char **argv)
 {
     static const size_t counts[] = {1, 2, 3, 7, 16, 33, MOST};
     double bound = argc > 1 ? atof(argv[1]) : 0;
     size_t i;
+    int wrong;
     for (i = 0; i < sizeof u / sizeof *u; i++)
         u[i] = (real)draw();
     for (i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -166,6 +205,7 @@ int main(int argc, char **argv)
         step_alone(b.count, i % 2 == 0);
         judge(&b);
     }
-    printf("# %.3g units in the last place, at most %g\n", worst, bound);
-    return !(worst <= bound);
+    wrong = told(7, 1) + told(33, 0);
+    printf("# %.3g units in the last place, at most %g; %d statuses wrong\n", worst, bound, wrong);
+    return !(worst <= bound && wrong == 0);
 }
