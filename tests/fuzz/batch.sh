@@ -10,7 +10,8 @@
 #     batch_build             compiles and links
 #     batch_run ID            the same for its run
 #
-# With every=N, and without LONG=1 in the environment, only every Nth model is compiled with sanitizers.
+# With every=N, and without LONG=1 in the environment, only every Nth model is compiled with sanitizers; by gcc, with
+# MERGE=1 or LONG=1 by gcc and clang by turns.
 ASAN_OPTIONS=exitcode=99:detect_leaks=0:hard_rss_limit_mb=2048:${ASAN_OPTIONS:-}
 UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
 export ASAN_OPTIONS UBSAN_OPTIONS
@@ -166,7 +167,7 @@ batch_add() {
 	fi
 	turn=$((turn + 1))
 	cc=gcc
-	[ $((turn % 2)) -eq 0 ] && cc=clang
+	merging && [ $((turn % 2)) -eq 0 ] && cc=clang
 	echo "$cc" >"$id.cc"
 	again='NULL, NULL, NULL'
 	if [ -f "$id.again.c" ]; then
