@@ -17,8 +17,8 @@ struct formulas {
 static int load_of_wave(const struct emitter *e, const struct wave *wave)
 {
 	int l = 0;
-	while (e->system->load[l].wave != wave)
-		l++;
+	while (l < e->system->loads && e->system->load[l].wave != wave)
+		l++;            /* none: of a let whose value nothing reads */
 	return l;
 }
 
