@@ -180,6 +180,9 @@ void banner_cut(const struct emitter *e)
 	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing. Where an expression passes "
 			   "a breakpoint is the first root of the cubic through its values and slopes at both ends of "
 			   "a step, found before it is stepped over; there the formulas change, and the step goes on.");
+	if (cut->certain < 1)
+		banner_sentence(e, "A pole turns by more than 2 in a step: one whose cubic comes near a breakpoint is "
+				   "made in parts so short that no pole turns by more than 1 where one is passed.");
 	banner_breakpoints(e, cut->look);
 	banner_series_regions(e, cut->look);
 	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with e^{A tau} "

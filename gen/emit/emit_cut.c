@@ -175,7 +175,59 @@ static void emit_end_call(const struct emitter *e, const char *indent, const cha
 	say(e, "%s%s\n", indent, spell(e, frozen_call(ending(e), "end", "s", tau, p, y, result)));
 }
 
+/* Where a pole turns by much in a step, cubics of whole steps say nothing of what it does within. */
+static bool is_swift(const struct emitter *e)
+{
+	return cut_of(e)->certain < 1;
+}
+
+/* Of the sizes that are summed: what rests on its breakpoint does not leave it. */
+static const char *noise(const struct emitter *e)
+{
+	return e->model->asked.single ? "1e-6" : "1e-14";
+}
+
+static const char *stays_call(const struct emitter *e, const char *interval, const char *size, const char *noise)
+{
+	int count = expressions(e);
+	const char *more = is_swift(e) ? format(", %s,\n                terms, %s", size, noise) : "";
+	return spell(e, "$n_stays((const double (*)[%d])c, (const double (*)[%d])d, %s%s)", count, count, interval,
+		     more);
+}
+
 /* The cubic with values and slopes of both ends is as exact as the step, and lies within its Bezier points. */
+static void emit_stays(const struct emitter *e)
+{
+	int count = expressions(e);
+	bool swift = is_swift(e);
+	const char *above = swift ? ">=" : ">", *below = swift ? "<=" : "<";
+	say(e, "\n/* Whether no expression comes near the end of its interval, from one end of a %s to the other%s */\n"
+	       "static int $n_stays(const double c[4][%d], const double d[2][%d], const int interval[%d]%s)\n"
+	       "{\n"
+	       "    const double *at = $n_breakpoint;\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < %d; at += $n_breaks[i++]) {\n"
+	       "        const double a = c[0][i], b = a + %sc[1][i] / 3.0, z = d[0][i], y = z - %sd[1][i] / 3.0;\n"
+	       "        if (interval[i] > 0) {\n"
+	       "            const double low = at[interval[i] - 1]%s;\n"
+	       "            if (!(a %s low && b %s low && y %s low && z %s low))\n"
+	       "                return 0;\n"
+	       "        }\n"
+	       "        if (interval[i] < $n_breaks[i]) {\n"
+	       "            const double high = at[interval[i]]%s;\n"
+	       "            if (!(a %s high && b %s high && y %s high && z %s high))\n"
+	       "                return 0;\n"
+	       "        }\n"
+	       "    }\n"
+	       "    return 1;\n"
+	       "}\n", swift ? "part" : "step", swift ? ", but for\n * `noise` of its terms" : "", count, count,
+	    count,
+	    swift ? format(",\n    double size, const double terms[%d], double noise", count) : "", count,
+	    swift ? "size * " : "", swift ? "size * " : "",
+	    swift ? " - noise * terms[i]" : "", above, above, above, above, swift ? " + noise * terms[i]" : "", below,
+	    below, below, below);
+}
+
 static void emit_meets(const struct emitter *e)
 {
 	int count = expressions(e);
@@ -185,26 +237,7 @@ static void emit_meets(const struct emitter *e)
 	say(e, "\nstatic const int $n_place_of[] = {%s};\n"
 	       "static const pl_divided $n_chord = {%d, %d, 3, $n_place_of, $n_breaks, $n_breakpoint};\n",
 	    place, count, count);
-	say(e, "\n/* Whether no expression comes near the end of its interval, from one end of a step to the other */\n"
-	       "static int $n_stays(const double c[4][%d], const double d[2][%d], const int interval[%d])\n"
-	       "{\n"
-	       "    const double *at = $n_breakpoint;\n"
-	       "    int i;\n"
-	       "    for (i = 0; i < %d; at += $n_breaks[i++]) {\n"
-	       "        const double a = c[0][i], b = a + c[1][i] / 3.0, z = d[0][i], y = z - d[1][i] / 3.0;\n"
-	       "        if (interval[i] > 0) {\n"
-	       "            const double low = at[interval[i] - 1];\n"
-	       "            if (!(a > low && b > low && y > low && z > low))\n"
-	       "                return 0;\n"
-	       "        }\n"
-	       "        if (interval[i] < $n_breaks[i]) {\n"
-	       "            const double high = at[interval[i]];\n"
-	       "            if (!(a < high && b < high && y < high && z < high))\n"
-	       "                return 0;\n"
-	       "        }\n"
-	       "    }\n"
-	       "    return 1;\n"
-	       "}\n", count, count, count, count);
+	emit_stays(e);
 	say(e, "\n/* When, in a part of this size [h], an expression first leaves its interval; -1: none does.\n"
 	       " * c: as at its start, then the cubic of each; d: as at its end */\n"
 	       "static double $n_meets(double c[4][%d], const double d[2][%d], const double terms[%d], double size,\n"
@@ -301,6 +334,16 @@ static const char *shortest_part(const struct emitter *e)
 	return e->model->asked.single ? "1e-6" : "1e-9";
 }
 
+/* What a cubic says of a part that is too long for it is believed where it stays within; else the part is halved. */
+static const char *halve_unsure(const struct emitter *e)
+{
+	return format("            if (size > %s && (meets >= 0.0 || !%s)) {\n"
+		      "                longest = 0.5 * size;\n"
+		      "                continue;\n"
+		      "            }\n",
+		      shortest(cut_of(e)->certain), stays_call(e, "contact->interval", "size", noise(e)));
+}
+
 static void emit_between(const struct emitter *e)
 {
 	int count = expressions(e);
@@ -340,6 +383,7 @@ static void emit_between(const struct emitter *e)
 	       "                &found);\n"
 	       "            if (splits < 0)\n"
 	       "                return PL_TOO_MANY_EVENTS;\n"
+	       "%s"
 	       "        }\n"
 	       "        first = NULL;\n"
 	       "        if (meets > 0.0) {\n"
@@ -351,7 +395,7 @@ static void emit_between(const struct emitter *e)
 	       "            }\n"
 	       "            meets += $n_onto(&part, done + meets, meets, size - meets, &found, next);\n"
 	       "        }\n"
-	       "        longest = 1.0;\n"
+	       "        longest = %s;\n"
 	       "        for (i = 0; i < $N_STATES && meets != 0.0; i++)\n"
 	       "            y[i] = next[i];\n"
 	       "        contact->last = found;\n"
@@ -365,7 +409,7 @@ static void emit_between(const struct emitter *e)
 	       "            return PL_TOO_MANY_EVENTS;\n"
 	       "    }\n"
 	       "    return 0;\n"
-	       "}\n", count, shortest_part(e));
+	       "}\n", count, is_swift(e) ? halve_unsure(e) : "", shortest_part(e), is_swift(e) ? "2.0 * size" : "1.0");
 }
 
 /* ---- the step ---- */
@@ -433,6 +477,7 @@ static void emit_keep_look(const struct emitter *e)
 static void emit_step_of_parts(const struct emitter *e)
 {
 	int count = expressions(e);
+	bool swift = is_swift(e);
 	const char *u = e->system->inputs ? "u, " : "", *given = given_inputs(e) ? "u, " : "";
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
@@ -448,7 +493,7 @@ static void emit_step_of_parts(const struct emitter *e)
 	emit_keep_state(e);
 	say(e, "    $n_whole(s, %s&part);\n", given);
 	emit_end_call(e, "    ", "part.", "$N_H", "s->y", "d, spare");
-	say(e, "    if (%s$n_stays((const double (*)[%d])c, (const double (*)[%d])d, s->contact.interval)) {\n"
+	say(e, "    if (%s%s) {\n"
 	       "        s->contact.last.expression = -1;\n"
 	       "    } else {\n"
 	       "        crossing = s->contact.last;\n"
@@ -457,20 +502,22 @@ static void emit_step_of_parts(const struct emitter *e)
 	       "            meets = $n_meets(c, (const double (*)[%d])d, terms, 1.0, s->contact.interval, &splits, "
 	       "&crossing);\n"
 	       "        crossing.time = meets;\n"
-	       "        whole = whole && meets < 0.0 && splits >= 0 && !pl_not_finite(s->y, $N_STATES);\n"
+	       "        whole = whole && meets < 0.0 && splits >= 0%s && !pl_not_finite(s->y, $N_STATES);\n"
 	       "        if (whole)\n"
 	       "            s->contact.last.expression = -1;\n"
 	       "    }\n"
 	       "    if (!whole) {\n",
 	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n        ",
-			       e->system->segments - 1) : "", count, count,
+			       e->system->segments - 1) : "", stays_call(e, "s->contact.interval", "1.0", "0.0"),
 	    changes(e) ? spell(e, "(s->segment == %d || $n_until(s, s->segment) >= $N_H) &&\n            ",
-			       e->system->segments - 1) : "", count);
+			       e->system->segments - 1) : "", count,
+	    swift ? format("\n            && %s", stays_call(e, "s->contact.interval", "1.0", noise(e))) : "");
 	emit_restore(e);
 	if (keeps_look(e))
 		say(e, "        s->ended = 0;\n");
 	say(e, "        s->status |= splits < 0 ? PL_TOO_MANY_EVENTS\n"
-	       "            : $n_between(s, %smeets >= 0.0 ? &crossing : NULL, 1.0, s->y, &s->contact);\n", u);
+	       "            : $n_between(s, %s%s, 1.0, s->y, &s->contact);\n", u,
+	    swift ? "NULL" : "meets >= 0.0 ? &crossing : NULL");
 	if (keeps_look(e)) {
 		say(e, "    } else {\n");
 		emit_keep_look(e);

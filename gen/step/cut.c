@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-/* Two derivatives at the start decide where a state on a breakpoint is heading. */
-enum { LOOKED = 2 };
+/* Two derivatives at the start decide where a state on a breakpoint is heading; the cubic of a whole step is believed
+ * where no pole turns by more than TURN in it. */
+enum { LOOKED = 2, TURN = 2 };
 
 static double *slopes_in(const struct step *step, const struct layout *layout, int segment)
 {
@@ -95,6 +96,8 @@ void plan_cut(struct step *step)
 		cut->slopes[s] = slopes_in(step, &cut->layout, s);
 		cut->fastest = fmax(cut->fastest, fastest_of(cut->layout.size, cut->slopes[s]));
 	}
+	double turn = cut->fastest * mpq_get_d(step->model->h);
+	cut->certain = turn > TURN ? 1 / turn : 1;
 	if (step->model->asked.single)
 		cut->fastest = (double)(float)cut->fastest;
 	count_looks(step, cut);

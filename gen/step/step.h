@@ -1244,6 +1244,7 @@ struct cut {
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of the looks in a step */
 	double fastest;             /* above the poles of the sizes |A| [1/s] */
+	double certain;             /* so much of a step that no pole turns by more than 1; 1: cubics hold over it */
 	int kilobytes;              /* of stack for tables */
 };
 void plan_cut(struct step *step);                           /* step->cut */
