@@ -137,8 +137,8 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
     pl_multiply(s, n, rows_of(m->cubic_error, m, c), size, off);
     for (i = 0; i < s; i++, tangent += n) { /* a cubic lies within its Bezier points */
         real leaving, arriving;
-        pl_multiply(1, n, tangent, x, &leaving);
-        pl_multiply(1, n, tangent, y, &arriving);
+        leaving = dot(n, tangent, x);
+        arriving = dot(n, tangent, y);
         leaving = from[i] + leaving;
         arriving = to[i] - arriving;
         low[i] = smaller(smaller(from[i], to[i]), smaller(leaving, arriving)) - off[i];
@@ -176,7 +176,7 @@ typedef struct found {
 static const found nothing = {1, -1, 0, 0, 0};
 
 /* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
-static found first_crossing(const pl_switching *m, int region, real *coefficients, int *splits)
+static PL_APART found first_crossing(const pl_switching *m, int region, real *coefficients, int *splits)
 {
     const int terms = m->degree + 1;
     real *e = coefficients + terms * m->size;
@@ -196,8 +196,7 @@ static found first_crossing(const pl_switching *m, int region, real *coefficient
             if (breakpoint < 0 || breakpoint == w.breaks) {
                 continue;
             }
-            look_beyond(&f, e, upward ? 1 : -1, w.at[breakpoint], size);
-            s = first_root(&f, first.s, splits);
+            s = look_beyond(&f, e, upward ? 1 : -1, w.at[breakpoint], size) ? first_root(&f, first.s, splits) : -1;
             if (s < 0) {
                 continue;
             }
@@ -408,8 +407,8 @@ real pl_divided_next(const pl_divided *m, const real *c, const real *terms, cons
             if (b < 0 || b == m->breaks[i]) {
                 continue;
             }
-            look_beyond(&f, work, upward ? 1 : -1, at[b], e.terms);
-            if (!(f.reach - f.reach == 0)) { /* not finite: there is no step */
+            if (!look_beyond(&f, work, upward ? 1 : -1, at[b], e.terms) ||
+                !(f.reach - f.reach == 0)) { /* not finite: there is no step */
                 continue;
             }
             s = first_root(&f, first, splits);

@@ -258,23 +258,25 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
 {
     beyond f;
     real s;
+    int rises;
     f.degree = e->m->degree < 3 ? 3 : e->m->degree;
     f.coefficient = work + f.degree + 1;
     rescale(e, end, work);
-    look_beyond(&f, work, (real)sign, b, e->terms);
-    if (!(f.reach - f.reach == 0)) { /* not finite: there is no step */
-        return 0;
-    }
-    if (last) {
-        pass_brief(&f, end);
-    }
-    if (behind >= 0 && f.coefficient[1] < 0 &&
-        magnitude(f.coefficient[0]) <= noise_of(e->terms + magnitude(b) + behind)) {
+    if (behind >= 0 && (real)sign * work[1] < 0 &&
+        magnitude(work[0] - b) <= noise_of(e->terms + magnitude(b) + behind)) {
         int k;
         for (k = 0; k <= f.degree; k++) {
             work[k] *= (real)sign;
         }
-        look_behind(&f, work, behind);
+        rises = look_behind(&f, work, behind);
+    } else {
+        rises = look_beyond(&f, work, (real)sign, b, e->terms);
+    }
+    if (!rises || !(f.reach - f.reach == 0)) { /* not finite: there is no step */
+        return 0;
+    }
+    if (last) {
+        pass_brief(&f, end);
     }
     s = first_root(&f, *first, splits);
     if (s < 0) {

@@ -40,7 +40,7 @@ static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int b
     const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + w->i) * m->size;
     const real b = w->at[breakpoint];
     real e;
-    pl_multiply(1, m->size, row, x, &e);
+    e = dot(m->size, row, x);
     *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[w->i]);
     return e - b;
 }
@@ -121,7 +121,7 @@ static real speed_of(const pl_guards *m, int k, const real *x)
 {
     const real *row = m->speed + (ptrdiff_t)k * m->size;
     real speed;
-    pl_multiply(1, m->size, row, x, &speed);
+    speed = dot(m->size, row, x);
     return magnitude(speed) <= noise_of(sizes(m->size, row, x) + m->impact[k].play) ? 0 : speed;
 }
 
@@ -370,7 +370,7 @@ static real flight(const pl_guards *m, const pl_contact *c, int k, const real *x
         return -1;
     }
     pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
-    pl_multiply(1, m->size, m->speed + (ptrdiff_t)k * m->size, work, &press);
+    press = dot(m->size, m->speed + (ptrdiff_t)k * m->size, work);
     return press > 0 ? -2 * speed / press : -1;
 }
 
@@ -379,7 +379,8 @@ static real shortened(const pl_guards *m, const pl_contact *c, const real *x, re
 {
     int k;
     for (k = 0; k < m->impacts; k++) {
-        const real along = touches(m, c, &m->impact[k], x) ? flight(m, c, k, x, work) : 0;
+        const int flies = speed_of(m, k, x) < 0 && touches(m, c, &m->impact[k], x);
+        const real along = flies ? flight(m, c, k, x, work) : 0;
         if (along > 0) {
             dt = smaller(dt, 2 * along);
         }
@@ -443,7 +444,7 @@ static real pull_of(const pl_guards *m, int k, const real *x)
     const int n = m->size, gate = m->guard[k].row;
     const real *row = m->gate + (ptrdiff_t)gate * n, *tangent = m->gate_tangent + (ptrdiff_t)gate * n;
     real e, noise;
-    pl_multiply(1, n, row, x, &e);
+    e = dot(n, row, x);
     e -= m->limit[k];
     noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->gate_play[gate]);
     return e > noise || e < -noise ? e : 0;
@@ -641,15 +642,15 @@ static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, c
     for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
         const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
         real from, to, off, leaving, arriving;
-        pl_multiply(1, n, m->gate + at, x, &from);
-        pl_multiply(1, n, m->gate + at, y, &to);
-        pl_multiply(1, n, m->chord_error + at, work, &off);
+        from = dot(n, m->gate + at, x);
+        to = dot(n, m->gate + at, y);
+        off = dot(n, m->chord_error + at, work);
         if (larger(from, to) + off < m->limit[k]) {
             continue;
         }
-        pl_multiply(1, n, m->cubic_error + at, work, &off);
-        pl_multiply(1, n, m->gate_tangent + at, x, &leaving);
-        pl_multiply(1, n, m->gate_tangent + at, y, &arriving);
+        off = dot(n, m->cubic_error + at, work);
+        leaving = dot(n, m->gate_tangent + at, x);
+        arriving = dot(n, m->gate_tangent + at, y);
         if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k])) {
             return 0;
         }
@@ -668,9 +669,9 @@ static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, c
         const int row = m->guard[k].row;
         const real *gate = m->gate + (ptrdiff_t)row * n;
         real from, to, off;
-        pl_multiply(1, n, gate, x, &from);
-        pl_multiply(1, n, gate, y, &to);
-        pl_multiply(1, n, m->ladder.reach + ((ptrdiff_t)m->ladder.gates[row] + at->rung - 1) * n, bend, &off);
+        from = dot(n, gate, x);
+        to = dot(n, gate, y);
+        off = dot(n, m->ladder.reach + ((ptrdiff_t)m->ladder.gates[row] + at->rung - 1) * n, bend);
         if (!(larger(from, to) + off < m->limit[k])) {
             return 0;
         }
@@ -736,14 +737,16 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
-        const real *row = m->gate + (ptrdiff_t)m->guard[k].row * n;
-        real s;
+        const real *row = m->gate + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
+        real s, next;
+        int has_left;
         pl_multiply(terms, n, coefficients, row, e);
-        look_beyond(&f, e, 1, m->limit[k], sizes(n, row, coefficients));
-        if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
-            sizes(n, row, coefficients) + sizes(n, row, coefficients + n))) {
-            look_behind(&f, e, sizes(n, row, coefficients + n));
-        } else if (m->guard[k].impact < 0) {
+        next = m->guard[k].impact >= 0 && e[1] < 0 ? sizes(n, row, coefficients + n) : -1;
+        has_left = next >= 0 && magnitude(e[0] - m->limit[k]) <= noise_of(magnitude(m->limit[k]) + size + next);
+        if (!(has_left ? look_behind(&f, e, next) : look_beyond(&f, e, 1, m->limit[k], size))) {
+            continue;
+        }
+        if (m->guard[k].impact < 0) {
             level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
         }
         s = is_turned(m, region, &m->guard[k], &f) ? 0 : first_root(&f, first.s, splits);
@@ -811,7 +814,7 @@ static real most_pressed(const pl_guards *m, const pl_contact *c, const real *x,
     for (k = 0; k < m->impacts; k++) {
         if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
             const walk w = switch_of(m, c->region, m->impact[k].expression);
-            pl_multiply(1, n, m->speed + (ptrdiff_t)k * n, work, &press);
+            press = dot(n, m->speed + (ptrdiff_t)k * n, work);
             most = larger(most, press);
             (void)excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
             *rounding = larger(*rounding, noise);
@@ -926,6 +929,28 @@ static void take_up(const pl_guards *m, int jumped, real *x, pl_contact *c, pl_c
     assign(m, m->hold[c->region], x, work);
 }
 
+/* Whether there is nothing to take up: what is held is where it is held, and every guard is below its limit by more
+ * than rounding, so that nothing touches, leaves its interval or is let go.  work: WORDS */
+static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, real *work)
+{
+    const int n = m->size, set = m->hold[c->region];
+    int i, k;
+    for (k = m->set[set]; k < m->set[set + 1]; k++) {
+        value_of(n, m->value, k, x, work);
+        for (i = 0; i < WORDS; i++) {
+            if (!(magnitude(x[i * n + m->state[k]] - work[i]) <= 0)) {
+                return 0;
+            }
+        }
+    }
+    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+        if (!(pull_of(m, k, x) < 0)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     pl_chain chain = no_impact(m->h);
@@ -967,7 +992,9 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     pl_chain chain = no_impact(m->h);
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
-        take_up(m, 0, x, c, crossing, 0, &chain, room);
+        if (!is_taken_up(m, c, x, room)) {
+            take_up(m, 0, x, c, crossing, 0, &chain, room);
+        }
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */

@@ -8,6 +8,12 @@
 
 #include "roots.h"
 
+/* row . x of one row, from many places */
+static PL_APART real dot(int n, const real *row, const real *x)
+{
+    return dot_product(n, row, x);
+}
+
 #ifdef REST_IS_KEPT
 
 #include "two.h"
@@ -173,7 +179,7 @@ static void part_of_piece(int n, int degree, const real *coefficients, const rea
 
 static inline void value_of(int n, const real *all, int row, const real *x, real *value)
 {
-    pl_multiply(1, n, all + (ptrdiff_t)row * n, x, value);
+    value[0] = dot(n, all + (ptrdiff_t)row * n, x);
 }
 
 static inline void put_value(int n, int state, const real *value, real *x)

@@ -139,17 +139,20 @@ static point point_of(const beyond *f, real s)
 }
 
 /* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0; both are scaled by a power of 2
- * where the derivatives of g could overflow and g does not */
-static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
+ * where the derivatives of g could overflow and g does not.  0: by these sizes alone g does not rise through 0, as
+ * first_root would find, and f is not made. */
+static int look_beyond(beyond *f, const real *e, real sign, real b, real terms)
 {
-    real largest = terms;
+    real reach = 0;
     int k;
     for (k = 1; k <= f->degree; k++) {
-        largest = larger(largest, magnitude(e[k]));
+        reach += magnitude(e[k]);
     }
-    if (largest > REAL_LARGE) {
+    if (reach + terms > REAL_LARGE) {
         sign *= SCALE;
         terms *= SCALE;
+    } else if (sign * (e[0] - b) + reach <= noise_of(terms + magnitude(b) + reach)) {
+        return 0;
     }
     f->coefficient[0] = sign * (e[0] - b);
     f->reach = f->fourth = f->fifth = 0;
@@ -161,14 +164,17 @@ static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
         f->reach += a;
     }
     f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
+    return 1;
 }
 
 /* What has left its guard at the start comes back where g(s)/s rises through 0: that is known to more digits. */
-static inline void look_behind(beyond *f, const real *e, real terms)
+static inline int look_behind(beyond *f, const real *e, real terms)
 {
+    int rises;
     f->degree--;
-    look_beyond(f, e + 1, 1, 0, terms);
+    rises = look_beyond(f, e + 1, 1, 0, terms);
     f->coefficient[++f->degree] = 0;
+    return rises;
 }
 
 /* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, kept safe by halving. */

@@ -270,6 +270,26 @@ static void stopping(int step)
 	run_free(&r);
 }
 
+/* ---- a conveyor ---- */
+
+/* At rest on it for a second, then it goes on at once: the block slides until it is as fast. */
+static void conveyor(int step)
+{
+	struct run r = run_new(variant_of(closed_table, "conveyor_%d", step));
+	wide fast = 0.3L, slope = 1.5L, off = 0;
+	double y[2], h = r.of->model->h;
+	for (int i = 0; i < (int)lround(2 / h); i++) {
+		wide t = (i + 1) * (wide)h - 1;
+		double u = i < (int)lround(1 / h) ? 0 : 0.3;
+		run_step(&r, &u);
+		run_state(&r, y);
+		off = fmaxl(off, fabsl(y[1] - (t < 0 ? 0 : fminl(fast, slope * t))));
+	}
+	is_close((double)off, 0, 1e-14, "conveyor %d: how fast the block is", step);
+	is_close(y[0], (double)(fast - fast * fast / (2 * slope)), 1e-14, "conveyor %d: where it is after 2 s", step);
+	run_free(&r);
+}
+
 /* ---- energy ---- */
 
 static wide energy(const double *y)
@@ -310,6 +330,7 @@ int main(void)
 		carried(step);
 		sliding(step);
 		stopping(step);
+		conveyor(step);
 		energies(step);
 	}
 	brake();
