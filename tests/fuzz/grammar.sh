@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the folder CORPUS, then the specs that
 # GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus,
-# and for each block of seeds.  PLGEN is built with sanitizers; what it emits is compiled with all warnings as errors
-# and sanitizers, by gcc and clang in turn, and drive.c holds it against other roads.  A spec may be refused only with a
-# message of refusals.list.
+# and for each block of seeds.  PLGEN is built with sanitizers; what it emits is compiled to be run, every third with
+# all warnings as errors and sanitizers; with MERGE=1 or LONG=1 in the environment all, by gcc and clang in turn; and
+# drive.c holds it against other roads.  A spec may be refused only with a message of refusals.list.
 # With KEEP=FOLDER the specs that fail are kept there; each finding belongs into the corpus.
 set -u
 absolute() {
@@ -25,6 +25,7 @@ keep=${KEEP:-}
 [ -z "$keep" ] || keep=$(absolute "$keep")
 . "$source/tests/tap.sh"
 . "$source/tests/fuzz/batch.sh"
+merging || every=3
 block=25
 made=0
 refused=0

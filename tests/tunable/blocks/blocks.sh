@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # blocks.sh PLGEN ROOT CHAINS, the runtime's library in PLRT: tunable params of models of more than 16 states. What
 # NAME_retune makes of an instance, beside the same equations with the values written, and beside the series of the
-# solution for random models; what it returns for bad values; what keeps its tables.
+# solution for random models; what it returns for bad values; what keeps its tables. With MERGE=1 in the environment in
+# float too, and at other steps.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
@@ -68,25 +69,31 @@ refused 16 0 'a frequency below 0: PL_NO_RATE' 2 100 60 3 2 -1
 beside 3 oscillators "m=2 k=100 k2=60 F=3 g=2 w=5" 0
 beside 3 oscillators "m=2 k=100 k2=61 F=3 g=2 w=5" 0
 
+types=double
+steps=0
+if merging; then
+	types='double float'
+	steps='0 0.03125'
+fi
 solved="m=3 J=0.25 k=130 F=2"
-for h in 0 0.03125; do
-	beside 20 solved "$solved" $h
-	beside 20 solved "$solved" $h --real float --form direct
+for h in $steps; do
+	beside 20 solved "$solved" "$h"
+	beside 20 solved "$solved" "$h" --real float --form direct
 done
 refused 4 0 'a mass matrix without inverse: PL_SINGULAR' 0 0 100 3
 refused 1 0 'one that is not a number' nan 0.5 100 3
 refused 8 -1 'a step below 0: PL_NO_STEP' 2 0.5 100 3
 
 beside 30 taps "k=30 c=0.5 g=1 d=2" 0
-beside 30 taps "k=30 c=0.5 g=1 d=2" 0.015625 --form direct
-for real in double float; do
+! merging || beside 30 taps "k=30 c=0.5 g=1 d=2" 0.015625 --form direct
+for real in $types; do
 	beside 10 ends "g=2 F=5 w=4" 0 --real $real
 	beside 60 train "m=3 k=1500 F=4" 0 --real $real
 	beside 20 gusts "k=80 F=2 w=4" 0 --real $real
 	beside 10 red "k=90 g=1" 0 --reduce --real $real
 done
-beside 20 gusts "k=80 F=2 w=4" 0 --form direct
-beside 60 train "m=3 k=1500 F=4" 0.0625
+! merging || beside 20 gusts "k=80 F=2 w=4" 0 --form direct
+! merging || beside 60 train "m=3 k=1500 F=4" 0.0625
 beside 10 wide "k=90" 0
 
 : >log
@@ -112,7 +119,8 @@ random() {
 }
 
 seed=1
-while [ $seed -le "${RANDOM_MODELS:-6}" ]; do
+merging && most=6 || most=3
+while [ $seed -le "${RANDOM_MODELS:-$most}" ]; do
 	random $seed $([ $((seed % 3)) = 0 ] && echo float || echo double)
 	seed=$((seed + 1))
 done
