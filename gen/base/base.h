@@ -144,6 +144,7 @@ bool statement_guard(void (*work)(void *), void *context); /* true if the work r
 bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
 const char *refusal_of(void (*work)(void *), void *context); /* so; NULL: it ran to its end; else the first error */
 const char *unheard_refusal_of(void (*work)(void *), void *context); /* its warnings are forgotten too */
+bool warnings_are_heard(void);                             /* false: inside that */
 void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
 int  diagnostics_errors(void);
 bool diagnostics_harden(void);                             /* warnings become errors: are there any? */

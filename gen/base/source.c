@@ -20,6 +20,7 @@ struct diagnostic {
 static struct diagnostic *said;
 static int said_count, error_count;
 static const char *context_note;
+static bool unheard;               /* warnings are forgotten */
 static jmp_buf *guard;
 static struct place working;
 
@@ -142,10 +143,18 @@ const char *refusal_of(void (*work)(void *), void *context)
 
 const char *unheard_refusal_of(void (*work)(void *), void *context)
 {
-	int known = said_count;
+	const int known = said_count;
+	const bool outside = unheard;
+	unheard = true;
 	const char *message = refusal_of(work, context);
+	unheard = outside;
 	said_count = known;
 	return message;
+}
+
+bool warnings_are_heard(void)
+{
+	return !unheard;
 }
 
 bool silent_guard(void (*work)(void *), void *context)

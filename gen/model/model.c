@@ -621,7 +621,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	bool told = request->solution || request->tunable || request->relative || request->undivided;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);
-	if (!diagnostics_errors() && !told)
+	if (!diagnostics_errors() && !told && warnings_are_heard())
 		warn(&b);
 	if (!diagnostics_errors() && !request->solution && !request->tunable)
 		silent_guard(find_nonlinear, &b);
