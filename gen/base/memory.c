@@ -256,10 +256,14 @@ char *format(const char *fmt, ...)
 	va_list args, again;
 	va_start(args, fmt);
 	va_copy(again, args);
-	int length = vsnprintf(NULL, 0, fmt, args);
+	char most[256];                         /* of those that there are */
+	int length = vsnprintf(most, sizeof most, fmt, args);
 	check_bytes((size_t)length + 1);
 	char *text = ring_new((size_t)length + 1);
-	vsnprintf(text, (size_t)length + 1, fmt, again);
+	if ((size_t)length < sizeof most)
+		memcpy(text, most, (size_t)length + 1);
+	else
+		vsnprintf(text, (size_t)length + 1, fmt, again);
 	va_end(again);
 	va_end(args);
 	return text;

@@ -32,7 +32,7 @@ static bool is_member(const char *start, const char *text)
 
 void print_apart(FILE *to, const char *text, const char *name)
 {
-	const char *other = format("the_%s", name);
+	const char *other = format("the_%s", name), *from = text;
 	while (strstr(text, other))
 		other = format("the_%s", other);
 	for (const char *at = text; *at; ) {
@@ -40,10 +40,12 @@ void print_apart(FILE *to, const char *text, const char *name)
 		size_t length = end ? 0 : name_length(at);
 		if (length)
 			end = behind_type(at, length);
-		if (length && !end && is_named(at, length, name) && !is_member(at, text) && !is_type(at + length))
+		if (length && !end && is_named(at, length, name) && !is_member(at, text) && !is_type(at + length)) {
+			put(to, from, (size_t)(at - from));
 			put(to, other, strlen(other));
-		else
-			put(to, at, (size_t)((end ? end : at + (length ? length : 1)) - at));
+			from = at + length;
+		}
 		at = end ? end : at + (length ? length : 1);
 	}
+	put(to, from, strlen(from));
 }

@@ -143,13 +143,16 @@ static void brace_statement(struct braces *b)
 void print_braces(FILE *to, const char *text)
 {
 	struct braces b = { to, text, text };
-	while (*b.at) {
-		const char *end = next_of(&b, b.at);
+	const char *at = text;
+	while (*at) {
+		const char *end = next_of(&b, at);
 		bool function = *end == ')' && *next_of(&b, end + 1) == '{';
-		copy(&b, *end == '"' ? behind_quoted(end, false) : end + (*end ? 1 : 0));
+		at = *end == '"' ? behind_quoted(end, false) : end + (*end ? 1 : 0);
 		if (function) {
-			copy(&b, next_of(&b, b.at));
+			copy(&b, next_of(&b, at));
 			brace_block(&b);
+			at = b.at;
 		}
 	}
+	copy(&b, at);
 }

@@ -69,7 +69,7 @@ static const char *print_name(FILE *to, const char *text)
 	const char *end = text + length;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		const struct name *n = &names[i];
-		if (strlen(n->name) != length || memcmp(n->name, text, length) != 0 || (n->called && *end != '('))
+		if (n->name[0] != text[0] || !is_named(text, length, n->name) || (n->called && *end != '('))
 			continue;
 		size_t stem = strlen(n->stem);
 		put(to, stem ? n->stem : "float", stem ? stem : strlen("float"));
@@ -108,6 +108,16 @@ static const char *print_until(FILE *to, const char *text, const char *close)
 	return end;
 }
 
+/* At least one character */
+static const char *print_other(FILE *to, const char *text)
+{
+	const char *end = text + 1;
+	while (*end && *end != '/' && *end != '"' && !in_name(*end))
+		end++;
+	put(to, text, (size_t)(end - text));
+	return end;
+}
+
 void print_single(FILE *to, const char *text)
 {
 	while (*text)
@@ -120,5 +130,5 @@ void print_single(FILE *to, const char *text)
 		else if (in_name(*text))
 			text = print_name(to, text);
 		else
-			put(to, text++, 1);
+			text = print_other(to, text);
 }

@@ -36,7 +36,7 @@ static void push(struct lexing *l, struct lexeme lexeme)
 static const struct macro *macro_of(const struct lexing *l, const char *name)
 {
 	for (int i = l->macros; i-- > 0;)
-		if (strcmp(l->macro[i].name, name) == 0)
+		if (l->macro[i].name[0] == name[0] && strcmp(l->macro[i].name, name) == 0)
 			return &l->macro[i];
 	return NULL;
 }
@@ -109,7 +109,7 @@ static void lex_mark(struct lexing *l)
 					      "||", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=" };
 	size_t length = 1;
 	for (size_t i = 0; i < sizeof longer / sizeof *longer && length == 1; i++)
-		if (strncmp(l->text, longer[i], strlen(longer[i])) == 0)
+		if (l->text[0] == longer[i][0] && strncmp(l->text, longer[i], strlen(longer[i])) == 0)
 			length = strlen(longer[i]);
 	struct lexeme lexeme = { .kind = LEXEME_MARK, .text = slice(l->text, length) };
 	for (size_t i = 0; i < length; i++)

@@ -269,6 +269,8 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 {
 	int n = step->branch->system.states;
 	double *power = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n)), largest = 0;
+	c->sum = ARRAY(double, (size_t)(n * n));
+	c->peak = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n; i++)
 		power[i * n + i] = 1;
 	for (int m = 0; m < c->steps; m++) {
@@ -289,21 +291,28 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 	return isfinite(largest);
 }
 
+/* Where a model is stepped in several ways it is followed once. */
 static bool make_course(const struct step *step, struct course *c)
 {
+	static const struct model *last;
+	static struct course followed;
+	static bool good;
 	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
 	struct layout place = layout_of(&step->branch->system, 0);
 	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES ||
 	    step->branch->system.segments > LIMIT_SEGMENTS)
 		return false;
-	*c = (struct course){ .steps = STEPS,
-			      .y = ARRAY(double, rows *states),
-			      .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
-			      .segment = ARRAY(int, rows),
-			      .largest = ARRAY(double, states),
-			      .sum = ARRAY(double, states *states),
-			      .peak = ARRAY(double, states *states) };
-	return follow(step, &place, c) && add_powers_of_phi(step, c);
+	if (last != step->model) {
+		followed = (struct course){ .steps = STEPS,
+					    .y = ARRAY(double, rows *states),
+					    .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
+					    .segment = ARRAY(int, rows),
+					    .largest = ARRAY(double, states) };
+		good = follow(step, &place, &followed);
+		last = step->model;
+	}
+	*c = followed;
+	return good && add_powers_of_phi(step, c);
 }
 
 /* ---- a bound of rounding ---- */
