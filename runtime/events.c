@@ -681,15 +681,15 @@ static int agrees(const pl_events *m, pl_instant *at, const int *resting, int co
     return agreed;
 }
 
-/* Those at rest in the combination of this number, three ways each; returns how many are elsewhere than now */
-static int set_combination(const pl_events *m, const pl_instant *at, const int *resting, const int *now, int count,
+/* Those at rest in the combination of this number, three ways each; returns how many are elsewhere than before */
+static int set_combination(const pl_events *m, const pl_instant *at, const int *resting, const int *before, int count,
                            int number)
 {
     int i, moved = 0;
     for (i = 0; i < count; i++, number /= 3) {
         const pl_hold *h = &m->hold[resting[i]];
         at->interval[h->expression] = h->interval + number % 3 - 1;
-        moved += at->interval[h->expression] != now[i];
+        moved += at->interval[h->expression] != before[i];
     }
     return moved;
 }
@@ -718,20 +718,24 @@ static void list_changes(const pl_events *m, pl_instant *at, const int *resting,
     }
 }
 
-/* What is at rest: the combination in which all agree, with fewest changes, then most that is held */
-static void settle(const pl_events *m, pl_instant *at, int listed)
+/* What is at rest: the combination in which all agree, with fewest changes, then most that is held.  Changes count from
+ * where things were before the instant, as the expression `crossed` was (-1: none was elsewhere): what turns round
+ * changes once. */
+static void settle(const pl_events *m, pl_instant *at, int listed, int crossed, int was)
 {
-    int resting[MOST], now[MOST], best = -1, least = 0, all = 1, number, i;
+    int resting[MOST], now[MOST], before[MOST], best = -1, least = 0, all = 1, number, i;
     const int count = find_resting(m, at, resting);
     for (i = 0; i < count; i++) {
-        now[i] = at->interval[m->hold[resting[i]].expression];
+        const int expression = m->hold[resting[i]].expression;
+        now[i] = at->interval[expression];
+        before[i] = expression == crossed ? was : now[i];
         all *= 3;
     }
     if (count == 0 || agrees(m, at, resting, count) == 2) {
         return;
     }
     for (number = 0; number < all; number++) {
-        const int moved = set_combination(m, at, resting, now, count, number);
+        const int moved = set_combination(m, at, resting, before, count, number);
         const int score = moved * 2 * MOST + slipping(m, at, resting, count);
         const int agreed = agrees(m, at, resting, count), worth = score + (agreed == 1 ? 8 * MOST * MOST : 0);
         if (agreed == 0 || (best >= 0 && worth >= least)) {
@@ -746,7 +750,7 @@ static void settle(const pl_events *m, pl_instant *at, int listed)
         }
         at->status |= PL_UNDECIDED;
     } else {
-        (void)set_combination(m, at, resting, now, count, best);
+        (void)set_combination(m, at, resting, before, count, best);
         if (listed) {
             list_changes(m, at, resting, now, count);
         }
@@ -824,7 +828,7 @@ static void rest_together(const pl_events *m, uint32_t struck, pl_instant *at)
     }
     if (laid != 0 && pressed) {
         tell_rests(m, lay(m, laid, at), at);
-        settle(m, at, 1);
+        settle(m, at, 1, -1, 0);
     }
 }
 
@@ -844,7 +848,7 @@ static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
             (void)list(m, at, at->time + left * m->h, p->expression, p->breakpoint, p->upward);
             (*at->rested)++;
         }
-        settle(m, at, 1);
+        settle(m, at, 1, -1, 0);
     }
     rest_together(m, struck, at);
 }
@@ -857,6 +861,7 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     const int begins = at->strike, loses = begins >= 0 && m->strike[begins].restitution < 1;
     const int full = *at->crossings == m->max_events && !loses;
     int *interval = &at->interval[e.expression];
+    const int was = *interval;
     uint32_t struck = 0;
     if (full) {
         return 0;
@@ -878,7 +883,7 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
         struck = collide(m, begins, at);
         follow(m, at, 0);
     }
-    settle(m, at, 1);
+    settle(m, at, 1, begins < 0 ? e.expression : -1, was);
     at->freed = -1;
     come_to_rest(m, struck, at);
     keep(m, at);
@@ -960,5 +965,5 @@ void pl_events_place(const pl_events *m, pl_instant *at)
         }
     }
     refresh(at);
-    settle(m, at, 0);
+    settle(m, at, 0, -1, 0);
 }

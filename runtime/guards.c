@@ -524,8 +524,10 @@ static int combinations(int count)
     return all;
 }
 
-/* The region in which all agree, with fewest changes, then most that stick; -1: there is none */
-static int best_region(const pl_guards *m, const pl_contact *c, const resting *r, int count, const real *x, real *work)
+/* The region in which all agree, with fewest changes, then most that stick; -1: there is none.  Changes count from the
+ * region before the instant: what turns round changes once. */
+static int best_region(const pl_guards *m, const pl_contact *c, int before, const resting *r, int count, const real *x,
+                       real *work)
 {
     int best = -1, least = 0, code;
     for (code = 0; code < combinations(count); code++) {
@@ -533,7 +535,7 @@ static int best_region(const pl_guards *m, const pl_contact *c, const resting *r
         for (i = 0; i < count; i++, rest /= 3) {
             const int now = interval_of(m, &r[i], region), then = r[i].stick + rest % 3 - 1;
             region += (then - now) * r[i].stride;
-            score += (then != now) * 2 * MOST + (rest % 3 != 1);
+            score += (then != interval_of(m, &r[i], before)) * 2 * MOST + (rest % 3 != 1);
         }
         if ((best < 0 || score < least) && agrees(m, region, r, count, x, work)) {
             best = region;
@@ -561,7 +563,8 @@ static void change(const pl_guards *m, pl_contact *c, pl_crossing *crossing, rea
 }
 
 /* What is at rest: whether it sticks, and where else it goes.  crossing NULL: nothing is listed. */
-static void settle(const pl_guards *m, const real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+static void settle(const pl_guards *m, int before, const real *x, pl_contact *c, pl_crossing *crossing, real time,
+                   real *work)
 {
     resting r[MOST];
     const int count = find_resting(m, c, x, r);
@@ -569,7 +572,7 @@ static void settle(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
     if (count == 0 || agrees(m, c->region, r, count, x, work)) {
         return;
     }
-    region = best_region(m, c, r, count, x, work);
+    region = best_region(m, c, before, r, count, x, work);
     if (region < 0) {
         c->status |= PL_UNDECIDED;
     } else {
@@ -624,9 +627,9 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
             }
         }
     }
-    settle(m, x, c, (pl_crossing *)0, 0, work);
+    settle(m, c->region, x, c, (pl_crossing *)0, 0, work);
     decide(m, x, c, work);
-    settle(m, x, c, (pl_crossing *)0, 0, work);
+    settle(m, c->region, x, c, (pl_crossing *)0, 0, work);
 }
 
 /* ---- a piece ---- */
@@ -867,7 +870,7 @@ static void rest_together(const pl_guards *m, uint32_t set, real *x, pl_contact 
         }
     }
     list_rests(m, lay(m, laid, x, c, work), c, crossing, time);
-    settle(m, x, c, crossing, time, work);
+    settle(m, c->region, x, c, crossing, time, work);
 }
 
 /* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
@@ -885,7 +888,7 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
             continue;
         }
         list_rests(m, lay(m, (uint32_t)1 << k, x, c, work), c, crossing, time + left);
-        settle(m, x, c, crossing, time, work);
+        settle(m, c->region, x, c, crossing, time, work);
     }
     set = near_rest(m, c, BRIEF * m->h, x, work);
     if (struck != 0 && set != 0) {
@@ -898,6 +901,7 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
                 pl_chain *chain, real *work)
 {
     const int rest = impact_of(m, g->expression, switch_of(m, c->region, g->expression).interval);
+    const int before = c->region;
     uint32_t struck = 0;
     if (g->impact < 0) {
         chain->full = !has_time(chain) ||
@@ -913,7 +917,7 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
         struck = collide(m, g->impact, x, c, crossing, time, chain, work);
         follow(m, 0, x, c, crossing, time);
     }
-    settle(m, x, c, crossing, time, work);
+    settle(m, before, x, c, crossing, time, work);
     come_to_rest(m, struck, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
     return !chain->full;
@@ -925,7 +929,7 @@ static void take_up(const pl_guards *m, int jumped, real *x, pl_contact *c, pl_c
 {
     follow(m, jumped, x, c, crossing, time);
     (void)collide(m, -1, x, c, crossing, time, chain, work);
-    settle(m, x, c, crossing, time, work);
+    settle(m, c->region, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
 }
 

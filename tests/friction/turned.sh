@@ -1,0 +1,57 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Two frictions, each felt by the other mass twice, come to rest at t = 1. From there both can stick, and one can turn
+# round while the other slides on: both agree, and that is taken which changes less. What turns round changes once, so
+# it is the second, in a closed form: by steps of regions and by series.
+#
+#     turned.sh PLGEN SOURCE_ROOT
+plgen=$(realpath "$1")
+root=$(realpath "$2")
+. "$root/tests/run_cc.sh"
+. "$root/tests/tap.sh"
+runtime_archive "$root/runtime"
+
+# beside the closed form: rows of t, x, y; the largest difference
+judge() {
+	awk -F, -v bound="$1" 'NR > 1 { t = $1; s = t - 1
+			x = t < 1 ? 4.25*t - 2.125*t*t : 2.125 - 1.125*s*s
+			y = t < 1 ? 3.25*t - 1.625*t*t : 1.625 + 0.375*s*s
+			off = ($2 > x ? $2 - x : x - $2) + ($3 > y ? $3 - y : y - $3)
+			worst = off > worst ? off : worst }
+		END { printf "# off by %g, bound %g, rows %d\n", worst, bound, NR; exit !(NR > 6 && worst <= bound) }'
+}
+
+# turns NAME BOUND CURVED STEP OPTION ...
+turns() {
+	name=$1
+	bound=$2
+	curved=$3
+	step=$4
+	shift 4
+	chosen "$name, h = $step" || return 0
+	cat >turned.spec <<-END
+		model turned
+		coord x, y${curved:+, z}
+		init x' = 4.25, y' = 3.25${curved:+, z = 1}
+		x'' + friction(x', 1) + 2*friction(y', 1) = -1.25
+		y'' + friction(y', 1) + 2*friction(x', 1) = -0.25
+		$curved
+		output x, y
+		step $step
+	END
+	float=''
+	case $* in *float*) float=-DFLOAT ;; esac
+	"$plgen" "$@" -o turned.c turned.spec >log 2>&1 &&
+		$run_cc -I"$root/runtime" -DMODEL=turned $float "$root/runtime/host/plmain.c" turned.c "$archive" -lm \
+			-o turned >>log 2>&1 && ./turned 3 >rows.csv 2>>log && judge "$bound" <rows.csv >>log
+	result $? "$name, h = $step"
+}
+
+for h in 0.125 0.3 0.5; do
+	turns exact 1e-14 '' $h
+	turns compensated 1e-14 '' $h --accuracy compensated
+	turns 'exact, float' 1e-5 '' $h --real float
+	turns series 1e-12 "z'' + z^3 = 0" $h --scheme taylor
+	turns 'series, float' 1e-5 "z'' + z^3 = 0" $h --scheme taylor --real float
+done
+tap_end
