@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors of scheme taylor by steps: each row of variants.h (orders.sh) beside the first one, from STARTS starts along
- * one motion. Prints for each of the others its order, its steps, the error (root of the mean of squares over starts,
- * states and whole seconds, over the largest state), the events from the first start, and whether all runs met those of
- * the first row with no status. */
+/* Errors of scheme taylor by steps: each row of variants.h (orders.sh) beside the motion of the first one, from STARTS
+ * starts along it. Prints for each of the others its order, its steps, the error (root of the mean of squares over
+ * starts, states and whole seconds, over the largest state), the events from the first start, and whether all runs met
+ * those of the first row with no status. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include "variants.h"
 
 enum { MOST = 16, STARTS = 48 };
@@ -16,26 +17,47 @@ struct run {
 	int status;
 };
 
-/* Start j: 11/600 s along the motion behind the one before, so that events fall elsewhere in steps */
-static void begin(const struct variant *v, void *s, int j)
+/* The first row's motion, step by step. Start j is 7 j steps along it, so that events fall elsewhere in steps. */
+enum { APART = 7 };
+static double (*motion)[MOST];
+static unsigned long *met;          /* events so far */
+
+static void follow(const struct variant *v)
 {
-	const struct variant *finest = &variant[0];
-	double start[MOST];
-	void *ahead = calloc(1, finest->size);
-	if (!ahead)
+	const int steps = APART * (STARTS - 1) + v->steps;
+	void *s = calloc(1, v->size);
+	motion = calloc((size_t)steps + 1, sizeof *motion);
+	met = calloc((size_t)steps + 1, sizeof *met);
+	if (!s || !motion || !met || v->states > MOST)
 		exit(1);
-	finest->init(ahead);
-	for (int k = 0; k < 7 * j; k++)
-		finest->step(ahead);
-	finest->get(ahead, start);
 	v->init(s);
-	v->set(s, 7.0 * j * SECONDS / finest->steps, start);
-	free(ahead);
+	for (int k = 0; k <= steps; k++) {
+		v->get(s, motion[k]);
+		met[k] = v->crossed(s);
+		if (k < steps)
+			v->step(s);
+	}
+	if (v->status(s) != 0)
+		exit(1);
+	free(s);
+}
+
+/* What runs from each start have to come to */
+static void find_exact(const struct variant *v, struct run *run)
+{
+	const int second = v->steps / SECONDS;
+	follow(v);
+	for (int j = 0; j < STARTS; j++) {
+		for (int k = 0; k < SECONDS; k++)
+			memcpy(run->y[j][k], motion[APART * j + (k + 1) * second], sizeof run->y[j][k]);
+		run->events[j] = met[APART * j + v->steps] - met[APART * j];
+	}
 }
 
 static void run_from(const struct variant *v, void *s, int j, double y[SECONDS][MOST])
 {
-	begin(v, s, j);
+	v->init(s);
+	v->set(s, (double)APART * j * SECONDS / variant[0].steps, motion[APART * j]);
 	for (int k = 1; k <= v->steps; k++) {
 		v->step(s);
 		if (k * SECONDS % v->steps == 0)
@@ -61,7 +83,7 @@ int main(void)
 	static struct run exact, run, none;
 	const int states = variant[0].states;
 	double largest = 0;
-	run_all(&variant[0], &exact);
+	find_exact(&variant[0], &exact);
 	for (int j = 0; j < STARTS; j++)
 		for (int k = 0; k < SECONDS; k++)
 			for (int i = 0; i < states; i++)
@@ -79,7 +101,7 @@ int main(void)
 		}
 		printf("%d %d %.4g %lu %s\n", variant[v].order, variant[v].steps,
 		       sqrt(sum / (STARTS * SECONDS * states)), exact.events[0],
-		       same && run.status == 0 && exact.status == 0 ? "yes" : "no");
+		       same && run.status == 0 ? "yes" : "no");
 	}
 	return 0;
 }
