@@ -39,6 +39,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add
 #define pl_not_finite pl_not_finitef
+#define pl_magnitude pl_magnitudef
 #define pl_switching pl_switchingf
 #define pl_crossing pl_crossingf
 #define pl_divided pl_dividedf

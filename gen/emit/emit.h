@@ -61,6 +61,11 @@ void print_apart(FILE *to, const char *text, const char *name);
 
 void print_braces(FILE *to, const char *text);
 
+/* ---- included.c: the runtime's algorithms in the place of the lines that include them ---- */
+
+void print_included(FILE *to, const char *text);             /* for double; of float, before print_single */
+bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes? */
+
 /* ---- printed.c: C that was printed, read again ---- */
 
 bool in_name(char c);
@@ -309,7 +314,6 @@ const char *series_parameters(const struct emitter *e);
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
-void emit_column_scales(const struct emitter *e);                 /* of what stands beside the states in s->series */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
@@ -340,7 +344,6 @@ const char *plus(const char *sum, const char *term);                     /* in b
 const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
-void emit_series_scales(const struct emitter *e, const char *indent);           /* of state i */
 
 /* ---- emit_reach.c: how far a series holds ---- */
 
@@ -353,7 +356,8 @@ bool looks_at_tolerance(const struct emitter *e);
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
 int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
-void emit_validity(const struct emitter *e);
+void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
+void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
 const char *measured_columns(const struct emitter *e);           /* C: those whose last terms count */
 
 /* ---- emit_unseen.c: how far what coefficients do not show is followed ---- */
@@ -363,6 +367,8 @@ bool traces(const struct emitter *e);                            /* some of it b
 bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
 void emit_shows(const struct emitter *e);                        /* NAME_shows, of a series */
 void emit_shows_along(const struct emitter *e);                  /* NAME_shows_along, of a step by collocation */
+void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
+void emit_hidden_table(const struct emitter *e);
 /* C: that it does not */
 const char *shows_along(const struct emitter *e);
 
@@ -412,13 +418,14 @@ void emit_divided_types(const struct emitter *e);                 /* NAME_contac
 void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
 void emit_divided_place(const struct emitter *e);
-void emit_divided_functions(const struct emitter *e);             /* tables, NAME_cross, NAME_locate */
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
+void emit_divided_functions(const struct emitter *e);             /* tables, NAME_cross, NAME_locate */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
 void emit_pass_breakpoint(const struct emitter *e);              /* NAME_cross */
 void emit_locate(const struct emitter *e);                       /* NAME_locate, by the series */
+int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
 
 /* ---- emit_passage.c: from one crossing to the next by collocation ---- */
 
@@ -428,18 +435,14 @@ void emit_passage(const struct emitter *e);                      /* NAME_left, N
 bool meets_contacts(const struct emitter *e);
 int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
 void emit_event_tables(const struct emitter *e);
-void emit_event_functions(const struct emitter *e);              /* NAME_from, NAME_again, NAME_instant */
-void emit_event_locate(const struct emitter *e);
-/* locals of a search: work, splits, from, at */
-void emit_event_room(const struct emitter *e, const char *indent, const char *y, const char *rest, const char *c,
-		     const char *contact);
-void emit_divided_bound(const struct emitter *e);                 /* in NAME_renew: it serves up to a crossing */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 
 bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
 void emit_over_members(const struct emitter *e);
-void emit_over_step(const struct emitter *e);
+/* s->y: the state `theta` after the start, by Horner's rule; what rounding took at the start is in `rest`, with %d */
+void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
+void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
 void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */
 void emit_over_run(const struct emitter *e);                      /* in NAME_run: what goes by blocks */
 

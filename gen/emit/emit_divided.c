@@ -108,7 +108,7 @@ void emit_pass_breakpoint(const struct emitter *e)
 	       "}\n");
 }
 
-static int most_changes(const struct expansion *x)
+int most_changes(const struct expansion *x)
 {
 	int most = 1;
 	for (int i = 0; i < x->expressions; i++)
@@ -147,12 +147,6 @@ void emit_locate(const struct emitter *e)
 void emit_divided_functions(const struct emitter *e)
 {
 	emit_divided_tables(e);
-	if (meets_contacts(e)) {
-		emit_event_tables(e);
-		emit_event_functions(e);
-		emit_event_locate(e);
-		return;
-	}
 	emit_pass_breakpoint(e);
 	emit_locate(e);
 }
@@ -162,44 +156,9 @@ void emit_divided_start(const struct emitter *e, const char *contact, const char
 	if (!is_divided(e))
 		return;
 	say(e, "%sif (!%s.placed)\n"
-	       "%s    $n_locate(s, %s&%s);\n", indent, contact, indent, e->system->inputs ? "u, " : "", contact);
-	if (!e->model->truncation.adaptive || contact[0] != 's')
-		say(e, "%s%s.crossings = 0;\n", indent, contact);
-}
-
-static void emit_event_bound(const struct emitter *e)
-{
-	say(e, "    if (s->valid) {  /* up to an event */\n");
-	emit_event_room(e, "        ", "s->y", "s->rest", "s->series[0]", "&s->contact");
-	say(e, "        s->valid = (int)pl_events_end(&$n_events, &at, (double)s->valid, &splits);\n"
-	       "        if (s->valid)\n"
-	       "            s->contact.last.expression = -1;\n"
-	       "    }\n");
-}
-
-void emit_divided_bound(const struct emitter *e)
-{
-	if (!is_divided(e))
-		return;
-	if (meets_contacts(e)) {
-		emit_event_bound(e);
-		return;
-	}
-	say(e, "    if (s->valid) {  /* up to a crossing */\n"
-	       "        double work[PL_DIVIDED_WORK(%d)], next;\n"
-	       "        pl_crossing crossing = s->contact.last;\n"
-	       "        int splits = %d;\n"
-	       "        if (pl_divided_left(&$n_divided, s->series[0], terms, s->contact.interval, &crossing)) {\n"
-	       "            s->valid = 0;\n"
-	       "        } else {\n"
-	       "            next = pl_divided_next(&$n_divided, s->series[0], terms, s->contact.interval,\n"
-	       "                (double)s->valid, &splits, &crossing, work);\n"
-	       "            if (splits < 0 || (next >= 0.0 && next < (double)s->valid))\n"
-	       "                s->valid = splits < 0 ? 0 : (int)next;\n"
-	       "        }\n"
-	       "        if (s->valid)\n"
-	       "            s->contact.last.expression = -1;\n"
-	       "    }\n", expansion(e)->order, MAX_SPLITS);
+	       "%s    $n_locate(s, %s&%s);\n"
+	       "%s%s.crossings = 0;\n", indent, contact, indent, e->system->inputs ? "u, " : "", contact, indent,
+	    contact);
 }
 
 void emit_divided_questions(const struct emitter *e)

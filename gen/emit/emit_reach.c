@@ -57,11 +57,6 @@ const char *measured_columns(const struct emitter *e)
 	return measured ? spell(e, "$N_STATES + %d", measured) : spell(e, "$N_STATES");
 }
 
-static const char *tolerance_text(const struct emitter *e)
-{
-	return shortest(round_rational(truncation(e)->tolerance));
-}
-
 /* ---- what counts as the size of a state ---- */
 
 /* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
@@ -118,8 +113,10 @@ bool shares_kinds(const struct emitter *e)
 
 /* ---- the last terms ---- */
 
-static void emit_reach_tables(const struct emitter *e)
+void emit_reach_tables(const struct emitter *e)
 {
+	if (!truncation(e)->adaptive || e->system->inputs)
+		return;
 	int order = order_of(e), most = most_served(e);
 	const char *last = "", *before = "";
 	mpq_t bound, steps;
@@ -180,174 +177,14 @@ void emit_series_remainder(const struct emitter *e)
 	emit_remainder(e, REMAINDERS);
 }
 
-/* ---- steps by tolerance ---- */
+/* ---- what the runtime is told ---- */
 
-static void emit_part(const struct emitter *e)
+void emit_reach_sizes(const struct emitter *e)
 {
-	int order = order_of(e);
-	const char *tolerance = tolerance_text(e);
-	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
-	       "static double $n_part(const $n *s, const double c[%d][$c])\n"
-	       "{\n"
-	       "    double last[%d], before[%d], part = 1.0;\n"
-	       "    int halvings = 0;\n"
-	       "    $n_remainders(s, c, last, before);\n"
-	       "    for (; halvings < 60 && !(last[0] + last[1] + last[2] <= %s &&\n"
-	       "            before[0] + before[1] + before[2] <= %s); halvings++) {\n"
-	       "        part *= 0.5;\n", order + 1, REMAINDERS, REMAINDERS, tolerance, tolerance);
-	for (int j = 0; j < REMAINDERS; j++)
-		say(e, "        last[%d] *= %s;\n"
-		       "        before[%d] *= %s;\n", j, shortest(ldexp(1, 2 * j - order)), j,
-		    shortest(ldexp(1, 2 * j + 1 - order)));
-	say(e, "    }\n"
-	       "%s"
-	       "    return halvings < 60 ? part : 0.0;\n"
-	       "}\n", !has_unseen(e) ? "" : spell(e, "    for (; halvings < 60 && !$n_shows(c, part); halvings++)\n"
-						      "        part *= 0.5;\n"));
-}
-
-/* The last two coefficients, state by state: what follows waits for it */
-static void emit_written_remainder(const struct emitter *e)
-{
-	int order = order_of(e), states = e->system->states + e->step->expansion->measured;
-	for (int i = 0; i < states; i++)
-		say(e, "    const double unit%d = s->unit[%d] != 0.0 ? s->unit[%d] : $n_unit(s, %d);\n", i, i, i, i);
-	for (int i = 0; i < states; i++)
-		say(e, "    const double p%d = pl_magnitude(s->series[%d][%d]) * unit%d, "
-		       "q%d = pl_magnitude(s->series[%d][%d]) * unit%d;\n", i, order, i, i, i, order - 1, i, i);
-	const char *last = "p0", *before = "q0";
-	for (int i = 1; i < states; i++) {
-		say(e, "    const double last%d = p%d > %s ? p%d : %s;\n"
-		       "    const double before%d = q%d > %s ? q%d : %s;\n", i, i, last, i, last, i, i, before, i,
-		    before);
-		last = format("last%d", i);
-		before = format("before%d", i);
-	}
-	say(e, "    const double last = %s, before = %s;\n"
-	       "    int m = s->valid;\n", last, before);
-}
-
-/* What precedes a series has shown that its last terms tell what follows. With inputs nothing has. */
-static void emit_steps_served(const struct emitter *e)
-{
-	if (e->system->inputs) {
-		say(e, "\n/* Steps that the series serves: 1, the samples to come are not known; 0: not even that */\n"
-		       "static int $n_reach(const $n *s)\n"
-		       "{\n"
-		       "    return $n_part(s, s->series) >= 1.0;\n"
-		       "}\n");
-		return;
-	}
-	int order = order_of(e);
-	say(e, "\n/* 1 over the largest size of a state so far, or where it has always been 0 over what it gains */\n"
-	       "static double $n_unit(const $n *s, int i)\n"
-	       "{\n"
-	       "    const double one = pl_magnitude(s->series[1][i]), two = pl_magnitude(s->series[2][i]);\n"
-	       "    const double size = one > two ? one : two;\n"
-	       "    return s->unit[i] != 0.0 ? s->unit[i] : %s;\n"
-	       "}\n"
-	       "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
-	       "static int $n_reach(const $n *s)\n"
-	       "{\n", one_over(e, "size", "1.0"), EXPANSION_SERVES);
-	if (e->system->states + e->step->expansion->measured <= WRITTEN_STATES)
-		emit_written_remainder(e);
-	else
-		say(e, "    double last = 0.0, before = 0.0;\n"
-		       "    int i, m = s->valid;\n"
-		       "    for (i = 0; i < %s; i++) {\n"
-		       "        const double unit = $n_unit(s, i), p = pl_magnitude(s->series[%d][i]) * unit,\n"
-		       "            q = pl_magnitude(s->series[%d][i]) * unit;\n"
-		       "        last = p > last ? p : last;\n"
-		       "        before = q > before ? q : before;\n"
-		       "    }\n", measured_columns(e), order, order - 1);
-	say(e, "    while (m < %d && last <= $n_last[m] && before <= $n_before_last[m])\n"
-	       "        m++;\n"
-	       "    while (m > 0 && !(last <= $n_last[m - 1] && before <= $n_before_last[m - 1]))\n"
-	       "        m--;\n"
-	       "%s"
-	       "    return m;\n"
-	       "}\n", EXPANSION_SERVES,
-	    !has_unseen(e) ? "" : spell(e, "    while (m > 0 && !$n_shows(s->series, (double)m))\n"
-					   "        m /= 2;\n"));
-}
-
-/* A first series may say nothing of what comes: x'' + x^3 = t^5 from rest has one term up to t^22. The equations do, at
- * its end: what lacks at P + 1 lacks P + 1 times in the slope there. What rounding may take from the slope of a
- * state is counted by the largest of all. */
-static void emit_agrees(const struct emitter *e)
-{
-	int order = order_of(e);
-	mpq_t bound, times;
-	mpq_inits(bound, times, NULL);
-	mpq_set_si(times, order, 1);
-	mpq_mul(bound, truncation(e)->tolerance, times);
-	say(e, "\n/* Whether the series c has at its end, size h later, the slope that the equations have there:\n"
-	       " * d is the series from there on */\n"
-	       "static int $n_agrees(const $n *s, const double c[%d][$c], const double d[%d][$c],\n"
-	       "    double size)\n"
-	       "{\n"
-	       "    double most = 0.0;\n"
-	       "    int i, k;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        most = pl_magnitude(d[0][i]) > most ? pl_magnitude(d[0][i]) : most;\n"
-	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        double slope = 0.0, large = pl_magnitude(d[0][i]);\n"
-	       "        for (k = %d; k > 0; k--)\n"
-	       "            slope = slope * size + (double)k * c[k][i];\n"
-	       "        large = s->scale[i] > large ? s->scale[i] : large;\n"
-	       "%s"
-	       "        if (!(pl_magnitude(slope - d[1][i]) * size <= %s * large + %s * most))\n"
-	       "            return 0;\n"
-	       "    }\n"
-	       "    return 1;\n"
-	       "}\n", order + 1, order + 1, order,
-	    !shares_kinds(e) ? "" : "        if (s->unit[i] > 0.0 && large * s->unit[i] < 1.0)\n"
-				    "            large = 1.0 / s->unit[i];\n",
-	    shortest(round_rational(bound)),
-	    e->model->asked.single ? "1e-6" : "1e-15");
-	mpq_clears(bound, times, NULL);
-}
-
-/* ---- fixed order ---- */
-
-/* Of terms that are 1 at h: at a part of it size^P and size^(P - 1) of that */
-static void emit_is_accurate(const struct emitter *e)
-{
-	int order = order_of(e);
-	const char *tolerance = tolerance_text(e);
-	bool part = has_offset(e);
-	say(e, "\n/* Whether the last two terms%s are within the tolerance */\n"
-	       "static int $n_is_accurate(const $n *s, const double c[%d][$c]%s)\n"
-	       "{\n"
-	       "    double last[1], before[1]%s;\n",
-	    part ? ", at this part of a step," : "", order + 1, part ? ", double size" : "",
-	    part ? ", power = size" : "");
-	if (part)
-		say(e, "    int k;\n");
-	say(e, "    $n_remainder(s, c, last, before);\n");
-	if (part)
-		say(e, "    for (k = 2; k < %d; k++)\n"
-		       "        power *= size;\n"
-		       "    return last[0] * (power * size) <= %s && before[0] * power <= %s;\n", order, tolerance,
-		    tolerance);
-	else
-		say(e, "    return last[0] <= %s && before[0] <= %s;\n", tolerance, tolerance);
-	say(e, "}\n");
-}
-
-void emit_validity(const struct emitter *e)
-{
-	if (watches(e)) {
-		emit_remainder(e, 1);
-		emit_is_accurate(e);
-	}
-	if (!truncation(e)->adaptive)
-		return;
-	if (!e->system->inputs)
-		emit_reach_tables(e);
-	emit_series_remainder(e);
-	emit_shows(e);
-	emit_part(e);
-	emit_steps_served(e);
-	emit_agrees(e);
+	say(e, "#define PL_TOLERANCE %s\n"
+	       "#define PL_NOW y\n", shortest(round_rational(truncation(e)->tolerance)));
+	if (shares_kinds(e))
+		say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
+	if (truncation(e)->adaptive && has_unseen(e))
+		emit_unseen_sizes(e);
 }

@@ -339,30 +339,6 @@ bool is_written_out(const struct emitter *e, int degree)
 	return e->system->states * degree <= WRITTEN_OUT;
 }
 
-void emit_column_scales(const struct emitter *e)
-{
-	int columns = expansion(e)->measured;
-	if (columns)
-		say(e, "    for (i = $N_STATES; i < $N_STATES + %d; i++)\n"
-		       "        if (pl_magnitude(s->series[0][i]) > s->scale[i]) {\n"
-		       "            s->scale[i] = pl_magnitude(s->series[0][i]);\n"
-		       "            s->unit[i] = 1.0 / s->scale[i];\n"
-		       "        }\n", columns);
-}
-
-void emit_series_scales(const struct emitter *e, const char *indent)
-{
-	if (has_floors(e))
-		say(e, "%sif ($n_floor[i] > 0.0) {\n"
-		       "%s    s->scale[i] = pl_magnitude(s->y[i]) + $n_floor[i];\n"
-		       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
-		       "%s} else ", indent, indent, indent, indent);
-	say(e, "%sif (pl_magnitude(s->y[i]) > s->scale[i]) {\n"
-	       "%s    s->scale[i] = pl_magnitude(s->y[i]);\n"
-	       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
-	       "%s}\n", has_floors(e) ? "" : indent, indent, indent, indent);
-}
-
 const char *plus(const char *sum, const char *term)
 {
 	return !term ? sum : *sum ? format("(%s + %s)", sum, term) : term;

@@ -203,6 +203,24 @@ void emit_shows(const struct emitter *e)
 		       "}\n");
 }
 
+/* ---- what reach.h is told ---- */
+
+void emit_unseen_sizes(const struct emitter *e)
+{
+	const double rise = 0.5 * unseens(e)->order;
+	say(e, "#define PL_HIDDEN %d\n"
+	       "#define PL_BEATS %s\n"
+	       "#define PL_RISES %s\n"
+	       "#define PL_RISES_FACTOR %s\n", traces(e) ? unseens(e)->unseens : 0,
+	    crowds(e) ? crowded_length(e, rise) : "0.0", shortest(rise), shortest(exp(rise)));
+}
+
+void emit_hidden_table(const struct emitter *e)
+{
+	if (traces(e))
+		emit_unseen_table(e, "hidden", true);
+}
+
 /* ---- along a step of the collocation ---- */
 
 /* node[] so many h after the internal step's start, where conditions on t hold as they do at `inside` */

@@ -24,22 +24,29 @@ struct code *code_of_text(struct place at, const char *text)
 
 struct printed { const struct step *step; char *text; size_t length; };
 
+/* Another text made of one, which is freed */
+static char *rewritten(char *text, void (*print)(FILE *to, const char *text))
+{
+	char *other = NULL;
+	size_t length = 0;
+	FILE *to = open_memstream(&other, &length);
+	need_memory(to);
+	print(to, need_memory(text));
+	fclose(to);
+	free(text);
+	return need_memory(other);
+}
+
 static char *text_of_step(const struct step *step, bool rhs)
 {
-	char *text = NULL, *single = NULL;
+	char *text = NULL;
 	size_t length = 0;
 	FILE *to = open_memstream(&text, &length);
 	need_memory(to);
 	emit_code(to, step, "", NULL, rhs);
 	fclose(to);
-	if (!step->model->asked.single)
-		return need_memory(text);
-	to = open_memstream(&single, &length);
-	need_memory(to);
-	print_single(to, text);
-	fclose(to);
-	free(text);
-	return need_memory(single);
+	text = rewritten(text, print_included);
+	return step->model->asked.single ? rewritten(text, print_single) : text;
 }
 
 struct code *code_of_step(struct place at, const struct step *step, bool rhs)

@@ -3,16 +3,15 @@
 #ifndef VARIANT_H
 #define VARIANT_H
 
-#include "plrt.h"
+#ifdef REAL_FLOAT
+#define REAL_IS_FLOAT
+#endif
+#include "real.h"
 
 #ifdef REAL_FLOAT
-typedef float real;
-typedef uint32_t real_bits;
 typedef pl_modelf real_model;
 #define OF_REAL(name) name##_float
 #else
-typedef double real;
-typedef uint64_t real_bits;
 typedef pl_model real_model;
 #define OF_REAL(name) name##_double
 #endif

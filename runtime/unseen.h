@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* unseen.h: how far a polynomial follows what its coefficients may not show, functions that are all but constant over
+ * most of their range; part of what a model's file includes for its steps.  Of the argument of each its polynomial
+ * bounds where it goes: over one length it may come nearer to where the function bends by so much as the order
+ * resolves, and then the last terms tell what follows. */
+#include "real.h"
+
+#ifndef PLRT_UNSEEN_H
+#define PLRT_UNSEEN_H
+/* exp; sinh, cosh; tanh; high powers of sin and cos; atan; what is divided by, and of log */
+enum { PL_UNSEEN_RISE, PL_UNSEEN_SPREAD, PL_UNSEEN_TURN, PL_UNSEEN_TEETH, PL_UNSEEN_ARC, PL_UNSEEN_DIVISOR };
+#endif
+
+#ifdef REAL_IS_FLOAT
+#define PL_FLAT 10      /* beyond it tanh is 1 to the last digit; */
+#define PL_GONE (-30)   /* below it exp is nothing beside whatever it stands with */
+#else
+#define PL_FLAT 20
+#define PL_GONE (-60)
+#endif
+
+/* No more than this a polynomial of this degree moves over `size`; its coefficients stand `stride` apart. */
+static real PL(moves)(const real *c, int stride, int degree, real size)
+{
+    real sum = 0;
+    int k;
+    for (k = degree * stride; k > 0; k -= stride) {
+        sum = (sum + pl_magnitude(c[k])) * size;
+    }
+    return sum;
+}
+
+/* Its bounds over `size` from its start: those of a quartic by its Bezier points, beside the most that later terms
+ * add */
+static void PL(bounds)(const real *c, int stride, int degree, real size, real bound[2])
+{
+    real p[5] = {0, 0, 0, 0, 0}, b[4], power = 1, rest = 0;
+    int k;
+    for (k = 0; k <= degree; k++) {
+        const real term = c[k * stride] * power;
+        if (k < 5) {
+            p[k] = term;
+        } else {
+            rest += pl_magnitude(term);
+        }
+        power *= size;
+    }
+    b[0] = p[0] + p[1] / 4;
+    b[1] = p[0] + (p[1] / 2 + p[2] * ((real)1 / 6));
+    b[2] = p[0] + ((real)0.75 * p[1] + p[2] / 2 + p[3] / 4);
+    b[3] = p[0] + (p[1] + p[2] + p[3] + p[4]);
+    bound[0] = bound[1] = p[0];
+    for (k = 0; k < 4; k++) {
+        bound[0] = b[k] < bound[0] ? b[k] : bound[0];
+        bound[1] = b[k] > bound[1] ? b[k] : bound[1];
+    }
+    bound[0] -= rest;
+    bound[1] += rest;
+}
+
+/* Whether a function of this kind is followed over `size`, whose argument has these coefficients: `rise` is what an
+ * exponent may gain, e^rise is `factor` */
+static int PL(follows)(const real *c, int stride, int degree, real size, int kind, real rise, real factor)
+{
+    const real start = pl_magnitude(c[0]), moves = PL(moves)(c, stride, degree, size);
+    real bound[2], near, far;
+    if (kind == PL_UNSEEN_TEETH) {
+        return moves <= rise;
+    }
+    if (moves <= (kind < PL_UNSEEN_ARC ? rise / 2 : (real)0.75 * start)) {
+        return 1;
+    }
+    PL(bounds)(c, stride, degree, size, bound);
+    near = bound[0] > 0 ? bound[0] : bound[1] < 0 ? -bound[1] : 0;
+    far = bound[1] > -bound[0] ? bound[1] : -bound[0];
+    switch (kind) {
+    case PL_UNSEEN_RISE:
+        return bound[1] <= PL_GONE || bound[1] <= c[0] + rise;
+    case PL_UNSEEN_SPREAD:
+        return far <= start + rise;
+    case PL_UNSEEN_TURN:
+        return near >= PL_FLAT || near >= start - rise / 2;
+    case PL_UNSEEN_ARC:
+        return 1 + start * start <= factor * (1 + near * near);
+    default:
+        return start <= factor * near;
+    }
+}

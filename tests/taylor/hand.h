@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* What every model by hand has before taylor.h: two states, steps by tolerance.  The model's file defines MODEL,
+ * MODEL_H, MODEL_TOLERANCE, MODEL_AT (values between steps are asked for) and MODEL_series(y, h, c). */
+#define PASTE(a, b) a##_##b
+#define JOIN(a, b) PASTE(a, b)
+#define PL(name) JOIN(MODEL, name)
+#define PL_TYPE MODEL
+#define PL_H ((real)(MODEL_H))
+#define PL_TOLERANCE ((real)(MODEL_TOLERANCE))
+#define PL_STATES 2
+#define PL_COLUMNS 2
+#define PL_MEASURED 0
+#define PL_ORDER 12
+#define PL_INPUTS 0
+#define PL_SEGMENTS 1
+#define PL_EXPRESSIONS 0
+#define PL_TERMS 0
+#define PL_CONTACTS 0
+#define PL_CHOICES 0
+#define PL_ADAPTIVE 1
+#define PL_WATCHED 0
+#define PL_REMAINDERS 3
+#define PL_KINDS 0
+#define PL_FLOORS 0
+#define PL_UNSEEN 0
+#define PL_SLOPES 0
+#define PL_OVER 1
+#define PL_PARTS 1
+#define PL_STRAIGHT 0
+#define PL_WRITTEN_OUT 0
+#define PL_SERVES 1
+#define PL_TRIES 1000
+#define PL_NOW y
+#define PL_AT MODEL_AT
+
+typedef struct MODEL {
+    real y[2], rest[2], t0;
+    uint64_t k;
+    int status, served, valid, most;
+    real series[PL_ORDER + 1][2], base[2], next[2], left[2], scale[2], unit[2];
+} MODEL;
+
+static const real PL(last)[1] = {PL_TOLERANCE}, PL(before_last)[1] = {PL_TOLERANCE};
+
+static inline void PL(expand_from)(const MODEL *s, const real u[], const real slope[], real tau, real when, int segment,
+                                   const int interval[], const real y[], real c[][2], real terms[])
+{
+    (void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
+    PL(series)(y, PL_H, c);
+}
+
+static inline void PL(pass_time)(MODEL *s, const real u[])
+{
+    (void)u;
+    s->k++;
+}
+
+#include "taylor.h"
+
+#undef PASTE
+#undef JOIN
+#undef MODEL
+#undef MODEL_H
+#undef MODEL_AT
+#undef MODEL_TOLERANCE
