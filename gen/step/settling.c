@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { MOST_IDLE = 6, MOST_STRUCK = 200 };
+enum { MOST_IDLE = 6, MOST_STRUCK = 200, MOST_SOLVED = 1000 };
 
 struct idle {                       /* an expression on a breakpoint that stands twice */
 	int expression, stick;      /* stick: the interval between */
@@ -336,17 +336,65 @@ static int closes(const struct through *t, int k, unsigned struck)
 	return known ? sign > 0 : still ? 0 : -1;
 }
 
-static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *struck)
+/* How fast it comes closer, or parts: at most */
+static double speed_of(struct through *t, const struct impact *p)
 {
-	int rounds = 0;
+	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
+	mpfi_t speed;
+	mpfi_init2(speed, t->precision);
+	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, speed);
+	mpfi_abs(speed, speed);
+	double most = mpfr_get_d(&speed->right, MPFR_RNDU);
+	mpfi_clear(speed);
+	rationals_free(row, (size_t)t->n);
+	return most;
+}
+
+/* Those that touch and have come to less than `slow` by striking each other without end rest, as the region lets them:
+ * what is left of their speeds is below half the digits. For --solution alone: a selftest compares what is listed, too,
+ * and the target lists as many impacts as it has room for. */
+static unsigned calm(struct through *t, double slow, mpfr_srcptr off)
+{
+	unsigned laid = 0;
 	for (int k = 0; k < t->s->impacts; k++) {
 		const struct impact *p = &t->s->impact[k];
+		const struct strike *strike = &p->in[t->segment];
+		int before = t->region, rest = rest_of(t->s, t->segment, p);
+		if (!touches(t, p) || interval_of(t->s, t->region, strike->expression) == rest || speed_of(t, p) > slow)
+			continue;
+		go_to(t, p, rest);
+		if (!t->s->region[t->region].possible) {        /* others hold it already */
+			through_enter(t, before);
+			continue;
+		}
+		through_note_plain(t, strike->expression, breakpoint_of(t, p), strike->upward, off);
+		laid |= 1u << k;
+	}
+	through_hold(t);
+	return laid;
+}
+
+static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *struck)
+{
+	const bool solves = t->whole->asked.solution;
+	int rounds = 0;
+	double most = 0;
+	bool calms = false;
+	for (int k = 0; k < t->s->impacts; k++) {
+		const struct impact *p = &t->s->impact[k];
+		const double slow = ldexp(most, -t->precision / 2);
 		int comes = k == begins ? 1 : touches(t, p) ? closes(t, k, *struck) : 0;
-		if (comes < 0 || rounds > MOST_STRUCK)
+		if (solves && comes != 0 && k != begins && speed_of(t, p) <= slow) {
+			calms = true;
+			continue;
+		}
+		if (comes < 0 || rounds > (solves ? MOST_SOLVED : MOST_STRUCK))
 			return unknown(t, "whether what touches comes closer");
 		if (comes == 0)
 			continue;
 		rounds++;
+		calms = false;
+		most = fmax(most, speed_of(t, p));
 		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
 		jump(t, p->in[t->segment].jumps, p->in[t->segment].jump);
 		if (p->bounces)
@@ -355,6 +403,8 @@ static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *st
 		begins = k == begins ? -1 : begins;
 		k = -1;
 	}
+	if (calms)
+		*struck &= ~calm(t, ldexp(most, -t->precision / 2), off);
 	return true;
 }
 
