@@ -186,7 +186,7 @@ static void many(void)
 #ifdef BATCH
     static real y[MADE_BATCH_ROWS * COUNT], peak[MADE_OUTPUTS * COUNT], out[40 * MADE_OUTPUTS * COUNT];
     real u[40 * INPUTS], one[MADE_STATES];
-    made_instances all;
+    static made_instances all;
     size_t j, k;
     int i;
     all.count = COUNT;
