@@ -38,6 +38,6 @@ set xlabel 'period [s]'
 set ylabel 'error of the largest displacement, relative'
 set title '100 periods, 200 Hz record band-limited to 25 Hz, damping 5 %'
 plot '$out/spectrum.csv' using 1:5 skip 1 with lines title 'ramps, peaks at samples (lfilter, Nigam and Jennings)', \\
-	'' using 1:7 skip 1 with lines title 'plgen, hold fifth, peak(x)', \\
-	'' using 1:8 skip 1 with lines title 'plgen, hold seventh, peak(x)'
+	'' using 1:8 skip 1 with lines title 'plgen, hold fifth, peak(x)', \\
+	'' using 1:9 skip 1 with lines title 'plgen, hold seventh, peak(x)'
 PLOT

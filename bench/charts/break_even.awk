@@ -4,7 +4,7 @@
 # error is at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how
 # many steps of ours the time to generate and compile is won back:
 #     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
-# ours by a tolerance have a step a unit.
+# ours by a tolerance have a step a unit. A model that generation.csv has not is left out.
 # never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
 # no setting of the rival comes to it, or none that was timed (dear), so there is nothing to win back against.
 # The cheapest of them so far
@@ -49,6 +49,7 @@ END {
 		"our_ns_per_unit,generate_and_compile_ms,break_even_units,break_even_steps,word"
 	for (m = 1; m <= model_count; m++) {
 		model = models[m]
+		if (!(model in once)) continue
 		for (r = 1; r <= rival_count[model]; r++) {
 			method = rivals[model, r]; real = real_of[method]
 			rival = model SUBSEP "rival" SUBSEP method; ours = model SUBSEP "ours" SUBSEP real

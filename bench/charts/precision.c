@@ -55,6 +55,7 @@ static const struct charted models[] = {
 	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true, false },
 	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false, false },
 	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false, true },
+	{ "half_car_lifting", "1/100", 300, 300, false, 0, ORDINARY, false, true },
 	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true, false },
 	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
 	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false, false },
@@ -157,16 +158,18 @@ static const struct ours ours[] = {
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
-/* Linear models leave nothing over but to pl; clearances are exact in every region, or else a leftover. */
+/* Linear models leave nothing over but to pl; clearances are exact in every region, or else a leftover. Of series the
+ * half car has those by tolerance, to see what they are worth where sixteen regions meet. */
 static bool applies(const struct charted *m, const struct ours *o)
 {
-	const bool piecewise = strncmp(m->name, "gear", 4) == 0;
+	const bool half_car = strcmp(m->name, "half_car_lifting") == 0,
+		piecewise = half_car || strncmp(m->name, "gear", 4) == 0;
 	if (o->modes)
 		return m->kind == LARGE;
 	if (o->over)
 		return m->kind == ORDINARY && !m->linear && !piecewise;
 	if (o->series)
-		return !m->linear && !piecewise && m->kind != LARGE;
+		return !m->linear && (half_car ? o->tolerance : !piecewise) && m->kind != LARGE;
 	return o->exact ? m->linear || piecewise : !m->linear || strcmp(o->name, "pl") == 0;
 }
 

@@ -28,6 +28,9 @@ static const struct peer peers[] = {
 	{"CVODE Adams", true, cvode_adams, "fixed-point iteration, output from its interpolant"},
 	{"CVODE BDF", true, cvode_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
 	{"exp(A h), loop", false, exponential_loop, "found once; linear, constant loads, no inputs", is_affine},
+	{"exp(A h) rounded, literals", false, exponential_literals,
+	 "as in the kept charts: correctly rounded, constants in code; linear, constant loads, no inputs",
+	 has_literals},
 };
 enum { PEERS = sizeof peers / sizeof *peers, MOST_LINES = 200 };
 /* Steps in an output, and tolerances as 10 to the minus these; fewer where there are many states */

@@ -90,13 +90,17 @@ struct peer {
 	/* false: it failed */
 	bool (*run)(double setting, double *rows);
 	const char *settings;
-	bool (*applies)(void);          /* to this model; NULL: to every one. A step of such a peer is an output */
+	/* to this model, whose scales are known; NULL: to every one. A step of such a peer is an output */
+	bool (*applies)(void);
 };
 
-/* Solvers of the kept charts: kept_dop853.c, kept_radau.c */
+/* Of the kept charts: kept_dop853.c, kept_radau.c, kept_literals.c */
 bool own_dop853(double setting, double *rows);
 bool own_radau5(double setting, double *rows);
 bool own_radau9(double setting, double *rows);
 bool own_radau13(double setting, double *rows);
+/* Phi: own + 1 rows and columns, the last entry of a state is 1: literals.c's `advance` for it, NULL where there is
+ * none */
+void *own_literals(int own, const double *Phi);
 
 #endif

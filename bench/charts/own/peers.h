@@ -352,4 +352,33 @@ static bool exponential_loop(double setting, double *rows)
 	return all_finite(y);
 }
 
+/* ---- the same as constants in code: made once, too ---- */
+
+static void (*advance)(double *z, long units, double *rows);
+
+static bool has_literals(void)
+{
+	double Phi[(N + 1) * (N + 1)];
+	void *code;
+	if (!is_affine())
+		return false;
+	exponential(history.every);
+	for (int i = 0; i <= N; i++)
+		for (int j = 0; j <= N; j++)
+			Phi[i * (N + 1) + j] = (double)propagator.E[i][j];
+	code = own_literals(N, Phi);
+	memcpy(&advance, &code, sizeof code);
+	return advance;
+}
+
+static bool exponential_literals(double setting, double *rows)
+{
+	(void)setting;
+	double z[N + 1];
+	memcpy(z, history.start, sizeof history.start);
+	z[N] = 1.0;
+	advance(z, history.units, rows);
+	return all_finite(z);
+}
+
 #endif
