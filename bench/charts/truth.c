@@ -339,9 +339,11 @@ static real extrapolate(const struct extrapolation *x, real t, real H, const rea
 				table[m][i] = table[m + 1][i] + (table[m + 1][i] - table[m][i]) * factor;
 		}
 		if (k == COLUMNS - 1)
-			for (int i = 0; i < x->size; i++)
-				error = fmaxl(error,
-				              fabsl(table[0][i] - last[i]) / (i < x->p->n ? x->scale_q : x->scale_v));
+			for (int i = 0; i < x->size && error == error; i++) {   /* until one is no number */
+				const real off = fabsl(table[0][i] - last[i]) /
+					(i < x->p->n ? x->scale_q : x->scale_v);
+				error = off <= error ? error : off;
+			}
 	}
 	memcpy(result, table[0], sizeof table[0]);
 	return error;
