@@ -829,6 +829,7 @@ void emit_tuned_at(const struct emitter *e);                      /* pass, from 
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);
+bool seen_of_modes(const struct emitter *e, const struct output *output);      /* its part of the states */
 void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);

@@ -138,7 +138,10 @@ void emit_modes(const struct emitter *e)
 	emit_square(e, "Modes from states", "to_modes", modal->to, mode_names(e));
 	emit_square(e, "States from modes", "from_modes", modal->from, e->model->state_name);
 	emit_driving(e);
-	if (modal->output)
+	bool seen = false;
+	for (int i = 0; i < e->model->outputs; i++)
+		seen = seen || seen_of_modes(e, &e->model->output[i]);
+	if (modal->output && seen)
 		emit_output_modes(e);
 	emit_dot(e);
 }

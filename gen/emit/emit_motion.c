@@ -74,20 +74,21 @@ static bool drives(const struct emitter *e, int column)
 	return any;
 }
 
-static bool load_drives(const struct emitter *e, int load)
+/* By its columns from `from` on */
+static bool load_drives(const struct emitter *e, int load, int from)
 {
 	bool any = false;
 	int first = 0;
 	for (int l = 0; l < load; l++)
 		first += e->system->load[l].columns;
-	for (int j = 0; j < e->system->load[load].columns; j++)
+	for (int j = from; j < e->system->load[load].columns; j++)
 		any = any || drives(e, first + j);
 	return any;
 }
 
 bool motion_reads_load(const struct emitter *e, int load)
 {
-	return load_drives(e, load) || reads_of_motion(e).load[load];
+	return load_drives(e, load, 0) || reads_of_motion(e).load[load];
 }
 
 /* ---- states and coordinates in loops ---- */
@@ -282,8 +283,11 @@ static void emit_known_loads(const struct emitter *e, const struct reads *r)
 {
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads), time = r->time;
 	for (int l = 0; l < e->system->loads; l++) {
-		wanted[l] = r->load[l] || load_drives(e, l);
-		time = time || (wanted[l] && e->system->load[l].powers > 1);
+		const struct load *load = &e->system->load[l];
+		/* of a constant and t, the constant alone may drive */
+		const bool constant = is_polynomial(load->wave) && load->columns == 2 && !load_drives(e, l, 1);
+		wanted[l] = r->load[l] || load_drives(e, l, 0);
+		time = time || (wanted[l] && load->powers > 1 && (r->load[l] || !constant));
 	}
 	if (time)
 		say(e, "    const double t = $n_time(s) + tau;\n");

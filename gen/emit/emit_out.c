@@ -104,7 +104,7 @@ static double output_factor(const struct output *output, mpq_srcptr factor)
 }
 
 /* Its part of the states is a row over the modes. */
-static bool seen_of_modes(const struct emitter *e, const struct output *output)
+bool seen_of_modes(const struct emitter *e, const struct output *output)
 {
 	const struct model *model = e->model;
 	bool any = false;

@@ -54,13 +54,14 @@ static void emit_rates(const struct emitter *e)
 	}
 	say(e, "    (void)size;\n"
 	       "    (void)s;\n"
+	       "%s"
 	       "}\n"
 	       "\n/* Their product with a length in h, the larger one: what moves to and fro bounds a series less */\n"
 	       "static double $n_product(const double rates[2], double length)\n"
 	       "{\n"
 	       "    const double dt = length * $N_H, decay = rates[0] * dt, turn = 0.5625 * rates[1] * dt * dt;\n"
 	       "    return turn > decay * decay ? pl_root(turn, 2) : decay;\n"
-	       "}\n");
+	       "}\n", unread_samples(e));
 }
 
 /* (tolerance / last term)^(1 / order), and the same of the one before; where they are 0, or nearly, of what stands in

@@ -119,7 +119,7 @@ batch_add() {
 	whole=$id
 	code="$id.c"
 	instead=$(head_of "$spec" instead)
-	grep -v '^need' "$spec" | sed "$instead" >"$id.free.spec"
+	grep -v '^need' "$spec" | sed "${instead:+/^tunable /d; }$instead" >"$id.free.spec"
 	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead}${beside:+ --beside} in
 		*--real*|*--reduce*|*--modes*|*--need*|*--instead*|*--beside)
 			whole=w$id

@@ -494,10 +494,12 @@ static void drive_equations(void)
 			}
 		}
 		sum[i] = JOIN("@ + @", sum[i], f);
-		if (!integrates[p] && chance(92))
+		const bool both_ways = !integrates[p] && chance(92);
+		if (both_ways)
 			sum[p] = motion(i) == motion(p) ? JOIN("@ - (@)", sum[p], f) : JOIN("@ - @*(@)", sum[p],
 				same(text("%.10g", motion(i) / motion(p))), f);
-		if (inners < 4 && !strstr(f.c, "top[")) {
+		/* where nothing acts back, positions are kept as written: what is between has their rounding */
+		if (both_ways && inners < 4 && !strstr(f.c, "top[")) {
 			const struct both seen = chance(50) ? d : f;
 			add(&spec_inner, text("output inner%d = %s\n", inners, seen.spec));
 			add(&c_inner, text("\tout[%d] = %s;\n", inners++, seen.c));
