@@ -55,7 +55,7 @@ static void PL(again)(const void *from, const int *interval, const real *y, real
                     (real (*)[PL_COLUMNS])c, terms);
 }
 
-static void PL(watch)(PL(piece) *p, PL(contact) *contact)
+static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
 {
     static const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
     pl_instant *at = &p->at;
@@ -171,7 +171,7 @@ static inline int PL(status_of)(const PL(piece) *p)
 #endif
 
 /* Where the search gave up: what is not finite may be why. */
-static int PL(gave_up)(const PL(piece) *p)
+static PL_APART int PL(gave_up)(const PL(piece) *p)
 {
     return PL_TOO_MANY_EVENTS | pl_not_finite(p->c[0], (PL_ORDER + 1) * PL_COLUMNS) | PL(status_of)(p);
 }
