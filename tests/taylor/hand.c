@@ -44,20 +44,20 @@ static void pendulum_series(const real y[], real h, real c[][2])
 #define MODEL_H 0.125
 #define MODEL_AT 1
 #define MODEL_TOLERANCE (16 * REAL_EPSILON)
-#include "hand.h"
+#include "written.h"
 
 #define MODEL pendulum
 #define MODEL_H 0.125
 #define MODEL_AT 1
 #define MODEL_TOLERANCE (16 * REAL_EPSILON)
-#include "hand.h"
+#include "written.h"
 
 #define MODEL coarse
 #define coarse_series pendulum_series
 #define MODEL_H 16
 #define MODEL_AT 0
 #define MODEL_TOLERANCE 1e-4
-#include "hand.h"
+#include "written.h"
 
 static const double epsilon = (double)REAL_EPSILON;
 
