@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the folder CORPUS, then the specs that
+# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the file CORPUS, then the specs that
 # GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus,
 # and for each block of seeds.  PLGEN is built with sanitizers; what it emits is compiled to be run, every third with
 # all warnings as errors and sanitizers; with MERGE=1 or LONG=1 in the environment all, by gcc and clang in turn; and
@@ -43,11 +43,12 @@ cp -R "$source/tests/fuzz/corpus/parts" .
 # the corpus, in one batch
 if [ -n "$corpus" ]; then
 	batch_new
-	names=
-	for spec in "$corpus"/*.spec; do
-		name=$(basename "$spec" .spec)
-		names="$names $name"
-		cp "$spec" "$name.spec"
+	# a blank line before the next is not part of a spec
+	awk '/^=== / { if (name) close(name); name = $2 ".spec"; blank = ""; print $2; next }
+		name && /^$/ { blank = blank "\n"; next }
+		name { printf "%s", blank >name; blank = ""; print >name }' "$corpus" >names
+	names=$(cat names)
+	for name in $names; do
 		batch_add "c_$name" "$name.spec"
 	done
 	batch_build
