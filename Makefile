@@ -103,8 +103,8 @@ bench: tests
 	sh bench/loads.sh $(BUILD)
 	sh bench/spectrum.sh $(BUILD)
 
-# Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
-# quick: 4.
+# Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. Half an
+# hour, quick less: doc/performance.md.
 charts charts-quick: tests
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)
