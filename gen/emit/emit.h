@@ -366,11 +366,10 @@ bool has_unseen(const struct emitter *e);
 bool traces(const struct emitter *e);                            /* some of it by its argument */
 bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
 void emit_shows(const struct emitter *e);                        /* NAME_shows, of a series */
-void emit_shows_along(const struct emitter *e);                  /* NAME_shows_along, of a step by collocation */
 void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
 void emit_hidden_table(const struct emitter *e);
-/* C: that it does not */
-const char *shows_along(const struct emitter *e);
+void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
+const char *crowded_steps(const struct emitter *e);              /* C: how long, in h, such a step is at most */
 
 /* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
@@ -427,9 +426,11 @@ void emit_pass_breakpoint(const struct emitter *e);              /* NAME_cross *
 void emit_locate(const struct emitter *e);                       /* NAME_locate, by the series */
 int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
 
-/* ---- emit_passage.c: from one crossing to the next by collocation ---- */
+/* ---- emit_passage.c: what passage.h is told ---- */
 
-void emit_passage(const struct emitter *e);                      /* NAME_left, NAME_pass, ...; nothing without them */
+void emit_passing_table(const struct emitter *e);
+void emit_passage_limits(const struct emitter *e);
+
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 
 bool meets_contacts(const struct emitter *e);
@@ -451,47 +452,21 @@ void emit_over_run(const struct emitter *e);                      /* in NAME_run
 /* So many coordinates that stages are solved by their modes, with the Jacobian of the step's start */
 bool splits(const struct emitter *e);
 bool motion_reads_load(const struct emitter *e, int load);
-void emit_motion(const struct emitter *e);                        /* NAME_known, NAME_linearize */
+void emit_motion(const struct emitter *e);      /* NAME_known, NAME_linearize, NAME_forces, NAME_watch, NAME_trace */
 int  known_values(const struct emitter *e);                       /* what is known of a time; 0: nothing is read */
-/* `inside`: after now, inside the step */
-const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node);
-const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left);
-const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
-			   const char *slope);
-/* $n_watch: what chooses formulas into value, the sizes of what is added up there into terms */
-const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms);
-bool watch_reads_known(const struct emitter *e);                 /* more than the state */
-const char *trace_call(const struct emitter *e, const char *node, const char *y, const char *value);
+bool watch_reads_known(const struct emitter *e);                 /* more than the state; */
 bool trace_reads_known(const struct emitter *e);
-/* The intervals of the expressions, where there are some: a parameter, an argument, a local */
-const char *interval_parameter(const struct emitter *e);
-const char *interval_argument(const struct emitter *e);
-const char *current_intervals(const struct emitter *e);
-/* Samples at the start and slopes, as the functions of an internal step take them and are handed them */
-const char *samples_parameter(const struct emitter *e);
-const char *unread_samples(const struct emitter *e);             /* of that parameter; "" */
-const char *samples_argument(const struct emitter *e);
-/* C that declares left and slope_of, and fills them where the internal step starts; samples are called u and slope */
-const char *start_jacobian(const struct emitter *e);
-/* C: of coordinate j the state whose derivative is its highest; of state i its coordinate, what a highest derivative
- * of 1 gains it in dt, its derivative */
-const char *highest_text(const struct emitter *e, const char *j);
-const char *coord_text(const struct emitter *e, const char *i);
-const char *kind_text(const struct emitter *e, const char *i);
-const char *moved_text(const struct emitter *e, const char *i);
-const char *speed_text(const struct emitter *e, const char *i);
-void emit_state_table(const struct emitter *e);                   /* that they read, where there is no formula */
+const char *kind_text(const struct emitter *e, const char *i);   /* C: 0 .. 2, which are measured together */
+void emit_state_table(const struct emitter *e);                   /* that it reads, where there is no formula */
 
-/* ---- emit_newton.c: Newton's method at the nodes ---- */
+/* ---- emit_newton.c: tables of a collocation ---- */
 
-int  unknowns_of_stages(const struct emitter *e);
 void emit_stage_tables(const struct emitter *e);
-void emit_newton(const struct emitter *e);                        /* NAME_iterate */
 
-/* ---- emit_switches.c: beside the collocation a series ---- */
+/* ---- emit_switches.c: what switches.h is told ---- */
 
-void emit_series_steps(const struct emitter *e);                  /* NAME_rates, NAME_product, NAME_expand_step */
-void emit_choice(const struct emitter *e);                        /* in NAME_advance: the one or the other */
+void emit_series_beside(const struct emitter *e);
+void emit_switching_limits(const struct emitter *e);
 
 /* ---- emit_collocation.c: steps by collocation ---- */
 

@@ -91,7 +91,7 @@ bool motion_reads_load(const struct emitter *e, int load)
 	return load_drives(e, load, 0) || reads_of_motion(e).load[load];
 }
 
-/* ---- states and coordinates in loops ---- */
+/* ---- states and coordinates ---- */
 
 /* All of second order: then state n + j is the velocity of coordinate j. */
 static bool all_second(const struct emitter *e)
@@ -104,21 +104,11 @@ static bool all_first(const struct emitter *e)
 	return e->system->states == e->system->n;
 }
 
-const char *highest_text(const struct emitter *e, const char *j)
-{
-	return all_first(e) ? j : all_second(e) ? format("%d + %s", e->system->n, j) : spell(e, "$n_highest[%s]", j);
-}
-
-const char *coord_text(const struct emitter *e, const char *i)
-{
-	return all_first(e) ? i : all_second(e) ? format("%s %% %d", i, e->system->n) : spell(e, "$n_coord[%s]", i);
-}
-
 /* Is a state's derivative another state? */
 static const char *is_moved(const struct emitter *e, const char *i)
 {
 	return all_second(e) ? format("%s < %d", i, e->system->n)
-			     : spell(e, "$n_highest[$n_coord[%s]] != %s", i, i);
+			     : spell(e, "$n_highest_of[$n_coord_of[%s]] != %s", i, i);
 }
 
 /* Coordinates of second order, velocities, coordinates of first order */
@@ -129,31 +119,16 @@ const char *kind_text(const struct emitter *e, const char *i)
 							    "1", is_moved(e, i), i, e->system->n);
 }
 
-const char *moved_text(const struct emitter *e, const char *i)
-{
-	return all_first(e) ? "dt" : format("%s ? dt * dt : dt", is_moved(e, i));
-}
-
-const char *speed_text(const struct emitter *e, const char *i)
-{
-	if (all_first(e))
-		return format("left[%s]", i);
-	const char *moved = is_moved(e, i), *highest = highest_text(e, coord_text(e, i));
-	if (all_second(e))
-		highest = format("%d + %s", e->system->n, i);
-	return format("%s ? s->start[%s] : left[%s]", moved, highest, coord_text(e, i));
-}
-
 void emit_state_table(const struct emitter *e)
 {
 	if (all_first(e) || all_second(e))
 		return;
 	say(e, "\n/* The state whose derivative is a coordinate's highest; the coordinate of a state */\n"
-	       "static const short $n_highest[%d] = {", e->system->n);
+	       "static const short $n_highest_of[%d] = {", e->system->n);
 	for (int j = 0; j < e->system->n; j++)
 		say(e, "%s%d", j ? ", " : "", highest_state(e->system, j));
 	say(e, "};\n"
-	       "static const short $n_coord[$N_STATES] = {");
+	       "static const short $n_coord_of[$N_STATES] = {");
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "%s%d", i ? ", " : "", e->system->coord[i]);
 	say(e, "};\n");
@@ -327,33 +302,25 @@ static void emit_known_values(const struct emitter *e, const struct reads *r)
 			say(e, "    node[%d] = %s;\n", p.param++, param_text(e, k));
 }
 
-const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node)
-{
-	const char *condition = decides(e) ? format("%s, ", inside) : "";
-	return spell(e, "$n_known(s, %s, %s%s%s%s);", tau, condition, changes(e) ? "s->leg, " : "",
-		     !e->system->inputs ? "" : e->ramps ? "start, slope, " : "u, slope, ", node);
-}
-
 static void emit_known(const struct emitter *e, const struct reads *r)
 {
 	bool drive = changes(e) && any_drive(e);
+	int known = known_places(e, r).count;
 	if (drive)
 		emit_drive_table(e);
-	say(e, "\n/* What the equations read beside the state, tau after now */\n"
-	       "static void $n_known(const $n *s, double tau, %s%s%sdouble node[%d])\n"
-	       "{\n", decides(e) ? "double inside, " : "", changes(e) ? "int segment, " : "",
-	    e->system->inputs ? "const double u[], const double slope[], " : "", known_places(e, r).count);
+	say(e, "\n/* What the equations read beside the state, tau after now; conditions on t hold as at inside */\n"
+	       "static void $n_known(const $n *s, double tau, double inside, int segment, const double u[],\n"
+	       "    const double slope[], double node[%d])\n"
+	       "{\n", known ? known : 1);
 	if (drive)
 		say(e, "    const double (*const drive)[%d] = $n_drive[segment];\n", motion(e)->columns);
 	emit_known_loads(e, r);
 	emit_known_values(e, r);
-	say(e, "    (void)s;\n"
-	       "    (void)tau;\n");
-	if (changes(e) && !drive)
-		say(e, "    (void)segment;\n");
-	if (e->system->inputs)
-		say(e, "    (void)u;\n"
-		       "    (void)slope;\n");
+	if (!known)
+		say(e, "    node[0] = 0.0;  /* nothing */\n");
+	static const char *const parameter[] = { "s", "tau", "inside", "segment", "u", "slope" };
+	for (size_t i = 0; i < sizeof parameter / sizeof *parameter; i++)
+		say(e, "    (void)%s;\n", parameter[i]);
 	say(e, "}\n");
 }
 
@@ -395,44 +362,6 @@ static bool any_known(const struct emitter *e, const struct reads *read)
 	       any_of(read->param, held_values(e->model));
 }
 
-const char *interval_parameter(const struct emitter *e)
-{
-	return is_divided(e) ? format("const int interval[%d], ", e->step->divided->expressions) : "";
-}
-
-const char *interval_argument(const struct emitter *e)
-{
-	return is_divided(e) ? "interval, " : "";
-}
-
-const char *current_intervals(const struct emitter *e)
-{
-	return is_divided(e) ? "    const int *const interval = s->contact.interval;\n" : "";
-}
-
-static const char *known_argument(const struct emitter *e, const char *node)
-{
-	return known_values(e) ? format("%s, ", node) : "";
-}
-
-static const char *known_parameter(const struct emitter *e)
-{
-	int known = known_values(e);
-	return known ? format("const double node[%d], ", known) : "";
-}
-
-const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
-			   const char *slope)
-{
-	return spell(e, "$n_linearize(%s%s%s, %s, %s);", known_argument(e, node), interval_argument(e), y, left,
-		     slope);
-}
-
-const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left)
-{
-	return spell(e, "$n_forces(%s%s%s, %s);", known_argument(e, node), interval_argument(e), y, left);
-}
-
 static bool read_known(const struct emitter *e, int count, const struct form *const *form)
 {
 	struct reads read = reads_of(e->model, count, form);
@@ -454,18 +383,6 @@ bool trace_reads_known(const struct emitter *e)
 	int count;
 	const struct form **form = unseen_forms(e, &count);
 	return read_known(e, count, form);
-}
-
-const char *trace_call(const struct emitter *e, const char *node, const char *y, const char *value)
-{
-	return spell(e, "$n_trace(%s%s%s, %s);", trace_reads_known(e) ? known_argument(e, node) : "",
-		     interval_argument(e), y, value);
-}
-
-const char *watch_call(const struct emitter *e, const char *node, const char *y, const char *value, const char *terms)
-{
-	return spell(e, "$n_watch(%s%s%s, %s, %s);", watch_reads_known(e) ? known_argument(e, node) : "",
-		     interval_argument(e), y, value, terms);
 }
 
 static struct formulas *motion_formulas(const struct emitter *e, const struct reads *r, int count,
@@ -538,96 +455,45 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	emit_formulas(f, 4);
 	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
 		say(e, "    slope[0] = 0.0;\n");
-	bool given = part == THE_EXPRESSIONS ? watch_reads_known(e)
-		     : part == THE_ARGUMENTS ? trace_reads_known(e)
-					     : known_values(e) > 0;
-	if (given && !any_known(e, &read) && !tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) &&
-	    !tape_reads(t, TAPE_TIME, -1, 1))
+	if (!any_known(e, &read) && !tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) && !tape_reads(t, TAPE_TIME, -1, 1))
 		say(e, "    (void)node;\n");
-	if (is_divided(e) && !tape_reads(t, TAPE_ABOVE, -1, -1))
+	if (!tape_reads(t, TAPE_ABOVE, -1, -1))
 		say(e, "    (void)interval;\n");
 	if (!any_of(read.state, e->system->states))
 		say(e, "    (void)y;\n");
 	say(e, "}\n");
 }
 
-static void emit_force_function(const struct emitter *e, const struct reads *r)
+static void emit_part(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	say(e, "\n/* The highest derivatives at state y */\n"
-	       "static void $n_forces(%s%sconst double y[$N_STATES], double left[%d])\n"
-	       "{\n", known_parameter(e), interval_parameter(e), motion(e)->coords);
-	emit_motion_body(e, r, THE_FORCES);
-}
-
-static void emit_linearize(const struct emitter *e, const struct reads *r)
-{
-	int entries = motion(e)->entries;
-	say(e, "\n/* The highest derivatives at state y, and their Jacobian where it is not 0 */\n"
-	       "static %svoid $n_linearize(%s%sconst double y[$N_STATES], double left[%d], double slope[%d])\n"
-	       "{\n", splits(e) ? "" : "inline ", known_parameter(e), interval_parameter(e), motion(e)->coords,
-	    entries ? entries : 1);
-	emit_motion_body(e, r, THE_SLOPES_TOO);
-}
-
-static void emit_watch(const struct emitter *e, const struct reads *r)
-{
-	int expressions = e->step->divided->expressions;
-	say(e, "\n/* The expressions that choose formulas, at state y, and the size of what they are summed from */\n"
-	       "static void $n_watch(%s%sconst double y[$N_STATES], double left[%d], double excess[%d])\n"
-	       "{\n", watch_reads_known(e) ? known_parameter(e) : "", interval_parameter(e), expressions, expressions);
-	emit_motion_body(e, r, THE_EXPRESSIONS);
-}
-
-static void emit_trace(const struct emitter *e, const struct reads *r)
-{
-	say(e, "\n/* The arguments of functions that polynomials may not show, at state y */\n"
-	       "static void $n_trace(%s%sconst double y[$N_STATES], double left[%d])\n"
-	       "{\n", trace_reads_known(e) ? known_parameter(e) : "", interval_parameter(e), e->step->unseen->unseens);
-	emit_motion_body(e, r, THE_ARGUMENTS);
+	static const struct {
+		const char *note, *name, *more;
+	} of[] = {
+		[THE_FORCES] = { "The highest derivatives at state y", "forces", "" },
+		[THE_SLOPES_TOO] = { "The highest derivatives at state y, and their Jacobian where it is not 0",
+				     "linearize", ", double slope[]" },
+		[THE_EXPRESSIONS] = { "The expressions that choose formulas, at state y, and the size of what they are "
+				      "summed from", "watch", ", double excess[]" },
+		[THE_ARGUMENTS] = { "The arguments of functions that polynomials may not show, at state y", "trace",
+				    "" }
+	};
+	bool within = part == THE_SLOPES_TOO && !splits(e);
+	say(e, "\n/* %s */\n"
+	       "static %svoid $n_%s(const double node[], const int interval[], const double y[$N_STATES],\n"
+	       "    double left[]%s)\n"
+	       "{\n", of[part].note, within ? "inline " : "", of[part].name, of[part].more);
+	emit_motion_body(e, r, part);
 }
 
 void emit_motion(const struct emitter *e)
 {
 	struct reads r = reads_of_motion(e);
-	if (known_places(e, &r).count)
-		emit_known(e, &r);
-	emit_linearize(e, &r);
+	emit_known(e, &r);
+	emit_part(e, &r, THE_SLOPES_TOO);
 	if (splits(e))
-		emit_force_function(e, &r);
+		emit_part(e, &r, THE_FORCES);
 	if (is_divided(e))
-		emit_watch(e, &r);
+		emit_part(e, &r, THE_EXPRESSIONS);
 	if (traces(e))
-		emit_trace(e, &r);
-}
-
-/* ---- for an internal step ---- */
-
-const char *samples_argument(const struct emitter *e)
-{
-	return !e->system->inputs ? "" : e->ramps ? ", start, slope" : ", u, slope";
-}
-
-const char *samples_parameter(const struct emitter *e)
-{
-	return e->system->inputs ? ", const double u[], const double slope[]" : "";
-}
-
-/* Where no force reads what is known, inputs neither */
-const char *unread_samples(const struct emitter *e)
-{
-	return e->system->inputs && known_values(e) == 0 ? "    (void)u;\n    (void)slope;\n" : "";
-}
-
-const char *start_jacobian(const struct emitter *e)
-{
-	int known = known_values(e), n = e->system->n, entries = e->step->motion->entries;
-	struct emitter here = *e;
-	here.ramps = false;
-	const char *declared = format("    double left[%d], slope_of[%d];\n", n, entries ? entries : 1);
-	if (known)
-		declared = format("%s    double node[%d];\n    %s\n", declared, known,
-				  known_call(&here, spell(e, "(s->at - (double)s->back) * $N_H"),
-					     spell(e, "((s->at - (double)s->back) + 1e-9) * $N_H"), "node"));
-	return format("%s%s    %s\n", declared, current_intervals(e),
-		      linearize_call(e, "node", "s->start", "left", "slope_of"));
+		emit_part(e, &r, THE_ARGUMENTS);
 }

@@ -110,17 +110,6 @@ static void emit_unseen_table(const struct emitter *e, const char *name, bool co
 	       "static const int $n_%s[%d][3] = {\n    %s\n};\n", name, x->unseens, text);
 }
 
-/* c: C of the first coefficient of the i-th argument */
-static void emit_each(const struct emitter *e, const char *table, const char *c, const char *stride, int degree,
-		      const char *size, double rise)
-{
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        if (!$n_follows(%s, %s, %d, %s, $n_%s[i][1], %s / (double)$n_%s[i][2], %s))\n"
-	       "            return 0;\n"
-	       "    return 1;\n"
-	       "}\n", unseens(e)->unseens, c, stride, degree, size, table, shortest(rise), table, shortest(exp(rise)));
-}
-
 static void emit_argument_functions(const struct emitter *e)
 {
 	if (!traces(e))
@@ -195,7 +184,12 @@ void emit_shows(const struct emitter *e)
 		say(e, "    if (size > %s)  /* loads that may cancel */\n"
 		       "        return 0;\n", crowded_length(e, 0.5 * order));
 	if (traces(e))
-		emit_each(e, "hidden", spell(e, "&c[0][$n_hidden[i][0]]"), spell(e, "$c"), order, "size", 0.5 * order);
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        if (!$n_follows(&c[0][$n_hidden[i][0]], $c, %d, size, $n_hidden[i][1], "
+		       "%s / (double)$n_hidden[i][2], %s))\n"
+		       "            return 0;\n"
+		       "    return 1;\n"
+		       "}\n", unseens(e)->unseens, order, shortest(0.5 * order), shortest(exp(0.5 * order)));
 	else
 		say(e, "    (void)c;\n"
 		       "    (void)size;\n"
@@ -223,66 +217,16 @@ void emit_hidden_table(const struct emitter *e)
 
 /* ---- along a step of the collocation ---- */
 
-/* node[] so many h after the internal step's start, where conditions on t hold as they do at `inside` */
-static const char *known_at(const struct emitter *e, const char *ahead, const char *inside, const char *indent)
+const char *crowded_steps(const struct emitter *e)
 {
-	struct emitter here = *e;
-	here.ramps = false;             /* samples are called u here */
-	const char *at = "(s->at - (double)s->back)";
-	return !trace_reads_known(e) ? "" : format("%s%s\n", indent, known_call(&here,
-		spell(e, "(%s + %s) * $N_H", at, ahead), spell(e, "(%s + %s) * $N_H", at, inside), "node"));
+	return crowded_length(e, 2 * e->step->collocation->stages);
 }
 
-const char *shows_along(const struct emitter *e)
-{
-	const char *samples = trace_reads_known(e) && e->system->inputs ? ", u, slope" : "";
-	const char *along = !traces(e) ? "0" : spell(e, "!$n_shows_along(s%s, size, (const double (*)[$c])poly)",
-						      samples);
-	int phase = 2 * e->step->collocation->stages;
-	return crowds(e) ? format("size > %s || %s", crowded_length(e, phase), along) : along;
-}
-
-/* Its nodes see what lies between them where an argument moves by less than would pass over it: an exponent of
- * (3 S / 2)^2 is one of exp(-z^2) for z from -3 S / 2 on, whose nodes are 3 apart. */
-void emit_shows_along(const struct emitter *e)
+void emit_arguments(const struct emitter *e)
 {
 	if (!traces(e))
 		return;
-	int s = e->step->collocation->stages, n = unseens(e)->unseens;
-	bool known = trace_reads_known(e);
-	if (!e->step->expansion) {
-		emit_moves(e);
-		emit_bounds(e);
-		emit_follows(e);
-	}
+	if (!e->step->expansion)
+		emit_argument_functions(e);
 	emit_unseen_table(e, "argument", false);
-	say(e, "\n/* ... whether the nodes of a step of `size` h show it: polynomials through the arguments there and "
-	       "at the start */\n"
-	       "static int $n_shows_along(const $n *s%s, double size, const double poly[%d][$c])\n"
-	       "{\n"
-	       "    double c[%d][%d], y[$N_STATES], value[%d];\n"
-	       "%s"
-	       "%s"
-	       "    int i, k, m;\n", known ? samples_parameter(e) : "", s + 1, s + 1, n, n, current_intervals(e),
-	    known ? format("    double node[%d];\n", known_values(e)) : "");
-	say(e, "%s"
-	       "    %s\n"
-	       "    for (m = 1; m <= %d; m++)\n"
-	       "        for (i = 0; i < %d; i++)\n"
-	       "            c[m][i] = 0.0;\n"
-	       "    for (k = 0; k < %d; k++) {\n"
-	       "%s", known_at(e, "0.0", "0.5 * size", "    "), trace_call(e, "node", "s->start", "c[0]"), s, n, s,
-	    known_at(e, spell(e, "$n_node[k] * size"), "0.5 * size", "        "));
-	say(e, "        $n_within(poly, $n_node[k], y);\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            y[i] += s->start[i];\n"
-	       "        %s\n"
-	       "        for (i = 0; i < %d; i++) {\n"
-	       "            const double slope = (value[i] - c[0][i]) / $n_node[k];\n"
-	       "            for (m = 0; m < %d; m++)\n"
-	       "                c[m + 1][i] += $n_monomial[m][k] * slope;\n"
-	       "        }\n"
-	       "    }\n"
-	       "%s", trace_call(e, "node", "y", "value"), n, s, known ? "" : "    (void)size;\n");
-	emit_each(e, "argument", "&c[0][i]", format("%d", n), s, "1.0", 2 * s);
 }

@@ -196,7 +196,7 @@ bool is_reserved(const char *name)
 
 const char *prefix_objection(const char *name)
 {
-	if (strcmp(name, "pl") == 0 || strncmp(name, "pl_", 3) == 0 || strcasecmp(name, "plrt") == 0)
+	if (strcasecmp(name, "pl") == 0 || strncmp(name, "pl_", 3) == 0 || strcasecmp(name, "plrt") == 0)
 		return "is kept for the runtime";
 	if (is_of_library(name))
 		return "is a name of the C library";

@@ -9,7 +9,7 @@
 /* numbers_S.c, made by plgen, with static tables */
 #include NUMBERS
 
-typedef long double real;
+typedef long double wide;
 #define NAMED_(prefix, table) prefix##table
 #define NAMED(prefix, table) NAMED_(prefix, table)
 #define c NAMED(PREFIX, _node)
@@ -21,9 +21,9 @@ typedef long double real;
 #define v NAMED(PREFIX, _from_mode)
 enum { S = sizeof c / sizeof *c, MODES = (S + 1) / 2 };
 
-static real power(real x, int n)
+static wide power(wide x, int n)
 {
-    real product = 1;
+    wide product = 1;
     for (int i = 0; i < n; i++)
         product *= x;
     return product;
@@ -31,7 +31,7 @@ static real power(real x, int n)
 
 /* |found - expected| in units of what rounding the numbers of a sum makes of it */
 static double worst;
-static void compare(real found, real expected, real size)
+static void compare(wide found, wide expected, wide size)
 {
     worst = worse(worst, (double)(fabsl(found - expected) / (size * (DBL_EPSILON / 2))));
 }
@@ -47,15 +47,15 @@ static void says(const char *what)
 static void nodes(void)
 {
     for (int i = 0; i < S; i++) {
-        const real x = 2 * (real)c[i] - 1;
-        real before = 1, now = x, slope_before = 0, slope = 1;
+        const wide x = 2 * (wide)c[i] - 1;
+        wide before = 1, now = x, slope_before = 0, slope = 1;
         for (int n = 1; n < S - 1; n++) {
-            const real next = ((2 * n + 1) * x * now - n * before) / (n + 1);
-            const real next_slope = ((2 * n + 1) * (now + x * slope) - n * slope_before) / (n + 1);
+            const wide next = ((2 * n + 1) * x * now - n * before) / (n + 1);
+            const wide next_slope = ((2 * n + 1) * (now + x * slope) - n * slope_before) / (n + 1);
             before = now, now = next, slope_before = slope, slope = next_slope;
         }
-        const real last = ((2 * S - 1) * x * now - (S - 1) * before) / S;
-        const real last_slope = ((2 * S - 1) * (now + x * slope) - (S - 1) * slope_before) / S;
+        const wide last = ((2 * S - 1) * x * now - (S - 1) * before) / S;
+        const wide last_slope = ((2 * S - 1) * (now + x * slope) - (S - 1) * slope_before) / S;
         compare(c[i] - (last - now) / (2 * (last_slope - slope)), c[i], c[i]);
     }
     worst = c[S - 1] == 1 ? worst : INFINITY;
@@ -67,10 +67,10 @@ static void integrals(void)
 {
     for (int i = 0; i < S; i++)
         for (int k = 1; k <= (i == S - 1 ? 2 * S - 1 : S); k++) {
-            real once = 0, twice = 0, size = 0, size_twice = 0;
+            wide once = 0, twice = 0, size = 0, size_twice = 0;
             for (int j = 0; j < S; j++) {
                 /* the node's own rounding counts too */
-                const real p = power(c[j], k - 1);
+                const wide p = power(c[j], k - 1);
                 once += A[i][j] * p;
                 twice += B[i][j] * p;
                 size += fabsl(A[i][j] * p) * k;
@@ -83,10 +83,10 @@ static void integrals(void)
     says("A and A^2 integrate powers of time, the last row up to order 2 s - 1");
     for (int i = 0; i < S; i++)
         for (int j = 0; j < S; j++) {
-            real sum = 0, size = 0;
+            wide sum = 0, size = 0;
             for (int k = 0; k < S; k++) {
-                sum += (real)A[i][k] * A[k][j];
-                size += fabsl((real)A[i][k] * A[k][j]);
+                sum += (wide)A[i][k] * A[k][j];
+                size += fabsl((wide)A[i][k] * A[k][j]);
             }
             compare(B[i][j], sum, 2 * size);
         }
@@ -98,7 +98,7 @@ static void monomials(void)
 {
     for (int i = 0; i < S; i++)
         for (int j = 0; j < S; j++) {
-            real sum = 0, size = 0;
+            wide sum = 0, size = 0;
             for (int m = 0; m < S; m++) {
                 sum += W[m][j] * power(c[i], m);
                 size += fabsl(W[m][j] * power(c[i], m)) * (m + 1);
@@ -108,29 +108,29 @@ static void monomials(void)
     says("polynomials are 1 at one node");
 }
 
-struct complex { real re, im; };
+struct complex { wide re, im; };
 
 static struct complex times(const double *a, const double *b)
 {
-    return (struct complex){(real)a[0] * b[0] - (real)a[1] * b[1], (real)a[0] * b[1] + (real)a[1] * b[0]};
+    return (struct complex){(wide)a[0] * b[0] - (wide)a[1] * b[1], (wide)a[0] * b[1] + (wide)a[1] * b[0]};
 }
 
 /* A v = z v, u A = z u, u v = 1, of a pair 2 */
 static void modes(void)
 {
     for (int k = 0; k < MODES; k++) {
-        real re = 0, im = 0, size = 0;
+        wide re = 0, im = 0, size = 0;
         for (int i = 0; i < S; i++) {
             const struct complex right = times(z[k], v[k][i]), left = times(z[k], u[k][i]);
             const struct complex one = times(u[k][i], v[k][i]);
-            real vre = 0, vim = 0, vsize = hypotl(right.re, right.im);
-            real ure = 0, uim = 0, usize = hypotl(left.re, left.im);
+            wide vre = 0, vim = 0, vsize = hypotl(right.re, right.im);
+            wide ure = 0, uim = 0, usize = hypotl(left.re, left.im);
             for (int j = 0; j < S; j++) {
-                vre += (real)A[i][j] * v[k][j][0];
-                vim += (real)A[i][j] * v[k][j][1];
+                vre += (wide)A[i][j] * v[k][j][0];
+                vim += (wide)A[i][j] * v[k][j][1];
                 vsize += fabsl(A[i][j]) * hypotl(v[k][j][0], v[k][j][1]);
-                ure += (real)A[j][i] * u[k][j][0];
-                uim += (real)A[j][i] * u[k][j][1];
+                ure += (wide)A[j][i] * u[k][j][0];
+                uim += (wide)A[j][i] * u[k][j][1];
                 usize += fabsl(A[j][i]) * hypotl(u[k][j][0], u[k][j][1]);
             }
             compare(vre, right.re, 2 * vsize);
