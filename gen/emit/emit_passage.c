@@ -23,5 +23,6 @@ void emit_passage_limits(const struct emitter *e)
 {
 	say(e, "#define PL_CHANGES %d  /* of intervals, until all of them stand */\n"
 	       "#define PL_MAX_SPLITS %d\n"
-	       "#define PL_WATCH_READS %d  /* known numbers */\n", most_changes(e->step->divided), MAX_SPLITS, watch_reads_known(e));
+	       "#define PL_WATCH_READS %d  /* known numbers */\n",
+	    most_changes(e->step->divided), MAX_SPLITS, watch_reads_known(e));
 }
