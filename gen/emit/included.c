@@ -380,7 +380,8 @@ static bool begins(const char *line, const char *with)
 	return strncmp(line, with, strlen(with)) == 0;
 }
 
-/* NULL: the line includes no algorithm */
+/* NULL: the line includes no algorithm. Before the model has said what it has (PL), it is its own header, which may be
+ * called as one of the runtime's. */
 static const char *included_by(const char *line)
 {
 	static const char include_text[] = "#include \"";
@@ -395,7 +396,7 @@ void print_included(FILE *to, const char *text)
 {
 	struct including in = { .to = to };
 	for (const char *end; *text; text = end) {
-		const char *name = included_by(text);
+		const char *name = macro_of(&in, "PL") ? included_by(text) : NULL;
 		end = next_line(text);
 		if (begins(text, "#define PL(") || begins(text, "#define REAL_IS_FLOAT") ||
 		    (begins(text, "#define PL_") && !begins(text, "#define PL_FLOAT_ONLY"))) {
@@ -426,9 +427,10 @@ static bool uses(const char *text, const char *name)
 
 bool algorithms_use(const char *text, const char *name)
 {
-	bool used = false;
+	bool used = false, told = false;
 	for (; *text && !used; text = next_line(text)) {
-		const char *header = included_by(text);
+		told = told || begins(text, "#define PL(");
+		const char *header = told ? included_by(text) : NULL;
 		for (int i = 0; header && runtime_name(i) && !used; i++)
 			used = !begins(runtime_name(i), "pl") && strstr(runtime_name(i), ".h") &&
 			       uses(runtime_text(runtime_name(i)), name);
