@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* undef.h: behind what a model's file includes for its steps: what it defines for them, and what they define, is of
- * this model alone. */
 #undef PL
 #undef PL_ADAPTIVE
+#undef PL_ALL
 #undef PL_ARGUMENTS
 #undef PL_AT
 #undef PL_BASE
@@ -12,10 +11,14 @@
 #undef PL_COLUMNS
 #undef PL_CONTACTS
 #undef PL_COORDS
+#undef PL_CORE
+#undef PL_CORE_H
 #undef PL_CORRECTION
 #undef PL_CROWDED
+#undef PL_DEGREE
 #undef PL_ENTRIES
 #undef PL_EXPRESSIONS
+#undef PL_FEW
 #undef PL_FIRST
 #undef PL_FLAT
 #undef PL_FLOORS
@@ -26,10 +29,14 @@
 #undef PL_HUGE
 #undef PL_INPUTS
 #undef PL_INTERVAL
+#undef PL_KEPT
 #undef PL_KIND
 #undef PL_KINDS
 #undef PL_KNOWN
+#undef PL_LARGE
+#undef PL_LEAN
 #undef PL_LEAST_PART
+#undef PL_LOOKS
 #undef PL_LOST
 #undef PL_MAX_EVENTS
 #undef PL_MAX_SPLITS
@@ -41,10 +48,16 @@
 #undef PL_NOTHING
 #undef PL_NOW
 #undef PL_NO_CHANGE
+#undef PL_OPEN_END
 #undef PL_ORDER
+#undef PL_OUTPUTS
 #undef PL_OVER
+#undef PL_PART
 #undef PL_PARTS
+#undef PL_PLACE
+#undef PL_RAMPS
 #undef PL_REMAINDERS
+#undef PL_RING
 #undef PL_RISE
 #undef PL_RISES
 #undef PL_RISES_FACTOR
@@ -54,6 +67,7 @@
 #undef PL_SHARE_OF_FIRST
 #undef PL_SHORTEST
 #undef PL_SHOWS
+#undef PL_SIZE
 #undef PL_SLOPES
 #undef PL_SLOPE_ROUNDED
 #undef PL_SOLVED
@@ -62,6 +76,7 @@
 #undef PL_STATES
 #undef PL_STATE_ROUNDED
 #undef PL_STRAIGHT
+#undef PL_SWAY
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE
@@ -71,6 +86,7 @@
 #undef PL_UNIT
 #undef PL_UNKNOWNS
 #undef PL_UNSEEN
+#undef PL_VECTOR
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WORTH

@@ -96,7 +96,7 @@ static void emit_names(const struct emitter *e)
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
 }
 
-static void emit_wrappers(const struct emitter *e)
+void emit_wrappers(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
 	emit_wrapper(e, "void", "init", "", "", false);
@@ -110,10 +110,7 @@ static void emit_wrappers(const struct emitter *e)
 	if (e->step->series.emitted)
 		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y",
 			     inputs ? ", u, tau, y" : ", tau, y", true);
-	if (has_jump(e))
-		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
 	emit_wrapper(e, "int", "status", "", "", true);
-	e->kind->wrappers(e);
 	if (e->ramps)
 		emit_wrapper(e, "void", "hold", ", const double *u", ", u", false);
 }
@@ -139,14 +136,13 @@ static void emit_allowed(const struct emitter *e)
 void emit_descriptor(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
-	if (e->model->delays) {
-		emit_delays(e);
-		return;
-	}
 	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
 	emit_names(e);
 	say(e, "\n");
 	emit_wrappers(e);
+	if (has_jump(e))
+		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
+	e->kind->wrappers(e);
 	say(e, "\nconst pl_model $n_model = {\n"
 	       "    PL_MODEL_VERSION, sizeof(double), \"$n\", sizeof(struct $n),\n"
 	       "    $N_STATES, $N_INPUTS, $N_OUTPUTS, $N_H,\n"

@@ -189,5 +189,5 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_peak_step(e);
 	emit_run(e);
 	emit_further_functions(e, rhs);
-	emit_descriptor(e);
+	(e->model->delays ? emit_delays : emit_descriptor)(e);
 }

@@ -556,6 +556,7 @@ void emit_phi(const struct emitter *e);
 void emit_mode_matrices(const struct emitter *e);               /* of a model of some modes: from and to all states */
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
+void emit_wrappers(const struct emitter *e);                       /* NAME_any_init and the like */
 
 /* ---- emit_large.c: the step of a large model ---- */
 
@@ -735,7 +736,6 @@ void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
 /* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
-void emit_crossing_scalars(const struct emitter *e);              /* what depends on no table: once, before those */
 void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */

@@ -531,11 +531,6 @@ static void emit_step_call(const struct emitter *part)
 
 void emit_parts_step(const struct emitter *e)
 {
-	bool swift = false;
-	for (int p = 0; p < e->step->parts; p++)
-		swift = swift || e->step->part[p]->swift;
-	if (swift)
-		emit_crossing_scalars(e);
 	for_parts(e, e->step->parts, emit_step_of_part);
 	say(e, "\n"
 	       "void $n_step(%s)\n"

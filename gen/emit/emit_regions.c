@@ -496,10 +496,8 @@ static void emit_whole_step(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
-	if (e->step->swift) {
-		emit_crossing_scalars(e);
+	if (e->step->swift)
 		emit_crossing(e);
-	}
 	if (e->step->clears)
 		emit_region_search(e);
 	say(e, "\n"

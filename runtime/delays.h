@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* delays.h: a model whose inputs act later than they are given: around its core, which has the delayed ones as inputs
+ * of their own, what keeps the samples.  Included by the file of the model, which defines before it
+ *
+ *     PL(name), PL_CORE(name)    the prefix of the model and of its core before a name
+ *     PL_TYPE                    the model, with members core, past[PL_INPUTS][PL_RING], newest, and with ramps ends
+ *     PL_STATES, PL_OUTPUTS      of both
+ *     PL_INPUTS, PL_ALL          samples that are given; inputs of the core, the delayed ones behind those
+ *     PL_PARTS                   steps of the core in one of the model
+ *     PL_RING                    samples of each input, the newest among them
+ *     PL_RAMPS                   whether some input goes straight from sample to sample
+ *     PL_AT                      whether there are values between steps; PL_CORE_H then: step of the core [s]
+ *
+ *     PL(input_of)[PL_ALL]       of each input of the core: of which sample it is,
+ *     PL(parts_ago)[PL_ALL]      how many steps of the core ago,
+ *     PL(is_ramp)[PL_ALL]        and whether it is a ramp */
+#include "real.h"
+
+static void PL(keep)(PL_TYPE *s, const real u[PL_INPUTS])
+{
+    int i;
+    s->newest = s->newest + 1 == PL_RING ? 0 : s->newest + 1;
+    for (i = 0; i < PL_INPUTS; i++) {
+        s->past[i][s->newest] = u[i];
+#if PL_RAMPS
+        s->ends[i][s->newest] = u[i];
+#endif
+    }
+}
+
+/* The sample so many steps before the newest */
+static real PL(sample)(const PL_TYPE *s, const real kept[PL_INPUTS][PL_RING], int input, int steps)
+{
+    const int at = s->newest - steps;
+    return kept[input][at < 0 ? at + PL_RING : at];
+}
+
+#if PL_RAMPS
+/* A ramp ends where PL(hold) may make the next begin anew, with a jump; delayed ones do so later. */
+static real PL(ramp_now)(const PL_TYPE *s, int i, int ago)
+{
+    const int whole = ago / PL_PARTS;
+    const real between = (real)(ago % PL_PARTS) / (real)PL_PARTS;
+    const real now = PL(sample)(s, s->ends, PL(input_of)[i], whole);
+    return between > 0 ? now + between * (PL(sample)(s, s->past, PL(input_of)[i], whole + 1) - now) : now;
+}
+
+/* Samples from which ramps of the core begin with a part of the step: u of those that do so there */
+static void PL(starts)(const PL_TYPE *s, int part, real u[PL_ALL])
+{
+    int i;
+    for (i = 0; i < PL_ALL; i++) {
+        const int ago = PL(parts_ago)[i] + PL_PARTS - part;
+        if (ago % PL_PARTS == 0 && PL(is_ramp)[i]) {
+            u[i] = PL(sample)(s, s->past, PL(input_of)[i], ago / PL_PARTS);
+        }
+    }
+}
+#endif
+
+/* Inputs of the core in a part of the step: 0 .. PL_PARTS - 1 */
+static void PL(samples)(const PL_TYPE *s, int part, real u[PL_ALL])
+{
+    int i;
+    for (i = 0; i < PL_ALL; i++) {
+        const int ago = PL(parts_ago)[i] - part;
+#if PL_RAMPS
+        if (PL(is_ramp)[i]) {
+            u[i] = PL(ramp_now)(s, i, ago + PL_PARTS - 1);
+            continue;
+        }
+#endif
+        u[i] = PL(sample)(s, s->past, PL(input_of)[i], ago > 0 ? (ago + PL_PARTS - 1) / PL_PARTS : 0);
+    }
+}
+
+/* One step of the core, with what its inputs are in this part of the step */
+static void PL(step_core)(PL_TYPE *s, int part)
+{
+    real all[PL_ALL];
+    PL(samples)(s, part, all);
+#if PL_RAMPS
+    PL(starts)(s, part, s->core.u);
+#endif
+    PL_CORE(step)(&s->core, all);
+}
+
+void PL(init)(PL_TYPE *s)
+{
+    int i, k;
+    PL_CORE(init)(&s->core);
+    for (i = 0; i < PL_INPUTS; i++) {
+        for (k = 0; k < PL_RING; k++) {
+            s->past[i][k] = 0;
+#if PL_RAMPS
+            s->ends[i][k] = 0;
+#endif
+        }
+    }
+    s->newest = 0;
+}
+
+void PL(set)(PL_TYPE *s, real t, const real y[PL_STATES])
+{
+    PL_CORE(set)(&s->core, t, y);
+}
+
+void PL(get)(const PL_TYPE *s, real y[PL_STATES])
+{
+    PL_CORE(get)(&s->core, y);
+}
+
+real PL(time)(const PL_TYPE *s)
+{
+    return PL_CORE(time)(&s->core);
+}
+
+int PL(status)(const PL_TYPE *s)
+{
+    return PL_CORE(status)(&s->core);
+}
+
+void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS])
+{
+    PL_CORE(out)(&s->core, out);
+}
+
+#if PL_RAMPS
+void PL(hold)(PL_TYPE *s, const real u[PL_INPUTS])
+{
+    real all[PL_ALL];
+    int i;
+    for (i = 0; i < PL_INPUTS; i++) {
+        if (PL(is_ramp)[i]) {
+            s->past[i][s->newest] = u[i];
+        }
+    }
+    PL(samples)(s, PL_PARTS - 1, all);
+    PL(starts)(s, PL_PARTS, all);
+    for (i = 0; i < PL_INPUTS; i++) {
+        all[i] = u[i];
+    }
+    PL_CORE(hold)(&s->core, all);
+}
+#endif
+
+void PL(step)(PL_TYPE *s, const real u[PL_INPUTS])
+{
+    int part;
+    PL(keep)(s, u);
+    for (part = 0; part < PL_PARTS; part++) {
+        PL(step_core)(s, part);
+    }
+}
+
+void PL(run)(PL_TYPE *s, size_t n, const real *u, real *out)
+{
+    for (; n > 0u; n--, u += PL_INPUTS) {
+        PL(step)(s, u);
+        if (out != NULL) {
+            PL(out)(s, out);
+            out += PL_OUTPUTS;
+        }
+    }
+}
+
+#if PL_AT
+void PL(at)(const PL_TYPE *s, const real u[PL_INPUTS], real tau, real y[PL_STATES])
+{
+    PL_TYPE now = *s;
+    real all[PL_ALL];
+    int part;
+    PL(keep)(&now, u);
+    for (part = 0; part < PL_PARTS - 1 && tau > PL_CORE_H; part++, tau -= PL_CORE_H) {
+        PL(step_core)(&now, part);
+    }
+    PL(samples)(&now, part, all);
+#if PL_RAMPS
+    PL(starts)(&now, part, now.core.u);
+#endif
+    PL_CORE(at)(&now.core, all, tau, y);
+}
+#endif
+
+#include "undef.h"
