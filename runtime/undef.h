@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
+/* undef.h: behind what a model's file includes for its steps: what it defines for them, and what they define, is of
+ * this model alone. */
 #undef PL
 #undef PL_ADAPTIVE
 #undef PL_ALL
