@@ -3,6 +3,7 @@
  * of their own, what keeps the samples.  Included by the file of the model, which defines before it
  *
  *     PL(name), PL_CORE(name)    the prefix of the model and of its core before a name
+ *     PL_SINGLE                  1: in float
  *     PL_TYPE                    the model, with members core, past[PL_INPUTS][PL_RING], newest, and with ramps ends
  *     PL_STATES, PL_OUTPUTS      of both
  *     PL_INPUTS, PL_ALL          samples that are given; inputs of the core, the delayed ones behind those
@@ -14,7 +15,7 @@
  *     PL(input_of)[PL_ALL]       of each input of the core: of which sample it is,
  *     PL(parts_ago)[PL_ALL]      how many steps of the core ago,
  *     PL(is_ramp)[PL_ALL]        and whether it is a ramp */
-#include "real.h"
+#include "numbers.h"
 
 static void PL(keep)(PL_TYPE *s, const real u[PL_INPUTS])
 {

@@ -35,7 +35,7 @@
  *     PL(advance)(which, x, end) e^{A h} x
  *     PL(turn_once)(which, x, d), PL(move)(which, x, s, gain)    h A x; e^{A h s} x - x, by its Taylor polynomial
  *     PL(size_of)(x)             the sum of |x| */
-#include "real.h"
+#include "numbers.h"
 
 /* Of a step, in one region */
 typedef struct PL(stretch) {

@@ -6,9 +6,9 @@
  *     PL_NOW                     the member whose sizes are taken
  *     PL_KINDS, PL_KIND(i)       whether states of one kind are measured together; of which one state i is, 0 .. 2
  *     PL_FLOORS                  whether PL(floor)[] is there: what counts beside the size that a state has now */
-#include "real.h"
+#include "numbers.h"
 
-#ifdef REAL_IS_FLOAT
+#if PL_SINGLE
 #define PL_TRACE ((real)1e-25) /* the first trace of a pulse that is to come is measured by it */
 #define PL_UNIT ((real)1e25)   /* 1 over it */
 #else

@@ -5,6 +5,7 @@
  *
  *     PL(name), PL_TYPE          the model's prefix before a name; its type, with the members start, poly, gain, at,
  *                                at_low, size, per, want, scale, unit, back, stop, ready beside y, rest, t0, k, status
+ *     PL_SINGLE                  1: in float
  *     PL_STATES, PL_COORDS       coordinates are of first or second order: states are these, then the velocities
  *     PL_STAGES, PL_MODES        of the collocation; by how many modes of its stages they are solved, 0: all at once
  *     PL_ENTRIES                 of the Jacobian that are not 0
@@ -29,7 +30,7 @@
  *     PL(measure)(s)                                            scale and unit, from s->start
  *
  * Each is a copy of its own, whose numbers of states are constants; no function is called by a pointer. */
-#include "real.h"
+#include "numbers.h"
 
 #ifndef PLRT_RADAU_H
 #define PLRT_RADAU_H
@@ -50,7 +51,7 @@ enum { PL_BY_SERIES = -1, PL_NO_MOVE = -2, PL_ANOTHER = -3 };
 enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #endif
 
-#ifdef REAL_IS_FLOAT
+#if PL_SINGLE
 #define PL_SHORTEST ((real)1e-12)     /* internal step, in h */
 #define PL_FIRST ((real)1e-10)        /* the shortest that is tried at first, far above it */
 #define PL_HERE ((real)1e-8)          /* how near in h a crossing is one where the internal step starts */

@@ -18,7 +18,7 @@
  *     PL(ahead)(c, theta, gain)  what the series gains from its start, theta of its unit of time later */
 #include "measure.h"
 
-#ifdef REAL_IS_FLOAT
+#if PL_SINGLE
 #define PL_SLOPE_ROUNDED ((real)1e-5) /* of a slope, what rounding may have done to it */
 #else
 #define PL_SLOPE_ROUNDED 1e-13

@@ -3,6 +3,7 @@
  * serves several steps is summed; one that does not serve a whole step is made anew on the way.  Included by the file
  * of each model, which defines before it what reach.h asks, where there is a tolerance, and
  *
+ *     PL_SINGLE                  1: in float
  *     PL_TYPE                    with members y, rest, t0, k, status, and by what follows
  *     PL_ADAPTIVE                a tolerance says how long a series serves: series, base, next, left, served, valid,
  *                                most
@@ -30,7 +31,7 @@
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
  *
  * Each model has a copy of its own, in which the numbers of states and orders are constants. */
-#include "real.h"
+#include "numbers.h"
 
 #ifndef PL_ROOM
 #define PL_ROOM(n) ((n) > 0 ? (n) : 1) /* no array is empty */
@@ -45,7 +46,7 @@
 #endif
 #endif
 
-#ifdef REAL_IS_FLOAT
+#if PL_SINGLE
 #define PL_STATE_ROUNDED ((real)1e-6) /* of the largest state: what rounding may do to slopes, times h */
 #else
 #define PL_STATE_ROUNDED 1e-15

@@ -3,7 +3,7 @@
  * most of their range; part of what a model's file includes for its steps.  Of the argument of each its polynomial
  * bounds where it goes: over one length it may come nearer to where the function bends by so much as the order
  * resolves, and then the last terms tell what follows. */
-#include "real.h"
+#include "numbers.h"
 
 #ifndef PLRT_UNSEEN_H
 #define PLRT_UNSEEN_H
@@ -11,7 +11,7 @@
 enum { PL_UNSEEN_RISE, PL_UNSEEN_SPREAD, PL_UNSEEN_TURN, PL_UNSEEN_TEETH, PL_UNSEEN_ARC, PL_UNSEEN_DIVISOR };
 #endif
 
-#ifdef REAL_IS_FLOAT
+#if PL_SINGLE
 #define PL_FLAT 10      /* beyond it tanh is 1 to the last digit; */
 #define PL_GONE (-30)   /* below it exp is nothing beside whatever it stands with */
 #else

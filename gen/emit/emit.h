@@ -64,7 +64,7 @@ void print_braces(FILE *to, const char *text);
 /* ---- included.c: the runtime's algorithms in the place of the lines that include them ---- */
 
 void print_included(FILE *to, const char *text);             /* for double; of float, before print_single */
-bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes? */
+bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes, or a header? */
 
 /* ---- printed.c: C that was printed, read again ---- */
 

@@ -110,7 +110,7 @@ static void emit_sizes(const struct emitter *e)
 		{ "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		{ "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		{ "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
-		{ "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }
+		{ "SINGLE", e->model->asked.single }, { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }
 	};
 	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
 		say(e, "#define PL_%s %d\n", sizes[i].name, sizes[i].value);
@@ -135,9 +135,9 @@ static void emit_limits(const struct emitter *e)
 
 static void emit_include(const struct emitter *e)
 {
-	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n%s"
+	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n"
 	       "#define PL(name) $n_##name\n"
-	       "#define PL_TYPE $n\n", e->model->asked.single ? "#define REAL_IS_FLOAT\n" : "");
+	       "#define PL_TYPE $n\n");
 	emit_sizes(e);
 	emit_limits(e);
 	if (is_divided(e))

@@ -120,7 +120,7 @@ static void emit_samples_of_core(const struct emitter *e)
 	if (e->ramps)
 		emit_list(e, "is_ramp", is_ramp);
 	say(e, "\n"
-	       "%s"
+	       "#define PL_SINGLE %d\n"
 	       "#define PL(name) $n_##name\n"
 	       "#define PL_CORE(name) $n_core_##name\n"
 	       "#define PL_TYPE $n\n"
@@ -132,7 +132,7 @@ static void emit_samples_of_core(const struct emitter *e)
 	       "#define PL_RING %d  /* samples of each input */\n"
 	       "#define PL_RAMPS %d\n"
 	       "#define PL_AT %d\n"
-	       "#define PL_CORE_H $N_CORE_H\n", e->model->asked.single ? "#define REAL_IS_FLOAT\n" : "",
+	       "#define PL_CORE_H $N_CORE_H\n", e->model->asked.single,
 	    e->system->states, e->model->outputs, d->inputs, d->inputs + d->count, d->parts, samples_kept(e), e->ramps,
 	    at);
 	say(e, "#include \"delays.h\"\n");

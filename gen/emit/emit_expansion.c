@@ -305,6 +305,7 @@ static void emit_sizes(const struct emitter *e)
 		const char *name;
 		int value;
 	} sizes[] = {
+		{ "SINGLE", e->model->asked.single },
 		{ "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
 		{ "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
 		{ "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
@@ -325,9 +326,9 @@ static void emit_sizes(const struct emitter *e)
 
 static void emit_algorithm(const struct emitter *e)
 {
-	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n%s"
+	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n"
 	       "#define PL(name) $n_##name\n"
-	       "#define PL_TYPE $n\n", e->model->asked.single ? "#define REAL_IS_FLOAT\n" : "");
+	       "#define PL_TYPE $n\n");
 	emit_sizes(e);
 	say(e, "#define PL_H $N_H\n");
 	if (is_divided(e))

@@ -298,7 +298,7 @@ static void include(struct including *in, const char *name);
 /* Numbers of its type, and the header of what is bundled, are here already. */
 static bool is_there(const char *name)
 {
-	return strcmp(name, "plrt.h") == 0 || strcmp(name, "real.h") == 0;
+	return strcmp(name, "plrt.h") == 0 || strcmp(name, "real.h") == 0 || strcmp(name, "numbers.h") == 0;
 }
 
 static void put_directive(struct including *in, const char *line)
@@ -398,12 +398,10 @@ void print_included(FILE *to, const char *text)
 	for (const char *end; *text; text = end) {
 		const char *name = macro_of(&in, "PL") ? included_by(text) : NULL;
 		end = next_line(text);
-		if (begins(text, "#define PL(") || begins(text, "#define REAL_IS_FLOAT") ||
+		if (begins(text, "#define PL(") ||
 		    (begins(text, "#define PL_") && !begins(text, "#define PL_FLOAT_ONLY"))) {
 			define(&in, slice(text + strlen("#define "), strcspn(text, "\n") - strlen("#define ")));
 		} else if (name) {
-			const char *type = macro_of(&in, "REAL_IS_FLOAT") ? "FLT" : "DBL";
-			define(&in, format("REAL_EPSILON %s_EPSILON", type));
 			include(&in, name);
 		} else {
 			put(to, text, (size_t)(end - text));

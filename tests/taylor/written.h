@@ -7,6 +7,11 @@
 #define PL_TYPE MODEL
 #define PL_H ((real)(MODEL_H))
 #define PL_TOLERANCE ((real)(MODEL_TOLERANCE))
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
 #define PL_STATES 2
 #define PL_COLUMNS 2
 #define PL_MEASURED 0
@@ -32,6 +37,8 @@
 #define PL_TRIES 1000
 #define PL_NOW y
 #define PL_AT MODEL_AT
+
+#include "numbers.h"
 
 typedef struct MODEL {
     real y[2], rest[2], t0;

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* numbers.h: with what begins what a model's file includes for its steps: the type of its numbers, `real`, and the
+ * runtime's names for it, until undef.h: the next model in a file may have another one.  PL_SINGLE: float, else double.
+ * Constants are integers, or cast: no float is promoted. */
+#include "plrt.h"
+
+#if PL_SINGLE
+#define real float
+#define pl_accumulate pl_accumulatef
+#define pl_not_finite pl_not_finitef
+#define pl_magnitude pl_magnitudef
+#define pl_crossing pl_crossingf
+#define pl_divided pl_dividedf
+#define pl_divided_place pl_dividedf_place
+#define pl_divided_rises pl_dividedf_rises
+#define pl_divided_left pl_dividedf_left
+#define pl_divided_next pl_dividedf_next
+#define pl_instant pl_instantf
+#define pl_chain pl_chainf
+#define pl_events_place pl_eventsf_place
+#define pl_events_begin pl_eventsf_begin
+#define pl_events_next pl_eventsf_next
+#define pl_events_pass pl_eventsf_pass
+#define pl_events_end pl_eventsf_end
+#define pl_root pl_rootf
+#define pl_factor pl_factorf
+#define pl_solve pl_solvef
+#define pl_factor_complex pl_factorf_complex
+#define pl_solve_complex pl_solvef_complex
+#else
+#define real double
+#endif
