@@ -165,7 +165,8 @@ static inline const int *PL(intervals)(const PL_TYPE *s)
 #if PL_EXPRESSIONS > 0
     return s->contact.interval;
 #else
-    return (void)s, (const int *)NULL;
+    (void)s;
+    return NULL;
 #endif
 }
 
