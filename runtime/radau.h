@@ -27,7 +27,7 @@
  *     PL(inputs_now)(s, u, start, slope)                        samples at the start of this step, their slopes
  *     PL(known)(s, tau, inside, segment, start, slope, known)   tau after now; conditions on t hold as at inside
  *     PL(linearize)(known, interval, y, left, jacobian)         highest derivatives at y; and with modes PL(forces)
- *     PL(measure)(s)                                            scale and unit, from s->start
+ *     PL_KIND(i), PL_FLOORS                                     as measure.h
  *
  * Each is a copy of its own, whose numbers of states are constants; no function is called by a pointer. */
 #include "numbers.h"
@@ -60,7 +60,6 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #define PL_NO_CHANGE ((real)1e-12)    /* of the states by an iteration */
 #define PL_NOTHING ((real)1e-35)      /* what may be divided by */
 #define PL_HUGE ((real)1e37)
-#define PL_UNIT ((real)1e25)          /* the largest 1 over a size */
 #else
 #define PL_SHORTEST 1e-18
 #define PL_FIRST 1e-15
@@ -70,10 +69,14 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #define PL_NO_CHANGE 1e-17
 #define PL_NOTHING 1e-290
 #define PL_HUGE 1e300
-#define PL_UNIT 1e40
 #endif
 
 #define PL_UNKNOWNS (PL_STAGES * PL_COORDS)
+
+/* The size of a state is that where an internal step starts. */
+#define PL_NOW start
+#define PL_KINDS 1
+#include "measure.h"
 
 /* ---- states and coordinates ---- */
 

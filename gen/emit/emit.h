@@ -349,8 +349,6 @@ bool is_written_out(const struct emitter *e, int degree);                /* else
 
 /* C: 1/size; none, where that is 0 */
 const char *one_over(const struct emitter *e, const char *size, const char *none);
-/* NAME_measure: scale and unit of all states, from s->NOW */
-void emit_measure(const struct emitter *e, const char *now);
 bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series: NAME_measure is there */
 bool looks_at_tolerance(const struct emitter *e);
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */

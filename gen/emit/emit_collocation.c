@@ -73,7 +73,6 @@ void emit_collocation_place(const struct emitter *e)
 {
 	emit_state_table(e);
 	emit_floors(e);
-	emit_measure(e, "start");
 	say(e, "\nstatic void $n_place($n *s);\n");
 }
 
@@ -110,7 +109,8 @@ static void emit_sizes(const struct emitter *e)
 		{ "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		{ "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		{ "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
-		{ "SINGLE", e->model->asked.single }, { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }
+		{ "SINGLE", e->model->asked.single }, { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 },
+		{ "FLOORS", has_floors(e) }
 	};
 	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
 		say(e, "#define PL_%s %d\n", sizes[i].name, sizes[i].value);
@@ -139,6 +139,7 @@ static void emit_include(const struct emitter *e)
 	       "#define PL(name) $n_##name\n"
 	       "#define PL_TYPE $n\n");
 	emit_sizes(e);
+	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (is_divided(e))
 		emit_passage_limits(e);

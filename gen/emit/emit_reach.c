@@ -2,8 +2,6 @@
 /* How far a Taylor series holds, by its last terms; and, where nothing is known of it, by the slope at its end. */
 #include "emit/emit.h"
 
-#include <math.h>
-
 enum {
 	REMAINDERS = 3,             /* of each of its last two coefficients: itself, and what stands in for it */
 	WRITTEN_STATES = 4          /* more are looped over */
@@ -67,37 +65,6 @@ const char *one_over(const struct emitter *e, const char *size, const char *none
 	bool single = e->model->asked.single;
 	return format("%s > %s ? 1.0 / %s : %s > 0.0 ? %s : %s", size, single ? "1e-25" : "1e-40", size, size,
 		      single ? "1e25" : "1e40", none);
-}
-
-void emit_measure(const struct emitter *e, const char *now)
-{
-	const char *floored = !has_floors(e) ? "" : spell(e, "if ($n_floor[i] > 0.0) {\n"
-		"            s->scale[i] = pl_magnitude(s->%s[i]) + $n_floor[i];\n"
-		"            grown = 1;\n"
-		"        } else ", now);
-	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
-	       "is 0 */\n"
-	       "static void $n_measure($n *s)\n"
-	       "{\n"
-	       "    double most[3] = {0.0, 0.0, 0.0};\n"
-	       "    int i, grown = 0;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        %sif (pl_magnitude(s->%s[i]) > s->scale[i]) {\n"
-	       "            s->scale[i] = pl_magnitude(s->%s[i]);\n"
-	       "            grown = 1;\n"
-	       "        }\n"
-	       "    if (!grown)\n"
-	       "        return;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        if (s->scale[i] > most[%s])\n"
-	       "            most[%s] = s->scale[i];\n"
-	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        const double least = %s%s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
-	       "        s->unit[i] = %s;\n"
-	       "    }\n"
-	       "}\n", floored, now, now, kind_text(e, "i"), kind_text(e, "i"),
-	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "", shortest(ldexp(1, -20)), kind_text(e, "i"),
-	    one_over(e, "size", "0.0"));
 }
 
 /* Do several states share a kind? Else each is measured by itself. */

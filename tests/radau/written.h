@@ -29,6 +29,8 @@
 #define PL_TRIES MODEL_TRIES
 #define PL_CROWDED 0
 #define PL_SHARE_OF_FIRST 1
+#define PL_FLOORS 0
+#define PL_KIND(i) (i)
 
 #include "numbers.h"
 
@@ -56,17 +58,6 @@ static void PL(linearize)(const real known[], const int interval[], const real y
 {
     (void)interval;
     PL(motion)(known[0], y, left, jacobian);
-}
-
-static void PL(measure)(MODEL *s)
-{
-    int i;
-    for (i = 0; i < MODEL_STATES; i++) {
-        if (pl_magnitude(s->start[i]) > s->scale[i]) {
-            s->scale[i] = pl_magnitude(s->start[i]);
-            s->unit[i] = 1 / s->scale[i];
-        }
-    }
 }
 
 /* Of all three the tables are the same: filled once, from the nodes. */
