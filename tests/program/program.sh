@@ -1,28 +1,24 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# program.sh PLGEN ROOT [CASE]: the text of --explain=program. A case is NAME.args, of which the last is the spec from
-# the root of the sources, one a line, and NAME.expect. And the assignments of linear steps, done as they are printed,
-# come to where the closed form is.
+# program.sh PLGEN ROOT [CASE]: the text of --explain=program. A case is a line of cases.list, whose last word is the
+# spec from the root of the sources, and NAME.expect. And the assignments of linear steps, done as they are printed, come
+# to where the closed form is.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 only=${3:-}
 . "$root/tests/tap.sh"
 
-for args in "$root"/tests/program/*.args; do
-	name=$(basename "$args" .args)
-	if [ -n "$only" ] && [ "$only" != "$name" ]; then
+while read -r name options; do
+	if [ "$name" = '#' ] || { [ -n "$only" ] && [ "$only" != "$name" ]; }; then
 		continue
 	fi
-	set --
-	while IFS= read -r argument; do
-		set -- "$@" "$argument"
-	done <"$args"
-	(cd "$root" && "$plgen" --explain=program "$@") >found 2>complaint
+	# shellcheck disable=SC2086
+	(cd "$root" && "$plgen" --explain=program $options) >found 2>complaint </dev/null
 	status=$?
 	diff -U 1 "$root/tests/program/$name.expect" found >log || status=1
 	result $status "$name"
-done
+done <"$root/tests/program/cases.list"
 
 # steps SPEC N [OPTION ...]: the states after N steps done as the program says, against the closed form's. States may be
 # named with primes; of loads only the constant 1 is known here.
