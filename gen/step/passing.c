@@ -16,6 +16,7 @@ enum {
 	FEWEST_BITS = 192, MOST_BITS = 768,
 	MOST = 150,                 /* crossings that are followed */
 	PASSED_AT_START = 10,       /* crossings in the first 2^-10 of a step are none that is counted */
+	LISTED_AT_ONCE = 12,        /* of impacts at one instant, as in runtime/chain.h */
 	BESIDE = 36,                /* the second start is off by 2^-36; in float */
 	GROWTH = 8                  /* and grows by no more than that */
 };
@@ -237,6 +238,18 @@ static bool blur(const struct step *step, const struct reference *r, const struc
 	       gap < 4 * ulp_of(size / a->passed.speed, single);
 }
 
+/* Whether the target may leave number k out of its list, or another one of that step: of bounces it lists no more than
+ * so many at one instant, and once the list of a step is half full, not all that follow each other closely. It lays
+ * what bounces to rest by another rule, too, where little room is left. */
+static bool is_unlisted(const struct step *step, const struct moment *all, int k)
+{
+	int half = max_events(step->model) / 2;
+	double h = mpq_get_d(step->model->h);
+	return regions_of(step)->impacts > 0 &&
+	       ((k >= LISTED_AT_ONCE && !(all[k].at > all[k - LISTED_AT_ONCE].at)) ||
+		(k >= half && !(all[k].at - all[k - half].at > h)));
+}
+
 /* Whether both have passed the same, and are no further apart than a start may be. What was let go at rest floats do
  * not tell apart from what is not. */
 static bool are_close(const struct reference *r, const struct ways *a, const struct ways *b, const double *y,
@@ -250,7 +263,7 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 		close = !(x[k].passed.faint && a->step->model->asked.single) &&
 			x[k].passed.expression == z[k].passed.expression &&
 			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward &&
-			!(k > 0 && blur(a->step, r, &x[k - 1], &x[k]));
+			!(k > 0 && blur(a->step, r, &x[k - 1], &x[k])) && !is_unlisted(a->step, x, k);
 	for (int i = 0; i < r->states && close; i++) {
 		double largest = fmax(largest_of(r, i), fabs(y[i]));
 		close = isfinite(y[i]) && fabs(y[i] - beside[i]) <= apart * largest;

@@ -336,9 +336,11 @@ static int closes(const struct through *t, int k, unsigned struck)
 	return known ? sign > 0 : still ? 0 : -1;
 }
 
-/* How fast it comes closer, or parts: at most */
+/* How fast it comes closer, or parts: at most; 0: it does not bounce */
 static double speed_of(struct through *t, const struct impact *p)
 {
+	if (!p->bounces)
+		return 0;
 	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
 	mpfi_t speed;
 	mpfi_init2(speed, t->precision);

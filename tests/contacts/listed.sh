@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# NAME_selftest beside lists of crossings that leave some out: balls that are dropped on each other, of many masses and
+# restitutions, bounce more often in a step, or at one instant, than is listed. And beside jumps that do not bounce.
+# Below 200 units in the last place.
+#
+#     listed.sh PLGEN SOURCE_ROOT
+plgen=$(realpath "$1")
+root=$(realpath "$2")
+. "$root/tests/run_cc.sh"
+. "$root/tests/tap.sh"
+runtime_archive "$root/runtime"
+
+# compared NAME SPEC: in double and in float
+compared() {
+	for real in double float; do
+		value=
+		"$plgen" --selftest --prefix subject --real $real "$2" -o subject.c 2>log &&
+			$run_cc -I. -I"$root/runtime" -o program main.c subject.c "$archive" -lm >>log 2>&1 &&
+			value=$(./program)
+		echo "returns $value, expected below 200" >>log
+		awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 == v && v < 200) }'
+		result $? "$1, in $real"
+	done
+}
+
+cat >main.c <<-END
+	#include "subject.h"
+	#include <stdio.h>
+	int main(void) { printf("%g\n", (double)subject_selftest()); }
+END
+
+# dropped MASS E GROUND: the mass below, restitutions
+dropped() {
+	cat >balls.spec <<-END
+		model balls
+		coord a, b
+		init b = 1
+		$1*a'' = -$1*9.81
+		b'' = -9.81
+		stop between ground, a at 0 restitution $3
+		stop between a, b at 0 restitution $2
+		step 0.1
+	END
+	compared "a mass of $1 below, restitution $2, of the ground $3" balls.spec
+}
+
+for mass in 0.5 1 2 3 20; do
+	for e in 0 0.2 0.5; do
+		dropped $mass $e 0
+		dropped $mass $e 0.3
+	done
+done
+dropped 1 0.3 0.1
+for jumps in thrown counted; do
+	compared "$jumps" "$root/tests/contacts/$jumps.spec"
+done
+tap_end
