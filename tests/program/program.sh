@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # program.sh PLGEN ROOT [CASE]: the text of --explain=program. A case is a line of cases.list, whose last word is the
-# spec from the root of the sources, and NAME.expect. And the assignments of linear steps, done as they are printed, come
-# to where the closed form is.
+# spec from the root of the sources, and NAME.expect. And the assignments of linear steps, done as they are printed,
+# come to where the closed form is.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
