@@ -76,7 +76,15 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 /* The size of a state is that where an internal step starts. */
 #define PL_NOW start
 #define PL_KINDS 1
+#if PL_ORDER > 0
+#define PL_REMAINDERS 3
+#include "reach.h"
+#else
 #include "measure.h"
+#if PL_ARGUMENTS > 0
+#include "unseen.h"
+#endif
+#endif
 
 /* ---- states and coordinates ---- */
 
@@ -108,7 +116,8 @@ static inline int PL(coord)(int i)
 static inline int PL(is_moved)(int i)
 {
 #if PL_STATES == PL_COORDS
-    return (void)i, 0;
+    (void)i;
+    return 0;
 #elif PL_STATES == 2 * PL_COORDS
     return i < PL_COORDS;
 #else
@@ -163,6 +172,17 @@ static inline real PL(since)(const PL_TYPE *s)
     return s->at - (real)s->back;
 }
 
+/* The segment of time that it is in */
+static inline int PL(leg_of)(const PL_TYPE *s)
+{
+#if PL_SEGMENTS > 1
+    return s->leg;
+#else
+    (void)s;
+    return 0;
+#endif
+}
+
 static inline const int *PL(intervals)(const PL_TYPE *s)
 {
 #if PL_EXPRESSIONS > 0
@@ -177,16 +197,12 @@ static inline const int *PL(intervals)(const PL_TYPE *s)
 static inline void PL(known_at)(const PL_TYPE *s, int wanted, const real start[], const real slope[], real ahead,
                                 real inside, real known[])
 {
-#if PL_SEGMENTS > 1
-    const int segment = s->leg;
-#else
-    const int segment = 0;
-#endif
     if (!wanted) {
         known[0] = 0; /* not read */
         return;
     }
-    PL(known)(s, (PL(since)(s) + ahead) * PL_H, (PL(since)(s) + inside) * PL_H, segment, start, slope, known);
+    PL(known)(s, (PL(since)(s) + ahead) * PL_H, (PL(since)(s) + inside) * PL_H, PL(leg_of)(s), start, slope,
+              known);
 }
 
 /* The highest derivatives and their Jacobian where it starts */

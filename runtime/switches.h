@@ -2,16 +2,10 @@
 /* switches.h: beside the collocation the Taylor series of the solution, part of radau.h: how long one serves, where
  * stability bounds it, and which of the two is next.  The model's file defines beside what radau.h asks
  *
- *     PL_MEASURED                columns of the series behind the states whose last terms count too
  *     PL_WORTH                   so many series a step of the collocation costs
- *     PL(expand_here)(s, start, slope, terms)   the series from the start of the internal step, into s->poly; the sizes
- *                                           of what each expression is summed from
- *     PL(ahead)(c, theta, gain)             what it gains, theta h later
- *     PL(remainders)(s, c, last, before)    its last two terms, each with two that stand in for it
+ *     PL_CHOICES, PL(expand_from), PL(ahead)   as taylor.h; and what reach.h asks
  *     PL(bound_rates)(jacobian, rates)      Gershgorin's, on how fast the motion may decay [1/s], and on the square of
  *                                           how fast it may turn
- *     PL_SHOWS, PL(is_shown)(s, start, slope, length, size)   whether the coefficients show over `length` what the
- *                                           equations do, whose slopes they have over `size`
  *     PL(locate)(s, u, contact)             the intervals of a state that was set; without inputs (s, contact)
  *
  * and members series, stiff, product, bounds, patience, run. */
@@ -44,6 +38,35 @@ static inline real PL(shorter)(real a, real b)
 {
     return b < a ? b : a;
 }
+
+/* A time at which conditions on it hold as they do just behind the start of the internal step */
+static inline real PL(when)(const PL_TYPE *s)
+{
+#if PL_CHOICES
+    return PL(time)(s) + (PL(since)(s) + (real)1e-9) * PL_H;
+#else
+    (void)s;
+    return 0; /* there are none */
+#endif
+}
+
+#if PL_UNSEEN
+/* Whether the series shows over `length` what the equations do, whose slopes it has over `size` */
+static inline int PL(is_shown)(const PL_TYPE *s, const real start[], const real slope[], real length, real size)
+{
+    if (!PL(shows)(s->poly, length)) {
+        return 0;
+    }
+#if PL_SLOPES
+    return PL(meets)(s, start, slope, PL(since)(s) * PL_H, PL(when)(s), PL(leg_of)(s), PL(intervals)(s), s->poly, size);
+#else
+    (void)start;
+    (void)slope;
+    (void)size;
+    return 1;
+#endif
+}
+#endif
 
 /* How many h the series serves; 0: it is not finite.  By its last term and the one before; where they are 0, or nearly,
  * by what stands in for them.  Less is left for what comes after them where crossings follow from the state. */
@@ -108,7 +131,8 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
 #if PL_EXPRESSIONS > 0
     int wrong;
 #endif
-    PL(expand_here)(s, start, slope, terms);
+    PL(expand_from)(s, start, slope, PL(since)(s) * PL_H, PL(when)(s), PL(leg_of)(s), PL(intervals)(s), s->start,
+                    s->poly, terms);
     PL(measure_beside)(s);
     length = PL(length)(s);
     if (length == 0) {
@@ -117,7 +141,7 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
     if (length > 8 && length > 8 * s->want) {
         length = s->want > 1 ? 8 * s->want : 8;
     }
-#if PL_SHOWS
+#if PL_UNSEEN
     while (length > PL_SHORTEST && !PL(is_shown)(s, start, slope, length, length < limit ? length : limit)) {
         length /= 2;
     }

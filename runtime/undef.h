@@ -68,7 +68,6 @@
 #undef PL_SERVES
 #undef PL_SHARE_OF_FIRST
 #undef PL_SHORTEST
-#undef PL_SHOWS
 #undef PL_SINGLE
 #undef PL_SIZE
 #undef PL_SLOPES

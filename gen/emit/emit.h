@@ -332,11 +332,6 @@ void emit_expand_function(const struct emitter *e);               /* NAME_expand
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			const char *contact, const char *y, const char *c);
 
-void emit_meets_function(const struct emitter *e);                /* NAME_meets */
-/* C: a condition, whether c meets the equations over `size`, in h; the others as of expand_call */
-const char *meets_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
-		       const char *contact, const char *c, const char *size);
-
 bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
@@ -347,23 +342,19 @@ bool is_written_out(const struct emitter *e, int degree);                /* else
 
 /* ---- emit_reach.c: how far a series holds ---- */
 
-/* C: 1/size; none, where that is 0 */
-const char *one_over(const struct emitter *e, const char *size, const char *none);
-bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series: NAME_measure is there */
+bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series */
 bool looks_at_tolerance(const struct emitter *e);
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
 int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
 void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
 void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
-const char *measured_columns(const struct emitter *e);           /* C: those whose last terms count */
 
 /* ---- emit_unseen.c: how far what coefficients do not show is followed ---- */
 
 bool has_unseen(const struct emitter *e);
 bool traces(const struct emitter *e);                            /* some of it by its argument */
 bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
-void emit_shows(const struct emitter *e);                        /* NAME_shows, of a series */
 void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
 void emit_hidden_table(const struct emitter *e);
 void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
@@ -378,7 +369,7 @@ void emit_expansion_members(const struct emitter *e);
 /* NAME_name: c_1 theta + ... + c_degree theta^degree of each state, by Horner's rule; c has so many rows */
 void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree);
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
-void emit_series_remainder(const struct emitter *e);                     /* NAME_remainders: its last terms */
+void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
 /* Whether $n_inside is there, for the steps that a series serves before its last */

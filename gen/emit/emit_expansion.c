@@ -277,7 +277,7 @@ static void emit_pass_time(const struct emitter *e)
 	       "}\n");
 }
 
-static void emit_model_functions(const struct emitter *e)
+void emit_series_functions(const struct emitter *e)
 {
 	emit_force_table(e);
 	emit_expand_function(e);
@@ -290,6 +290,11 @@ static void emit_model_functions(const struct emitter *e)
 		say(e, "\n");
 		emit_handed_on(e, "slopes_at", spell(e, "$n_slopes(s, %sy, left);", handed_to(slopes)));
 	}
+}
+
+static void emit_model_functions(const struct emitter *e)
+{
+	emit_series_functions(e);
 	emit_inputs_now(e);
 	if (!is_straight(e))
 		emit_pass_time(e);

@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far a Taylor series holds, by its last terms; and, where nothing is known of it, by the slope at its end. */
+/* How far a Taylor series holds: what reach.h and measure.h of the runtime are told. */
 #include "emit/emit.h"
-
-enum {
-	REMAINDERS = 3,             /* of each of its last two coefficients: itself, and what stands in for it */
-	WRITTEN_STATES = 4          /* more are looped over */
-};
 
 static int order_of(const struct emitter *e)
 {
@@ -49,24 +44,6 @@ int most_served(const struct emitter *e)
 	return e->system->inputs ? 1 : EXPANSION_SERVES;
 }
 
-const char *measured_columns(const struct emitter *e)
-{
-	int measured = e->step->expansion->measured;
-	return measured ? spell(e, "$N_STATES + %d", measured) : spell(e, "$N_STATES");
-}
-
-/* ---- what counts as the size of a state ---- */
-
-/* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
- * do. So the largest of its kind counts for each too, by a millionth. What is below all units, as the first trace of a
- * pulse that is to come, is measured by 1e-40. */
-const char *one_over(const struct emitter *e, const char *size, const char *none)
-{
-	bool single = e->model->asked.single;
-	return format("%s > %s ? 1.0 / %s : %s > 0.0 ? %s : %s", size, single ? "1e-25" : "1e-40", size, size,
-		      single ? "1e25" : "1e40", none);
-}
-
 /* Do several states share a kind? Else each is measured by itself. */
 bool shares_kinds(const struct emitter *e)
 {
@@ -102,46 +79,6 @@ void emit_reach_tables(const struct emitter *e)
 	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps */\n"
 	       "static const double $n_last[%d] = {\n    %s\n};\n"
 	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order, order - 1, most, last, most, before);
-}
-
-/* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
- * or nearly: then those before stand in for them, each two orders over 256, which is more than full series fall. */
-static void emit_remainder(const struct emitter *e, int kept)
-{
-	int order = order_of(e);
-	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
-	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain"
-	       "%s */\n"
-	       "static void $n_remainder%s(const $n *s, const double c[%d][$c], double last[%d],\n"
-	       "    double before[%d])\n"
-	       "{\n"
-	       "    int i;\n",
-	    kept > 1 ? ";\n * what stands in for them where they are 0: those before, each two over 256" : "",
-	    kept > 1 ? "s" : "", order + 1, kept, kept);
-	for (int j = 0; j < kept; j++)
-		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
-	say(e, "    for (i = 0; i < %s; i++) {\n"
-	       "        double p = pl_magnitude(c[0][i]), unit = %sp %s s->scale[i] ? 1.0 / p : s->unit[i];\n"
-	       "        if (unit == 0.0) {\n"
-	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
-	       "            const double size = p > one ? p : one > two ? one : two;\n"
-	       "            unit = %s;\n"
-	       "        }\n", measured_columns(e),
-	    has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 1.0 / (p + $n_floor[i])\n            : ") : "",
-	    shares_kinds(e) ? "* s->unit[i] > 1.0 && p >" : ">", one_over(e, "size", "1.0"));
-	for (int j = 0; j < 2 * kept; j++) {
-		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
-		if (order - j >= 2)
-			say(e, "        p = pl_magnitude(c[%d][i]) * unit%s;\n"
-			       "        %s = p <= %s ? %s : p;\n", order - j, factor[j / 2], sum, sum, sum);
-	}
-	say(e, "    }\n"
-	       "}\n");
-}
-
-void emit_series_remainder(const struct emitter *e)
-{
-	emit_remainder(e, REMAINDERS);
 }
 
 /* ---- what the runtime is told ---- */

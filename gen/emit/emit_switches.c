@@ -44,67 +44,14 @@ static void emit_bound_rates(const struct emitter *e)
 	       "}\n");
 }
 
-/* ---- the series from where an internal step starts ---- */
-
-static struct emitter called_here(const struct emitter *e)
-{
-	struct emitter here = *e;
-	here.ramps = false;             /* samples are called u here */
-	return here;
-}
-
-static const char *start_text(const struct emitter *e)
-{
-	return spell(e, "(s->at - (double)s->back) * $N_H");
-}
-
-/* A time at which conditions on it hold as they do just behind the start */
-static const char *when_text(const struct emitter *e)
-{
-	return spell(e, "$n_time(s) + ((s->at - (double)s->back) + 1e-9) * $N_H");
-}
-
-static void emit_expand_here(const struct emitter *e)
-{
-	struct emitter here = called_here(e);
-	say(e, "\n/* The series from the start of an internal step, into s->poly */\n"
-	       "static void $n_expand_here($n *s, const double u[], const double slope[], double terms[])\n"
-	       "{\n"
-	       "    %s\n"
-	       "    (void)u;\n"
-	       "    (void)slope;\n"
-	       "    (void)terms;\n"
-	       "}\n", expand_call(&here, start_text(e), when_text(e), "s->leg", "s->contact.", "s->start", "s->poly"));
-}
-
-static void emit_is_shown(const struct emitter *e)
-{
-	if (!has_unseen(e))
-		return;
-	const char *poly = spell(e, "(const double (*)[$c])s->poly");
-	const char *meets = !e->step->slopes ? "" : format(" && %s",
-		meets_call(e, start_text(e), when_text(e), "s->leg", "s->contact.", poly, "size"));
-	say(e, "\n/* Whether the series shows over `length` what the equations do, whose slopes it has over `size` */\n"
-	       "static int $n_is_shown(const $n *s, const double u[], const double slope[], double length,\n"
-	       "    double size)\n"
-	       "{\n"
-	       "    (void)u;\n"
-	       "    (void)slope;\n"
-	       "    (void)size;\n"
-	       "    return $n_shows(%s, length)%s;\n"
-	       "}\n", poly, meets);
-}
+/* ---- what it is told ---- */
 
 void emit_series_beside(const struct emitter *e)
 {
-	emit_force_table(e);
-	emit_expand_function(e);
+	emit_series_functions(e);
 	emit_series_ahead(e);
-	emit_series_remainder(e);
-	emit_shows(e);
+	emit_hidden_table(e);
 	emit_bound_rates(e);
-	emit_expand_here(e);
-	emit_is_shown(e);
 	if (is_divided(e))
 		emit_locate(e);
 }
@@ -125,5 +72,10 @@ void emit_switching_limits(const struct emitter *e)
 {
 	say(e, "#define PL_MEASURED %d  /* columns behind the states whose last terms count too */\n"
 	       "#define PL_WORTH %s  /* so many series a step of the collocation costs */\n"
-	       "#define PL_SHOWS %d\n", e->step->expansion->measured, shortest(worth(e)), has_unseen(e));
+	       "#define PL_CHOICES %d\n"
+	       "#define PL_UNSEEN %d\n"
+	       "#define PL_SLOPES %d\n", e->step->expansion->measured, shortest(worth(e)), has_choices(e),
+	    has_unseen(e), e->step->slopes != NULL);
+	if (has_unseen(e))
+		emit_unseen_sizes(e);
 }
