@@ -229,13 +229,19 @@ static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 	return beside;
 }
 
-/* Whether the target may meet two in another order, or one of them not: floats, and contacts that bounce together */
-static bool blur(const struct step *step, const struct reference *r, const struct moment *a, const struct moment *b)
+/* Whether the target may meet number k and those of the instant before in another order, or one of them not: floats, and
+ * contacts that bounce together */
+static bool blurs(const struct step *step, const struct reference *r, const struct moment *all, int k)
 {
-	bool single = step->model->asked.single;
-	double size = a->passed.size + size_of_expression(step, r, a), gap = b->at - a->at;
-	return (single || regions_of(step)->impacts > 1) && gap > 0 && a->passed.speed > 0 &&
-	       gap < 4 * ulp_of(size / a->passed.speed, single);
+	bool single = step->model->asked.single, blurred = false;
+	if (k == 0 || !(single || regions_of(step)->impacts > 1) || !(all[k].at > all[k - 1].at))
+		return false;
+	for (int j = k - 1; j >= 0 && !blurred && !(all[j].at < all[k - 1].at); j--) {
+		double size = all[j].passed.size + size_of_expression(step, r, &all[j]);
+		blurred = all[j].passed.speed > 0 &&
+			  all[k].at - all[j].at < 4 * ulp_of(size / all[j].passed.speed, single);
+	}
+	return blurred;
 }
 
 /* Whether the target may leave number k out of its list, or another one of that step: of bounces it lists no more than
@@ -251,7 +257,7 @@ static bool is_unlisted(const struct step *step, const struct moment *all, int k
 }
 
 /* Whether both have passed the same, and are no further apart than a start may be. What was let go at rest floats do
- * not tell apart from what is not. */
+ * not tell apart from what is not; and what is 0 by impacts alone is on the target what rounding makes of it. */
 static bool are_close(const struct reference *r, const struct ways *a, const struct ways *b, const double *y,
 		      const double *beside)
 {
@@ -260,10 +266,10 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 	bool close = count == other;
 	double apart = ldexp(GROWTH, -(a->step->model->asked.single ? 18 : BESIDE));
 	for (int k = 0; k < count && close; k++)
-		close = !(x[k].passed.faint && a->step->model->asked.single) &&
+		close = !x[k].passed.stands && !(x[k].passed.faint && a->step->model->asked.single) &&
 			x[k].passed.expression == z[k].passed.expression &&
 			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward &&
-			!(k > 0 && blur(a->step, r, &x[k - 1], &x[k])) && !is_unlisted(a->step, x, k);
+			!blurs(a->step, r, x, k) && !is_unlisted(a->step, x, k);
 	for (int i = 0; i < r->states && close; i++) {
 		double largest = fmax(largest_of(r, i), fabs(y[i]));
 		close = isfinite(y[i]) && fabs(y[i] - beside[i]) <= apart * largest;

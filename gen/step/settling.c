@@ -454,6 +454,7 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 		bool presses = time_left(t, p, left, &known);
 		if (!known || !presses)
 			continue;
+		bool stands = mpfi_has_zero(left) > 0 && mpq_sgn(p->in[t->segment].restitution) != 0;
 		mpfi_sub_q(left, left, brief);
 		known = mpfr_sgn(&left->left) > 0 || mpfr_sgn(&left->right) <= 0;
 		if (!known || mpfr_sgn(&left->left) > 0)
@@ -464,6 +465,7 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 		through_hold(t);
 		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
 		mpfi_add(t->list[t->passed - 1].at, t->list[t->passed - 1].at, left);
+		t->list[t->passed - 1].stands = stands;
 		known = through_settle(t, NULL, off);
 	}
 	mpfi_clear(left);
