@@ -229,8 +229,8 @@ static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 	return beside;
 }
 
-/* Whether the target may meet number k and those of the instant before in another order, or one of them not: floats, and
- * contacts that bounce together */
+/* Whether the target may meet number k and those of the instant before in another order, or one of them not: floats,
+ * and contacts that bounce together */
 static bool blurs(const struct step *step, const struct reference *r, const struct moment *all, int k)
 {
 	bool single = step->model->asked.single, blurred = false;
