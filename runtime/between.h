@@ -112,20 +112,6 @@ static inline int PL(status_of)(const PL(piece) *p)
 
 #if PL_EXPRESSIONS > 0
 
-/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */
-static int PL(cross)(PL(contact) *contact, real time)
-{
-    pl_crossing *last = &contact->last;
-    if (contact->crossings == PL_MAX_EVENTS) {
-        return 0;
-    }
-    last->time = time;
-    contact->crossing[contact->crossings++] = *last;
-    contact->total++;
-    contact->interval[last->expression] += last->upward ? 1 : -1;
-    return 1;
-}
-
 static inline void PL(watch)(PL(piece) *p, PL(contact) *contact)
 {
     p->contact = contact;
@@ -347,22 +333,6 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
     PL(watch)(&p, contact);
     contact->placed = 1;
     pl_events_place(&PL(events), &p.at);
-}
-#elif PL_EXPRESSIONS > 0
-/* Its intervals.  That of one expression may choose what another is. */
-static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
-{
-    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-    int i, again = PL_CHANGES;
-    PL(inputs_now)(s, u, start, slope);
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
-        contact->interval[i] = 0;
-    }
-    contact->last.expression = -1;
-    contact->placed = 1;
-    do {
-        PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c, terms);
-    } while (pl_divided_place(&PL(divided), c[0], terms, contact->interval) && again-- > 0);
 }
 #endif
 

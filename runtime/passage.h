@@ -6,7 +6,6 @@
  *
  *     PL(watch)(known, interval, y, value, terms)   the expressions at y; the sizes of what they are summed from
  *     PL(breaks), PL(breakpoint), PL(passing)       of each expression how many breakpoints, these, a pl_divided
- *     PL(cross)(contact, time)                      passes the breakpoint of contact->last; 0: there were too many
  *
  * and a member contact. */
 

@@ -448,6 +448,7 @@ static real PL(limit)(PL_TYPE *s)
 }
 
 #if PL_EXPRESSIONS > 0
+#include "chosen.h"
 #include "passage.h"
 #endif
 
@@ -580,10 +581,8 @@ static inline int PL(next)(PL_TYPE *s, const real u[], const real start[], const
     if (!s->contact.placed) {
 #if PL_ORDER == 0
         PL(locate)(s, start, slope);
-#elif PL_INPUTS > 0
-        PL(locate)(s, u, &s->contact);
 #else
-        PL(locate)(s, &s->contact);
+        PL(locate)(s, u, &s->contact);
 #endif
     }
     if (PL(left)(s, start, slope)) {

@@ -6,7 +6,6 @@
  *     PL_CHOICES, PL(expand_from), PL(ahead)   as taylor.h; and what reach.h asks
  *     PL(bound_rates)(jacobian, rates)      Gershgorin's, on how fast the motion may decay [1/s], and on the square of
  *                                           how fast it may turn
- *     PL(locate)(s, u, contact)             the intervals of a state that was set; without inputs (s, contact)
  *
  * and members series, stiff, product, bounds, patience, run. */
 

@@ -273,40 +273,7 @@ static inline int PL(is_accurate)(const PL_TYPE *s, const real c[PL_ORDER + 1][P
 /* ---- parts of a step ---- */
 
 #if PL_PARTS
-static inline int PL(segment_of)(const PL_TYPE *s)
-{
-#if PL_SEGMENTS > 1
-    return s->segment;
-#else
-    (void)s;
-    return 0;
-#endif
-}
-
-#if PL_SEGMENTS > 1 && (PL_ADAPTIVE || (PL_CHOICES && PL_EXPRESSIONS > 0 && !PL_CONTACTS))
-/* How long the loads have the formulas that they have now [s]; `most`, where that does not end */
-static inline real PL(change_after)(const PL_TYPE *s, real most)
-{
-    return s->segment < PL_SEGMENTS - 1 ? PL(until)(s, s->segment) : most;
-}
-#endif
-
-#if PL_ADAPTIVE || (PL_EXPRESSIONS > 0 && !PL_CONTACTS)
-/* A time in the middle of the step, before the loads change: there it is on one side of conditions on t, also when it
- * is late, or float. */
-static inline real PL(middle)(const PL_TYPE *s)
-{
-#if PL_CHOICES && PL_SEGMENTS > 1
-    const real change = PL(change_after)(s, PL_H);
-    return PL(time)(s) + (change < PL_H ? change : PL_H) / 2;
-#elif PL_CHOICES
-    return PL(time)(s) + PL_H / 2;
-#else
-    (void)s;
-    return 0; /* there are none */
-#endif
-}
-#endif
+#include "chosen.h"
 
 /* Those that have no more time have others; whether some have */
 static inline int PL(change_loads)(PL_TYPE *s)

@@ -38,6 +38,7 @@
 #undef PL_LARGE
 #undef PL_LEAN
 #undef PL_LEAST_PART
+#undef PL_LOCATES
 #undef PL_LOOKS
 #undef PL_LOST
 #undef PL_MAX_EVENTS

@@ -310,14 +310,13 @@ enum input_names { AS_PARAMETERS, AS_SAMPLES, AS_CALLED_HERE };   /* u; u, or st
 /* What an expansion reads beside the instance, each with a comma behind it */
 const char *series_arguments(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			     enum input_names names, const char *contact);
-const char *series_parameters(const struct emitter *e);
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
-void emit_unread_samples(const struct emitter *e);                /* where it reads no input */
+void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
 void series_set(struct recurrences *r, const char *target, int sequence, int k);
@@ -369,6 +368,7 @@ void emit_expansion_members(const struct emitter *e);
 /* NAME_name: c_1 theta + ... + c_degree theta^degree of each state, by Horner's rule; c has so many rows */
 void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree);
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
+void emit_expand_from(const struct emitter *e);                          /* NAME_expand, NAME_expand_from */
 void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
@@ -407,12 +407,10 @@ void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
 void emit_divided_place(const struct emitter *e);
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
-void emit_divided_functions(const struct emitter *e);             /* tables, NAME_cross, NAME_locate */
+void emit_divided_functions(const struct emitter *e);             /* tables; NAME_cross, NAME_locate by chosen.h */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
-void emit_pass_breakpoint(const struct emitter *e);              /* NAME_cross */
-void emit_locate(const struct emitter *e);                       /* NAME_locate, by the series */
 int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
 
 /* ---- emit_passage.c: what passage.h is told ---- */

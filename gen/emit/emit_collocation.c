@@ -78,24 +78,6 @@ void emit_collocation_place(const struct emitter *e)
 
 /* ---- what the collocation is told ---- */
 
-static void emit_samples_now(const struct emitter *e)
-{
-	int inputs = e->system->inputs;
-	say(e, "\n/* Of the inputs at the start of this step, and their slopes */\n"
-	       "static inline void $n_inputs_now(const $n *s, const double u[], double start[], double slope[])\n"
-	       "{\n");
-	for (int i = 0; i < inputs; i++) {
-		bool ramp = e->system->input[i].hold;
-		say(e, "    start[%d] = %s[%d];\n"
-		       "    slope[%d] = %s;\n", i, ramp ? "s->u" : "u", i, i, ramp ? ramp_slope(e, i) : "0.0");
-	}
-	if (!inputs)
-		say(e, "    start[0] = slope[0] = 0.0;  /* there are none */\n");
-	say(e, "    (void)s;\n"
-	       "    (void)u;\n"
-	       "}\n");
-}
-
 /* Numbers that #if asks */
 static void emit_sizes(const struct emitter *e)
 {
@@ -171,11 +153,10 @@ void emit_collocation_step(const struct emitter *e)
 		emit_leftover_functions(e);
 	emit_stage_tables(e);
 	emit_motion(e);
-	emit_samples_now(e);
+	emit_inputs_now(e);
 	if (is_divided(e)) {
 		emit_divided_tables(e);
 		emit_passing_table(e);
-		emit_pass_breakpoint(e);
 	}
 	if (switches(e))
 		emit_series_beside(e);

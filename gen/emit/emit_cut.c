@@ -538,7 +538,7 @@ void emit_cut_step(const struct emitter *e)
 	emit_force_table(l);
 	emit_frozen_function(forcing(e));
 	emit_ends_function(ending(e));
-	emit_expand_function(l);
+	emit_expand_from(l);
 	emit_divided_functions(l);
 	emit_flow_tables(e);
 	emit_part(e);

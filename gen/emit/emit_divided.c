@@ -91,23 +91,6 @@ void emit_divided_tables(const struct emitter *e)
 
 /* ---- functions ---- */
 
-void emit_pass_breakpoint(const struct emitter *e)
-{
-	say(e, "\n/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too "
-	       "many */\n"
-	       "static int $n_cross($n_contact *contact, double time)\n"
-	       "{\n"
-	       "    pl_crossing *last = &contact->last;\n"
-	       "    if (contact->crossings == $N_MAX_EVENTS)\n"
-	       "        return 0;\n"
-	       "    last->time = time;\n"
-	       "    contact->crossing[contact->crossings++] = *last;\n"
-	       "    contact->total++;\n"
-	       "    contact->interval[last->expression] += last->upward ? 1 : -1;\n"
-	       "    return 1;\n"
-	       "}\n");
-}
-
 int most_changes(const struct expansion *x)
 {
 	int most = 1;
@@ -116,39 +99,27 @@ int most_changes(const struct expansion *x)
 	return most;
 }
 
-void emit_locate(const struct emitter *e)
-{
-	const struct expansion *x = expansion(e);
-	bool changes = e->system->segments > 1;
-	const char *length = changes ? "(change < $N_H ? change : $N_H)" : "$N_H";
-	say(e, "\n/* The intervals of a state that was set. That of one expression may choose what another is. */\n"
-	       "static void $n_locate(const $n *s, %s$n_contact *contact)\n"
-	       "{\n"
-	       "    double c[%d][$c], terms[%d];\n"
-	       "    int i, again = %d;\n", driven_parameter(e), x->order + 1, x->expressions, most_changes(x));
-	if (changes)
-		say(e, "    const double change = s->segment < %d ? $n_until(s, s->segment) : $N_H;\n",
-		    e->system->segments - 1);
-	emit_input_samples(e);
-	emit_unread_samples(e);
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        contact->interval[i] = 0;\n"
-	       "    contact->last.expression = -1;\n"
-	       "    contact->placed = 1;\n"
-	       "    do {\n"
-	       "        %s\n"
-	       "    } while (pl_divided_place(&$n_divided, c[0], terms, contact->interval) && again-- > 0);\n"
-	       "%s"
-	       "}\n", x->expressions,
-	    expand_call(e, "0.0", spell(e, format("$n_time(s) + 0.5 * %s", length)), "s->segment", "contact->", "s->y",
-			"c"), changes ? "    (void)change;\n" : "");
-}
-
+/* Of a series that steps are looked at by, with what chosen.h is told of it */
 void emit_divided_functions(const struct emitter *e)
 {
+	const struct expansion *x = expansion(e);
 	emit_divided_tables(e);
-	emit_pass_breakpoint(e);
-	emit_locate(e);
+	emit_inputs_now(e);
+	say(e, "\n#define PL(name) $n_##name\n"
+	       "#define PL_TYPE $n\n"
+	       "#define PL_H $N_H\n"
+	       "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
+	       "#define PL_COLUMNS ($c)\n"
+	       "#define PL_SINGLE %d\n"
+	       "#define PL_ORDER %d\n"
+	       "#define PL_EXPRESSIONS %d\n"
+	       "#define PL_CHANGES %d\n"
+	       "#define PL_INPUTS %d\n"
+	       "#define PL_SEGMENTS %d\n"
+	       "#define PL_CHOICES %d\n"
+	       "#include \"chosen.h\"\n"
+	       "#include \"undef.h\"\n", e->model->asked.single, x->order, x->expressions, most_changes(x),
+	    e->system->inputs, e->system->segments, has_choices(e));
 }
 
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent)
@@ -156,8 +127,8 @@ void emit_divided_start(const struct emitter *e, const char *contact, const char
 	if (!is_divided(e))
 		return;
 	say(e, "%sif (!%s.placed)\n"
-	       "%s    $n_locate(s, %s&%s);\n"
-	       "%s%s.crossings = 0;\n", indent, contact, indent, e->system->inputs ? "u, " : "", contact, indent,
+	       "%s    $n_locate(s, %s, &%s);\n"
+	       "%s%s.crossings = 0;\n", indent, contact, indent, e->system->inputs ? "u" : "NULL", contact, indent,
 	    contact);
 }
 

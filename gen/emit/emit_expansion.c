@@ -228,24 +228,6 @@ void emit_expansion_members(const struct emitter *e)
 
 /* ---- what taylor.h is told ---- */
 
-static void emit_inputs_now(const struct emitter *e)
-{
-	int inputs = e->system->inputs;
-	if (inputs == 0)
-		return;
-	say(e, "\n/* Samples at the start of this step, their slopes in h */\n"
-	       "static inline void $n_inputs_now(const $n *s, const double u[], double start[], double slope[])\n"
-	       "{\n");
-	for (int i = 0; i < inputs; i++) {
-		bool ramp = e->system->input[i].hold;
-		say(e, "    start[%d] = %s[%d];\n"
-		       "    slope[%d] = %s;\n", i, ramp ? "s->u" : "u", i, i, ramp ? ramp_slope(e, i) : "0.0");
-	}
-	say(e, "    (void)s;\n"
-	       "    (void)u;\n"
-	       "}\n");
-}
-
 /* Of what it is handed $n_NAME reads only some. */
 static void emit_handed_on(const struct emitter *e, const char *name, const char *call)
 {
@@ -277,13 +259,18 @@ static void emit_pass_time(const struct emitter *e)
 	       "}\n");
 }
 
-void emit_series_functions(const struct emitter *e)
+void emit_expand_from(const struct emitter *e)
 {
-	emit_force_table(e);
 	emit_expand_function(e);
 	say(e, "\n");
 	emit_handed_on(e, "expand_from",
 		       spell(e, "$n_expand(s, %sy, c%s);", handed_to(e), is_divided(e) ? ", terms" : ""));
+}
+
+void emit_series_functions(const struct emitter *e)
+{
+	emit_force_table(e);
+	emit_expand_from(e);
 	if (e->step->slopes) {
 		const struct emitter *slopes = sloping(e);
 		emit_slopes_function(slopes);
@@ -295,7 +282,8 @@ void emit_series_functions(const struct emitter *e)
 static void emit_model_functions(const struct emitter *e)
 {
 	emit_series_functions(e);
-	emit_inputs_now(e);
+	if (e->system->inputs)
+		emit_inputs_now(e);
 	if (!is_straight(e))
 		emit_pass_time(e);
 	emit_sums(e);

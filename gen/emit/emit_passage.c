@@ -22,6 +22,7 @@ void emit_passing_table(const struct emitter *e)
 void emit_passage_limits(const struct emitter *e)
 {
 	say(e, "#define PL_CHANGES %d  /* of intervals, until all of them stand */\n"
+	       "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
 	       "#define PL_MAX_SPLITS %d\n"
 	       "#define PL_WATCH_READS %d  /* known numbers */\n",
 	    most_changes(e->step->divided), MAX_SPLITS, watch_reads_known(e));

@@ -71,12 +71,22 @@ void emit_input_samples(const struct emitter *e)
 		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
 }
 
-void emit_unread_samples(const struct emitter *e)
+void emit_inputs_now(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
 	int inputs = e->system->inputs;
-	if (inputs && !any_of(x->input, inputs) && !any_of(x->slope, inputs))
-		say(e, "    (void)u;\n");
+	say(e, "\n/* Samples at the start of this step, their slopes in h */\n"
+	       "static inline void $n_inputs_now(const $n *s, const double u[], double start[], double slope[])\n"
+	       "{\n");
+	for (int i = 0; i < inputs; i++) {
+		bool ramp = e->system->input[i].hold;
+		say(e, "    start[%d] = %s[%d];\n"
+		       "    slope[%d] = %s;\n", i, ramp ? "s->u" : "u", i, i, ramp ? ramp_slope(e, i) : "0.0");
+	}
+	if (!inputs)
+		say(e, "    start[0] = slope[0] = 0.0;  /* there are none */\n");
+	say(e, "    (void)s;\n"
+	       "    (void)u;\n"
+	       "}\n");
 }
 
 static void emit_expansion_locals(const struct emitter *e)
@@ -305,7 +315,7 @@ const char *expand_call(const struct emitter *e, const char *tau, const char *wh
 
 /* ---- slopes further on ---- */
 
-const char *series_parameters(const struct emitter *e)
+static const char *series_parameters(const struct emitter *e)
 {
 	return format("%s%s%s%s%s", has_offset(e) ? "double tau, " : "", has_choices(e) ? "double when, " : "",
 		      changes(e) ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),

@@ -52,8 +52,6 @@ void emit_series_beside(const struct emitter *e)
 	emit_series_ahead(e);
 	emit_hidden_table(e);
 	emit_bound_rates(e);
-	if (is_divided(e))
-		emit_locate(e);
 }
 
 /* ---- which is next ---- */

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* chosen.h: the formulas that hold now: of loads, by the segment of time; those that the state chooses, by the interval
+ * of each expression, which a state that was set has yet to find, and which a crossing changes.  Part of what a model's
+ * file includes for its steps, after
+ *
+ *     PL(name), PL_TYPE          the model's prefix before a name; its type, with member y, and segment of several
+ *     PL(contact)                with members crossings, crossing, total, interval, last, placed
+ *     PL_EXPRESSIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
+ *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
+ *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
+ *     PL(expand_from), PL(inputs_now)   as taylor.h
+ *     PL(divided)                a pl_divided, of the series */
+#include "numbers.h"
+
+#define PL_LOCATES (PL_ORDER > 0 && PL_EXPRESSIONS > 0 && !PL_CONTACTS)
+
+/* ---- by time ---- */
+
+#if PL_ORDER > 0
+static inline int PL(segment_of)(const PL_TYPE *s)
+{
+#if PL_SEGMENTS > 1
+    return s->segment;
+#else
+    (void)s;
+    return 0;
+#endif
+}
+#endif
+
+#if PL_SEGMENTS > 1 && (PL_ADAPTIVE || (PL_CHOICES && PL_LOCATES))
+/* How long the loads have the formulas that they have now [s]; `most`, where that does not end */
+static inline real PL(change_after)(const PL_TYPE *s, real most)
+{
+    return s->segment < PL_SEGMENTS - 1 ? PL(until)(s, s->segment) : most;
+}
+#endif
+
+#if PL_ADAPTIVE || PL_LOCATES
+/* A time in the middle of the step, before the loads change: there it is on one side of conditions on t, also when it
+ * is late, or float. */
+static inline real PL(middle)(const PL_TYPE *s)
+{
+#if PL_CHOICES && PL_SEGMENTS > 1
+    const real change = PL(change_after)(s, PL_H);
+    return PL(time)(s) + (change < PL_H ? change : PL_H) / 2;
+#elif PL_CHOICES
+    return PL(time)(s) + PL_H / 2;
+#else
+    (void)s;
+    return 0; /* there are none */
+#endif
+}
+#endif
+
+/* ---- by the state ---- */
+
+#if PL_EXPRESSIONS > 0 && !PL_CONTACTS
+/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */
+static int PL(cross)(PL(contact) *contact, real time)
+{
+    pl_crossing *last = &contact->last;
+    if (contact->crossings == PL_MAX_EVENTS) {
+        return 0;
+    }
+    last->time = time;
+    contact->crossing[contact->crossings++] = *last;
+    contact->total++;
+    contact->interval[last->expression] += last->upward ? 1 : -1;
+    return 1;
+}
+#endif
+
+#if PL_LOCATES
+/* The intervals of a state that was set.  That of one expression may choose what another is. */
+static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
+{
+    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_EXPRESSIONS];
+    real start[PL_INPUTS + 1], slope[PL_INPUTS + 1]; /* no array is empty */
+    int i, again = PL_CHANGES;
+    PL(inputs_now)(s, u, start, slope);
+    for (i = 0; i < PL_EXPRESSIONS; i++) {
+        contact->interval[i] = 0;
+    }
+    contact->last.expression = -1;
+    contact->placed = 1;
+    do {
+        PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c, terms);
+    } while (pl_divided_place(&PL(divided), c[0], terms, contact->interval) && again-- > 0);
+}
+#endif
