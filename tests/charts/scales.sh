@@ -22,8 +22,8 @@ mkdir "$work/hard"
     xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$build/plgen"
 sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
 names=
-expected=24
-[ -z "$quick" ] || { names=$("$charts/precision" --names | grep -v '^vanderpol_stiffer$') expected=23; }
+expected=25
+[ -z "$quick" ] || { names=$("$charts/precision" --names | grep -v '^vanderpol_stiffer$') expected=24; }
 {
     # shellcheck disable=SC2086
     "$charts/precision" --scales $quick "$work" $names && "$charts/hard" --scales $quick "$work/hard"
