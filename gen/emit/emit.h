@@ -143,7 +143,6 @@ tape_ref formula_text(struct formulas *f, const char *text);      /* any C of a 
 void formulas_finish(struct formulas *f);                         /* once all is set */
 struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
 void emit_formulas(struct formulas *f, int indent);
-const char *time_text(const struct emitter *e, const struct form *form, const char *when); /* numbers and that time */
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */
 
@@ -357,7 +356,7 @@ bool crowds(const struct emitter *e);                            /* there are lo
 void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
 void emit_hidden_table(const struct emitter *e);
 void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
-const char *crowded_steps(const struct emitter *e);              /* C: how long, in h, such a step is at most */
+double crowded_steps(const struct emitter *e);                    /* how long, in h, such a step is at most */
 
 /* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
@@ -365,8 +364,6 @@ bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);
 void emit_expansion_members(const struct emitter *e);
 /* Of steps by collocation too, where there is a series beside it */
-/* NAME_name: c_1 theta + ... + c_degree theta^degree of each state, by Horner's rule; c has so many rows */
-void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree);
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
 void emit_expand_from(const struct emitter *e);                          /* NAME_expand, NAME_expand_from */
 void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */

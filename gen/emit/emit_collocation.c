@@ -98,14 +98,38 @@ static void emit_sizes(const struct emitter *e)
 		say(e, "#define PL_%s %d\n", sizes[i].name, sizes[i].value);
 }
 
+/* 1/s: of the loads that what chooses formulas reads */
+static double frequency_of_choices(const struct emitter *e)
+{
+	const struct expansion *d = e->step->divided;
+	double highest = 0;
+	for (int i = 0; d && i < d->expressions; i++) {
+		const struct form *form = d->expression[i].form;
+		const struct reads reads = reads_of(e->model, 1, &form);
+		for (int l = 0; l < e->system->loads; l++)
+			if (reads.load[l] && oscillates(e->system->load[l].wave))
+				highest = fmax(highest, mpq_get_d(e->system->load[l].wave->w));
+	}
+	return highest;
+}
+
+/* [h], 0: as long as it will. The polynomial of what chooses formulas has half a radian of its loads for a node: where
+ * no force shakes in a formula, no error does, and a step would go over what a load passes. */
+static double longest_step(const struct emitter *e)
+{
+	double crowded = crowds(e) ? crowded_steps(e) : 0, frequency = frequency_of_choices(e);
+	double chosen = frequency > 0 ? 0.5 * stages(e) / (frequency * mpq_get_d(e->model->h)) : 0;
+	return crowded > 0 && chosen > 0 ? fmin(crowded, chosen) : fmax(crowded, chosen);
+}
+
 static void emit_limits(const struct emitter *e)
 {
 	const double solved = fmax(0.05 * tolerance(e), 4 * (e->model->asked.single ? FLT_EPSILON : DBL_EPSILON));
 	say(e, "#define PL_H $N_H\n"
 	       "#define PL_TOLERANCE %s\n"
 	       "#define PL_SOLVED %s  /* what Newton's method may leave */\n"
-	       "#define PL_CROWDED %s  /* [h]: loads that may cancel are followed so far; 0: there are none */\n",
-	    shortest(tolerance(e)), shortest(solved), crowds(e) ? crowded_steps(e) : "0.0");
+	       "#define PL_CROWDED %s  /* [h]: loads are followed so far; 0: as far as the error lets a step go */\n",
+	    shortest(tolerance(e)), shortest(solved), shortest(longest_step(e)));
 	/* of a step that says where things go its inside is looked at, where what is left out has lower powers */
 	say(e, "#define PL_SHARE_OF_FIRST %s\n", is_divided(e) && !switches(e) ? "0.0625" : "1.0");
 	if (traces(e))

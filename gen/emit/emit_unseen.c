@@ -11,9 +11,9 @@ static const struct expansion *unseens(const struct emitter *e)
 }
 
 /* How many h of loads that may cancel each other are followed: so much of the phase of the fastest */
-static const char *crowded_length(const struct emitter *e, double phase)
+static double crowded_length(const struct emitter *e, double phase)
 {
-	return shortest(phase / (unseens(e)->crowded * mpq_get_d(e->model->h)));
+	return phase / (unseens(e)->crowded * mpq_get_d(e->model->h));
 }
 
 /* The argument of each, by its kind */
@@ -37,7 +37,7 @@ void emit_unseen_sizes(const struct emitter *e)
 	       "#define PL_BEATS %s\n"
 	       "#define PL_RISES %s\n"
 	       "#define PL_RISES_FACTOR %s\n", traces(e) ? unseens(e)->unseens : 0,
-	    crowds(e) ? crowded_length(e, rise) : "0.0", shortest(rise), shortest(exp(rise)));
+	    shortest(crowds(e) ? crowded_length(e, rise) : 0), shortest(rise), shortest(exp(rise)));
 }
 
 void emit_hidden_table(const struct emitter *e)
@@ -48,7 +48,7 @@ void emit_hidden_table(const struct emitter *e)
 
 /* ---- along a step of the collocation ---- */
 
-const char *crowded_steps(const struct emitter *e)
+double crowded_steps(const struct emitter *e)
 {
 	return crowded_length(e, 2 * e->step->collocation->stages);
 }

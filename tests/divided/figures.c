@@ -194,6 +194,26 @@ static void check_ringing(const char *name, int steps, int status)
     free(state);
 }
 
+/* ---- x' = max(sin(40 t) - 0.9, 0): each tooth adds its area ---- */
+
+static void check_teeth(const char *name)
+{
+    enum { SECONDS = 20 };
+    const struct variant *v = variant_called(name);
+    const double rise = asin(0.9), area = (2 * cos(rise) - 0.9 * (M_PI - 2 * rise)) / 40;
+    const int teeth = (int)floor((40 * SECONDS - (M_PI - rise)) / (2 * M_PI)) + 1;
+    double y[2];
+    void *state = calloc(1, v->model->size);
+    v->model->init(state);
+    for (int k = 0; k < (int)lround(SECONDS / v->model->h); k++)
+        v->model->step(state, NULL);
+    v->model->get(state, y);
+    is_close(y[0], teeth * area, 1e-12, "%s: %d teeth", name, teeth);
+    ok(v->crossed(state) == 2 * (uint64_t)teeth && v->model->status(state) == 0, "%s: %lu crossings", name,
+       (unsigned long)v->crossed(state));
+    free(state);
+}
+
 /* ---- float ---- */
 
 static void check_float(const pl_modelf *m, const char *name, uint64_t (*crossed)(const void *s))
@@ -262,5 +282,8 @@ int main(void)
     check_ringing("ringing_auto_0", 700, 0);
     check_ringing("ringing_radau_0", 1500, PL_TOO_MANY_EVENTS);
     check_ringing("ringing_auto_0", 1500, PL_TOO_MANY_EVENTS);
+    check_teeth("teeth_0");
+    check_teeth("teeth_radau_0");
+    check_teeth("teeth_auto_0");
     return tap_end();
 }
