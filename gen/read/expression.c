@@ -243,6 +243,9 @@ _Noreturn void unknown_name(struct parser *p, struct token token)
 	/* by itself a part was without error: this one follows from another */
 	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
 		abandon();
+	if (is_op(p, "(") && function_of(token.name) != FN_NONE)
+		error(token.at, "an output that is an expression has a name: output NAME = ...",
+		      "'%s' is a function, and names stand here", token.name);
 	const char *note = part_note(p, token.name), *habit = habit_note(p, token, names_coordinate);
 	if (!note && !habit && lacks_coordinates(p, token))
 		missing_coordinates(p, token);
