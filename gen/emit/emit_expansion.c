@@ -35,7 +35,7 @@ static void emit_horner(const struct emitter *e, const char *c, int degree)
 			    i % 4 == 3 || i == states - 1 ? "\n" : "");
 }
 
-void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
+static void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
 {
 	int states = e->system->states;
 	say(e, "static void $n_%s(const double c[%d][$c], double theta, double gain[$N_STATES])\n"

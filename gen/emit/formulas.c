@@ -53,18 +53,10 @@ const char *basis_now(const struct emitter *e, const struct basis *basis)
 
 /* ---- operands: from forms ---- */
 
-static tape_ref power_of_time(struct tape *t, int power)
-{
-	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power ? time : TAPE_NONE;
-	for (int k = 1; k < power; k++)
-		product = tape_binary(t, TAPE_MUL, product, time);
-	return product;
-}
-
 static tape_ref wave_now(struct tape *t, const struct emitter *e, const struct basis *basis)
 {
 	if (is_polynomial(basis->wave))
-		return power_of_time(t, basis->power);
+		return tape_power_of_time(t, basis->power);
 	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
 	return tape_operand(t, TAPE_LOAD, load_of_wave(e, basis->wave), column);
 }
@@ -79,7 +71,7 @@ static tape_ref times_call(struct tape *t, tape_ref product, enum function funct
 static tape_ref wave_written(struct tape *t, const struct basis *basis)
 {
 	const struct wave *wave = basis->wave;
-	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power_of_time(t, basis->power);
+	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = tape_power_of_time(t, basis->power);
 	if (mpq_sgn(wave->a) != 0)
 		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, wave->a), time));
 	if (!oscillates(wave))
@@ -269,18 +261,4 @@ void emit_formulas(struct formulas *f, int indent)
 	formulas_finish(f);
 	struct tape_target to = { "double", number, operand, "pl_magnitude", f, indent, false };
 	tape_print(f->tape, &to, f->e->to);
-}
-
-/* Numbers and the time `when` */
-const char *time_text(const struct emitter *e, const struct form *form, const char *when)
-{
-	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		const char *operand = basis->kind == BASIS_PI				? "3.141592653589793"
-				      : basis->kind == BASIS_WAVE && basis->power > 0 ? when
-										      : NULL;
-		term[i] = scaled(finite_number(e, form->term[i].factor), operand);
-	}
-	return form->terms ? tree(form->terms, term, 18) : "0.0";
 }

@@ -104,18 +104,11 @@ static tape_ref constant(struct tape *t, double value)
 	return ref;
 }
 
-/* The factors of a product that has no name one after the other */
-static tape_ref times_each(struct tape *t, tape_ref before, tape_ref product)
-{
-	const struct tape_node n = *tape_node(t, product);
-	return n.op == TAPE_MUL && !n.name ? times(t, times_each(t, before, n.a), n.b) : times(t, before, product);
-}
-
 static tape_ref scaled(struct tape *t, double factor, tape_ref ref)
 {
 	if (ref == TAPE_NONE || factor == 1)
 		return ref;
-	return factor == -1 ? tape_unary(t, TAPE_NEG, ref) : times_each(t, constant(t, factor), ref);
+	return factor == -1 ? tape_unary(t, TAPE_NEG, ref) : tape_times_each(t, constant(t, factor), ref);
 }
 
 /* a_i b_j; where one is 0 the other is not read */
@@ -182,14 +175,6 @@ static void add_product(struct recurrences *r, struct list *sum, struct list *la
 		add(last, newest(r, recurrence(r, b, k), factor, a));
 }
 
-static tape_ref power_of_time(struct tape *t, int power)
-{
-	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power ? time : TAPE_NONE;
-	for (int i = 1; i < power; i++)
-		product = times(t, product, time);
-	return product;
-}
-
 /* The constant 1: a load's state that is no operand */
 static bool is_one(const struct recurrences *r, int column)
 {
@@ -218,7 +203,7 @@ static bool add_known(struct recurrences *r, struct list *sum, const struct sequ
 		add(sum, column == TAPE_NONE ? place : times(t, place, column));
 	} else if (factor != 0) {
 		bool slope = term->kind == TERM_SLOPE;
-		tape_ref x = term->kind == TERM_TIME    ? power_of_time(t, term->a)
+		tape_ref x = term->kind == TERM_TIME    ? tape_power_of_time(t, term->a)
 			     : term->kind == TERM_PARAM ? tape_operand(t, TAPE_PARAM, term->a, 0)
 			     : term->kind == TERM_LOAD  ? column_ref(r, term->a)
 							: tape_operand(t, TAPE_INPUT, term->a, slope);
@@ -639,32 +624,13 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 	return times(r->t, chain(r->t, &sum), helper(r, sequence));
 }
 
-/* A form linear in t at the time at which conditions on time hold as they do */
-static tape_ref form_in_time(struct tape *t, const struct form *form)
-{
-	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1);
-	mpq_t pi;
-	mpq_init(pi);
-	constant_pi(pi);
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		tape_ref factor = tape_constant(t, form->term[i].factor);
-		bool time = basis->kind == BASIS_WAVE && basis->power > 0;
-		term[i] = basis->kind == BASIS_PI ? times(t, factor, tape_constant(t, pi))
-			  : time		  ? times(t, factor, tape_operand(t, TAPE_TIME, 0, 1))
-						  : factor;
-	}
-	mpq_clear(pi);
-	return tape_sum(t, form->terms, term);
-}
-
 /* By interval[], or by the numbers themselves */
 static tape_ref condition(struct recurrences *r, const struct sequence *s)
 {
 	struct tape *t = r->t;
 	if (s->choice == CHOICE_BY_TIME) {
-		tape_ref left = form_in_time(t, s->left);
-		return tape_compare(t, s->comparison, left, form_in_time(t, s->right));
+		tape_ref left = tape_form_in_time(t, s->left);
+		return tape_compare(t, s->comparison, left, tape_form_in_time(t, s->right));
 	}
 	if (s->choice == CHOICE_BY_SEQUENCE)
 		return tape_binary(t, TAPE_UNEQUAL, recurrence(r, s->test, 0), tape_number(t, 0));

@@ -965,7 +965,6 @@ void plan_tuned_blocks(struct step *step);
 
 /* ---- written.c: the equations as written, for NAME_rhs ---- */
 
-bool is_highest(const struct model *model, const struct basis *basis); /* a coordinate's highest derivative */
 const struct form *without_highest(const struct model *model, const struct form *form);
 /* -W^-1, n x n: the highest derivatives are it times the residuals */
 struct coefficient *derivatives_of_residuals(const struct model *model);

@@ -2,7 +2,7 @@
 /* The equations as written, for NAME_rhs: residuals without the highest derivatives, and how those follow from them. */
 #include "step/step.h"
 
-bool is_highest(const struct model *model, const struct basis *basis)
+static bool is_highest(const struct model *model, const struct basis *basis)
 {
 	return basis->kind == BASIS_COORD && basis->order == model->written->frame.coord[basis->index]->highest;
 }

@@ -156,19 +156,19 @@ static tape_ref table_ref(struct tape_forms *f, const struct atom *a)
 	return tape_table(f->tape, x, pieces, piece, below);
 }
 
-/* Of numbers and the time at which conditions on time hold as they do */
-static tape_ref form_in_time(struct tape_forms *f, const struct form *form)
+tape_ref tape_form_in_time(struct tape *t, const struct form *form)
 {
-	struct tape *t = f->tape;
-	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1);
+	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1), when = tape_operand(t, TAPE_TIME, 0, 1);
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		tape_ref factor = tape_constant(t, form->term[i].factor), when = tape_operand(t, TAPE_TIME, 0, 1);
+		tape_ref factor = tape_constant(t, form->term[i].factor);
 		term[i] = basis->kind == BASIS_WAVE && basis->power > 0 ? times(t, factor, when)
-			  : basis->kind == BASIS_PI			? tape_term(f, &form->term[i])
+			  : basis->kind == BASIS_PI			? times(t, factor, tape_pi(t))
 									: factor;
 	}
-	return tape_sum(t, form->terms, term);
+	tape_ref sum = tape_sum(t, form->terms, term);
+	discard(term);
+	return sum;
 }
 
 static bool is_decided_in_time(const struct tape_forms *f, const struct atom *a)
@@ -181,7 +181,7 @@ static bool is_decided_in_time(const struct tape_forms *f, const struct atom *a)
 
 static tape_ref operand_of_condition(struct tape_forms *f, const struct atom *a, int k)
 {
-	return is_decided_in_time(f, a) ? form_in_time(f, a->operand[k]) : tape_form(f, a->operand[k]);
+	return is_decided_in_time(f, a) ? tape_form_in_time(f->tape, a->operand[k]) : tape_form(f, a->operand[k]);
 }
 
 static tape_ref sign_ref(struct tape_forms *f, const struct atom *a)
@@ -274,13 +274,6 @@ static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
 
 /* ---- forms ---- */
 
-/* `before` times each factor of a product, from the left to the right */
-static tape_ref times_product(struct tape *t, tape_ref before, tape_ref product)
-{
-	const struct tape_node n = *tape_node(t, product);
-	return n.op == TAPE_MUL ? times(t, times_product(t, before, n.a), n.b) : times(t, before, product);
-}
-
 /* A factor goes into a product that nothing else reads, so that both take one multiplication less. */
 tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
 {
@@ -298,7 +291,7 @@ tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
 	if (plus || minus)
 		return plus ? x : tape_unary(t, TAPE_NEG, x);
 	tape_ref factor = tape_constant(t, term->factor);
-	return atom ? times(t, factor, x) : times_product(t, factor, x);
+	return atom ? times(t, factor, x) : tape_times_each(t, factor, x);
 }
 
 tape_ref tape_form(struct tape_forms *f, const struct form *form)

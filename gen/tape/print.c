@@ -11,7 +11,7 @@ enum { WIDTH = 100, LONG = 400 };           /* of a line; of an argument: compil
 struct printing {
 	const struct tape *t;
 	const struct tape_target *to;
-	FILE *out;                  /* NULL: no locals can be declared */
+	FILE *out;
 	int *uses, parts;           /* locals so far that have no name of their own */
 	const char **local;         /* per node: what holds it; NULL: nothing yet */
 };
@@ -28,7 +28,7 @@ static const char *enclosed(bool needed, const char *text)
 static bool is_shared(const struct printing *p, tape_ref ref)
 {
 	bool plain = tape_is_operand(p->t, ref) || tape_is_cheap(p->t, ref), named = tape_node(p->t, ref)->name != NULL;
-	return p->out && (named || (!plain && p->uses[ref] > 1));
+	return named || (!plain && p->uses[ref] > 1);
 }
 
 static const char *declare(struct printing *p, tape_ref ref, const char *text)
@@ -48,13 +48,13 @@ static bool is_word(const char *text)
 static const char *word_of(struct printing *p, tape_ref ref)
 {
 	const char *text = text_of(p, ref, CHOICE, 18);
-	return is_word(text) || !p->out ? enclosed(!is_word(text), text) : declare(p, ref, text);
+	return is_word(text) ? text : declare(p, ref, text);
 }
 
 static const char *argument_of(struct printing *p, tape_ref ref)
 {
 	const char *text = text_of(p, ref, CHOICE, 18);
-	return strlen(text) > LONG && p->out && !tape_node(p->t, ref)->choice ? declare(p, ref, text) : text;
+	return strlen(text) > LONG && !tape_node(p->t, ref)->choice ? declare(p, ref, text) : text;
 }
 
 /* ---- operations ---- */
@@ -160,13 +160,6 @@ static const char *text_of(struct printing *p, tape_ref ref, enum level level, i
 
 /* ---- the whole ---- */
 
-static struct printing printing_of(const struct tape *t, const struct tape_target *to, FILE *out)
-{
-	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
-	p.local = ARRAY(const char *, (size_t)tape_length(t) + 1);
-	return p;
-}
-
 static void print_out(const struct printing *p, const struct tape_out *set, const char *text)
 {
 	const char *note = set->note ? format("  /* %s */", set->note) : "";
@@ -178,8 +171,9 @@ static void print_out(const struct printing *p, const struct tape_out *set, cons
 
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 {
-	struct printing p = printing_of(t, to, out);
+	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
 	int outs = tape_outs(t);
+	p.local = ARRAY(const char *, (size_t)tape_length(t) + 1);
 	const char **text = ARRAY(const char *, (size_t)outs + 1);
 	for (int i = 0; i < outs; i++) {
 		text[i] = text_of(&p, tape_out(t, i)->ref, CHOICE, tape_out(t, i)->indent);
@@ -188,10 +182,4 @@ void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 	}
 	for (int i = 0; i < outs && to->locals_first; i++)
 		print_out(&p, tape_out(t, i), text[i]);
-}
-
-const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent)
-{
-	struct printing p = printing_of(t, to, NULL);
-	return text_of(&p, ref, CHOICE, indent);
 }

@@ -203,6 +203,22 @@ bool tape_is_operand(const struct tape *t, tape_ref ref)
 	return t->node[ref].op < TAPE_NEG;
 }
 
+tape_ref tape_times_each(struct tape *t, tape_ref before, tape_ref product)
+{
+	const struct tape_node n = t->node[product];
+	if (n.op != TAPE_MUL || n.name)
+		return tape_binary(t, TAPE_MUL, before, product);
+	return tape_binary(t, TAPE_MUL, tape_times_each(t, before, n.a), n.b);
+}
+
+tape_ref tape_power_of_time(struct tape *t, int power)
+{
+	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = power ? time : TAPE_NONE;
+	for (int k = 1; k < power; k++)
+		product = tape_binary(t, TAPE_MUL, product, time);
+	return product;
+}
+
 void tape_name(struct tape *t, tape_ref ref, const char *name)
 {
 	if (t->node[ref].op != TAPE_CONSTANT && !t->node[ref].name && !t->node[ref].choice)

@@ -66,6 +66,9 @@ tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b)
 /* (a + b) + (c + d): the shortest chain of dependent additions; of no terms 0 */
 tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term);
 tape_ref tape_power(struct tape *t, tape_ref a, unsigned n); /* a^n, n >= 1, with few multiplications */
+/* before times each factor of a product that has no name, from the left to the right */
+tape_ref tape_times_each(struct tape *t, tape_ref before, tape_ref product);
+tape_ref tape_power_of_time(struct tape *t, int power);      /* t^power; of 0 TAPE_NONE */
 /* y + slope (x - x0) of the piece that x is on: below[p], is it below the end of piece p? */
 tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straight *piece, const tape_ref *below);
 void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is a constant or has one */
@@ -107,6 +110,8 @@ struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int
 struct tape *tape_of_forms(const struct tape_forms *f);
 tape_ref tape_form(struct tape_forms *f, const struct form *form);
 tape_ref tape_term(struct tape_forms *f, const struct form_term *term);
+/* Of numbers and t: at the time at which conditions on time hold as they do */
+tape_ref tape_form_in_time(struct tape *t, const struct form *form);
 /* Is `condition` met? As an atom, or where its number is not 0 */
 tape_ref tape_condition(struct tape_forms *f, const struct form *condition);
 void tape_name_lets(struct tape_forms *f);      /* once all forms are in */
@@ -134,8 +139,6 @@ struct tape_target {
 };
 /* Locals for what is read more than once or has a name, outs in their order */
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);
-/* Without locals: one expression */
-const char *tape_text(const struct tape *t, const struct tape_target *to, tape_ref ref, int indent);
 
 /* ---- run.c: its numbers ---- */
 
