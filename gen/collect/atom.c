@@ -472,7 +472,7 @@ static const struct node *call_at(const struct node *node, enum function functio
 struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count,
 		       struct form *const *x)
 {
-	bool single = function < FN_ATAN2 && function != FN_ABS && function != FN_SGN;
+	bool single = function < FN_ATAN2;
 	if (all_constant(count, x) || (!single && function != FN_ATAN2 && is_decided(c, count, x)))
 		return single ? constant_call(c, node, function, x[0])
 			      : piecewise(c, call_at(node, function, count), x);
@@ -526,8 +526,7 @@ static bool is_comparison(const struct form *form)
 
 static bool is_piecewise_atom(const struct atom *a)
 {
-	bool function = a->kind == ATOM_CALL &&
-			(a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
+	bool function = a->kind == ATOM_CALL && a->function >= FN_ABS;
 	bool choice = a->kind == ATOM_CHOOSE && is_comparison(a->operand[0]);
 	bool comparison = a->kind == ATOM_COMPARE && a->comparison <= CMP_GE;
 	bool all = function || choice || comparison;

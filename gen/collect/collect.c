@@ -196,8 +196,7 @@ static struct value *collect_piecewise(struct collector *c, struct node *node)
 /* Functions apply to each cell. */
 static struct value *collect_call(struct collector *c, struct node *node)
 {
-	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN ||
-	    node->function == FN_ATAN2)
+	if (node->function >= FN_ATAN2)
 		return collect_piecewise(c, node);
 	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
 	for (int i = 0; i < x->rows * x->columns; i++)

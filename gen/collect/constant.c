@@ -55,46 +55,26 @@ static bool outside_unit(mpq_srcptr x)
 /* Values of the real functions that are rational at a rational argument (all of them, by Lindemann). */
 static bool exact_value(struct place at, enum function function, mpq_srcptr x, mpq_ptr value)
 {
-	bool zero = mpq_sgn(x) == 0, one = mpq_cmp_ui(x, 1, 1) == 0;
-	switch (function) {
-	case FN_SIN: case FN_TAN: case FN_SINH: case FN_TANH: case FN_ASIN: case FN_ATAN:
-		domain(at, function, function == FN_ASIN && outside_unit(x), "outside -1 to 1");
-		mpq_set_ui(value, 0, 1);
-		return zero;
-	case FN_COS: case FN_COSH: case FN_EXP:
-		mpq_set_ui(value, 1, 1);
-		return zero;
-	case FN_ACOS:
-		domain(at, function, outside_unit(x), "outside -1 to 1");
-		mpq_set_ui(value, 0, 1);
-		return one;
-	case FN_LOG:
-		domain(at, function, mpq_sgn(x) <= 0, "that is not positive");
-		mpq_set_ui(value, 0, 1);
-		return one;
-	case FN_SQRT:
-		domain(at, function, mpq_sgn(x) < 0, "below 0");
+	domain(at, function, (function == FN_ASIN || function == FN_ACOS) && outside_unit(x), "outside -1 to 1");
+	domain(at, function, function == FN_LOG && mpq_sgn(x) <= 0, "that is not positive");
+	domain(at, function, function == FN_SQRT && mpq_sgn(x) < 0, "below 0");
+	if (function == FN_SQRT)
 		return exact_root(x, 2, value);
-	default:
-		return false;
+	switch (function) {
+#define REAL_FUNCTION(NAME, name, argument, value_there, low, high) \
+	case FN_##NAME: mpq_set_ui(value, value_there, 1); return mpq_cmp_ui(x, argument, 1) == 0;
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	default: return false;
 	}
 }
 
 void wide_value(enum function function, mpfr_ptr x)
 {
 	switch (function) {
-	case FN_SIN:  mpfr_sin(x, x, MPFR_RNDN); break;
-	case FN_COS:  mpfr_cos(x, x, MPFR_RNDN); break;
-	case FN_TAN:  mpfr_tan(x, x, MPFR_RNDN); break;
-	case FN_EXP:  mpfr_exp(x, x, MPFR_RNDN); break;
-	case FN_LOG:  mpfr_log(x, x, MPFR_RNDN); break;
-	case FN_SQRT: mpfr_sqrt(x, x, MPFR_RNDN); break;
-	case FN_SINH: mpfr_sinh(x, x, MPFR_RNDN); break;
-	case FN_COSH: mpfr_cosh(x, x, MPFR_RNDN); break;
-	case FN_TANH: mpfr_tanh(x, x, MPFR_RNDN); break;
-	case FN_ASIN: mpfr_asin(x, x, MPFR_RNDN); break;
-	case FN_ACOS: mpfr_acos(x, x, MPFR_RNDN); break;
-	case FN_ATAN: mpfr_atan(x, x, MPFR_RNDN); break;
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) case FN_##NAME: mpfr_##name(x, x, MPFR_RNDN); break;
+#include "read/functions.def"
+#undef REAL_FUNCTION
 	default: break;
 	}
 }

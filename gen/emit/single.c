@@ -55,11 +55,11 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_lanes_above", "pl_lanes", false }, { "pl_lanes_all", "pl_lanes", false },
 	{ "pl_larger_size", "pl_larger_size", false },
 	{ "pl_lanes_peak", "pl_lanes", false }, { "pl_lanes_accumulate", "pl_lanes", false },
-	{ "pl_model", "pl_model", false }, { "sin", "sin", true },
-	{ "cos", "cos", true }, { "tan", "tan", true }, { "exp", "exp", true }, { "log", "log", true },
-	{ "sqrt", "sqrt", true }, { "fabs", "fabs", true }, { "sinh", "sinh", true }, { "cosh", "cosh", true },
-	{ "tanh", "tanh", true }, { "asin", "asin", true }, { "acos", "acos", true }, { "atan", "atan", true },
-	{ "atan2", "atan2", true }, { "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
+	{ "pl_model", "pl_model", false },
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) { #name, #name, true },
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	{ "fabs", "fabs", true }, { "atan2", "atan2", true }, { "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
 	{ "copysign", "copysign", true }
 };
 

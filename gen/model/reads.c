@@ -5,9 +5,7 @@
 /* The piecewise-linear functions are comparisons in C. */
 bool calls_libm(const struct atom *a)
 {
-	bool piecewise = a->function == FN_ABS || a->function == FN_SGN ||
-			 (a->function >= FN_MIN && a->function != FN_ATAN2);
-	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
+	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && a->function < FN_ABS);
 }
 
 int held_values(const struct model *model)

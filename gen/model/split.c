@@ -226,8 +226,7 @@ static void add_term(struct split_work *w, const struct form_term *term)
 
 static bool has_formulas(const struct atom *a)
 {
-	return a->kind == ATOM_COMPARE ||
-	       (a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN));
+	return a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function >= FN_ABS);
 }
 
 static const struct atom *first_unknown(const struct form *form)

@@ -6,8 +6,11 @@
 #include <strings.h>
 
 static const char *const function_names[] = {
-	"", "sin", "cos", "tan", "exp", "log", "sqrt", "abs", "sgn", "sinh", "cosh", "tanh", "asin", "acos", "atan",
-	"atan2", "min", "max", "deadzone", "clip", "table", "friction"
+	"",
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) #name,
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	"atan2", "abs", "sgn", "min", "max", "deadzone", "clip", "table", "friction"
 };
 
 static const char *const words[] = {

@@ -37,8 +37,12 @@ const char *unit_note(const char *number, size_t digits, const char *unit, size_
 /* ---- parse.c, statements.c: tokens to nodes and declarations ---- */
 
 enum function {
-	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
-	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
+	FN_NONE,
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) FN_##NAME,
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	FN_ATAN2,                   /* of two numbers; those behind it are piecewise */
+	FN_ABS, FN_SGN, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
 	FN_FRICTION,
 	FN_SLIDE                    /* of no text: the velocity of a slider without mass, by what it bears and holds */
 };

@@ -135,19 +135,10 @@ CALL(kept_work, WHOLE, PL_SWITCHING_KEPT_WORK(W(0), W(1), W(2)))
 CALL(divided_work, WHOLE, PL_DIVIDED_WORK(W(0)))
 
 #define SINGLE(name) static double single_##name(double x) { return (double)name##f((float)x); }
-SINGLE(sin)
-SINGLE(cos)
-SINGLE(tan)
-SINGLE(exp)
-SINGLE(log)
-SINGLE(sqrt)
 SINGLE(fabs)
-SINGLE(sinh)
-SINGLE(cosh)
-SINGLE(tanh)
-SINGLE(asin)
-SINGLE(acos)
-SINGLE(atan)
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) SINGLE(name)
+#include "read/functions.def"
+#undef REAL_FUNCTION
 
 #define RUNTIME(name, types) { "pl_" #name, types, NULL, call_##name, NULL, 0, 0, TAKES_NO_MORE }
 #define RUNTIME_OF(name, types, mul, add, takes) { "pl_" #name, types, NULL, call_##name, NULL, mul, add, takes }
@@ -195,9 +186,11 @@ static const struct library_function functions[] = {
 	RUNTIME(dividedf_place, "ipppp"), RUNTIME(dividedf_left, "ippppp"), RUNTIME(dividedf_next, "fppppdppp"),
 	{ "PL_DIVIDED_WORK", "ii", NULL, call_divided_work, NULL, 0, 0, TAKES_NO_MORE },
 	{ "PL_SWITCHING_KEPT_WORK", "iiii", NULL, call_kept_work, NULL, 0, 0, TAKES_NO_MORE },
-	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE }, MATH(sin), MATH(cos), MATH(tan),
-	MATH(exp), MATH(log), MATH(sqrt), MATH(fabs), MATH(sinh), MATH(cosh), MATH(tanh), MATH(asin), MATH(acos),
-	MATH(atan), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin), MATH_OF_TWO(fmax),
+	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE },
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) MATH(name),
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	MATH(fabs), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin), MATH_OF_TWO(fmax),
 };
 
 const struct library_function *library_function(const char *name)

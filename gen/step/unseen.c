@@ -43,14 +43,11 @@ static struct bounds bounds_of_atom(const struct atom *atom)
 	struct bounds product = { 1, 1 };
 	if (atom->kind == ATOM_CALL)
 		switch (atom->function) {
-		case FN_SIN:
-		case FN_COS:
-		case FN_TANH: return (struct bounds){ -1, 1 };
-		case FN_COSH: return (struct bounds){ 1, INFINITY };
-		case FN_EXP:
-		case FN_SQRT:
-		case FN_ABS:  return (struct bounds){ 0, INFINITY };
-		default:      break;
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) case FN_##NAME: return (struct bounds){ low, high };
+#include "read/functions.def"
+#undef REAL_FUNCTION
+		case FN_ABS: return (struct bounds){ 0, INFINITY };
+		default:     break;
 		}
 	if (atom->kind != ATOM_PRODUCT)
 		return (struct bounds){ -INFINITY, INFINITY };

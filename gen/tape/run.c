@@ -9,19 +9,10 @@
 static double function_double(enum function function, double x)
 {
 	switch (function) {
-	case FN_SIN:  return sin(x);
-	case FN_COS:  return cos(x);
-	case FN_TAN:  return tan(x);
-	case FN_EXP:  return exp(x);
-	case FN_LOG:  return log(x);
-	case FN_SQRT: return sqrt(x);
-	case FN_SINH: return sinh(x);
-	case FN_COSH: return cosh(x);
-	case FN_TANH: return tanh(x);
-	case FN_ASIN: return asin(x);
-	case FN_ACOS: return acos(x);
-	case FN_ATAN: return atan(x);
-	default:      return NAN;
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) case FN_##NAME: return name(x);
+#include "read/functions.def"
+#undef REAL_FUNCTION
+	default: return NAN;
 	}
 }
 
