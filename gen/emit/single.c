@@ -59,7 +59,8 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 #define REAL_FUNCTION(NAME, name, argument, value, low, high) { #name, #name, true },
 #include "read/functions.def"
 #undef REAL_FUNCTION
-	{ "fabs", "fabs", true }, { "atan2", "atan2", true }, { "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
+	{ "fabs", "fabs", true }, { "atan2", "atan2", true },
+	{ "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
 	{ "copysign", "copysign", true }
 };
 
