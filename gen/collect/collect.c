@@ -3,6 +3,7 @@
 #include "collect/collect.h"
 
 static struct value *collect_node(struct collector *c, struct node *node);
+static bool is_timely(struct node *node);
 
 /* ---- values: matrices of forms; a scalar is 1 x 1 ---- */
 
@@ -33,6 +34,11 @@ static bool is_scalar(const struct value *value)
 	return value->rows == 1 && value->columns == 1;
 }
 
+bool is_plain_zero(const struct value *value)
+{
+	return is_scalar(value) && value->cell[0]->terms == 0;
+}
+
 static struct form *collect_scalar(struct collector *c, struct node *node)
 {
 	struct value *value = collect_node(c, node);
@@ -45,12 +51,12 @@ static struct form *collect_scalar(struct collector *c, struct node *node)
 
 static bool keeps(const struct collector *c)
 {
-	return c->keep == KEEP_ALL && !c->tolerant;
+	return c->vanishes || (c->keep == KEEP_ALL && !c->tolerant);
 }
 
 static bool keeps_piecewise(const struct collector *c)
 {
-	return c->keep != KEEP_NOTHING && !c->tolerant;
+	return c->vanishes || (c->keep != KEEP_NOTHING && !c->tolerant);
 }
 
 static void need_constant(const struct collector *c, const struct node *node, const char *what)
@@ -339,8 +345,19 @@ static struct value *divide(struct collector *c, const struct node *node, const 
 	return quotient;
 }
 
+/* Whether a factor that no state changes is 0 */
+static bool has_zero_factor(struct collector *c, const struct node *node)
+{
+	for (int i = 0; i < node->children; i++)
+		if (!node->inverse[i] && is_timely(node->child[i]) && is_plain_zero(collect_node(c, node->child[i])))
+			return true;
+	return false;
+}
+
 static struct value *collect_product(struct collector *c, struct node *node)
 {
+	const bool vanishes = c->vanishes;
+	c->vanishes = vanishes || (c->frame && !keeps(c) && has_zero_factor(c, node));
 	struct value *product = collect_node(c, node->child[0]);
 	for (int i = 1; i < node->children; i++) {
 		struct value *factor = collect_node(c, node->child[i]);
@@ -348,6 +365,7 @@ static struct value *collect_product(struct collector *c, struct node *node)
 		for (int k = 0; k < product->rows * product->columns; k++)
 			check_form(node->operator[i], product->cell[k]);
 	}
+	c->vanishes = vanishes;
 	return product;
 }
 
@@ -447,7 +465,7 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	c->change = inner.change;
 	symbol->collected = value;
 	symbol->span = inner.span;
-	symbol->progress = COLLECTED;
+	symbol->progress = inner.vanishes ? FRESH : COLLECTED;
 }
 
 /* A coordinate, whole or one component. */
@@ -573,7 +591,7 @@ static unsigned mode_of(const struct collector *c)
 {
 	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 |
 	       c->output << 6 | c->reading << 9 |
-	       (unsigned)c->params << 7;
+	       c->vanishes << 10 | (unsigned)c->params << 7;
 }
 
 /* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so
@@ -602,6 +620,7 @@ static struct value *collect_node(struct collector *c, struct node *node)
 struct value *collect(struct collector *c, struct node *node)
 {
 	c->term = node;
+	c->vanishes = false;                    /* an error may have left one */
 	c->span = (struct span){ NULL, NULL };
 	work_at(node->start);
 	return collect_node(c, node);

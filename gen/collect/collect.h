@@ -85,6 +85,7 @@ struct collector {
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
 	/* as atoms: what is piecewise linear; whatever is not linear */
 	enum { KEEP_NOTHING, KEEP_PIECEWISE, KEEP_ALL } keep;
+	bool vanishes;              /* multiplied by 0: as an atom it may be anything, in any scheme */
 	/* with KEEP_ALL: conditions and products of time become atoms too, and time is not divided */
 	bool whole_time;
 	bool closed;                /* for --solution */
@@ -246,6 +247,7 @@ struct value {                      /* a scalar is 1 x 1 */
 /* leaves the statement at what is not linear */
 struct value *collect(struct collector *collector, struct node *node);
 struct value *collect_constants(struct collector *collector, struct node *node);
+bool is_plain_zero(const struct value *value);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
 void param_value(const struct symbol *param, mpq_ptr value); /* collected before */
 void forget_lets(const struct spec *spec);

@@ -16,11 +16,6 @@ static void add_residual(struct snapshot *s, struct form *form, struct place at,
 	s->residual[s->residuals++] = (struct residual){ form, at, end };
 }
 
-static bool is_zero(const struct value *value)
-{
-	return value->rows == 1 && value->columns == 1 && value->cell[0]->terms == 0;
-}
-
 /* Left side minus right side, cell by cell; a plain 0 fits any size. */
 static void collect_equation(void *context)
 {
@@ -28,13 +23,14 @@ static void collect_equation(void *context)
 	const struct equation *equation = &work->b->spec->equation[work->index];
 	struct value *left = collect(&work->b->collector, equation->left),
 		     *right = collect(&work->b->collector, equation->right);
-	const struct value *shape = is_zero(left) ? right : left;
-	if (!is_zero(left) && !is_zero(right) && (left->rows != right->rows || left->columns != right->columns))
+	const struct value *shape = is_plain_zero(left) ? right : left;
+	if (!is_plain_zero(left) && !is_plain_zero(right) &&
+	    (left->rows != right->rows || left->columns != right->columns))
 		error(equation->at, NULL, "the sides of the equation do not fit: %d x %d and %d x %d", left->rows,
 		      left->columns, right->rows, right->columns);
 	for (int i = 0; i < shape->rows * shape->columns; i++) {
-		const struct form *l = is_zero(left) ? left->cell[0] : left->cell[i],
-				  *r = is_zero(right) ? right->cell[0] : right->cell[i];
+		const struct form *l = is_plain_zero(left) ? left->cell[0] : left->cell[i],
+				  *r = is_plain_zero(right) ? right->cell[0] : right->cell[i];
 		add_residual(work->snapshot, form_sum(l, r, true), equation->at, equation->end);
 	}
 }
