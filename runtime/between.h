@@ -275,6 +275,9 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
 #if PL_EXPRESSIONS > 0
     if (meets < 0) {
         p->contact->last.expression = -1;
+#if PL_CONTACTS
+        p->at.status |= pl_events_places(&PL(events), &p->at, size);
+#endif
     } else if (!PL(pass_event)(p)) {
         return PL(gave_up)(p);
     } else {

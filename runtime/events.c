@@ -918,6 +918,28 @@ real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
     return *splits < 0 ? 0 : next >= 0 ? next : end;
 }
 
+int pl_events_places(const pl_events *m, const pl_instant *at, real s)
+{
+    int i, k;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        real place = 0, terms = 0;
+        column w;
+        if (p->hold < 0 || (!holds_now(m, at, p->hold) && at->interval[p->expression] != free_of(m, p))) {
+            continue;
+        }
+        w = watched(m, at, p->place);
+        for (i = m->divided->degree; i >= 0; i--) {
+            place = place * s + column_at(&w, i);
+            terms = terms * s + magnitude(column_at(&w, i));
+        }
+        if (place > DEEP * noise_of(w.terms + terms)) {
+            return PL_PENETRATED;
+        }
+    }
+    return 0;
+}
+
 /* ---- the start ---- */
 
 static int starting_interval(const pl_events *m, const pl_instant *at, int expression, const real *b)

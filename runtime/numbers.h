@@ -22,6 +22,7 @@
 #define pl_events_next pl_eventsf_next
 #define pl_events_pass pl_eventsf_pass
 #define pl_events_end pl_eventsf_end
+#define pl_events_places pl_eventsf_places
 #define pl_root pl_rootf
 #define pl_factor pl_factorf
 #define pl_solve pl_solvef

@@ -681,7 +681,7 @@ typedef struct pl_instant {
     double time;        /* after the start of the step [s] */
     pl_crossing next;   /* the event that pl_events_next has found, */
     int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
-    int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS */
+    int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS, PL_PENETRATED */
     pl_chain chain;     /* none yet: last is -h, else 0 */
 } pl_instant;
 
@@ -702,6 +702,9 @@ int pl_events_pass(const pl_events *m, pl_instant *at);
 
 /* How far the series at->c, which is made, serves without an event, at most until `end`; 0: not even from here */
 double pl_events_end(const pl_events *m, pl_instant *at, double end, int *splits);
+
+/* PL_PENETRATED where the series is beyond the guard of a bounce by more than rounding, s [h] on; else 0 */
+int pl_events_places(const pl_events *m, const pl_instant *at, double s);
 
 typedef struct pl_strikef {
     int expression, breakpoint, upward;
@@ -751,6 +754,7 @@ int pl_eventsf_begin(const pl_eventsf *m, pl_instantf *at);
 float pl_eventsf_next(const pl_eventsf *m, pl_instantf *at, float *size, int *splits);
 int pl_eventsf_pass(const pl_eventsf *m, pl_instantf *at);
 float pl_eventsf_end(const pl_eventsf *m, pl_instantf *at, float end, int *splits);
+int pl_eventsf_places(const pl_eventsf *m, const pl_instantf *at, float s);
 
 /* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
 

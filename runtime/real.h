@@ -58,6 +58,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_events_next pl_eventsf_next
 #define pl_events_pass pl_eventsf_pass
 #define pl_events_end pl_eventsf_end
+#define pl_events_places pl_eventsf_places
 #define pl_term pl_termf
 #define pl_equations pl_equationsf
 #define pl_equations_at pl_equationsf_at

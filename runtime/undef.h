@@ -111,6 +111,7 @@
 #undef pl_events_next
 #undef pl_events_pass
 #undef pl_events_end
+#undef pl_events_places
 #undef pl_root
 #undef pl_factor
 #undef pl_solve

@@ -48,7 +48,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_instant", "pl_instant", false }, { "pl_chain", "pl_chain", false }, { "pl_events", "pl_events", false },
 	{ "pl_events_place", "pl_events", false }, { "pl_events_begin", "pl_events", false },
 	{ "pl_events_next", "pl_events", false }, { "pl_events_pass", "pl_events", false },
-	{ "pl_events_end", "pl_events", false },
+	{ "pl_events_end", "pl_events", false }, { "pl_events_places", "pl_events", false },
 	{ "pl_peak", "pl_peak", false }, { "pl_peak_bend", "pl_peak", false },
 	{ "pl_lanes", "pl_lanes", false }, { "pl_lanes_load", "pl_lanes", false },
 	{ "pl_lanes_store", "pl_lanes", false },

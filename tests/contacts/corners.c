@@ -254,8 +254,46 @@ static void landings(void)
 	landed_block("landed, by series", y);
 }
 
+/* ---- a search that overlooks what comes, which the linker puts in the place of pl_events_next ---- */
+
+static bool overlooks;
+double __real_pl_events_next(const pl_events *m, pl_instant *at, double *size, int *splits);
+double __wrap_pl_events_next(const pl_events *m, pl_instant *at, double *size, int *splits);
+
+double __wrap_pl_events_next(const pl_events *m, pl_instant *at, double *size, int *splits)
+{
+	return overlooks ? -1 : __real_pl_events_next(m, at, size, splits);
+}
+
+/* Status behind 1200 steps, and how deep it has been below the ground at the end of one */
+static int falls(double *depth)
+{
+	double y[LANDED_STATES];
+	landed_series s;
+	landed_series_init(&s);
+	*depth = 0;
+	for (int k = 0; k < 1200; k++) {
+		landed_series_step(&s);
+		landed_series_get(&s, y);
+		*depth = fmax(*depth, -y[0]);
+	}
+	return landed_series_status(&s);
+}
+
+static void penetrations(void)
+{
+	double depth;
+	int status = falls(&depth);
+	ok(status == 0 && depth <= 1e-15, "a stop is kept: status %d, %g deep", status, depth);
+	overlooks = true;
+	status = falls(&depth);
+	overlooks = false;
+	ok(status == PL_PENETRATED && depth > 1e-3, "a stop is penetrated: status %d, %g deep", status, depth);
+}
+
 int main(void)
 {
+	penetrations();
 	counted_jumps();
 	out_of_intervals();
 	balls();
