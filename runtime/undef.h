@@ -6,6 +6,7 @@
 #undef PL_ALL
 #undef PL_ARGUMENTS
 #undef PL_AT
+#undef PL_BANKS
 #undef PL_BASE
 #undef PL_BEATS
 #undef PL_CHANGES
@@ -22,8 +23,10 @@
 #undef PL_EXPRESSIONS
 #undef PL_FEW
 #undef PL_FIRST
+#undef PL_FIRST_SWEEPS
 #undef PL_FLAT
 #undef PL_FLOORS
+#undef PL_FUNCTIONS
 #undef PL_GONE
 #undef PL_H
 #undef PL_HERE
@@ -48,6 +51,7 @@
 #undef PL_MET_BY
 #undef PL_MODES
 #undef PL_NEAR
+#undef PL_NODES
 #undef PL_NOTHING
 #undef PL_NOW
 #undef PL_NO_CHANGE
@@ -58,6 +62,7 @@
 #undef PL_PART
 #undef PL_PARTS
 #undef PL_PLACE
+#undef PL_POINTS
 #undef PL_RAMPS
 #undef PL_REMAINDERS
 #undef PL_RING
@@ -66,7 +71,11 @@
 #undef PL_RISES_FACTOR
 #undef PL_RISE_FACTOR
 #undef PL_SEGMENTS
+#undef PL_SELECTOR
 #undef PL_SERVES
+#undef PL_SERVING
+#undef PL_SETTLED_IN
+#undef PL_SETTLES
 #undef PL_SHARE_OF_FIRST
 #undef PL_SHORTEST
 #undef PL_SINGLE
@@ -80,11 +89,13 @@
 #undef PL_STATE_ROUNDED
 #undef PL_STRAIGHT
 #undef PL_SWAY
+#undef PL_SWEEPS
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE
 #undef PL_TRACE_READS
 #undef PL_TRIES
+#undef PL_TWICE
 #undef PL_TYPE
 #undef PL_UNIT
 #undef PL_UNKNOWNS
@@ -92,6 +103,8 @@
 #undef PL_VECTOR
 #undef PL_WATCHED
 #undef PL_WATCH_READS
+#undef PL_WAVES
+#undef PL_WIDTH
 #undef PL_WORTH
 #undef PL_WRITTEN_OUT
 #undef real

@@ -44,6 +44,10 @@ const char *scaled(double factor, const char *operand);           /* operand NUL
 /* rounded; an error at the step where it overflows */
 double finite_number(const struct emitter *e, mpq_srcptr q);
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
+void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
+/* static const double NAME_name[size[0]]...[size[dimensions - 1]] */
+void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
+		const double *value);
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name);
 const char *low_text(mpq_srcptr q);                               /* what its rounding leaves out, rounded */
 const char *two_text(mpq_srcptr q);                               /* {hi, lo} */
@@ -124,6 +128,10 @@ void emit_get_state(const struct emitter *e, const char *vector);  /* states fro
 void emit_get_kept_state(const struct emitter *e, const char *vector);
 /* a table of what a step adds: the instance's own, or the model's */
 const char *of_step(const struct emitter *e, const char *table);
+
+struct size { const char *name; int value; };
+/* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size */
+void emit_sizes(const struct emitter *e, int count, const struct size *size);
 
 /* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
@@ -362,6 +370,7 @@ double crowded_steps(const struct emitter *e);                    /* how long, i
 
 bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);
+void emit_pass_time(const struct emitter *e);                    /* NAME_pass_time: what else takes part in a step */
 void emit_expansion_members(const struct emitter *e);
 /* Of steps by collocation too, where there is a series beside it */
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
@@ -466,7 +475,6 @@ const struct normal *normal_of_step(const struct emitter *e);
 int  functions_of_time(const struct emitter *e);                  /* beside the constant one */
 bool has_bank(const struct emitter *e);                           /* of several operators */
 bool has_changes(const struct emitter *e);                        /* of formula in time */
-void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
 /* static const double NAME_name[operators][outer][row], without `outer` where it is 0, one of all operators where they
  * are alike; what a step calls its own */
 const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
@@ -478,25 +486,16 @@ struct row_sum {                    /* of what is written out in a loop over i *
 void add_summand(struct row_sum *s, const char *text);
 /* target[i] = sum for so many i, in as many loops as its terms ask for */
 void say_row_sum(const struct emitter *e, const char *target, int rows, const struct row_sum *s);
-/* At a node of the step, with the formulas that hold in it: after it, those of the step that has ended */
-const char *functions_call(const struct emitter *e, const char *node, bool ended, const char *f);
 void emit_to_modes(const struct emitter *e);                      /* NAME_modes_of */
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
-/* Of functions of time that are in `f`: models without any have none */
-const char *mode_forces_call(const struct emitter *e, const char *f, const char *eta, const char *rate,
-			     const char *force);
 
-/* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
+/* ---- emit_normal.c: known loads, to which modes respond exactly ---- */
 
 int  wave_values(const struct emitter *e);                        /* cos and sin of each */
-void emit_waves(const struct emitter *e);                         /* NAME_waves */
 const char *wave_array(const struct emitter *e);                  /* double wave[...] of a function, or "" */
 void emit_waves_now(const struct emitter *e);                     /* wave <- them */
-const char *emit_wave_table(const struct emitter *e, const char *name, const struct normal_stage *stage); /* or NULL */
-void add_waves(const struct emitter *e, struct row_sum *s, const char *table, int row); /* row 0: of eta, 1: of eta' */
-void add_waves_of_columns(const struct emitter *e, struct row_sum *s, int first);
 void emit_wave_force(const struct emitter *e, const char *table); /* in NAME_inside: of a term of its series */
 
 /* ---- emit_normal.c: steps in normal modes ---- */

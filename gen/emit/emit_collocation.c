@@ -78,26 +78,6 @@ void emit_collocation_place(const struct emitter *e)
 
 /* ---- what the collocation is told ---- */
 
-/* Numbers that #if asks */
-static void emit_sizes(const struct emitter *e)
-{
-	const struct expansion *x = e->step->expansion, *d = e->step->divided;
-	const struct {
-		const char *name;
-		int value;
-	} sizes[] = {
-		{ "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
-		{ "MODES", splits(e) ? e->step->collocation->modes : 0 }, { "ENTRIES", e->step->motion->entries },
-		{ "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
-		{ "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
-		{ "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
-		{ "SINGLE", e->model->asked.single }, { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 },
-		{ "FLOORS", has_floors(e) }
-	};
-	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-		say(e, "#define PL_%s %d\n", sizes[i].name, sizes[i].value);
-}
-
 /* 1/s: of the loads that what chooses formulas reads */
 static double frequency_of_choices(const struct emitter *e)
 {
@@ -125,8 +105,7 @@ static double longest_step(const struct emitter *e)
 static void emit_limits(const struct emitter *e)
 {
 	const double solved = fmax(0.05 * tolerance(e), 4 * (e->model->asked.single ? FLT_EPSILON : DBL_EPSILON));
-	say(e, "#define PL_H $N_H\n"
-	       "#define PL_TOLERANCE %s\n"
+	say(e, "#define PL_TOLERANCE %s\n"
 	       "#define PL_SOLVED %s  /* what Newton's method may leave */\n"
 	       "#define PL_CROWDED %s  /* [h]: loads are followed so far; 0: as far as the error lets a step go */\n",
 	    shortest(tolerance(e)), shortest(solved), shortest(longest_step(e)));
@@ -141,10 +120,16 @@ static void emit_limits(const struct emitter *e)
 
 static void emit_include(const struct emitter *e)
 {
-	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n"
-	       "#define PL(name) $n_##name\n"
-	       "#define PL_TYPE $n\n");
-	emit_sizes(e);
+	const struct expansion *x = e->step->expansion, *d = e->step->divided;
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
+		{ "MODES", splits(e) ? e->step->collocation->modes : 0 }, { "ENTRIES", e->step->motion->entries },
+		{ "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
+		{ "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
+		{ "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
+		{ "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (is_divided(e))

@@ -113,29 +113,20 @@ static int is_ramp(const struct emitter *e, int input)
 static void emit_samples_of_core(const struct emitter *e)
 {
 	const struct delays *d = delays_of(e);
-	bool at = e->step->series.emitted;
 	say(e, "\n/* Of each input of $n_core: which sample it is of, how many of its steps ago; is it a ramp? */\n");
 	emit_list(e, "input_of", input_of);
 	emit_list(e, "parts_ago", parts_ago);
 	if (e->ramps)
 		emit_list(e, "is_ramp", is_ramp);
-	say(e, "\n"
-	       "#define PL_SINGLE %d\n"
-	       "#define PL(name) $n_##name\n"
-	       "#define PL_CORE(name) $n_core_##name\n"
-	       "#define PL_TYPE $n\n"
-	       "#define PL_STATES %d\n"
-	       "#define PL_OUTPUTS %d\n"
-	       "#define PL_INPUTS %d\n"
-	       "#define PL_ALL %d  /* inputs of $n_core */\n"
-	       "#define PL_PARTS %d  /* of its steps in one of $n */\n"
-	       "#define PL_RING %d  /* samples of each input */\n"
-	       "#define PL_RAMPS %d\n"
-	       "#define PL_AT %d\n"
-	       "#define PL_CORE_H $N_CORE_H\n", e->model->asked.single,
-	    e->system->states, e->model->outputs, d->inputs, d->inputs + d->count, d->parts, samples_kept(e), e->ramps,
-	    at);
-	say(e, "#include \"delays.h\"\n");
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
+		{ "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
+		{ "RAMPS", e->ramps }, { "AT", e->step->series.emitted }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#define PL_CORE(name) $n_core_##name\n"
+	       "#define PL_CORE_H $N_CORE_H\n"
+	       "#include \"delays.h\"\n");
 }
 
 static void emit_model(const struct emitter *e)

@@ -249,7 +249,7 @@ static const char *handed_to(const struct emitter *e)
 	return series_arguments(e, "tau", "when", "segment", AS_CALLED_HERE, "");
 }
 
-static void emit_pass_time(const struct emitter *e)
+void emit_pass_time(const struct emitter *e)
 {
 	say(e, "\n/* What else takes part in a step */\n"
 	       "static inline void $n_pass_time($n *s, const double u[])\n"
@@ -289,16 +289,11 @@ static void emit_model_functions(const struct emitter *e)
 	emit_sums(e);
 }
 
-/* Numbers that #if asks */
-static void emit_sizes(const struct emitter *e)
+static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	const struct truncation *t = truncation(e);
-	const struct {
-		const char *name;
-		int value;
-	} sizes[] = {
-		{ "SINGLE", e->model->asked.single },
+	const struct size sizes[] = {
 		{ "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
 		{ "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
 		{ "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
@@ -313,17 +308,7 @@ static void emit_sizes(const struct emitter *e)
 		{ "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->slopes },
 		{ "AT", e->step->series.emitted }
 	};
-	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-		say(e, "#define PL_%s %d\n", sizes[i].name, sizes[i].value);
-}
-
-static void emit_algorithm(const struct emitter *e)
-{
-	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n"
-	       "#define PL(name) $n_##name\n"
-	       "#define PL_TYPE $n\n");
-	emit_sizes(e);
-	say(e, "#define PL_H $N_H\n");
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	if (is_divided(e))
 		say(e, "#define PL_MAX_EVENTS $N_MAX_EVENTS\n");
 	if (looks_at_tolerance(e))

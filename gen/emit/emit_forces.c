@@ -43,43 +43,14 @@ static struct bank_table table_of_banks(const struct emitter *e, int size, const
 	return t;
 }
 
-void say_numbers(const struct emitter *e, int count, const double *value)
-{
-	int width = 0;
-	for (int i = 0; i < count; i++) {
-		if (!isfinite(value[i]))
-			error(e->model->asked.step_at, NULL, "a number of a mode is beyond the range of %s",
-			      target_name());
-		const char *text = format("%s%s", shortest(value[i]), i + 1 < count ? ", " : "");
-		for (const char *c = text; *c; c++)
-			width++;
-		say(e, "%s%s", text, width > 90 && i + 1 < count ? "\n     " : "");
-		width = width > 90 ? 0 : width;
-	}
-}
-
 /* static const double NAME_name[banks][outer][row]; its name with the bank's index */
 const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
 				   const double *value)
 {
-	int rows = outer ? outer : 1;
-	struct bank_table t = table_of_banks(e, rows * row, value);
-	int banks = t.alike ? 1 : normal_of_step(e)->banks;
-	say(e, "\n/* %s */\n"
-	       "static const double $n_%s[%d]", note, name, banks);
-	if (outer)
-		say(e, "[%d]", outer);
-	say(e, "[%d] = {\n", row);
-	for (int b = 0; b < banks; b++) {
-		say(e, outer ? "  {\n" : "");
-		for (int k = 0; k < rows; k++) {
-			say(e, "    {");
-			say_numbers(e, row, value + (b * rows + k) * row);
-			say(e, "},\n");
-		}
-		say(e, outer ? "  },\n" : "");
-	}
-	say(e, "};\n");
+	const struct bank_table t = table_of_banks(e, (outer ? outer : 1) * row, value);
+	const int banks = t.alike ? 1 : normal_of_step(e)->banks;
+	const int *size = outer ? (const int[]){ banks, outer, row } : (const int[]){ banks, row };
+	emit_array(e, note, name, outer ? 3 : 2, size, value);
 	return spell(e, t.alike ? "$n_%s[0]" : "$n_%s[which]", name);
 }
 
@@ -221,9 +192,8 @@ void emit_function_values(const struct emitter *e)
 	if (any_of(r.load, e->system->loads))
 		emit_node_phases(e, r.load);
 	say(e, "\n/* What forces and factors of forces are at a node of the step, as functions of time%s */\n"
-	       "static void $n_functions(const $n *s, int node, %sdouble left[%d])\n"
-	       "{\n", has_changes(e) ? ", their\n * formulas those that hold at another time" : "",
-	    has_changes(e) ? "double start, " : "", count);
+	       "static void $n_functions(const $n *s, int node, double start, double left[%d])\n"
+	       "{\n", has_changes(e) ? ", their\n * formulas those that hold at another time" : "", count);
 	emit_param_locals(e, r.param);
 	if (r.time)
 		say(e, "    const double t = $n_time(s) + $n_node[node];\n");
@@ -237,14 +207,8 @@ void emit_function_values(const struct emitter *e)
 		say(e, "    (void)t;\n");
 	say(e, "    (void)s;\n"
 	       "    (void)node;\n"
-	       "%s}\n", has_changes(e) ? "    (void)start;\n" : "");
-}
-
-/* At a node of the step, with the formulas that hold in it: after it, those of the step that has ended */
-const char *functions_call(const struct emitter *e, const char *node, bool ended, const char *f)
-{
-	const char *when = spell(e, "$n_time(s) %c 0.5 * $N_H, ", ended ? '-' : '+');
-	return spell(e, "$n_functions(s, %s, %s%s);", node, has_changes(e) ? when : "", f);
+	       "    (void)start;\n"
+	       "}\n");
 }
 
 /* ---- forces on the modes ---- */
@@ -354,13 +318,6 @@ static struct reads reads_of_rest(const struct emitter *e)
 static const char *instance_of_rest(const struct emitter *e)
 {
 	return any_of(reads_of_rest(e).param, held_values(e->model)) ? "s, " : "";
-}
-
-const char *mode_forces_call(const struct emitter *e, const char *f, const char *eta, const char *rate,
-			     const char *force)
-{
-	const char *functions = functions_of_time(e) ? format("%s, ", f) : "";
-	return spell(e, "$n_forces(%swhich, %s%s, %s, %s);", instance_of_rest(e), functions, eta, rate, force);
 }
 
 static void emit_rest_forces(const struct emitter *e)
@@ -489,11 +446,9 @@ void emit_forces(const struct emitter *e)
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
 	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
-	       "static void $n_forces(%sint which, %sconst double eta[%d],\n"
+	       "static void $n_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
-	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "",
-	    functions_of_time(e) ? format("const double f[%d], ", functions_of_time(e)) : "", m->width, m->width,
-	    m->width);
+	       "{\n", m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
 		if (m->force[f])
@@ -502,8 +457,10 @@ void emit_forces(const struct emitter *e)
 	emit_rest_values(e);
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
-	say(e, "    (void)which;\n"
-	       "%s    (void)eta;\n"
+	say(e, "    (void)s;\n"
+	       "    (void)which;\n"
+	       "    (void)f;\n"
+	       "    (void)eta;\n"
 	       "    (void)rate;\n"
-	       "}\n", functions_of_time(e) ? "    (void)f;\n" : "");
+	       "}\n");
 }

@@ -44,10 +44,10 @@ static void emit_term_force(const struct emitter *e)
 	const char *indent = m->settled ? "    " : "";
 	if (m->settled)
 		say(e, "            if (f)\n"
-		       "                %s\n"
+		       "                $n_forces(s, which, f, x, v, force);\n"
 		       "            for (i = 0; f && i < %d; i++)\n"
 		       "                force[i] -= k ? still[i] : 0.0;\n"
-		       "            if (!f)\n", mode_forces_call(e, "f", "x", "v", "force"), m->width);
+		       "            if (!f)\n", m->width);
 	say(e, "%s            for (i = 0; i < %d; i++)\n"
 	       "%s                force[i] = k <= degree ? scale * power[k][i] : 0.0;\n", indent, m->width, indent);
 }
@@ -66,7 +66,7 @@ static void emit_inside(const struct emitter *e)
 	int parts = m->within.angle > 1 ? (int)ceil(m->within.angle) : 1;
 	say(e, "\n/* Modes go on by tau, forces on them being polynomials%s: by series over parts of the\n"
 	       " * time, in which no mode turns by more than 1 */\n"
-	       "static void $n_inside(int which, double tau, int degree, double power[][%d],%s%s\n"
+	       "static void $n_inside(const $n *s, int which, double tau, int degree, double power[][%d],%s%s\n"
 	       "    double eta[%d], double rate[%d])\n"
 	       "{\n"
 	       "    const double theta = tau / $N_H;\n"
@@ -83,7 +83,7 @@ static void emit_inside(const struct emitter *e)
 		       "    for (i = 0; i < %d; i++)\n"
 		       "        x[i] = v[i] = 0.0;\n"
 		       "    if (f)\n"
-		       "        %s\n", width, width, mode_forces_call(e, "f", "x", "v", "still"));
+		       "        $n_forces(s, which, f, x, v, still);\n", width, width);
 	say(e, "    for (part = 0; part < parts; part++) {\n"
 	       "        double scale = 1.0;\n"
 	       "        for (i = 0; i < %d; i++) {\n"
@@ -111,6 +111,7 @@ static void emit_inside(const struct emitter *e)
 	       "                for (i = 0; i < %d; i++)\n"
 	       "                    power[k][i] += d * power[k + 1][i];\n"
 	       "    }\n"
+	       "    (void)s;\n"
 	       "    (void)which;\n"
 	       "}\n", width, stiffness, damping ? format(" - %s[i] * v[i]", damping) : "", width);
 }
@@ -128,8 +129,8 @@ static void emit_at_past(const struct emitter *e)
 	       "                force[k][i] = s->force[at][i];\n"
 	       "            at = at ? at - 1 : %d;\n"
 	       "        }\n"
-	       "        $n_advance(&next%s);\n", m->points, m->stages, m->points, m->width, m->points - 1,
-	    m->twice ? format(", force[%d]", m->points) : "");
+	       "        $n_advance(&next, force[%d]);\n", m->points, m->stages, m->points, m->width, m->points - 1,
+	    m->points);
 	if (!m->twice)
 		say(e, "        for (i = 0; i < %d; i++)\n"
 		       "            force[%d][i] = next.force[next.newest][i];\n", m->width, m->points);
@@ -142,15 +143,12 @@ static void emit_at_settled(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	say(e, "    if (s->segment == %d) {\n"
-	       "        double f[%d];\n", e->system->segments - 1, functions_of_time(e) ? functions_of_time(e) : 1);
-	if (functions_of_time(e))
-		say(e, "        %s\n", functions_call(e, "0", false, "f"));
-	else
-		say(e, "        f[0] = 0.0;\n");
+	       "        double f[%d];\n"
+	       "        $n_functions_at(s, 0, 0, f);\n", e->system->segments - 1, functions_of_time(e) + 1);
 	if (has_bank(e))
 		say(e, "        if (s->which != %d)\n"
 		       "            $n_serve(&next, %d);\n", m->settled_bank, m->settled_bank);
-	say(e, "        $n_inside(next.which, tau, 0, force, f%s, next.eta, next.rate);\n"
+	say(e, "        $n_inside(s, next.which, tau, 0, force, f%s, next.eta, next.rate);\n"
 	       "        $n_of_modes(next.which, next.eta, y);\n"
 	       "        $n_of_modes(next.which, next.rate, y + %d);\n"
 	       "        return;\n"
@@ -184,7 +182,7 @@ void emit_normal_at(const struct emitter *e)
 	       "        eta[i] = s->eta[i];\n"
 	       "        rate[i] = s->rate[i];\n"
 	       "    }\n"
-	       "    $n_inside(s->which, tau, degree, force%s%s, eta, rate);\n"
+	       "    $n_inside(s, s->which, tau, degree, force%s%s, eta, rate);\n"
 	       "    $n_of_modes(s->which, eta, y);\n"
 	       "    $n_of_modes(s->which, rate, y + %d);\n"
 	       "}\n", m->width, m->settled ? ", NULL" : "", wave_values(e) ? ", wave" : "",

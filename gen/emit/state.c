@@ -344,3 +344,14 @@ bool crowds(const struct emitter *e)
 {
 	return has_unseen(e) && e->step->unseen->crowded > 0;
 }
+
+void emit_sizes(const struct emitter *e, int count, const struct size *size)
+{
+	say(e, "\n/* ---- the step, which is the same for every model ---- */\n\n"
+	       "#define PL(name) $n_##name\n"
+	       "#define PL_TYPE $n\n"
+	       "#define PL_H %s\n"
+	       "#define PL_SINGLE %d\n", step_length(e), e->model->asked.single);
+	for (int i = 0; i < count; i++)
+		say(e, "#define PL_%s %d\n", size[i].name, size[i].value);
+}

@@ -107,6 +107,50 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 	}
 }
 
+/* Numbers of an initialiser, without its braces */
+void say_numbers(const struct emitter *e, int count, const double *value)
+{
+	int width = 0;
+	for (int i = 0; i < count; i++) {
+		if (!isfinite(value[i]))
+			error(e->model->asked.step_at, NULL, "a number is beyond the range of %s",
+			      target_name());
+		const char *text = format("%s%s", shortest(value[i]), i + 1 < count ? ", " : "");
+		for (const char *c = text; *c; c++)
+			width++;
+		say(e, "%s%s", text, width > 90 && i + 1 < count ? "\n     " : "");
+		width = width > 90 ? 0 : width;
+	}
+}
+
+/* Rows of the innermost dimension, in braces of those further out */
+static void say_array(const struct emitter *e, int dimensions, const int *size, int depth, const double *value)
+{
+	int each = 1;
+	for (int k = 1; k < dimensions; k++)
+		each *= size[k];
+	say(e, "%*s{", 2 * depth, "");
+	if (dimensions == 1) {
+		say_numbers(e, *size, value);
+	} else {
+		say(e, "\n");
+		for (int i = 0; i < *size; i++)
+			say_array(e, dimensions - 1, size + 1, depth + 1, value + i * each);
+	}
+	say(e, "%*s}%s\n", dimensions == 1 ? 0 : 2 * depth, "", depth ? "," : ";");
+}
+
+void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
+		const double *value)
+{
+	say(e, "\n/* %s */\n"
+	       "static const double $n_%s", note, name);
+	for (int k = 0; k < dimensions; k++)
+		say(e, "[%d]", size[k]);
+	say(e, " = ");
+	say_array(e, dimensions, size, 0, value);
+}
+
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
 {
 	say(e, "static const char *const $n_%s[] = {", array);
