@@ -232,13 +232,12 @@ static int has_left(const pl_events *m, pl_instant *at)
     return 0;
 }
 
-/* The sizes of what the first two derivatives of a guard are summed from, in its expression, over a piece */
+/* The sizes of what the first two derivatives of a guard are summed from, over a piece */
 static real terms_behind(const pl_events *m, const pl_instant *at, const pl_strike *p, real end)
 {
     const pl_hold *h = &m->hold[p->hold];
     const column speed = watched(m, at, p->speed), pull = watched(m, at, p->upward ? h->down : h->up);
-    const real unit = m->h * end * p->per;
-    return unit * (speed.terms + m->h * end * pull.terms);
+    return m->h * end * (speed.terms + m->h * end * pull.terms);
 }
 
 /* What has just been let go at this breakpoint may be driven back by what the time of that is off: no sticking if it
@@ -338,7 +337,9 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
                 continue;
             }
             strike = strike_at(m, i, k, up);
-            behind = strike >= 0 && m->strike[strike].hold >= 0 ? terms_behind(m, at, &m->strike[strike], end) : -1;
+            behind = strike >= 0 && m->strike[strike].hold >= 0
+                         ? m->strike[strike].per * terms_behind(m, at, &m->strike[strike], end)
+                         : -1;
             last = at->last->expression == i && at->last->breakpoint == k;
             if (look(&e, b[k], up ? 1 : -1, last, behind, end, &first, splits, at->work)) {
                 any = 1;
@@ -918,26 +919,40 @@ real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
     return *splits < 0 ? 0 : next >= 0 ? next : end;
 }
 
+static real breakpoint_of(const pl_events *m, const pl_strike *p)
+{
+    const real *b = m->divided->at;
+    int i;
+    for (i = 0; i < p->expression; i++) {
+        b += m->divided->breaks[i];
+    }
+    return b[p->breakpoint];
+}
+
+/* Whether an expression is beyond the guard of this bounce, s on, by more than rounding */
+static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *p, real s)
+{
+    const column e = column_of(m->divided, at->c, at->terms, p->expression);
+    const real b = breakpoint_of(m, p);
+    real value = 0, terms = 0;
+    int k;
+    for (k = m->divided->degree; k >= 0; k--) {
+        value = value * s + column_at(&e, k);
+        terms = terms * s + magnitude(column_at(&e, k));
+    }
+    terms += e.terms + magnitude(b) + p->per * terms_behind(m, at, p, s);
+    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms);
+}
+
 int pl_events_places(const pl_events *m, const pl_instant *at, real s)
 {
-    int i, k;
+    int k, status = 0;
     for (k = 0; k < m->strikes; k++) {
         const pl_strike *p = &m->strike[k];
-        real place = 0, terms = 0;
-        column w;
-        if (p->hold < 0 || (!holds_now(m, at, p->hold) && at->interval[p->expression] != free_of(m, p))) {
-            continue;
-        }
-        w = watched(m, at, p->place);
-        for (i = m->divided->degree; i >= 0; i--) {
-            place = place * s + column_at(&w, i);
-            terms = terms * s + magnitude(column_at(&w, i));
-        }
-        if (place > DEEP * noise_of(w.terms + terms)) {
-            return PL_PENETRATED;
-        }
+        const int near = p->hold >= 0 && (holds_now(m, at, p->hold) || at->interval[p->expression] == free_of(m, p));
+        status |= near && is_beyond(m, at, p, s) ? PL_PENETRATED : 0;
     }
-    return 0;
+    return status;
 }
 
 /* ---- the start ---- */
