@@ -56,18 +56,11 @@ static void number_loads(struct emitter *e)
 	}
 }
 
-/* Regions have a system for each segment of time. */
-static const struct linear *system_of(const struct step *step)
-{
-	bool several = step->model->switching && step->model->system.segments > 1;
-	return several ? &step->model->system : &step->branch->system;
-}
-
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
 	struct emitter e = {
 		.to = to, .step = step, .kind = row_of_kind(step->kind), .model = step->model,
-		.system = system_of(step), .options = options, .name = step->model->name,
+		.system = system_of_outputs(step), .options = options, .name = step->model->name,
 		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
 		.degree = step->model->name
 	};

@@ -104,7 +104,7 @@ const char *stepped_table(const struct emitter *e, const char *table); /* Phi or
 const char *factor_of_momentum(const struct emitter *e, int state);
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 /* as kept: of kick-drift-kick, momenta */
-void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
+void emit_raw_locals(const struct emitter *e, const bool *reads);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
 int place_of_state(const struct emitter *e, int state);
@@ -115,6 +115,8 @@ int given_inputs(const struct emitter *e);                        /* samples of 
 const char *sample_now(const struct emitter *e, int input);       /* of the whole: what a step is given, or a param */
 const char *sample_kept(const struct emitter *e, int input);      /* the same between steps */
 int place_of_input(const struct emitter *e, int input);
+const char *tap_text(const struct emitter *e, int input, int tap); /* a sample that the step has, oldest first */
+const char *input_operand(const struct emitter *e, int column);   /* the same, by the columns of all inputs */
 const char *own_states(const struct emitter *e);
 const char *place_in_loop(const struct emitter *e);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
@@ -136,7 +138,7 @@ void emit_sizes(const struct emitter *e, int count, const struct size *size);
 /* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
 struct formulas;
-enum formula_table { TABLE_NODE, TABLE_EXCESS, TABLE_TEXT };      /* of TAPE_TABLE: node[], excess[], any C */
+enum formula_table { TABLE_NODE = LINEAR_TABLES, TABLE_EXCESS };  /* of TAPE_TABLE too: node[], excess[] */
 /* How forms are read: over y[], u[] and t as the equations are written, else by the locals of the step; what the state
  * chooses as interval[] says, the intervals of the step's expressions, else as the state is; conditions on time alone
  * as at the time that the C `when` is, NULL: at t */
@@ -147,7 +149,6 @@ struct formulas *formulas_new(const struct emitter *e, struct reading how, int c
 struct tape *formulas_tape(const struct formulas *f);             /* to set targets in */
 tape_ref formula(struct formulas *f, const struct form *form);
 tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum of the sizes of its terms */
-tape_ref formula_text(struct formulas *f, const char *text);      /* any C of a number */
 void formulas_finish(struct formulas *f);                         /* once all is set */
 struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
 void emit_formulas(struct formulas *f, int indent);
@@ -206,16 +207,9 @@ void emit_samples(const struct emitter *e);                       /* start, slop
 /* ---- tuned_terms.c: factors that the instance has ---- */
 
 bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
-const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
-bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
+/* Entry of an enum linear_table in a step, in outputs */
+const char *linear_entry(const struct emitter *e, const struct tape_node *n);
 int  place_in(int count, const int *list, int what);              /* count: it is not there */
-const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
-/* columns of x as in struct tuning */
-bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
-
-/* The place of an output's factor of a column of x */
-const char *tuned_output_factor(const struct emitter *e, const struct output *output, int column);
-
 /* Its row of factors, in struct NAME_coeffs */
 const char *tuned_output_row(const struct emitter *e, const struct output *output);
 
@@ -239,8 +233,7 @@ struct batch {
 	int shared;                     /* numbers that instances share in a step: `now` */
 	const char **shared_text;       /* first those that the step reads, before it; */
 	int after;                      /* from here on those of the outputs, after it */
-	/* per column, of the step and of the outputs: index in `now`; -1: none; of the outputs inputs and slopes */
-	int *load[2], *input[2];
+	struct tape *step, *out;        /* what lanes compute */
 	int forced;                     /* index of the forced part; -1: none */
 	/* Of peaks: what acts on the states before the step, then how far it bends each; is that computed only where
 	 * it is read, elsewhere bounded by the samples? */
@@ -544,7 +537,6 @@ void emit_wrappers(const struct emitter *e);                       /* NAME_any_i
 /* ---- emit_large.c: the step of a large model ---- */
 
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
-bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
 void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
 struct group_shape {                /* of its numbers, where they are a table or stand in the instance */
 	const char *name;           /* columns */
@@ -653,13 +645,12 @@ void emit_next_tap(const struct emitter *e, int input);           /* u is the ne
 int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
-/* as its program says, from the locals into s->y, or where it is in order into the locals */
-void emit_assignment(const struct emitter *e, const struct assignment *a);
+/* what a step assigns to states that are `stepped` (NULL: all), to be printed */
+struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
 void emit_rest(const struct emitter *e);                          /* NAME_rest: what has decayed comes to rest */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
-const char *input_operand(const struct emitter *e, int column);
 void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
 /* of dry friction and impacts in regions: their lists, numbers, descriptor */
 void emit_guards(const struct emitter *e, const struct guards *guards);
@@ -787,7 +778,6 @@ void emit_tuned_at(const struct emitter *e);                      /* pass, from 
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);
-bool seen_of_modes(const struct emitter *e, const struct output *output);      /* its part of the states */
 void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);

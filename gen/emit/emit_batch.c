@@ -95,9 +95,8 @@ static bool *loads_of_outputs(const struct batch *b)
 {
 	const struct linear *system = b->e->system;
 	bool *wanted = ARRAY(bool, (size_t)system->loads);
-	for (int l = 0, column = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++, column++)
-			wanted[l] = wanted[l] || b->load[1][column] >= 0;
+	for (int l = 0; l < system->loads; l++)
+		wanted[l] = tape_reads(b->out, TAPE_LOAD, l, -1);
 	return wanted;
 }
 

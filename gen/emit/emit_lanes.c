@@ -9,86 +9,53 @@ enum { MOST_GROUPS = 4 };
 
 /* ---- what instances share, and what each has ---- */
 
-static int share(struct batch *b, const char *text)
+static int find_text(int count, const char *const *text, int from, const char *wanted)
 {
-	ENLARGE(b->shared_text, (size_t)b->shared + 1);
-	b->shared_text[b->shared] = text;
-	return b->shared++;
+	while (from < count && strcmp(text[from], wanted) != 0)
+		from++;
+	return from;
 }
 
-static void share_load(struct batch *b, int which, int column)
+/* Its place among what is shared from `from` on */
+static int share(struct batch *b, int from, const char *text)
 {
-	const char *text = column_operand(b->e, column);
-	if (text && b->load[which][column] < 0)
-		b->load[which][column] = share(b, text);
+	int place = find_text(b->shared, b->shared_text, from, text);
+	if (place == b->shared) {
+		ENLARGE(b->shared_text, (size_t)b->shared + 1);
+		b->shared_text[b->shared++] = text;
+	}
+	return place;
 }
 
-static void share_operands_of_step(struct batch *b)
+/* An operand that all instances share: its C */
+static const char *shared_operand(const struct emitter *e, const struct tape_node *n)
 {
-	const struct program *program = b->e->step->program;
-	for (int i = 0; i < program->assignments; i++)
-		for (int k = 0; k < program->assignment[i].terms; k++) {
-			const struct operand *o = &program->assignment[i].term[k].operand;
-			if (o->kind == OPERAND_LOAD)
-				share_load(b, 0, o->index);
-			else if (o->kind == OPERAND_INPUT && b->input[0][o->index] < 0)
-				b->input[0][o->index] = share(b, input_operand(b->e, o->index));
-		}
+	switch (n->op) {
+	case TAPE_LOAD:   return load_operand(e, n->index, n->part);
+	case TAPE_SAMPLE: return input_operand(e, n->index);
+	case TAPE_INPUT:  return format(n->part ? "s->slope[%d]" : "s->u[%d]", n->index);
+	default:          return NULL;
+	}
 }
 
-/* Column k of an output's row over loads, over inputs and their slopes: is it read? */
-static bool reads_load(const struct emitter *e, const struct output *output, int column)
+static void share_operands(struct batch *b, const struct tape *t, int from)
 {
-	if (is_tuned_output(e, output))
-		return tuned_output_reads(e, output, e->system->states + column);
-	int l = 0;
-	for (; column >= e->system->load[l].columns; l++)
-		column -= e->system->load[l].columns;
-	return mpq_sgn(output->load[l][column]) != 0;
-}
-
-/* Of input i, or of its slope; struct tuning has columns for both of a ramp alone */
-static bool reads_input(const struct emitter *e, const struct output *output, int i, int slope)
-{
-	if (!is_tuned_output(e, output))
-		return mpq_sgn(output->input[slope][i]) != 0;
-	int column = e->system->states + load_columns(e->system);
-	for (int k = 0; k < i; k++)
-		column += e->system->input[k].hold + 1;
-	return (slope == 0 || e->system->input[i].hold) && tuned_output_reads(e, output, column + slope);
-}
-
-static void share_operands_of_output(struct batch *b, const struct output *output)
-{
-	for (int k = 0; k < load_columns(b->e->system); k++)
-		if (reads_load(b->e, output, k))
-			share_load(b, 1, k);
-	for (int k = 0; k < 2 * b->e->system->inputs; k++) {
-		int i = k / 2, slope = k % 2;
-		if (reads_input(b->e, output, i, slope) && b->input[1][k] < 0)
-			b->input[1][k] = share(b, format(slope ? "s->slope[%d]" : "s->u[%d]", i));
+	for (int i = 0; i < tape_length(t); i++) {
+		const char *text = shared_operand(b->e, tape_node(t, i));
+		if (text)
+			share(b, from, text);
 	}
 }
 
 /* The name of a factor of the instance's own, in a function over lanes */
 const char *batch_factor(struct batch *b, const char *text)
 {
-	int k = 0;
-	while (k < b->factors && strcmp(b->factor_text[k], text) != 0)
-		k++;
+	int k = find_text(b->factors, b->factor_text, 0, text);
 	if (k == b->factors) {
 		ENLARGE(b->factor_text, (size_t)b->factors + 1);
 		b->factor_text[b->factors++] = text;
 	}
 	return format("factor[%d]", k);
-}
-
-static int *no_places(int count)
-{
-	int *place = ARRAY(int, (size_t)count + 1);
-	for (int i = 0; i < count; i++)
-		place[i] = -1;
-	return place;
 }
 
 static void number_factors(struct batch *b);
@@ -110,15 +77,17 @@ static bool only_samples_act(const struct emitter *e)
 
 struct batch plan_batch(const struct emitter *e)
 {
-	struct batch b = { .e = e, .forced = -1 };
-	for (int which = 0; which < 2; which++)
-		b.load[which] = no_places(load_columns(e->system));
-	b.input[0] = no_places(input_columns(e->system));
-	b.input[1] = no_places(2 * e->system->inputs);
-	share_operands_of_step(&b);
+	struct batch b = { .e = e, .forced = -1, .step = tape_new(), .out = tape_new() };
+	struct step now = *e->step;             /* what instances share are load states of now, not an anchor's */
+	now.anchors = NULL;
+	tape_of_step(b.step, &now, NULL, "y");
+	for (int i = 0; i < e->model->outputs; i++) {
+		const struct output *output = &e->model->output[i];
+		tape_set(b.out, format("out[%d]", i), tape_of_row(b.out, e->step, output), 13, output->name);
+	}
+	share_operands(&b, b.step, 0);
 	b.after = b.shared;
-	for (int i = 0; i < e->model->outputs; i++)
-		share_operands_of_output(&b, &e->model->output[i]);
+	share_operands(&b, b.out, b.after);
 	if (e->step->forced) {
 		b.forced = b.shared;
 		b.shared += e->system->states;
@@ -149,91 +118,67 @@ int batch_groups(const struct emitter *e)
 	return groups < 1 ? 1 : groups > MOST_GROUPS ? MOST_GROUPS : groups;
 }
 
-/* ---- the step over lanes ---- */
+/* ---- tapes over lanes ---- */
 
-static const char *shared_place(int place)
+struct over_lanes { struct batch *b; int from; }; /* where what is shared stands */
+
+/* Rows of an instance, of what rounding takes from a state */
+static const char *rest_row(const struct emitter *e, const struct tape_node *n)
 {
-	return place < 0 ? NULL : format("now[%d]", place);
+	int first = n->part == PLACE_CARRY ? batch_stepped_rows(e) - e->step->carries : e->system->states;
+	return format("y[%d]", first + n->index);
 }
 
-static const char *operand_over_lanes(const struct batch *b, const struct operand *o)
+static const char *operand_over_lanes(const void *context, const struct tape_node *n)
 {
-	switch (o->kind) {
-	case OPERAND_STATE: return b->e->local[o->index];
-	case OPERAND_LOAD:  return shared_place(b->load[0][o->index]);
-	default:            return shared_place(b->input[0][o->index]);
-	}
+	const struct over_lanes *over = context;
+	const struct emitter *e = over->b->e;
+	if (n->op == TAPE_STATE)
+		return e->local[n->index];
+	if (n->op == TAPE_ACCUMULATE)
+		return rest_row(e, n);
+	if (n->op == TAPE_TABLE)
+		return batch_factor(over->b, linear_entry(e, n));
+	return format("now[%d]", share(over->b, over->from, shared_operand(e, n)));
 }
 
-static const char *term_over_lanes(struct batch *b, const struct assignment *a, const struct product *p)
+static bool varies(const void *context, const struct tape_node *n)
 {
-	const char *operand = operand_over_lanes(b, &p->operand);
-	if (!b->e->step->program->tuned)
-		return scaled(p->factor->value, operand);
-	const char *factor = batch_factor(b, tuned_factor(b->e, a->target, &p->operand));
-	return operand ? format("%s * %s", factor, operand) : factor;
+	(void)context;
+	return n->op == TAPE_STATE || n->op == TAPE_TABLE;
 }
 
-/* Some term of a sum is over lanes, not a number that all share. */
-static bool is_over_lanes(const struct batch *b, const struct assignment *a)
+static const char *number(const void *context, mpq_srcptr value)
 {
-	bool any = b->e->step->program->tuned && a->terms;
-	for (int k = 0; k < a->terms; k++)
-		any = any || a->term[k].operand.kind == OPERAND_STATE;
-	return any;
+	(void)context;
+	return shortest(round_rational(value));
 }
 
-static const char *sum_over_lanes(struct batch *b, const struct assignment *a, bool second)
+static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
 {
-	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
-	int terms = 0;
-	bool lanes = is_over_lanes(b, a);
-	for (int k = 0; k < a->terms; k++)
-		if (!second)
-			term[terms++] = term_over_lanes(b, a, &a->term[k]);
-		else if (has_second_word(&a->term[k], b->e->step))
-			term[terms++] = scaled(a->term[k].factor->low, operand_over_lanes(b, &a->term[k].operand));
-	const char *sum = terms ? tree(terms, term, 14) : "0.0";
-	return lanes && !second ? sum : format("pl_lanes_all(0.0) + (%s)", sum);
+	static const struct tape_lanes lanes = { "pl_lanes", "pl_lanes_all", varies };
+	const struct over_lanes over = { b, from };
+	const struct tape_target to = { .real = "double", .number = number, .operand = operand_over_lanes,
+					.accumulate = "pl_lanes_accumulate", .context = &over, .indent = 4,
+					.lanes = &lanes };
+	tape_print(t, &to, b->e->to);
+	say(b->e, "    (void)now;\n"
+		  "%s"
+		  "}\n", b->factors ? "    (void)factor;\n" : "");
 }
 
-/* Where of the rows an assignment keeps what rounding takes */
-static int rest_row(const struct emitter *e, const struct assignment *a)
+static void number_entries(struct batch *b, const struct tape *t)
 {
-	int states = e->system->states;
-	return a->carried ? batch_stepped_rows(e) - e->step->carries + e->step->carry[a->target] : states + a->target;
-}
-
-static void say_assignment(struct batch *b, const struct assignment *a)
-{
-	const struct emitter *e = b->e;
-	const struct program *program = e->step->program;
-	const char *old = e->local[a->target], *target = program->in_order ? old : format("y[%d]", a->target);
-	const char *name = e->model->state_name[a->target], *sum = sum_over_lanes(b, a, false);
-	if (program->compensated || a->carried)
-		say(e, "    %s = pl_lanes_accumulate(%s,  /* %s */\n"
-		       "              %s,\n"
-		       "              %s, &y[%d]);\n", target, old, name, sum,
-		    a->carried ? "pl_lanes_all(0.0)" : sum_over_lanes(b, a, true), rest_row(e, a));
-	else if (program->in_order)
-		say(e, "    %s += %s;\n", target, sum);
-	else if (a->added && a->terms > 1)
-		say(e, "    %s = %s + (%s);  /* %s */\n", target, old, sum, name);
-	else
-		say(e, "    %s = %s%s;  /* %s */\n", target, a->added ? format("%s + ", old) : "", sum, name);
+	for (int i = 0; i < tape_length(t); i++)
+		if (tape_node(t, i)->op == TAPE_TABLE)
+			batch_factor(b, linear_entry(b->e, tape_node(t, i)));
 }
 
 static void number_factors(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	const struct program *program = e->step->program;
-	for (int i = 0; i < program->assignments; i++)
-		for (int k = 0; k < program->assignment[i].terms; k++)
-			term_over_lanes(b, &program->assignment[i], &program->assignment[i].term[k]);
-	for (int i = 0; i < e->model->outputs; i++)
-		for (int k = 0; is_tuned_output(e, &e->model->output[i]) && k < e->model->tuning->x.size; k++)
-			if (tuned_output_reads(e, &e->model->output[i], k))
-				batch_factor(b, tuned_output_factor(e, &e->model->output[i], k));
+	number_entries(b, b->step);
+	number_entries(b, b->out);
 	for (int p = 0; p < peak_outputs(e->model); p++) {
 		for (int i = 0; i < e->system->states; i++)
 			batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i));
@@ -252,78 +197,13 @@ static void number_factors(struct batch *b)
 void emit_lanes_step(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	const struct program *program = e->step->program;
 	say(e, "\n/* One step of as many instances as there are lanes; now: what they share */\n"
 	       "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, %sconst double *now)\n"
 	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
 	for (int i = 0; i < e->system->states; i++)
-		if (program->reads[i])
-			say(e, "    %spl_lanes %s = y[%d];\n", program->in_order ? "" : "const ", e->local[i], i);
-	for (int i = 0; i < program->assignments; i++)
-		say_assignment(b, &program->assignment[i]);
-	for (int i = 0; i < e->system->states && program->in_order; i++)
-		if (program->reads[i])
-			say(e, "    y[%d] = %s;\n", i, e->local[i]);
-	say(e, "    (void)now;\n"
-	       "}\n");
-}
-
-/* ---- outputs over lanes ---- */
-
-static const char *output_term(struct batch *b, const struct output *output, int column, mpq_srcptr fixed,
-			       const char *operand)
-{
-	if (!is_tuned_output(b->e, output))
-		return scaled(round_rational(fixed), operand);
-	const char *factor = batch_factor(b, tuned_output_factor(b->e, output, column));
-	return operand ? format("%s * %s", factor, operand) : factor;
-}
-
-static bool reads_state(const struct emitter *e, const struct output *output, int i)
-{
-	return is_tuned_output(e, output) ? tuned_output_reads(e, output, i) : mpq_sgn(output->state[i]) != 0;
-}
-
-static int add_load_terms(struct batch *b, const struct output *output, const char **term)
-{
-	const struct linear *system = b->e->system;
-	int terms = 0;
-	for (int l = 0, column = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++, column++)
-			if (reads_load(b->e, output, column))
-				term[terms++] = output_term(b, output, system->states + column, output->load[l][k],
-							    shared_place(b->load[1][column]));
-	return terms;
-}
-
-static int add_input_terms(struct batch *b, const struct output *output, const char **term)
-{
-	const struct linear *system = b->e->system;
-	int terms = 0, column = system->states + load_columns(system);
-	for (int i = 0; i < system->inputs; i++) {
-		for (int k = 0; k < 2; k++)
-			if (reads_input(b->e, output, i, k))
-				term[terms++] = output_term(b, output, column + k, output->input[k][i],
-							    shared_place(b->input[1][2 * i + k]));
-		column += system->input[i].hold + 1;
-	}
-	return terms;
-}
-
-static const char *output_over_lanes(struct batch *b, const struct output *output)
-{
-	const struct linear *system = b->e->system;
-	int terms = 0;
-	const char **term =
-		ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs) + 1);
-	for (int i = 0; i < system->states; i++)
-		if (reads_state(b->e, output, i))
-			term[terms++] = output_term(b, output, i, output->state[i], b->e->local[i]);
-	bool lanes = terms > 0 || is_tuned_output(b->e, output);
-	terms += add_load_terms(b, output, term + terms);
-	terms += add_input_terms(b, output, term + terms);
-	const char *sum = terms ? tree(terms, term, 13) : "0.0";
-	return lanes && terms ? sum : format("pl_lanes_all(%s)", sum);
+		if (tape_reads(b->step, TAPE_STATE, i, 0))
+			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
+	emit_over_lanes(b, b->step, 0);
 }
 
 /* A state as outputs read it: of momenta the velocity, of what is kept less its forced part the whole */
@@ -340,19 +220,10 @@ void emit_lanes_out(struct batch *b)
 	const struct emitter *e = b->e;
 	say(e, "\nPL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, %sconst double *now, pl_lanes *out)\n"
 	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
-	for (int i = 0; i < e->system->states; i++) {
-		bool read = false;
-		for (int o = 0; o < e->model->outputs; o++)
-			read = read || reads_state(e, &e->model->output[o], i);
-		if (read)
+	for (int i = 0; i < e->system->states; i++)
+		if (tape_reads(b->out, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
-	}
-	for (int o = 0; o < e->model->outputs; o++)
-		say(e, "    out[%d] = %s;  /* %s */\n", o, output_over_lanes(b, &e->model->output[o]),
-		    e->model->output[o].name);
-	say(e, "    (void)now;\n"
-	       "%s"
-	       "}\n", b->factors ? "    (void)factor;\n" : "");
+	emit_over_lanes(b, b->out, b->after);
 }
 
 /* ---- lanes from the arrays and back ---- */

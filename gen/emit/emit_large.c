@@ -447,15 +447,6 @@ static void emit_group(const struct emitter *e, const struct group *g, int index
 		emit_alike_function(e, g, index);
 }
 
-bool rows_read_changing_loads(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	for (int k = 0; k < program->groups; k++)
-		if (program->group[k].kind == GROUP_ROWS && !program->group[k].tuned && changes(e, &program->group[k]))
-			return true;
-	return false;
-}
-
 void emit_groups(const struct emitter *e)
 {
 	for (int k = 0; k < e->step->program->groups; k++)

@@ -138,10 +138,10 @@ void emit_modes(const struct emitter *e)
 	emit_square(e, "Modes from states", "to_modes", modal->to, mode_names(e));
 	emit_square(e, "States from modes", "from_modes", modal->from, e->model->state_name);
 	emit_driving(e);
-	bool seen = false;
+	struct tape *rows = tape_new();
 	for (int i = 0; i < e->model->outputs; i++)
-		seen = seen || seen_of_modes(e, &e->model->output[i]);
-	if (modal->output && seen)
+		tape_set(rows, "", tape_of_row(rows, e->step, &e->model->output[i]), 0, NULL);
+	if (modal->output && tape_reads(rows, TAPE_TABLE, -1, TABLE_SEEN))
 		emit_output_modes(e);
 	emit_dot(e);
 }

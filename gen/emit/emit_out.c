@@ -2,45 +2,6 @@
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
 #include "emit/emit.h"
 
-static bool changes(const mpq_t *factor, int segments)
-{
-	for (int s = 1; s < segments; s++)
-		if (!mpq_equal(factor[0], factor[s]))
-			return true;
-	return false;
-}
-
-static bool any_factor(const struct emitter *e, const struct output *output, int load, int column)
-{
-	for (int s = 0; s < e->system->segments; s++)
-		if (mpq_sgn(output->load[load][column * e->system->segments + s]) != 0)
-			return true;
-	return false;
-}
-
-/* A number for each output, then for each highest derivative that outputs which are not linear read */
-static int place_of_output(const struct model *model, const struct output *output)
-{
-	int row = model->outputs;
-	for (int k = 0; model->highest && k < model->n; k++) {
-		if (model->highest[k] == output)
-			return row;
-		row += model->highest[k] != NULL;
-	}
-	return (int)(output - model->output);
-}
-
-/* A load in an output: its factor, or where that changes its place in the table direct[segment][output] */
-static const char *direct_term(const struct emitter *e, const struct output *output, int load, int k, int column)
-{
-	const mpq_t *factor = (const mpq_t *)output->load[load] + k * e->system->segments;
-	const char *operand = load_operand(e, load, k);
-	if (!changes(factor, e->system->segments))
-		return scaled(round_rational(factor[0]), operand);
-	const char *text = spell(e, "$n_direct[s->segment][%d][%d]", place_of_output(e->model, output), column);
-	return operand ? format("%s * %s", text, operand) : text;
-}
-
 /* The output of a row of that table: NULL behind the last */
 static const struct output *output_of_row(const struct model *model, int row)
 {
@@ -61,7 +22,8 @@ static int changing_rows(const struct emitter *e)
 	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
 		for (int l = 0; l < system->loads && !is_tuned_output(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
-				if (changes((const mpq_t *)output->load[l] + k * system->segments, system->segments))
+				if (differs_in_time((const mpq_t *)output->load[l] + k * system->segments,
+						    system->segments))
 					rows = o < e->model->outputs ? e->model->outputs : o + 1;
 	return rows;
 }
@@ -95,107 +57,43 @@ static void emit_direct_factors(const struct emitter *e)
 	say(e, "};\n");
 }
 
-static double output_factor(const struct output *output, mpq_srcptr factor)
-{
-	if (beyond_range(factor))
-		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of %s", output->name,
-		      target_name());
-	return round_rational(factor);
-}
-
-/* Its part of the states is a row over the modes. */
-bool seen_of_modes(const struct emitter *e, const struct output *output)
-{
-	const struct model *model = e->model;
-	bool any = false;
-	for (int i = 0; i < e->system->states; i++)
-		any = any || mpq_sgn(output->state[i]) != 0;
-	return any && e->step->modal && output >= model->output && output < model->output + model->outputs;
-}
-
-static const char *linear_output(const struct emitter *e, const struct output *output)
-{
-	const struct linear *system = e->system;
-	const char *tuned = tuned_output(e, output);
-	if (tuned)
-		return tuned;
-	int most = system->states + load_columns(system) + 2 * system->inputs + e->model->channels, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)most + 1);
-	const bool modes = seen_of_modes(e, output);
-	if (modes)
-		term[terms++] = spell(e, "$n_dot($n_seen[%d], s->y)", (int)(output - e->model->output));
-	for (int i = 0; i < system->states && !modes; i++)
-		if (mpq_sgn(output->state[i]) != 0)
-			term[terms++] = scaled(output_factor(output, output->state[i]), e->local[i]);
-	for (int l = 0, column = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++, column++)
-			if (any_factor(e, output, l, k))
-				term[terms++] = direct_term(e, output, l, k, column);
-	for (int k = 0; k < 2; k++)
-		for (int i = 0; i < system->inputs; i++)
-			if (mpq_sgn(output->input[k][i]) != 0)
-				term[terms++] = scaled(output_factor(output, output->input[k][i]),
-						       k ? format("s->slope[%d]", i) : sample_kept(e, i));
-	for (int c = 0; c < e->model->channels; c++)
-		if (mpq_sgn(output->channel[c]) != 0)
-			term[terms++] = scaled(output_factor(output, output->channel[c]), format("left[%d]", c));
-	return terms ? tree(terms, term, 13) : "0.0";
-}
-
-struct output_needs {
-	bool *reads, *loads, *inputs, *highest, time, left;
-};
-
-static void mark_tuned_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
-{
-	int column = e->system->states;
-	for (int i = 0; i < e->system->states; i++)
-		needs->reads[i] = needs->reads[i] || tuned_output_reads(e, output, i);
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns; k++, column++)
-			if (load_operand(e, l, k) && tuned_output_reads(e, output, column))
-				needs->loads[l] = true;
-}
-
-static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
-{
-	if (is_tuned_output(e, output)) {
-		mark_tuned_row(e, output, needs);
-		return;
-	}
-	for (int i = 0; i < e->system->states && !seen_of_modes(e, output); i++)
-		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns; k++)
-			needs->loads[l] = needs->loads[l] || (load_operand(e, l, k) && any_factor(e, output, l, k));
-	for (int c = 0; c < e->model->channels; c++)
-		needs->left = needs->left || mpq_sgn(output->channel[c]) != 0;
-}
-
-/* What an output that is not linear reads: written states, inputs, loads, highest derivatives */
-static void mark_form(const struct emitter *e, const struct output *output, struct output_needs *needs)
+/* Rows read states as they are kept, forms the written ones. */
+static bool *kept_states(const struct emitter *e, const struct formulas *f)
 {
 	const struct model *written = speaker(e->model);
-	const struct form *form = output->left;
-	struct reads reads = reads_of(written, 1, &form);
+	struct reads r = reads_of_formulas(f);
+	bool *kept = ARRAY(bool, (size_t)e->system->states);
 	for (int i = 0; i < written->system.states; i++)
-		if (reads.state[i])
-			needs->reads[e->model->reduction.place ? e->model->reduction.place[i] : i] = true;
-	for (int i = 0; i < 2 * e->system->inputs; i++)
-		needs->inputs[i] = needs->inputs[i] || reads.input[i];
-	for (int l = 0; l < e->system->loads; l++)
-		needs->loads[l] = needs->loads[l] || reads.load[l];
-	for (int k = 0; k < written->n; k++) {
-		needs->highest[k] = needs->highest[k] || reads.highest[k];
-		if (reads.highest[k])
-			mark_row(e, e->model->highest[k], needs);
-	}
-	needs->time = needs->time || reads.time;
+		if (r.state[i])
+			kept[e->model->reduction.place ? e->model->reduction.place[i] : i] = true;
+	tape_mark(formulas_tape(f), TAPE_STATE, 0, kept);
+	return kept;
 }
 
-static void mark_output(const struct emitter *e, const struct output *output, struct output_needs *needs)
+/* Their values; first the highest derivatives that they read, as locals */
+static struct formulas *formulas_of_outputs(const struct emitter *e)
 {
-	(output->left ? mark_form : mark_row)(e, output, needs);
+	const struct model *model = e->model;
+	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
+	tape_ref *value = ARRAY(tape_ref, (size_t)model->outputs + 1);
+	int forms = 0;
+	for (int i = 0; i < model->outputs; i++)
+		if (model->output[i].left)
+			form[forms++] = model->output[i].left;
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, forms, form);
+	struct tape *t = formulas_tape(f);
+	for (int i = 0; i < model->outputs; i++) {
+		const struct output *output = &model->output[i];
+		value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
+	}
+	const struct reads r = reads_of(speaker(model), forms, form);
+	for (int k = 0; k < speaker(model)->n; k++)
+		if (r.highest[k])
+			tape_set_local(t, format("accel%d", k + 1), tape_of_row(t, e->step, model->highest[k]));
+	for (int i = 0; i < model->outputs; i++)
+		tape_set(t, format("out[%d]", i), value[i], 13, model->output[i].name);
+	formulas_finish(f);
+	return f;
 }
 
 static void emit_input_locals(const struct emitter *e, const bool *wanted)
@@ -220,41 +118,21 @@ void emit_out(const struct emitter *e)
 		       "}\n");
 		return;
 	}
-	const int coords = speaker(model)->n;
-	struct output_needs needs = {
-		.reads = ARRAY(bool, (size_t)e->system->states), .loads = ARRAY(bool, (size_t)e->system->loads),
-		.inputs = ARRAY(bool, 2 * (size_t)e->system->inputs), .highest = ARRAY(bool, (size_t)coords)
-	};
-	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
-	int forms = 0;
-	for (int i = 0; i < model->outputs; i++) {
-		mark_output(e, &model->output[i], &needs);
-		if (model->output[i].left)
-			form[forms++] = model->output[i].left;
-	}
-	emit_locals(e, needs.reads);
-	emit_param_locals(e, reads_of(speaker(model), forms, form).param);
-	if (needs.left && e->step->normal && !any_of(needs.reads, e->system->states))
+	struct formulas *f = formulas_of_outputs(e);
+	const struct reads r = reads_of_formulas(f);
+	const bool *reads = kept_states(e, f), left = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
+	emit_locals(e, reads);
+	emit_param_locals(e, r.param);
+	if (left && e->step->normal && !any_of(reads, e->system->states))
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_get(s, now);\n");
-	emit_input_locals(e, needs.inputs);
-	if (needs.time)
+	emit_input_locals(e, r.input);
+	if (r.time)
 		say(e, "    const double t = $n_time(s);\n");
-	emit_turned_loads(e, needs.loads, needs.time);
-	if (needs.left)
+	emit_turned_loads(e, r.load, r.time);
+	if (left)
 		say(e, "    double left[%d];\n"
 		       "    %s\n", model->channels, leftover_of_outputs(e));
-	for (int k = 0; k < coords; k++)
-		if (needs.highest[k])
-			say(e, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1,
-			       linear_output(e, model->highest[k]), model->coord_name[k],
-			       model->frame.coord[k]->highest, "''");
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, forms, form);
-	for (int i = 0; i < model->outputs; i++) {
-		const struct output *output = &model->output[i];
-		tape_ref value = output->left ? formula(f, output->left) : formula_text(f, linear_output(e, output));
-		tape_set(formulas_tape(f), format("out[%d]", i), value, 13, output->name);
-	}
 	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");

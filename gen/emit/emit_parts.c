@@ -436,7 +436,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	say(part, "\n"
 		  "static void $o_step($n *s%s)\n"
 		  "{\n", given_text(part, true));
-	emit_raw_locals(part, all, false);
+	emit_raw_locals(part, all);
 	for (int i = 0; i < part->system->inputs; i++)
 		if (part->system->input[i].hold)
 			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
@@ -507,7 +507,7 @@ static void emit_divided_step(const struct emitter *part)
 		  "static void $o_step($n *s%s)\n"
 		  "{\n", given_text(part, true));
 	if (part->step->swift) {
-		emit_raw_locals(part, all, false);
+		emit_raw_locals(part, all);
 		emit_clear_step(part);
 	} else {
 		say(part, "    int i;\n");

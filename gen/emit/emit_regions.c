@@ -484,7 +484,7 @@ static void emit_whole_step(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		all[i] = true;
 	emit_set_aside(e);
-	emit_raw_locals(e, all, false);
+	emit_raw_locals(e, all);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_clear_step(e);
 	emit_take_back(e);

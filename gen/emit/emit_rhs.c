@@ -117,7 +117,8 @@ static void emit_read_inputs(const struct emitter *e, const struct tape *t)
 
 static void emit_written_residuals(const struct emitter *e, const struct tape *t)
 {
-	const struct tape_target to = { "double", number, operand, "pl_magnitude", e, 4, false };
+	const struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
+					.context = e, .indent = 4 };
 	emit_read_params(e, t);
 	emit_read_states(e, t);
 	emit_read_inputs(e, t);

@@ -236,7 +236,7 @@ static void emit_block_locals(const struct emitter *e, const struct emitter *of_
 	for (int k = 0; k < load_columns(e->system); k++)
 		if (program->uses[k])
 			mark_operand(e, &(struct operand){ OPERAND_LOAD, k }, reads, loads);
-	emit_raw_locals(e, reads, program->in_order);
+	emit_raw_locals(e, reads);
 	emit_sample_locals(e);
 	if (of_step->step->anchors)
 		emit_loads_at_anchor(of_step, loads);
@@ -325,16 +325,10 @@ static void emit_leap(const struct emitter *e)
 
 static void emit_block_step(const struct emitter *e)
 {
-	const struct program *program = e->step->program;
-	if (steps_by_table(e)) {
+	if (steps_by_table(e))
 		emit_leap(e);
-		return;
-	}
-	for (int i = 0; i < program->assignments; i++)
-		emit_assignment(e, &program->assignment[i]);
-	for (int i = 0; i < e->system->states && program->in_order; i++)
-		if (program->reads[i])
-			say(e, "    s->y[%d] = %s;\n", i, e->local[i]);
+	else
+		emit_formulas(formulas_of_step(e, NULL), 4);
 }
 
 /* The step of K h comes before the rows, which do not wait for it: the next block begins as soon as it can. */

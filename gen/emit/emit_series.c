@@ -77,7 +77,8 @@ void series_set(struct recurrences *r, const char *target, int sequence, int k)
 void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 {
 	const struct tape *t = tape_of_recurrences(r);
-	const struct tape_target to = { "double", number, operand, "pl_magnitude", e, 4, true };
+	const struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
+					.context = e, .indent = 4, .locals_first = true };
 	const char *broken = tape_check(t);
 	if (broken)
 		internal_error(e->step, broken);

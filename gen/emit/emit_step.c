@@ -2,108 +2,6 @@
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
 #include "emit/emit.h"
 
-static const char *tap_text(const struct emitter *e, int input, int tap)
-{
-	int hold = e->system->input[input].hold;
-	if (tap == hold)
-		return sample_now(e, input);
-	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, tap);
-}
-
-/* Held: the sample that the step is given. A ramp: the previous sample, then the one given; further taps likewise. */
-const char *input_operand(const struct emitter *e, int column)
-{
-	if (e->sample)
-		return e->sample[column];
-	for (int i = 0; i < e->system->inputs; i++) {
-		int columns = e->system->input[i].hold + 1;
-		if (column < columns)
-			return tap_text(e, i, column);
-		column -= columns;
-	}
-	return NULL;
-}
-
-static const char *operand_text(const struct emitter *e, const struct operand *operand)
-{
-	switch (operand->kind) {
-	case OPERAND_STATE: return e->local[operand->index];
-	case OPERAND_LOAD:  return column_operand(e, operand->index);
-	default:            return input_operand(e, operand->index);
-	}
-}
-
-/* A load that changes has its factors in a table, one row for each segment of time. */
-static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
-{
-	const char *operand = operand_text(e, &p->operand);
-	bool tuned = has_own_factors(e, a->target);
-	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
-	if (turned >= 0)
-		return format("turned[%d] * %s", turned, operand);
-	if (!tuned && (p->operand.kind != OPERAND_LOAD || e->system->segments == 1))
-		return scaled(p->factor->value, operand);
-	const char *factor = tuned ? tuned_factor(e, a->target, &p->operand)
-				   : format("factor[%d][%d]", a->target, p->operand.index);
-	return operand ? format("%s * %s", factor, operand) : factor;
-}
-
-static const char *sum_text(const struct emitter *e, const struct assignment *a, int indent)
-{
-	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
-	for (int k = 0; k < a->terms; k++)
-		term[k] = term_text(e, a, &a->term[k]);
-	return a->terms ? tree(a->terms, term, indent) : "0.0";
-}
-
-static const char *second_term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
-{
-	const char *operand = operand_text(e, &p->operand);
-	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
-	if (turned >= 0)
-		return format("turned[%d] * %s", e->step->anchors->terms + turned, operand);
-	return scaled(p->factor->low, operand);
-}
-
-/* The factors' second words; NULL: there are none */
-static const char *second_sum_text(const struct emitter *e, const struct assignment *a)
-{
-	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
-	int terms = 0;
-	for (int k = 0; k < a->terms; k++)
-		if (has_second_word(&a->term[k], e->step))
-			term[terms++] = second_term_text(e, a, &a->term[k]);
-	return terms ? tree(terms, term, 14) : NULL;
-}
-
-/* target = target + (sum), what its rounding takes kept in s->rest; of plain steps in s->carry */
-static void emit_compensated(const struct emitter *e, const struct assignment *a, const char *target)
-{
-	const char *second = a->carried ? NULL : second_sum_text(e, a), *sum = sum_text(e, a, 14);
-	say(e, "    %s = pl_accumulate(%s,  /* %s */\n"
-	       "              %s,\n"
-	       "              %s, &s->%s[%d]);\n",
-	    target, e->local[a->target], e->model->state_name[a->target], sum, second ? second : "0.0",
-	    a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
-}
-
-void emit_assignment(const struct emitter *e, const struct assignment *a)
-{
-	const struct program *program = e->step->program;
-	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target);
-	const char *old = e->local[a->target], *name = e->model->state_name[a->target];
-	if (program->compensated || a->carried)
-		emit_compensated(e, a, target);
-	else if (program->in_order)
-		say(e, "    %s += %s;\n", target, sum_text(e, a, 10));
-	else if (a->added && a->terms > 1)
-		say(e, "    %s = %s + (%s);  /* %s */\n", target, old, sum_text(e, a, 14), name);
-	else if (a->added)
-		say(e, "    %s = %s + %s;  /* %s */\n", target, old, sum_text(e, a, 14), name);
-	else
-		say(e, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
-}
-
 bool *loads_of_step(const struct emitter *e)
 {
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
@@ -157,15 +55,6 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 	}
 }
 
-static bool any_load_term(const struct program *program)
-{
-	for (int i = 0; i < program->assignments; i++)
-		for (int k = 0; k < program->assignment[i].terms; k++)
-			if (program->assignment[i].term[k].operand.kind == OPERAND_LOAD)
-				return true;
-	return false;
-}
-
 static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->branch->whole;
@@ -212,32 +101,44 @@ static const char **acting_texts(const struct emitter *e)
 	const struct table *table = e->step->branch->whole;
 	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
 	for (int k = 0; k < table->columns + table->inputs; k++) {
-		const bool load = k < table->columns;
-		const int index = load ? k : k - table->columns;
-		text[k] = operand_text(e, &(struct operand){ load ? OPERAND_LOAD : OPERAND_INPUT, index });
+		text[k] = k < table->columns ? column_operand(e, k) : input_operand(e, k - table->columns);
 		text[k] = text[k] ? text[k] : "1.0";
 	}
 	return text;
 }
 
-/* The rows of small blocks of a large model, their states under their names */
-static void emit_group_rows(const struct emitter *e)
+struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped)
+{
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
+	tape_of_step(formulas_tape(f), e->step, stepped, "s->y");
+	return f;
+}
+
+/* Of a step that loops over blocks those that have rows of their own; NULL: all */
+static bool *states_in_rows(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
-	const int states = e->system->states;
-	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
+	bool *stepped = program->loops ? ARRAY(bool, (size_t)e->system->states) : NULL;
 	for (int k = 0; k < program->groups; k++)
 		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
 			stepped[program->group[k].state[i]] = true;
-	for (int i = 0; i < states; i++)
-		reads[i] = stepped[i] && program->reads[i];
-	emit_raw_locals(e, reads, false);
-	if (rows_read_changing_loads(e))
+	return stepped;
+}
+
+/* The rows of a step: of all states, or of those of small blocks of a large model; the states under their names */
+static void emit_rows_of_step(const struct emitter *e)
+{
+	struct formulas *f = formulas_of_step(e, states_in_rows(e));
+	const struct tape *t = formulas_tape(f);
+	bool *reads = ARRAY(bool, (size_t)e->system->states);
+	tape_mark(t, TAPE_STATE, 0, reads);
+	emit_raw_locals(e, reads);
+	if (!e->step->program->loops)
+		emit_anchored_loads(e, loads_of_step(e));
+	if (tape_reads(t, TAPE_TABLE, -1, TABLE_FACTOR))
 		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
 		    e->step->branch->whole->columns);
-	for (int i = 0; i < program->assignments; i++)
-		if (stepped[program->assignment[i].target])
-			emit_assignment(e, &program->assignment[i]);
+	emit_formulas(f, 4);
 }
 
 static void emit_looped_step(const struct emitter *e)
@@ -246,7 +147,7 @@ static void emit_looped_step(const struct emitter *e)
 		emit_modal_step(e, acting_texts(e));
 		return;
 	}
-	emit_group_rows(e);
+	emit_rows_of_step(e);
 	emit_set_aside(e);
 	emit_group_steps(e, acting_texts(e));
 	emit_take_back(e);
@@ -255,22 +156,12 @@ static void emit_looped_step(const struct emitter *e)
 /* A step that no change of the loads interrupts */
 static void emit_plain_step(const struct emitter *e)
 {
-	const struct program *program = e->step->program;
-	if (program->loops) {
-		emit_load_states(e, loads_of_step(e), false);
-		emit_looped_step(e);
+	if (!e->step->program->loops) {
+		emit_rows_of_step(e);
 		return;
 	}
-	emit_raw_locals(e, program->reads, program->in_order);
-	emit_anchored_loads(e, loads_of_step(e));
-	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
-		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
-		    e->step->branch->whole->columns);
-	for (int i = 0; i < program->assignments; i++)
-		emit_assignment(e, &program->assignment[i]);
-	for (int i = 0; i < e->system->states && program->in_order; i++)
-		if (program->reads[i])
-			say(e, "    s->y[%d] = %s;\n", i, e->local[i]);
+	emit_load_states(e, loads_of_step(e), false);
+	emit_looped_step(e);
 }
 
 void emit_step_end(const struct emitter *e)
@@ -336,8 +227,8 @@ static void emit_plain_changes(const struct emitter *e)
 
 static void emit_changing_step(const struct emitter *e)
 {
-	const struct program *program = e->step->program;
-	if (program->loops ? rows_read_changing_loads(e) : any_load_term(program) && !program->tuned)
+	struct formulas *f = formulas_of_step(e, states_in_rows(e));
+	if (tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_FACTOR))
 		emit_load_factors(e);
 	say(e, "\n"
 	       "static void $n_plain_step(%s)\n"

@@ -8,8 +8,6 @@ struct formulas {
 	struct tape_forms *forms;
 	bool written;               /* over y[], u[] and t, as NAME_rhs has them */
 	const char *when;           /* C: the time at which conditions on time alone hold as they do; NULL: t */
-	int texts;
-	const char **text;          /* what emitters have as C */
 };
 
 /* ---- what a basis is called ---- */
@@ -139,12 +137,6 @@ static const char *written_operand(const struct emitter *e, const struct tape_no
 	return format("u[%d]", n->index + n->part * given_inputs(e));
 }
 
-static const char *table_operand(const struct formulas *f, const struct tape_node *n)
-{
-	static const char *const table[] = { [TABLE_NODE] = "node", [TABLE_EXCESS] = "excess" };
-	return n->part == TABLE_TEXT ? f->text[n->index] : format("%s[%d]", table[n->part], n->index);
-}
-
 static const char *operand(const void *context, const struct tape_node *n)
 {
 	const struct formulas *f = context;
@@ -154,13 +146,19 @@ static const char *operand(const void *context, const struct tape_node *n)
 	switch (n->op) {
 	case TAPE_COORD:
 	case TAPE_INPUT:    return f->written ? written_operand(e, n) : basis_now(e, &basis);
-	case TAPE_LOAD:     return format("load%d[%d]", n->index + 1, n->part);
+	case TAPE_LOAD:     return load_operand(e, n->index, n->part);
+	case TAPE_STATE:    return e->local[n->index];
+	case TAPE_SAMPLE:   return input_operand(e, n->index);
+	case TAPE_ACCUMULATE: return format("s->%s[%d]", n->part == PLACE_CARRY ? "carry" : "rest", n->index);
 	case TAPE_PARAM:    return param_local(e, n->index);
 	case TAPE_TIME:     return n->part ? f->when : "t";
 	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_grip"), n->index);
 	case TAPE_ABOVE:    return format("interval[%d] > %d", n->index, n->part);
-	default:            return table_operand(f, n);
+	default: break;
 	}
+	if (n->part < LINEAR_TABLES)
+		return linear_entry(e, n);
+	return format("%s[%d]", n->part == TABLE_NODE ? "node" : "excess", n->index);
 }
 
 static const char *number(const void *context, mpq_srcptr value)
@@ -215,16 +213,9 @@ tape_ref formula_sizes(struct formulas *f, const struct form *form)
 	return tape_sum(f->tape, form->terms, size);
 }
 
-tape_ref formula_text(struct formulas *f, const char *text)
-{
-	ENLARGE(f->text, (size_t)f->texts + 1);
-	f->text[f->texts] = text;
-	return tape_operand(f->tape, TAPE_TABLE, f->texts++, TABLE_TEXT);
-}
-
 static void note_read(struct reads *r, const struct emitter *e, const struct tape_node *n)
 {
-	const struct model *model = e->model;
+	const struct model *model = speaker(e->model);
 	if (n->op == TAPE_COORD && n->part > 0 && n->part >= model->frame.coord[n->index]->highest)
 		r->highest[n->index] = true;
 	else if (n->op == TAPE_COORD)
@@ -240,7 +231,7 @@ static void note_read(struct reads *r, const struct emitter *e, const struct tap
 
 struct reads reads_of_formulas(const struct formulas *f)
 {
-	struct reads r = reads_of(f->e->model, 0, NULL);
+	struct reads r = reads_of(speaker(f->e->model), 0, NULL);
 	int *uses = tape_uses(f->tape);
 	for (int i = 0; i < tape_length(f->tape); i++)
 		if (uses[i])
@@ -259,6 +250,7 @@ void formulas_finish(struct formulas *f)
 void emit_formulas(struct formulas *f, int indent)
 {
 	formulas_finish(f);
-	struct tape_target to = { "double", number, operand, "pl_magnitude", f, indent, false };
+	struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
+				  .accumulate = "pl_accumulate", .context = f, .indent = indent };
 	tape_print(f->tape, &to, f->e->to);
 }

@@ -125,6 +125,28 @@ const char *sample_kept(const struct emitter *e, int input)
 	return param < 0 ? format("s->u[%d]", input) : param_text(e, param);
 }
 
+const char *tap_text(const struct emitter *e, int input, int tap)
+{
+	int hold = e->system->input[input].hold;
+	if (tap == hold)
+		return sample_now(e, input);
+	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, tap);
+}
+
+/* Held: the sample that the step is given. A ramp: the previous sample, then the one given; further taps likewise. */
+const char *input_operand(const struct emitter *e, int column)
+{
+	if (e->sample)
+		return e->sample[column];
+	for (int i = 0; i < e->system->inputs; i++) {
+		int columns = e->system->input[i].hold + 1;
+		if (column < columns)
+			return tap_text(e, i, column);
+		column -= columns;
+	}
+	return NULL;
+}
+
 const char *input_name(const struct emitter *e, int input, int order)
 {
 	if (input >= e->model->spec->inputs)
@@ -218,9 +240,9 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	write_locals(e, reads, "const double", whole ? "now" : "s->y", true);
 }
 
-void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
+void emit_raw_locals(const struct emitter *e, const bool *reads)
 {
-	write_locals(e, reads, changing ? "double" : "const double", "s->y", false);
+	write_locals(e, reads, "const double", "s->y", false);
 }
 
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)

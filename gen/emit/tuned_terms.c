@@ -2,26 +2,6 @@
 /* Factors that the instance has, in steps and in outputs. */
 #include "emit/emit.h"
 
-static const struct group *group_of_state(const struct emitter *e, int state, int *index, int *row)
-{
-	for (int k = 0; k < e->step->program->groups; k++) {
-		const struct group *g = &e->step->program->group[k];
-		for (int i = 0; i < g->states * g->blocks; i++)
-			if (g->state[i] == state) {
-				*index = k;
-				*row = i / g->blocks;
-				return g;
-			}
-	}
-	internal_error(e->step, "a state stands in no group");
-}
-
-bool has_own_factors(const struct emitter *e, int state)
-{
-	int index, row;
-	return e->step->program->tuned && (!e->step->blocks || group_of_state(e, state, &index, &row)->tuned);
-}
-
 int place_in(int count, const int *list, int what)
 {
 	int place = 0;
@@ -30,19 +10,22 @@ int place_in(int count, const int *list, int what)
 	return place;
 }
 
-static const char *block_factor(const struct emitter *e, int state, const struct operand *operand)
+static const char *block_factor(const struct emitter *e, int state, int place)
 {
-	int index, row;
-	const struct group *g = group_of_state(e, state, &index, &row);
+	const struct table *table = e->step->branch->whole;
+	int index, row, load = place - table->states, input = load - table->columns;
+	const struct group *g = group_of_state(e->step, state, &index, &row);
 	const int segments = e->system->segments;
-	if (operand->kind == OPERAND_STATE)
-		return format("s->coeffs.rows%d[%d][%d]", index, row, place_in(g->states, g->state, operand->index));
-	if (operand->kind == OPERAND_INPUT)
-		return format("s->coeffs.rows%d[%d][%d]", index, row,
-			      g->states + segments * g->loads + place_in(g->inputs, g->input, operand->index));
-	const int place = g->states + place_in(g->loads, g->load, operand->index);
-	return segments > 1 ? format("s->coeffs.rows%d[%d][%d + s->segment * %d]", index, row, place, g->loads)
-			    : format("s->coeffs.rows%d[%d][%d]", index, row, place);
+	const char *later = "";
+	if (load < 0)
+		place = place_in(g->states, g->state, place);
+	else if (input >= 0)
+		place = g->states + segments * g->loads + place_in(g->inputs, g->input, input);
+	else
+		place = g->states + place_in(g->loads, g->load, load);
+	if (load >= 0 && input < 0 && segments > 1)
+		later = format(" + s->segment * %d", g->loads);
+	return format("s->coeffs.rows%d[%d][%d%s]", index, row, place, later);
 }
 
 static const char *tuned_entry(const struct emitter *e, const char *table, int row, int column)
@@ -55,65 +38,35 @@ static const char *tuned_entry(const struct emitter *e, const char *table, int r
 	return format("s->coeffs.%s[%d][%d]", table, row, column);
 }
 
-const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand)
+/* Entry of a table with so many columns */
+static const char *cell(const char *table, int index, int columns)
 {
-	if (e->step->blocks)
-		return block_factor(e, row, operand);
-	int states = e->system->states, loads = e->model->tuning->x.loads;
-	const int first[] = { [OPERAND_STATE] = 0, [OPERAND_LOAD] = states, [OPERAND_INPUT] = states + loads };
-	return tuned_entry(e, "step", row, first[operand->kind] + operand->index);
+	return format("%s[%d][%d]", table, index / columns, index % columns);
+}
+
+const char *linear_entry(const struct emitter *e, const struct tape_node *n)
+{
+	const struct table *table = e->step->branch->whole;
+	const int width = table->states + table->columns + table->inputs, i = n->index;
+	const struct tuning *tuning = e->model->tuning;
+	switch (n->part) {
+	case TABLE_TURNED: return format("turned[%d]", i);
+	case TABLE_FACTOR: return cell("factor", i, table->columns);
+	case TABLE_DIRECT: return cell(spell(e, "$n_direct[s->segment]"), i, load_columns(e->system));
+	case TABLE_LEFT:   return format("left[%d]", i);
+	case TABLE_SEEN:   return spell(e, "$n_dot($n_seen[%d], s->y)", i);
+	case TABLE_OWN_OUT: return tuned_entry(e, "out", i / tuning->x.size - e->model->n, i % tuning->x.size);
+	default: break;
+	}
+	return e->step->blocks ? block_factor(e, i / width, i % width) : tuned_entry(e, "step", i / width, i % width);
 }
 
 bool is_tuned_output(const struct emitter *e, const struct output *output)
 {
-	return e->kind->own_factors && e->model->tuning->output[output - e->model->output] >= 0;
-}
-
-const char *tuned_output(const struct emitter *e, const struct output *output)
-{
-	const struct tuning *t = e->model->tuning;
-	const struct linear *system = e->system;
-	if (!is_tuned_output(e, output))
-		return NULL;
-	int states = system->states, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)t->x.size + 1);
-	const char **operand = ARRAY(const char *, (size_t)t->x.size);
-	for (int i = 0; i < states; i++)
-		operand[i] = e->local[i];
-	for (int k = 0; k < t->x.loads; k++)
-		operand[states + k] = column_operand(e, k);
-	for (int i = 0, column = states + t->x.loads; i < system->inputs; i++)
-		for (int k = 0; k <= system->input[i].hold; k++)
-			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i); /* none reads further */
-	for (int j = 0; j < states + t->x.loads + input_columns(system); j++)
-		if (tuned_output_reads(e, output, j)) {
-			const char *factor = tuned_output_factor(e, output, j);
-			term[terms++] = operand[j] ? format("%s * %s", factor, operand[j]) : factor;
-		}
-	return terms ? tree(terms, term, 13) : "0.0";
-}
-
-const char *tuned_output_factor(const struct emitter *e, const struct output *output, int column)
-{
-	return tuned_entry(e, "out", e->model->tuning->output[output - e->model->output] - e->model->n, column);
+	return own_row(e->step, output) >= 0;
 }
 
 const char *tuned_output_row(const struct emitter *e, const struct output *output)
 {
-	return format("out[%d]", e->model->tuning->output[output - e->model->output] - e->model->n);
-}
-
-bool tuned_output_reads(const struct emitter *e, const struct output *output, int column)
-{
-	const struct tuning *t = e->model->tuning;
-	int states = e->system->states, segments = e->system->segments;
-	const bool *acts = t->acts + t->output[output - e->model->output] * t->x.size;
-	if (column < states)
-		return acts[column];
-	if (column >= states + t->x.loads)
-		return acts[column + (segments - 1) * t->x.loads];
-	bool any = false;
-	for (int s = 0; s < segments; s++)
-		any = any || acts[column + s * t->x.loads];
-	return any;
+	return format("out[%d]", own_row(e->step, output) - e->model->n);
 }

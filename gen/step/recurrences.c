@@ -94,23 +94,6 @@ static tape_ref early_and_last(struct tape *t, const struct list *sum, const str
 	return all;
 }
 
-static tape_ref constant(struct tape *t, double value)
-{
-	mpq_t exact;
-	mpq_init(exact);
-	mpq_set_d(exact, value);
-	tape_ref ref = tape_constant(t, exact);
-	mpq_clear(exact);
-	return ref;
-}
-
-static tape_ref scaled(struct tape *t, double factor, tape_ref ref)
-{
-	if (ref == TAPE_NONE || factor == 1)
-		return ref;
-	return factor == -1 ? tape_unary(t, TAPE_NEG, ref) : tape_times_each(t, constant(t, factor), ref);
-}
-
 /* a_i b_j; where one is 0 the other is not read */
 static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 {
@@ -123,7 +106,7 @@ static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 /* What is new of one sequence, times the first of another with its factor */
 static tape_ref newest(struct recurrences *r, tape_ref latest, double factor, int other)
 {
-	return latest == TAPE_NONE ? latest : times(r->t, latest, scaled(r->t, factor, recurrence(r, other, 0)));
+	return latest == TAPE_NONE ? latest : times(r->t, latest, tape_scaled(r->t, factor, recurrence(r, other, 0)));
 }
 
 /* factor (a_1 b_{k-1} + ... + a_{k-1} b_1) */
@@ -142,14 +125,14 @@ static struct addend old_part(struct recurrences *r, int a, int b, int k, double
 	if (old.terms == 0)
 		return none;
 	if (!square)
-		return (struct addend){ scaled(t, factor, chain(t, &old)), TAPE_NONE };
+		return (struct addend){ tape_scaled(t, factor, chain(t, &old)), TAPE_NONE };
 	tape_ref middle = k % 2 == 0 ? pair(r, a, k / 2, a, k / 2) : TAPE_NONE;
 	bool with = middle != TAPE_NONE;
 	struct list twice = { old.terms - with, old.term + with };
-	tape_ref rest = twice.terms ? scaled(t, 2, chain(t, &twice)) : TAPE_NONE;
+	tape_ref rest = twice.terms ? tape_scaled(t, 2, chain(t, &twice)) : TAPE_NONE;
 	if (factor == 1)
 		return with ? (struct addend){ middle, rest } : (struct addend){ rest, TAPE_NONE };
-	return (struct addend){ scaled(t, factor, plus(t, with ? middle : TAPE_NONE, rest)), TAPE_NONE };
+	return (struct addend){ tape_scaled(t, factor, plus(t, with ? middle : TAPE_NONE, rest)), TAPE_NONE };
 }
 
 static void add_addend(struct list *list, struct addend s)
@@ -166,7 +149,7 @@ static tape_ref whole(struct tape *t, struct addend s)
 static void add_product(struct recurrences *r, struct list *sum, struct list *last, int a, int b, int k, double factor)
 {
 	if (k == 0) {
-		add(sum, scaled(r->t, factor, pair(r, a, 0, b, 0)));
+		add(sum, tape_scaled(r->t, factor, pair(r, a, 0, b, 0)));
 		return;
 	}
 	add_addend(sum, old_part(r, a, b, k, factor));
@@ -207,7 +190,7 @@ static bool add_known(struct recurrences *r, struct list *sum, const struct sequ
 			     : term->kind == TERM_PARAM ? tape_operand(t, TAPE_PARAM, term->a, 0)
 			     : term->kind == TERM_LOAD  ? column_ref(r, term->a)
 							: tape_operand(t, TAPE_INPUT, term->a, slope);
-		add(sum, x == TAPE_NONE ? constant(t, factor) : scaled(t, factor, x));
+		add(sum, x == TAPE_NONE ? tape_double(t, factor) : tape_scaled(t, factor, x));
 	}
 	return true;
 }
@@ -221,7 +204,7 @@ static void add_term(struct recurrences *r, struct list *sum, struct list *last,
 	if (term->kind == TERM_PRODUCT)
 		add_product(r, sum, last, term->a, term->b, k, factor);
 	else
-		add(last, scaled(r->t, factor, recurrence(r, term->a, k)));
+		add(last, tape_scaled(r->t, factor, recurrence(r, term->a, k)));
 }
 
 /* What stands in a sum at k, from the coefficients themselves */
@@ -278,7 +261,7 @@ tape_ref recurrence_whole_size(struct recurrences *r, int sequence)
 	for (int i = 0; i < s->terms; i++) {
 		const struct sequence_term *term = &s->term[i];
 		if (term->kind == TERM_SEQUENCE && has_parts(r, term->a))
-			all = plus(t, all, times(t, constant(t, fabs(term->factor[0])),
+			all = plus(t, all, times(t, tape_double(t, fabs(term->factor[0])),
 						 recurrence_whole_size(r, term->a)));
 		else
 			add_term(r, &sum, &last, term, 0);
@@ -324,7 +307,7 @@ static void add_early_terms(struct recurrences *r, struct list *sum, const struc
 			continue;
 		tape_ref a = early(r, term->a, k);
 		if (term->kind == TERM_SEQUENCE) {
-			add(sum, scaled(r->t, factor, a));
+			add(sum, tape_scaled(r->t, factor, a));
 			continue;
 		}
 		add_addend(sum, old_part(r, term->a, term->b, k, factor));
@@ -342,7 +325,7 @@ static tape_ref helper(struct recurrences *r, int sequence)
 	if (r->helper[sequence] != TAPE_NONE)
 		return r->helper[sequence];
 	int below = root ? sequence : s->kind == SEQUENCE_POWER ? s->a : s->b;
-	tape_ref ref = tape_binary(r->t, TAPE_DIV, constant(r->t, root ? 0.5 : 1), recurrence(r, below, 0));
+	tape_ref ref = tape_binary(r->t, TAPE_DIV, tape_double(r->t, root ? 0.5 : 1), recurrence(r, below, 0));
 	return r->helper[sequence] = named(r, ref, sequence, root ? "half" : "inverse");
 }
 
@@ -396,7 +379,7 @@ static void add_power_terms(struct recurrences *r, struct list *sum, int sequenc
 {
 	for (int j = first; j < k; j++) {
 		double factor = rounded_double((s->exponent * (k - j) - j) / k);
-		add(sum, factor == 0 ? TAPE_NONE : scaled(r->t, factor, pair(r, s->a, k - j, sequence, j)));
+		add(sum, factor == 0 ? TAPE_NONE : tape_scaled(r->t, factor, pair(r, s->a, k - j, sequence, j)));
 	}
 }
 
@@ -406,7 +389,7 @@ static tape_ref early_power(struct recurrences *r, int sequence, const struct se
 	tape_ref base = early(r, s->a, k);
 	struct list sum = { 0 };
 	if (base != TAPE_NONE)
-		add(&sum, scaled(t, rounded_double(s->exponent), times(t, base, recurrence(r, sequence, 0))));
+		add(&sum, tape_scaled(t, rounded_double(s->exponent), times(t, base, recurrence(r, sequence, 0))));
 	add_power_terms(r, &sum, sequence, s, 1, k);
 	return sum.terms ? times(t, chain(t, &sum), helper(r, sequence)) : TAPE_NONE;
 }
@@ -472,7 +455,7 @@ static tape_ref gain_times(struct recurrences *r, tape_ref gain, double factor, 
 	if (gain == TAPE_NONE)
 		return TAPE_NONE;
 	tape_ref first = recurrence(r, sequence, 0);
-	return scaled(r->t, factor, is_unit(r, gain) ? first : times(r->t, first, gain));
+	return tape_scaled(r->t, factor, is_unit(r, gain) ? first : times(r->t, first, gain));
 }
 
 /* Of a sum */
@@ -488,7 +471,7 @@ static tape_ref gain_of_sum(struct recurrences *r, const struct sequence *s, int
 		double factor = term->factor[0];
 		if (term->kind == TERM_SEQUENCE) {
 			bool unit = a != TAPE_NONE && is_unit(r, a);
-			add(&sum, unit ? constant(r->t, factor) : scaled(r->t, factor, a));
+			add(&sum, unit ? tape_double(r->t, factor) : tape_scaled(r->t, factor, a));
 		} else if (term->a == term->b) {
 			add(&sum, gain_times(r, a, 2 * factor, term->a));
 		} else {
@@ -515,7 +498,7 @@ static tape_ref gain_ref(struct recurrences *r, int sequence, int other)
 		return times_gain(r, a, by);
 	if (s->kind == SEQUENCE_POWER) {
 		tape_ref product = times(t, times_gain(r, a, recurrence(r, sequence, 0)), by);
-		return scaled(t, rounded_double(s->exponent), product);
+		return tape_scaled(t, rounded_double(s->exponent), product);
 	}
 	tape_ref below = gain_times(r, gain(r, s->b, other), 1, sequence);
 	if (below == TAPE_NONE)
@@ -569,8 +552,8 @@ static tape_ref joined(struct recurrences *r, int sequence, int k)
 		if (latest == TAPE_NONE)
 			continue;
 		double factor = s->kind == SEQUENCE_INTEGRAL ? rounded_double(1.0 / (k + 1)) : 1;
-		add(&last, plain ? scaled(t, plain->factor[k], latest)
-				 : times(t, latest, scaled(t, factor, own_gain(r, sequence, i))));
+		add(&last, plain ? tape_scaled(t, plain->factor[k], latest)
+				 : times(t, latest, tape_scaled(t, factor, own_gain(r, sequence, i))));
 	}
 	return early_and_last(t, &sum, &last);
 }
@@ -619,7 +602,7 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 {
 	struct list sum = { 0 };
 	if (k == 0)
-		return tape_binary(r->t, TAPE_POWER, recurrence(r, s->a, 0), constant(r->t, s->exponent));
+		return tape_binary(r->t, TAPE_POWER, recurrence(r, s->a, 0), tape_double(r->t, s->exponent));
 	add_power_terms(r, &sum, sequence, s, 0, k);
 	return times(r->t, chain(r->t, &sum), helper(r, sequence));
 }
@@ -666,7 +649,7 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 	default:                break;
 	}
 	tape_ref next = recurrence(r, s->a, k + 1);
-	return next == TAPE_NONE ? tape_number(r->t, 0) : scaled(r->t, k + 1, next);
+	return next == TAPE_NONE ? tape_number(r->t, 0) : tape_scaled(r->t, k + 1, next);
 }
 
 tape_ref recurrence(struct recurrences *r, int sequence, int k)

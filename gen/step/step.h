@@ -327,6 +327,31 @@ bool *loads_of_regions(const struct step *step);
 bool has_leftover(const struct step *step);                 /* it is of that kind, or expanded */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
+/* ---- tapes.c: linear sums as nodes of a tape ---- */
+
+/* What TAPE_TABLE is an entry of: */
+enum linear_table {
+	TABLE_TURNED,               /* factors of load states at an anchor, second words behind them */
+	TABLE_OWN,                  /* the instance's, of a step: state x place of an operand */
+	TABLE_OWN_OUT,              /* the same, of outputs: row x column of tuning->x */
+	TABLE_FACTOR,               /* of load states that change their formula: state x column */
+	TABLE_DIRECT,               /* likewise of outputs: place of an output x column */
+	TABLE_LEFT,                 /* what is left over: channel */
+	TABLE_SEEN,                 /* what an output sees of the modes */
+	LINEAR_TABLES
+};
+enum { PLACE_REST, PLACE_CARRY };   /* `part` of TAPE_ACCUMULATE */
+const struct linear *system_of_outputs(const struct step *step); /* of regions one with all segments of time */
+/* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
+void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
+int place_of_operand(const struct table *table, const struct operand *o); /* states, then loads, then inputs */
+tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not what is left over */
+int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */
+int place_of_output(const struct model *model, const struct output *output); /* highest derivatives stand behind */
+bool differs_in_time(const mpq_t *factor, int segments);
+/* where its states stand in its blocks: `row` */
+const struct group *group_of_state(const struct step *step, int state, int *index, int *row);
+
 /* ---- check.c: between those who write programs and those who read them ---- */
 
 /* a violation is an internal error, and leaves the statement */

@@ -14,6 +14,7 @@ struct printing {
 	FILE *out;
 	int *uses, parts;           /* locals so far that have no name of their own */
 	const char **local;         /* per node: what holds it; NULL: nothing yet */
+	bool *wide;                 /* per node: is it lanes? NULL: none is */
 };
 
 static const char *text_of(struct printing *p, tape_ref ref, enum level level, int indent);
@@ -31,11 +32,22 @@ static bool is_shared(const struct printing *p, tape_ref ref)
 	return named || (!plain && p->uses[ref] > 1);
 }
 
+static bool is_wide(const struct printing *p, tape_ref ref)
+{
+	return p->wide && p->wide[ref];
+}
+
+static const char *widened(const struct printing *p, tape_ref ref, const char *text)
+{
+	return p->wide && !p->wide[ref] ? format("%s(%s)", p->to->lanes->widen, text) : text;
+}
+
 static const char *declare(struct printing *p, tape_ref ref, const char *text)
 {
 	const char *name = tape_node(p->t, ref)->name;
 	name = name ? name : format("part%d", ++p->parts);
-	fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", p->to->real, name, text);
+	const char *type = is_wide(p, ref) ? p->to->lanes->type : p->to->real;
+	fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", type, name, text);
 	return p->local[ref] = name;
 }
 
@@ -74,7 +86,7 @@ static const char *sum_text(struct printing *p, const struct tape_node *n, int i
 	right += *right == '-';
 	const char *line = strrchr(left, '\n');
 	int width = line && !halves ? (int)strlen(line + 1) : (int)strlen(left) + indent;
-	bool wide = width + (int)strlen(right) > WIDTH;
+	bool first = halves && is_word(left), wide = !first && width + (int)strlen(right) > WIDTH;
 	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
 }
 
@@ -105,6 +117,17 @@ static const char *call_text(struct printing *p, const char *function, const str
 				 : format("%s(%s, %s)", function, first, argument_of(p, n->b));
 }
 
+/* Each argument on a line of its own where it is long */
+static const char *accumulated_text(struct printing *p, const struct tape_node *n, int indent)
+{
+	const char *a = widened(p, n->a, text_of(p, n->a, CHOICE, indent));
+	const char *b = widened(p, n->b, text_of(p, n->b, CHOICE, indent));
+	const char *c = widened(p, n->c, text_of(p, n->c, CHOICE, indent));
+	const char *between = strlen(b) > WIDTH / 2 ? format(",\n%*s", indent, "") : ", ";
+	return format("%s(%s%s%s%s%s, &%s)", p->to->accumulate, a, between, b, between, c,
+		      p->to->operand(p->to->context, n));
+}
+
 static const char *bare_text(struct printing *p, tape_ref ref, int indent)
 {
 	const struct tape_node *n = tape_node(p->t, ref);
@@ -128,6 +151,7 @@ static const char *bare_text(struct printing *p, tape_ref ref, int indent)
 	case TAPE_MUL:
 	case TAPE_DIV:      return product_text(p, n, indent);
 	case TAPE_SELECT:   return select_text(p, n);
+	case TAPE_ACCUMULATE: return accumulated_text(p, n, indent);
 	default:            break;
 	}
 	return n->op >= TAPE_LESS ? comparison_text(p, n) : p->to->operand(p->to->context, n);
@@ -160,6 +184,20 @@ static const char *text_of(struct printing *p, tape_ref ref, enum level level, i
 
 /* ---- the whole ---- */
 
+static bool *find_wide(const struct tape *t, const struct tape_target *to)
+{
+	bool *wide = ARRAY(bool, (size_t)tape_length(t) + 1);
+	for (int i = 0; i < tape_length(t); i++) {
+		const struct tape_node *n = tape_node(t, i);
+		bool operand = tape_is_operand(t, i) && n->op != TAPE_CONSTANT;
+		wide[i] = operand ? to->lanes->varies(to->context, n) : n->op == TAPE_ACCUMULATE;
+		const tape_ref ref[3] = { n->a, n->b, n->c };
+		for (int k = 0; k < 3; k++)
+			wide[i] = wide[i] || (ref[k] != TAPE_NONE && wide[ref[k]]);
+	}
+	return wide;
+}
+
 static void print_out(const struct printing *p, const struct tape_out *set, const char *text)
 {
 	const char *note = set->note ? format("  /* %s */", set->note) : "";
@@ -174,9 +212,11 @@ void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
 	int outs = tape_outs(t);
 	p.local = ARRAY(const char *, (size_t)tape_length(t) + 1);
+	p.wide = to->lanes ? find_wide(t, to) : NULL;
 	const char **text = ARRAY(const char *, (size_t)outs + 1);
 	for (int i = 0; i < outs; i++) {
-		text[i] = text_of(&p, tape_out(t, i)->ref, CHOICE, tape_out(t, i)->indent);
+		tape_ref ref = tape_out(t, i)->ref;
+		text[i] = widened(&p, ref, text_of(&p, ref, CHOICE, tape_out(t, i)->indent));
 		if (!to->locals_first)
 			print_out(&p, tape_out(t, i), text[i]);
 	}

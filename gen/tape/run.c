@@ -38,6 +38,7 @@ static double node_double(const struct tape_node *n, const struct tape_values *f
 	case TAPE_EQUAL:    return a == b;
 	case TAPE_UNEQUAL:  return a != b;
 	case TAPE_SELECT:   return a != 0 ? b : value[n->c];
+	case TAPE_ACCUMULATE: return a + (b + value[n->c]);
 	default:            return from->operand_double(from->context, n);
 	}
 }
@@ -106,6 +107,10 @@ static void node_mpfr(const struct tape_node *n, const struct tape_values *from,
 	case TAPE_EQUAL:
 	case TAPE_UNEQUAL:  compare_mpfr(n->op, a, b, result); return;
 	case TAPE_SELECT:   choose_mpfr(n, value, result); return;
+	case TAPE_ACCUMULATE:
+		mpfr_add(result, b, value[n->c], MPFR_RNDN);
+		mpfr_add(result, result, a, MPFR_RNDN);
+		return;
 	default:            from->operand(from->context, n, result);
 	}
 }

@@ -91,7 +91,8 @@ static tape_ref partial(struct tape *t, tape_ref ref, int which)
 	case TAPE_NEG:   return tape_number(t, -1);
 	case TAPE_SIZE:  return tape_unary(t, TAPE_SIGN, n.a);
 	case TAPE_CALL:  return slope_of_function(t, (enum function)n.index, n.a, ref);
-	case TAPE_ADD:   return tape_number(t, 1);
+	case TAPE_ADD:
+	case TAPE_ACCUMULATE: return tape_number(t, 1);
 	case TAPE_MUL:   return which ? n.a : n.b;
 	case TAPE_DIV:   return which ? negative(t, quotient(t, ref, n.b)) : quotient(t, tape_number(t, 1), n.b);
 	case TAPE_POWER: return slope_of_power(t, ref, &n, which);
@@ -113,8 +114,8 @@ tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index
 		slope[i] = is_asked(&n, kind, index, part) ? one : zero;
 		if (n.op == TAPE_SELECT && !n.choice)
 			slope[i] = tape_select(t, n.a, slope[n.b], slope[n.c]);
-		const tape_ref operand[2] = { n.a, n.b };
-		for (int k = 0; k < 2 && n.op != TAPE_SELECT && !n.choice; k++)
+		const tape_ref operand[3] = { n.a, n.b, n.c };
+		for (int k = 0; k < 3 && n.op != TAPE_SELECT && !n.choice; k++)
 			if (operand[k] != TAPE_NONE && slope[operand[k]] != zero)
 				slope[i] = sum(t, slope[i], product(t, partial(t, i, k), slope[operand[k]]));
 	}
@@ -127,14 +128,14 @@ tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index
 static void hand_back(struct tape *t, int i, tape_ref *by)
 {
 	const struct tape_node n = *tape_node(t, i);
-	const tape_ref operand[2] = { n.a, n.b };
+	const tape_ref operand[3] = { n.a, n.b, n.c };
 	if (n.op == TAPE_SELECT) {
 		tape_ref zero = tape_number(t, 0);
 		by[n.b] = sum(t, by[n.b], tape_select(t, n.a, by[i], zero));
 		by[n.c] = sum(t, by[n.c], tape_select(t, n.a, zero, by[i]));
 		return;
 	}
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < 3; k++)
 		if (operand[k] != TAPE_NONE)
 			by[operand[k]] = sum(t, by[operand[k]], product(t, partial(t, i, k), by[i]));
 }

@@ -93,6 +93,16 @@ tape_ref tape_number(struct tape *t, long value)
 	return ref;
 }
 
+tape_ref tape_double(struct tape *t, double value)
+{
+	mpq_t exact;
+	mpq_init(exact);
+	mpq_set_d(exact, value);
+	tape_ref ref = tape_constant(t, exact);
+	mpq_clear(exact);
+	return ref;
+}
+
 tape_ref tape_pi(struct tape *t)
 {
 	mpq_t pi;
@@ -158,6 +168,19 @@ tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b)
 		return op == TAPE_FALSE ? b : a;
 	return enter(t, (struct tape_node){ .op = TAPE_SELECT, .choice = t->node[a].choice, .a = condition, .b = a,
 					    .c = b });
+}
+
+tape_ref tape_accumulate(struct tape *t, tape_ref a, tape_ref b, tape_ref c, int index, int part)
+{
+	return enter(t, (struct tape_node){ .op = TAPE_ACCUMULATE, .index = index, .part = part, .a = a, .b = b,
+					    .c = c });
+}
+
+tape_ref tape_scaled(struct tape *t, double factor, tape_ref ref)
+{
+	if (ref == TAPE_NONE || factor == 1)
+		return ref;
+	return factor == -1 ? tape_unary(t, TAPE_NEG, ref) : tape_times_each(t, tape_double(t, factor), ref);
 }
 
 tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term)

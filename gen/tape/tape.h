@@ -14,6 +14,7 @@ enum tape_op {
 	TAPE_CONSTANT,              /* an exact number */
 	TAPE_COORD, TAPE_INPUT,     /* coordinate or input `index`, differentiated `part` times */
 	TAPE_STATE,                 /* `index`, as the step keeps it */
+	TAPE_SAMPLE,                /* column `index` of the inputs' samples that a step reads */
 	TAPE_LOAD,                  /* column `part` of load `index` */
 	TAPE_PARAM,                 /* tunable param `index` */
 	TAPE_TIME,                  /* t; `part` 1: the time at which conditions on time hold as they do */
@@ -29,6 +30,7 @@ enum tape_op {
 	TAPE_ADD, TAPE_MUL, TAPE_DIV, TAPE_POWER, TAPE_ATAN2,
 	TAPE_LESS, TAPE_AT_MOST, TAPE_EQUAL, TAPE_UNEQUAL, /* choices */
 	TAPE_SELECT,                /* a ? b : c; b and c are of one type */
+	TAPE_ACCUMULATE,            /* a + b + c, c far below b; what rounding takes is kept, `index` of `part` */
 	TAPE_OPS
 };
 typedef int tape_ref;               /* place of a node */
@@ -56,6 +58,7 @@ const struct tape_out *tape_out(const struct tape *t, int out);
 /* Each is the node that was made alike before, where there is one. */
 tape_ref tape_constant(struct tape *t, mpq_srcptr value);
 tape_ref tape_number(struct tape *t, long value);
+tape_ref tape_double(struct tape *t, double value);
 tape_ref tape_pi(struct tape *t);
 tape_ref tape_operand(struct tape *t, enum tape_op kind, int index, int part);
 tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a);
@@ -63,6 +66,9 @@ tape_ref tape_call(struct tape *t, enum function function, tape_ref a);
 tape_ref tape_binary(struct tape *t, enum tape_op op, tape_ref a, tape_ref b);
 tape_ref tape_compare(struct tape *t, enum comparison comparison, tape_ref a, tape_ref b);
 tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b);
+tape_ref tape_accumulate(struct tape *t, tape_ref a, tape_ref b, tape_ref c, int index, int part);
+/* factor times ref, from the left to the right; 1 and -1 take no multiplication; ref TAPE_NONE: none */
+tape_ref tape_scaled(struct tape *t, double factor, tape_ref ref);
 /* (a + b) + (c + d): the shortest chain of dependent additions; of no terms 0 */
 tape_ref tape_sum(struct tape *t, int terms, const tape_ref *term);
 tape_ref tape_power(struct tape *t, tape_ref a, unsigned n); /* a^n, n >= 1, with few multiplications */
@@ -128,14 +134,22 @@ tape_ref tape_expression(struct tape_expressions *x, const struct node *node);
 
 /* ---- print.c: a tape as C ---- */
 
+/* Lanes: vectors of numbers of instances side by side, where what is read of each is its own. Numbers that all share
+ * are widened only where they are set, or accumulated. */
+struct tape_lanes {
+	const char *type, *widen;   /* the function that makes lanes of a number */
+	bool (*varies)(const void *context, const struct tape_node *node); /* an operand */
+};
 struct tape_target {
 	const char *real;           /* the type of a number */
 	const char *(*number)(const void *context, mpq_srcptr value);
 	const char *(*operand)(const void *context, const struct tape_node *node);
-	const char *size;           /* the function that TAPE_SIZE is */
+	const char *size;           /* the function that TAPE_SIZE is, */
+	const char *accumulate;     /* and TAPE_ACCUMULATE: of a, b, c, and the address of the place, an operand */
 	const void *context;
 	int indent;
 	bool locals_first;          /* before the first target is set, which what they read may be part of */
+	const struct tape_lanes *lanes; /* NULL: there are none */
 };
 /* Locals for what is read more than once or has a name, outs in their order */
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);

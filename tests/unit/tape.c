@@ -127,6 +127,7 @@ static void tape_slopes_of_operations(void **state)
 		tape_ref a = tape_binary(t, TAPE_MUL, x(t, 0), x(t, 1)), b = tape_binary(t, TAPE_ADD, x(t, 1), x(t, 2));
 		tape_ref c = tape_binary(t, of[i], a, b);
 		check_slopes("an operation", t, tape_binary(t, TAPE_MUL, c, tape_unary(t, TAPE_NEG, c)));
+		check_slopes("accumulated", t, tape_binary(t, TAPE_MUL, tape_accumulate(t, a, b, c, 0, 0), c));
 	}
 	(void)state;
 }
@@ -174,8 +175,8 @@ static void tape_values_agree(void **state)
 	for (int i = 0; i < 5; i++)
 		term[i] = tape_binary(t, TAPE_MUL, tape_power(t, x(t, i % 3), (unsigned)i + 1), tape_number(t, i - 2));
 	tape_ref sum = tape_sum(t, 5, term);
-	tape_ref sign = tape_binary(t, TAPE_ADD, sum, tape_unary(t, TAPE_SIGN, x(t, 2)));
-	double wanted = -2 * 0.3 - 0.7 * 0.7 + 0.3 * 0.3 * 0.3 * 0.3 + 2 * pow(0.7, 5) - 1, *value;
+	tape_ref sign = tape_accumulate(t, sum, tape_unary(t, TAPE_SIGN, x(t, 2)), tape_scaled(t, 0.5, x(t, 0)), 0, 0);
+	double wanted = -2 * 0.3 - 0.7 * 0.7 + 0.3 * 0.3 * 0.3 * 0.3 + 2 * pow(0.7, 5) - 1 + 0.15, *value;
 	struct tape_values from = { wide_operand, double_operand, &p };
 	value = ARRAY(double, (size_t)tape_length(t));
 	tape_run_double(t, &from, value);
@@ -257,20 +258,28 @@ static const char *number_text(const void *context, mpq_srcptr value)
 static const char *name_text(const void *context, const struct tape_node *n)
 {
 	(void)context;
-	return n->op == TAPE_ABOVE ? format("above[%d]", n->index) : format("x%d", n->index);
+	return n->op == TAPE_ABOVE	  ? format("above[%d]", n->index)
+	       : n->op == TAPE_ACCUMULATE ? format("rest[%d]", n->index)
+					  : format("x%d", n->index);
 }
 
-static const struct tape_target c_text = { "double", number_text, name_text, "fabs", NULL, 4, false };
+static const struct tape_target c_text = { .real = "double", .number = number_text, .operand = name_text,
+					  .size = "fabs", .accumulate = "accumulate", .indent = 4 };
 
-static void assert_text(const struct tape *t, const char *wanted)
+static void assert_text_of(const struct tape_target *target, const struct tape *t, const char *wanted)
 {
 	char *text = NULL;
 	size_t length;
 	FILE *to = open_memstream(&text, &length);
-	tape_print(t, &c_text, to);
+	tape_print(t, target, to);
 	fclose(to);
 	assert_string_equal(text, wanted);
 	free(text);
+}
+
+static void assert_text(const struct tape *t, const char *wanted)
+{
+	assert_text_of(&c_text, t, wanted);
 }
 
 static void tape_text_of_sums(void **state)
@@ -315,6 +324,31 @@ static void tape_text_of_choices(void **state)
 	(void)state;
 }
 
+static bool first_varies(const void *context, const struct tape_node *n)
+{
+	(void)context;
+	return n->index == 0;
+}
+
+/* Of x0 there is one a lane; what all share is widened where it is set or accumulated. */
+static void tape_text_of_lanes(void **state)
+{
+	static const struct tape_lanes lanes = { "wide", "all", first_varies };
+	struct tape_target target = c_text;
+	target.lanes = &lanes;
+	struct tape *t = tape_new();
+	tape_ref shared = tape_binary(t, TAPE_MUL, x(t, 1), x(t, 2)), own = tape_binary(t, TAPE_ADD, x(t, 0), shared);
+	tape_set(t, "y", tape_accumulate(t, own, shared, tape_number(t, 0), 3, 0), 6, NULL);
+	tape_set(t, "z", tape_scaled(t, -1, shared), 4, NULL);
+	tape_set(t, "w", tape_scaled(t, 0.5, own), 4, NULL);
+	assert_text_of(&target, t, "    const double part1 = x1 * x2;\n"
+				   "    const wide part2 = x0 + part1;\n"
+				   "    y = accumulate(part2, all(part1), all(0.0), &rest[3]);\n"
+				   "    z = all(-part1);\n"
+				   "    w = 0.5 * part2;\n");
+	(void)state;
+}
+
 int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
@@ -324,6 +358,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(tape_makes_each_once),	    cmocka_unit_test(tape_check_notices),
 		cmocka_unit_test(tape_counts_what_lives),   cmocka_unit_test(tape_text_of_sums),
 		cmocka_unit_test(tape_text_of_locals),	    cmocka_unit_test(tape_text_of_choices),
+		cmocka_unit_test(tape_text_of_lanes),
 	};
 	choose_cases(argc, argv);
 	memory_open();

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Linear sums as nodes of a tape: what a step assigns to its states, and rows of outputs. */
+#include "step/step.h"
+
+static tape_ref entry(struct tape *t, enum linear_table table, int index, tape_ref x)
+{
+	tape_ref factor = tape_operand(t, TAPE_TABLE, index, (int)table);
+	return x == TAPE_NONE ? factor : tape_binary(t, TAPE_MUL, factor, x);
+}
+
+static tape_ref load_ref(struct tape *t, const struct linear *system, int column)
+{
+	int first, load = load_of_column(system, column, &first);
+	return is_constant_column(system, column) ? TAPE_NONE : tape_operand(t, TAPE_LOAD, load, column - first);
+}
+
+/* x TAPE_NONE: 1 */
+static tape_ref number_times(struct tape *t, double factor, tape_ref x)
+{
+	return x == TAPE_NONE ? tape_double(t, factor) : tape_scaled(t, factor, x);
+}
+
+/* ---- what a step assigns ---- */
+
+struct sums {
+	struct tape *t;
+	const struct step *step;
+	tape_ref *state;            /* what each is by now */
+	bool *assigned;
+};
+
+const struct group *group_of_state(const struct step *step, int state, int *index, int *row)
+{
+	for (int k = 0; k < step->program->groups; k++) {
+		const struct group *g = &step->program->group[k];
+		for (int i = 0; i < g->states * g->blocks; i++)
+			if (g->state[i] == state) {
+				*index = k;
+				*row = i / g->blocks;
+				return g;
+			}
+	}
+	internal_error(step, "a state stands in no group");
+}
+
+static bool has_own_factors(const struct step *step, int state)
+{
+	int index, row;
+	return step->program->tuned && (!step->blocks || group_of_state(step, state, &index, &row)->tuned);
+}
+
+int place_of_operand(const struct table *table, const struct operand *o)
+{
+	return o->index + (o->kind == OPERAND_STATE  ? 0
+			   : o->kind == OPERAND_LOAD ? table->states
+						     : table->states + table->columns);
+}
+
+static tape_ref operand_ref(const struct sums *s, const struct operand *o)
+{
+	if (o->kind == OPERAND_LOAD)
+		return load_ref(s->t, &s->step->branch->system, o->index);
+	return o->kind == OPERAND_STATE ? s->state[o->index] : tape_operand(s->t, TAPE_SAMPLE, o->index, 0);
+}
+
+/* A load that changes has its factors in a table, one row for each segment of time. */
+static tape_ref term_ref(const struct sums *s, const struct assignment *a, const struct product *p, bool second)
+{
+	const struct step *step = s->step;
+	const struct table *table = step->branch->whole;
+	const bool load = p->operand.kind == OPERAND_LOAD;
+	int turned = load ? anchored_term(step, a->target, p->operand.index) : -1;
+	tape_ref x = operand_ref(s, &p->operand);
+	if (turned >= 0)
+		return entry(s->t, TABLE_TURNED, turned + second * step->anchors->terms, x);
+	if (has_own_factors(step, a->target)) {
+		int width = table->states + table->columns + table->inputs;
+		return entry(s->t, TABLE_OWN, a->target * width + place_of_operand(table, &p->operand), x);
+	}
+	if (load && step->branch->system.segments > 1)
+		return entry(s->t, TABLE_FACTOR, a->target * table->columns + p->operand.index, x);
+	return number_times(s->t, second ? p->factor->low : p->factor->value, x);
+}
+
+/* `second`: of the factors' second words, where they have some */
+static tape_ref sum_ref(const struct sums *s, const struct assignment *a, bool second)
+{
+	tape_ref *term = ARRAY(tape_ref, (size_t)a->terms + 1);
+	int terms = 0;
+	for (int k = 0; k < a->terms; k++)
+		if (!second || has_second_word(&a->term[k], s->step))
+			term[terms++] = term_ref(s, a, &a->term[k], second);
+	tape_ref sum = tape_sum(s->t, terms, term);
+	discard(term);
+	return sum;
+}
+
+static tape_ref assigned_ref(const struct sums *s, const struct assignment *a)
+{
+	tape_ref sum = sum_ref(s, a, false), zero = tape_number(s->t, 0);
+	if (a->carried)
+		return tape_accumulate(s->t, s->state[a->target], sum, zero, s->step->carry[a->target], PLACE_CARRY);
+	if (s->step->program->compensated)
+		return tape_accumulate(s->t, s->state[a->target], sum, sum_ref(s, a, true), a->target, PLACE_REST);
+	return a->added ? tape_binary(s->t, TAPE_ADD, s->state[a->target], sum) : sum;
+}
+
+void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector)
+{
+	enum { INDENT = 14 };
+	const struct program *program = step->program;
+	const int states = step->branch->whole->states;
+	struct sums s = { t, step, ARRAY(tape_ref, (size_t)states), ARRAY(bool, (size_t)states) };
+	tape_ref *to = program->in_order ? s.state : ARRAY(tape_ref, (size_t)states);
+	for (int i = 0; i < states; i++)
+		s.state[i] = tape_operand(t, TAPE_STATE, i, 0);
+	for (int i = 0; i < program->assignments; i++) {
+		const struct assignment *a = &program->assignment[i];
+		if (stepped && !stepped[a->target])
+			continue;
+		to[a->target] = assigned_ref(&s, a);
+		s.assigned[a->target] = true;
+	}
+	for (int i = 0; i < states; i++)
+		if (s.assigned[i])
+			tape_set(t, format("%s[%d]", vector, i), to[i], INDENT, step->model->state_name[i]);
+}
+
+/* ---- rows of outputs ---- */
+
+const struct linear *system_of_outputs(const struct step *step)
+{
+	bool several = step->model->switching && step->model->system.segments > 1;
+	return several ? &step->model->system : &step->branch->system;
+}
+
+int own_row(const struct step *step, const struct output *output)
+{
+	const struct model *model = step->model;
+	const bool own = step->kind == KIND_TUNED || step->kind == KIND_TUNED_BLOCKS;
+	return own ? model->tuning->output[output - model->output] : -1;
+}
+
+/* For some values of the params; of a load in some segment of time */
+static bool own_row_reads(const struct step *step, int row, int column)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct linear *system = &step->branch->system;
+	const bool *acts = t->acts + row * t->x.size;
+	if (column < system->states)
+		return acts[column];
+	if (column >= system->states + t->x.loads)
+		return acts[column + (system->segments - 1) * t->x.loads];
+	bool any = false;
+	for (int s = 0; s < system->segments; s++)
+		any = any || acts[column + s * t->x.loads];
+	return any;
+}
+
+static tape_ref own_row_ref(struct tape *t, const struct step *step, int row)
+{
+	const struct linear *system = &step->branch->system;
+	const struct layout *x = &step->model->tuning->x;
+	const int states = system->states;
+	tape_ref *term = ARRAY(tape_ref, (size_t)x->size + 1);
+	int terms = 0, column = 0;
+	for (; column < states + x->loads; column++)
+		if (own_row_reads(step, row, column))
+			term[terms++] = entry(t, TABLE_OWN_OUT, row * x->size + column,
+					      column < states ? tape_operand(t, TAPE_STATE, column, 0)
+							      : load_ref(t, system, column - states));
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k <= system->input[i].hold; k++, column++)
+			if (own_row_reads(step, row, column))   /* none reads further than the slope */
+				term[terms++] = entry(t, TABLE_OWN_OUT, row * x->size + column,
+						      tape_operand(t, TAPE_INPUT, i, k));
+	return tape_sum(t, terms, term);
+}
+
+static double row_factor(const struct output *output, mpq_srcptr factor)
+{
+	if (beyond_range(factor))
+		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of %s", output->name,
+		      target_name());
+	return round_rational(factor);
+}
+
+/* A number for each output, then for each highest derivative that outputs which are not linear read */
+int place_of_output(const struct model *model, const struct output *output)
+{
+	int row = model->outputs;
+	for (int k = 0; model->highest && k < model->n; k++) {
+		if (model->highest[k] == output)
+			return row;
+		row += model->highest[k] != NULL;
+	}
+	return (int)(output - model->output);
+}
+
+static bool is_seen_of_modes(const struct step *step, const struct output *output)
+{
+	const struct model *model = step->model;
+	bool any = false;
+	for (int i = 0; i < step->branch->system.states; i++)
+		any = any || mpq_sgn(output->state[i]) != 0;
+	return any && step->modal && output >= model->output && output < model->output + model->outputs;
+}
+
+bool differs_in_time(const mpq_t *factor, int segments)
+{
+	bool changes = false;
+	for (int s = 1; s < segments; s++)
+		changes = changes || !mpq_equal(factor[0], factor[s]);
+	return changes;
+}
+
+static int load_terms(struct tape *t, const struct step *step, const struct output *output, tape_ref *term)
+{
+	const struct linear *system = system_of_outputs(step);
+	const int columns = load_columns(system), place = place_of_output(step->model, output);
+	int terms = 0;
+	for (int l = 0, column = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++, column++) {
+			const mpq_t *factor = (const mpq_t *)output->load[l] + k * system->segments;
+			const bool differs = differs_in_time(factor, system->segments);
+			if (!differs && mpq_sgn(factor[0]) == 0)
+				continue;
+			tape_ref x = load_ref(t, system, column);
+			term[terms++] = differs ? entry(t, TABLE_DIRECT, place * columns + column, x)
+						: number_times(t, round_rational(factor[0]), x);
+		}
+	return terms;
+}
+
+tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output)
+{
+	const struct linear *system = system_of_outputs(step);
+	const bool seen = is_seen_of_modes(step, output);
+	if (own_row(step, output) >= 0)
+		return own_row_ref(t, step, own_row(step, output));
+	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->channels, terms = 0;
+	tape_ref *term = ARRAY(tape_ref, (size_t)most + 1);
+	if (seen)
+		term[terms++] = entry(t, TABLE_SEEN, (int)(output - step->model->output), TAPE_NONE);
+	for (int i = 0; i < system->states && !seen; i++)
+		if (mpq_sgn(output->state[i]) != 0)
+			term[terms++] = tape_scaled(t, row_factor(output, output->state[i]),
+						    tape_operand(t, TAPE_STATE, i, 0));
+	terms += load_terms(t, step, output, term + terms);
+	for (int k = 0; k < 2; k++)
+		for (int i = 0; i < system->inputs; i++)
+			if (mpq_sgn(output->input[k][i]) != 0)
+				term[terms++] = tape_scaled(t, row_factor(output, output->input[k][i]),
+							    tape_operand(t, TAPE_INPUT, i, k));
+	for (int c = 0; c < step->model->channels; c++)
+		if (mpq_sgn(output->channel[c]) != 0)
+			term[terms++] = tape_scaled(t, row_factor(output, output->channel[c]),
+						    entry(t, TABLE_LEFT, c, TAPE_NONE));
+	return tape_sum(t, terms, term);
+}
