@@ -712,6 +712,8 @@ void emit_parts_at(const struct emitter *e);
 /* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
 void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
+/* emit_unmet.c: of one with friction or impacts: cases of its regions; x, size: of each entry of x */
+void emit_unmet_cases(const struct emitter *e, const struct pieces *p, const char *const *x, const char *const *size);
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);

@@ -265,7 +265,7 @@ void emit_regions(const struct emitter *e)
 		emit_region_changes(e);
 	if (e->step->swift)
 		emit_swift_tables(e, &pieces, expression_names(e));
-	else if (e->step->clears && is_cleared_by_tables(e->step))
+	else if (e->step->clears && !g && is_cleared_by_tables(e->step))
 		emit_spans(e);
 }
 
@@ -337,17 +337,18 @@ void emit_region_vector(const struct emitter *e, bool step)
 		emit_rests_in_x(e);
 }
 
+/* How much the search has to have for work */
+static const char *room_text(const struct emitter *e)
+{
+	int size = e->step->layout.size, degree = e->step->series.degree;
+	const char *kept = keeps_rest(e) ? "KEPT_" : "";
+	return has_guards(e) ? format("PL_GUARDS_%sWORK(%d, %d)", kept, size, degree)
+			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, regions_of(e)->expressions, degree);
+}
+
 void declare_region_room(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	const struct layout *layout = &e->step->layout;
-	const char *kept = keeps_rest(e) ? "KEPT_" : "";
-	if (has_guards(e))
-		say(e, "    double x[%d], work[PL_GUARDS_%sWORK(%d, %d)];\n", size_of_vector(e), kept, layout->size,
-		    series->degree);
-	else
-		say(e, "    double x[%d], work[PL_SWITCHING_%sWORK(%d, %d, %d)];\n", size_of_vector(e), kept,
-		    layout->size, regions_of(e)->expressions, series->degree);
+	say(e, "    double x[%d], work[%s];\n", size_of_vector(e), room_text(e));
 }
 
 /* What friction carries now */
@@ -468,10 +469,8 @@ void emit_region_search(const struct emitter *e)
 	say(e, "\n"
 	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
 	       "{\n"
-	       "    double work[PL_SWITCHING_%sWORK(%d, %d, %d)];\n"
-	       "    int i;\n",
-	    size_of_vector(e), keeps_rest(e) ? "KEPT_" : "", e->step->layout.size, regions_of(e)->expressions,
-	    e->step->series.degree);
+	       "    double work[%s];\n"
+	       "    int i;\n", size_of_vector(e), room_text(e));
 	declare_descriptor(e);
 	emit_search(e);
 	emit_region_status(e);

@@ -76,7 +76,7 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->clears && !step->swift)
+	if (step->clears && step->model->retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
 	return bytes + ladder_bytes(step) + (step->swift ? swift_bytes(step) : 0) +

@@ -272,8 +272,7 @@ double size_of_bounded(const struct step *step, const double *row)
 	return size;
 }
 
-/* What such loads add to a bound is a number, which is added to `still`; their places become 0. */
-static void fold_loads(const struct step *step, double *bound, double *still)
+void fold_loads(const struct step *step, double *bound, double *still)
 {
 	for (int l = 0; l < step->branch->system.loads; l++) {
 		const struct load *load = &step->branch->system.load[l];
@@ -444,7 +443,7 @@ struct pieces pieces_of(const struct step *step)
 		fill_look(step, &pieces);
 	if (step->swift)
 		fill_swift(step, &pieces);
-	else if (step->clears)
+	else if (step->clears && step->model->retuned)
 		gather(step, &pieces);
 	return pieces;
 }

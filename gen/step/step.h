@@ -490,6 +490,8 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 #define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
 #define LARGE_FLOAT (0x1p60)
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
+/* What loads that are never above 1 add to a bound over x goes from there to *still. */
+void fold_loads(const struct step *step, double *bound, double *still);
 /* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
  * state has one word */
 double *gain_of(const struct step *step, const struct table *table, int halvings);
@@ -555,6 +557,9 @@ struct guards {
 	int rows, *branch;          /* of each row: whose it is, */
 	struct gate_key *gate;          /* and what */
 	double *row, *slope, *second, *fourth; /* rows x size */
+	/* Of a step that clears: over h each is off its chord, and what rounding may hide where it begins, by at most
+	 * off . |x(0)| + still: rows x size; per guard */
+	double *off, *still;
 	int reaches, *reach_at;     /* of each row: where it begins in reach, reaches x size, as in pl_ladder */
 	double *reach;
 	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */

@@ -20,20 +20,24 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 /* Why a step of regions does not look over the whole of h first; NULL: it does */
 static const char *no_look(const struct step *step)
 {
-	enum { TERMS = 400, BOUNDS = 1024 };
+	enum { TERMS = 400, BOUNDS = 1024, MOST_CASES = 400 };
 	const struct switching *s = step->model->switching;
+	const bool events = has_events(s);
 	bool turns = false;
 	for (int k = 0; k < step->branches; k++)
-		turns = turns || step->branch[k].halvings > 1;
+		turns = turns || step->branch[k].halvings > !events;
 	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
 	return step->model->asked.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
-	       : has_events(s)                           ? "what sticks, slips and bounces has events of its own"
-	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
+	       : events && step->model->retuned          ? "what sticks, slips and bounces has tunable params"
+	       : events && step->model->asked.compensated ? "what sticks, slips and bounces is kept in two words"
+	       : turns ? format("the fastest pole turns by more than %d in a step", events ? 1 : 2)
 	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
 	       : step->model->retuned && matrices > LIMIT_TUNED_NUMBERS
 		       ? "an instance would have too many numbers, for tunable params"
+	       : events && possible_regions(s) * step->layout.states * step->layout.size > MOST_CASES
+		       ? "its cases would be more than a few pages"
 		       : NULL;
 }
 
@@ -69,7 +73,8 @@ static void plan_look(struct step *step)
 	bool any = false;
 	step->searches = no_look(step);
 	step->clears = !step->searches;
-	step->swift = step->clears && !step->model->retuned;    /* crossings go by tables of fixed numbers */
+	/* crossings go by tables of fixed numbers */
+	step->swift = step->clears && !step->model->retuned && !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
 	if (!step->clears)
