@@ -9,18 +9,11 @@
  * is at most a third of that.  Behind the crossing (e - b)/s keeps its sign likewise.  Where e comes back to b, the
  * same holds of (e - b)/s in the place of e - b, whose third derivative is at most a quarter of the fourth of e.
  *
- * Included by the file of the model, for each of its independent parts, which defines before it
+ * Included by search.h, which says what the model's file defines for both; and beside that
  *
- *     PL(name), PL_TYPE          the prefix of the part before a name; the model, with members contact and crossing
- *     PL_SIZE, PL_STATES         entries of x, of which the first are states
- *     PL_VECTOR                  its words
- *     PL_EXPRESSIONS             that breakpoints divide
  *     PL_FEW, PL_LOOKS, PL_LARGE crossings and looks at most; how large the sum of |x| may be
  *     PL_OPEN_END                beyond all breakpoints
- *     PL_H                       [s]
- *     PL_KEPT, PL_DEGREE         whether x is in two words; then the polynomials' degree
- *     PL_PLACE(i)                where state i of the part is in s->y
- *     PL_PART                    which of s->contact and s->crossing is the part's: [1], or nothing
+ *     PL_MOVES                   the degree of polynomials over h, of x in two words
  *     PL_LEAN, PL_SWAY           of whole steps: a third of h e'; h^4/384 e'''' at most; each [which][i][PL_SIZE]
  *
  *     PL(within), PL(beyond)     [region][i][up]: the ends of its interval, and the region behind; -1: none can be
@@ -35,7 +28,6 @@
  *     PL(advance)(which, x, end) e^{A h} x
  *     PL(turn_once)(which, x, d), PL(move)(which, x, s, gain)    h A x; e^{A h s} x - x, by its Taylor polynomial
  *     PL(size_of)(x)             the sum of |x| */
-#include "numbers.h"
 
 /* Of a step, in one region */
 typedef struct PL(stretch) {
@@ -236,8 +228,8 @@ static double PL(reach)(int which, int i, double b, const double x[PL_SIZE], dou
 static void PL(go)(int which, double part, double x[PL_VECTOR], const double end[PL_SIZE])
 {
 #if PL_KEPT
-    double work[PL_SWITCHING_KEPT_WORK(PL_SIZE, PL_EXPRESSIONS, PL_DEGREE)];
-    pl_switching_kept_move(&PL(switching), which, PL_DEGREE, part * PL_H, x, work);
+    double work[PL_SWITCHING_KEPT_WORK(PL_SIZE, PL_EXPRESSIONS, PL_MOVES)];
+    pl_switching_kept_move(&PL(switching), which, PL_MOVES, part * PL_H, x, work);
     (void)end;
 #else
     int i;
@@ -378,5 +370,3 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
     s->contact PL_PART.matrix = part.which;
     return 1;
 }
-
-#include "undef.h"

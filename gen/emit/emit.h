@@ -40,6 +40,9 @@ const char *spell(const struct emitter *e, const char *layout, ...) __attribute_
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
+const char *whole_text(int number);
+/* For an algorithm that the file includes: PL_NAME, as it is called there */
+void say_macro(const struct emitter *e, const char *name, const char *text);
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 /* rounded; an error at the step where it overflows */
 double finite_number(const struct emitter *e, mpq_srcptr q);
@@ -655,7 +658,6 @@ void emit_grips(const struct emitter *e);                         /* what fricti
 /* of dry friction and impacts in regions: their lists, numbers, descriptor */
 void emit_guards(const struct emitter *e, const struct guards *guards);
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
-void emit_guards_descriptor(const struct emitter *e, const struct guards *guards);
 /* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
 void open_table(const struct emitter *e, const char *name, const char *shape, const char *note);
 void close_table(const struct emitter *e);
@@ -666,7 +668,7 @@ void emit_regions(const struct emitter *e);                       /* tables of a
 void emit_ladder_places(const struct emitter *e, const struct guards *guards);
 void emit_spacing(const struct emitter *e);
 void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
-const char *ladder_text(const struct emitter *e, const struct guards *guards, const char *none);
+const char *ladder_text(const struct emitter *e, const struct guards *guards);
 int rungs_of_all(const struct emitter *e);
 int rows_of_rung(const struct emitter *e);
 int rows_of_reach(const struct emitter *e, const struct guards *guards);
@@ -678,16 +680,14 @@ void emit_region_at(const struct emitter *e);
 /* of a part as of the whole: x from the state, in a step or at its start; its declaration, and room to work in; from
  * x, into the state; the same apart, where a step is swift */
 void emit_region_vector(const struct emitter *e, bool step);
-void declare_region_room(const struct emitter *e);
-void emit_search(const struct emitter *e);
-void emit_region_search(const struct emitter *e);
+void declare_region_room(const struct emitter *e);                /* x, work */
+void declare_region_vector(const struct emitter *e);              /* x, i */
+/* what search.h asks for; ladder: as ladder_text */
+void emit_search(const struct emitter *e, const char *ladder);
 void emit_region_status(const struct emitter *e);
 void emit_region_start_call(const struct emitter *e);
-void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
-const char *search_of(const struct emitter *e);                    /* of the runtime: pl_switching, pl_guards */
-const char *search_by(const struct emitter *e);                    /* the functions of that: pl_switching_kept, ... */
 bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
 int size_of_vector(const struct emitter *e);                      /* of x, with them */
 /* A list behind itself: first and second words */
@@ -699,9 +699,6 @@ void emit_state_of_x(const struct emitter *e);                    /* the state f
 void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
 
-/* ---- emit_instants.c: regions beside loads that change their formula in time ---- */
-
-void emit_region_changes(const struct emitter *e);                /* functions that go from change to change */
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);
 void emit_part_declarations(const struct emitter *e);
@@ -710,7 +707,8 @@ void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
 /* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
-void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
+void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
+void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* emit_unmet.c: of one with friction or impacts: cases of its regions; x, size: of each entry of x */
 void emit_unmet_cases(const struct emitter *e, const struct pieces *p, const char *const *x, const char *const *size);

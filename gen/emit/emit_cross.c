@@ -229,45 +229,28 @@ static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 	       "}\n", e->step->layout.size, size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 11));
 }
 
-static void emit_few(const struct emitter *e, const struct pieces *p)
+void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 {
 	const char *whole = any_pieces(e) ? "whole_" : "";
-	bool kept = keeps_rest(e);
-	say(e, "\n"
-	       "#define PL(name) $o_##name\n"
-	       "#define PL_TYPE $n\n"
-	       "#define PL_SIZE %d\n"
-	       "#define PL_STATES %s\n"
-	       "#define PL_VECTOR %d\n"
-	       "#define PL_EXPRESSIONS %d\n"
-	       "#define PL_FEW %d\n"
-	       "#define PL_LOOKS %d\n"
-	       "#define PL_LARGE %s\n"
-	       "#define PL_OPEN_END %s\n",
-	    e->step->layout.size, own_states(e), size_of_vector(e), expressions_of(e), MOST_SWIFT, MOST_LOOKS,
-	    shortest(p->large), shortest(OPEN_END));
-	say(e, "#define PL_H $N_H\n"
-	       "#define PL_KEPT %d\n"
-	       "#define PL_DEGREE %d\n"
-	       "#define PL_PLACE(i) %s\n"
-	       "#define PL_PART $p\n"
-	       "#define PL_LEAN $o_%slean\n"
-	       "#define PL_SWAY $o_%ssway\n", kept, kept ? e->step->swift_degree : 0, place_in_loop(e), whole, whole);
-	say(e, "#include \"few.h\"\n");
+	say_macro(e, "FEW", whole_text(MOST_SWIFT));
+	say_macro(e, "LOOKS", whole_text(MOST_LOOKS));
+	say_macro(e, "LARGE", shortest(p->large));
+	say_macro(e, "OPEN_END", shortest(OPEN_END));
+	say_macro(e, "MOVES", whole_text(e->step->swift_degree));
+	say_macro(e, "LEAN", format("PL(%slean)", whole));
+	say_macro(e, "SWAY", format("PL(%ssway)", whole));
 }
 
-void emit_crossing(const struct emitter *e)
+void emit_crossing(const struct emitter *e, const struct pieces *p)
 {
-	struct pieces pieces = pieces_of(e->step);
-	struct region_tables turns = tables_of_regions(e, &pieces, "", e->step->layout.size, turns_of);
-	emit_expression(e, &pieces);
-	emit_products(e, &pieces);
-	emit_bounds(e, &pieces);
-	emit_whole(e, &pieces);
+	struct region_tables turns = tables_of_regions(e, p, "", e->step->layout.size, turns_of);
+	emit_expression(e, p);
+	emit_products(e, p);
+	emit_bounds(e, p);
+	emit_whole(e, p);
 	emit_turn(e, &turns);
 	if (strcmp(e->degree, e->own) == 0)     /* else they are there already */
-		emit_weights(e, &pieces);
-	emit_move(e, &pieces, &turns);
-	emit_size_of_x(e, &pieces);
-	emit_few(e, &pieces);
+		emit_weights(e, p);
+	emit_move(e, p, &turns);
+	emit_size_of_x(e, p);
 }

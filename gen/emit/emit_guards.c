@@ -163,39 +163,6 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	close_table(e);
 }
 
-/* So many of each segment of time: where those of this one begin.  segment -1: it is given */
-static const char *first_of(int segment, int count)
-{
-	return segment < 0 && count > 0 ? format("segment * %d", count) : format("%d", segment * count);
-}
-
-static const char *offset_of(int segment, int count)
-{
-	return segment != 0 && count > 0 ? format(" + %s", first_of(segment, count)) : "";
-}
-
-/* In a segment of time, or always */
-static void emit_search_in(const struct emitter *e, const struct guards *g, int segment, const char *indent)
-{
-	const struct switching *s = e->model->switching;
-	const char *row = segment < 0		? "[segment][0]"
-			  : regions_change(e) ? format("[%d][0]", segment)
-					      : "[0]";
-	const char *of = prefix_of_tables(e), *play = offset_of(segment, s->expressions);
-	const char *from = offset_of(segment, g->impacts), *impact = first_of(segment, g->impacts);
-	say(e, "%s    %d, $N_H, %d, %srow%s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
-	       "%s    %sslopes[0][0], %spieces[0][0],\n"
-	       "%s    %s,\n"
-	       "%s    %slean[0][0], $o_first, $o_guard, %slimit, $o_holding,\n",
-	    indent, e->step->layout.size, s->expressions, of, row, of, of, indent, of, of, indent,
-	    ladder_text(e, g, format("%sslopes[0][0]", of)), indent, of, of);
-	say(e, "%s    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay%s, %sgate_play,\n"
-	       "%s    $o_sets, $o_held, %svalue[0], %d, %simpact%s, %sspeed[%s], %sback[%s], %d, $N_MAX_EVENTS, "
-	       "%d\n",
-	    indent, of, of, of, of, of, play, of, indent, of, g->impacts, of, from, of, impact, of, impact,
-	    e->step->series.degree, max_splits(e->model));
-}
-
 void emit_guards(const struct emitter *e, const struct guards *g)
 {
 	emit_guard_list(e, g);
@@ -210,31 +177,6 @@ void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 	emit_impacts(e, g);
 	if (e->model->retuned && e->model->switching->felts > 0)
 		emit_grips(e);
-}
-
-void emit_guards_descriptor(const struct emitter *e, const struct guards *g)
-{
-	bool several = regions_change(e), own = e->model->retuned;
-	if (own)
-		say(e, "\n/* What the search goes by%s */\n"
-		       "static pl_guards $o_switching(const $n_coeffs *c%s)\n"
-		       "{\n"
-		       "    const pl_guards tables = {\n", several ? ", in a segment of time" : "",
-		    several ? ", int segment" : "");
-	else
-		say(e, "\nstatic const pl_guards $o_switching%s = {\n",
-		    several ? format("[%d]", e->model->switching->segments) : "");
-	if (own || !several)
-		emit_search_in(e, g, several ? -1 : 0, own ? "    " : "");
-	for (int k = 0; k < e->model->switching->segments && several && !own; k++) {
-		say(e, "  {\n");
-		emit_search_in(e, g, k, "  ");
-		say(e, "  },\n");
-	}
-	say(e, own ? "    };\n"
-		     "    return tables;\n"
-		     "}\n"
-		   : "};\n");
 }
 
 void emit_grips(const struct emitter *e)

@@ -127,12 +127,10 @@ void emit_ladder(const struct emitter *e, const struct pieces *pieces, const str
 
 /* ---- in the descriptor ---- */
 
-const char *ladder_text(const struct emitter *e, const struct guards *g, const char *none)
+const char *ladder_text(const struct emitter *e, const struct guards *g)
 {
-	const char *of = prefix_of_tables(e), *places = spell(e, "$o_first_rung");
 	if (!has_ladder(e->step))
 		return "{NULL, NULL, NULL, NULL, NULL}";        /* where no piece is halved it is not read */
-	const char *reach = rows_of_reach(e, g) > 0 ? format("%sbend[0]", of) : none;
-	return format("{%s, %sspacing, %srungs[0][0], %s, %s}", places, of, of, reach,
-		      g ? spell(e, "$o_gate_rung") : places);
+	return format("{PL(first_rung), PL_OF(spacing), PL_OF(rungs)[0][0], PL_OF%s, PL(%s)}",
+		      rows_of_reach(e, g) > 0 ? "(bend)[0]" : "(slopes)[0][0]", g ? "gate_rung" : "first_rung");
 }

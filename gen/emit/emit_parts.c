@@ -129,68 +129,26 @@ static double *slopes_of_piece(const struct region_piece *piece) { return piece-
 static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
 static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
 
-static void emit_ladder_of_linear(const struct emitter *part)
-{
-	struct pieces pieces = pieces_of(part->step);
-	emit_ladder_places(part, NULL);
-	emit_spacing(part);
-	emit_ladder(part, &pieces, NULL);
-}
-
-/* The same in each segment of time */
-static void emit_changing_tables(const struct emitter *part)
+/* Regions without expressions, one in each segment of time: what the search has of those is not read. */
+static void emit_linear_tables(const struct emitter *part)
 {
 	const struct switching *s = regions_of(part);
-	emit_matrices_of_linear(part, "slopes", note_of_slopes(part), slopes_of_piece);
-	emit_matrices_of_linear(part, "pieces", note_of_pieces(part), keeps_rest(part) ? gain_of_piece : Phi_of_piece);
-	say(part, "\n");
+	struct pieces pieces = pieces_of(part->step);
 	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)part->step->branches);
 	for (int k = 0; k < s->segments; k++)
 		matrix[k] = s->region[k].system;
 	for (int k = 0; k < part->step->branches; k++)
 		halvings[k] = part->step->branch[k].halvings;
+	emit_matrices_of_linear(part, "slopes", note_of_slopes(part), slopes_of_piece);
+	emit_matrices_of_linear(part, "pieces", note_of_pieces(part), keeps_rest(part) ? gain_of_piece : Phi_of_piece);
+	say(part, "\n");
 	emit_indices(part, "matrix", s->segments, matrix, "in each segment of time");
 	emit_indices(part, "halvings", part->step->branches, halvings, "log2 of the pieces of a step");
-	emit_ladder_of_linear(part);
-	say(part, "\n"
-		  "static const pl_switching $o_switching[%d] = {  /* no expressions: what is theirs is not read */\n",
-	    s->segments);
-	for (int k = 0; k < s->segments; k++)
-		say(part, "  {\n"
-			  "    %d, $N_H, 0, $o_slopes[0][0], $o_matrix, $o_slopes[0][0], $o_matrix, $o_halvings,\n"
-			  "    $o_slopes[0][0], $o_pieces[0][0],\n"
-			  "    %s,\n"
-			  "    $o_slopes[0][0], $o_slopes[0][0], $o_slopes[0][0], %d, 0, 0\n"
-			  "  },\n",
-		    part->step->layout.size, ladder_text(part, NULL, spell(part, "$o_slopes[0][0]")),
-		    part->step->series.degree);
-	say(part, "};\n");
-	emit_region_changes(part);
-}
-
-/* Of the linear part, for NAME_at: a region without expressions, whose tables are never looked at */
-static void emit_linear_tables(const struct emitter *part)
-{
-	if (regions_change(part)) {
-		emit_changing_tables(part);
-		return;
-	}
-	struct pieces pieces = pieces_of(part->step);
-	emit_matrix(part, "slopes", note_of_slopes(part), pieces.piece->slopes);
-	emit_matrix(part, "pieces", note_of_pieces(part),
-		    keeps_rest(part) ? pieces.piece->gain : pieces.piece->Phi);
-	say(part, "\n"
-		  "static const int $o_matrix[1] = {0};\n"
-		  "static const int $o_halvings[1] = {%d};\n", part->step->branch->halvings);
-	emit_ladder_of_linear(part);
-	say(part, "\n"
-		  "static const pl_switching $o_switching = {  /* no expressions: what is theirs is not read */\n"
-		  "    %d, $N_H, 0, $o_slopes[0], $o_matrix, $o_slopes[0], $o_matrix, $o_halvings,\n"
-		  "    $o_slopes[0], $o_pieces[0],\n"
-		  "    %s,\n"
-		  "    $o_slopes[0], $o_slopes[0], $o_slopes[0], %d, 0, 0\n"
-		  "};\n",
-	    part->step->layout.size, ladder_text(part, NULL, spell(part, "$o_slopes[0]")), part->step->series.degree);
+	emit_ladder_places(part, NULL);
+	emit_spacing(part);
+	emit_ladder(part, &pieces, NULL);
+	emit_search(part, ladder_text(part, NULL));
+	say(part, "#include \"search.h\"\n");
 }
 
 static const char *names_of_part(const struct emitter *part)
@@ -466,14 +424,10 @@ static void emit_linear_by_pieces(const struct emitter *part, const double *whol
 		  "static void $o_step($n *s%s)\n"
 		  "{\n"
 		  "    pl_contact contact = %s;\n"
-		  "    pl_crossing crossing[1];\n"
-		  "    int i;\n", given_text(part, true), linear_contact(part));
-	declare_region_room(part);
+		  "    pl_crossing crossing[1];\n", given_text(part, true), linear_contact(part));
+	declare_region_vector(part);
 	emit_region_vector(part, true);
-	if (regions_change(part))
-		say(part, "    $o_pass_changes(s, $N_H, x, &contact, crossing, work);\n");
-	else
-		say(part, "    %s_step(&$o_switching, x, &contact, crossing, work);\n", search_by(part));
+	say(part, "    $o_search(s, $N_H, x, &contact, crossing);\n");
 	emit_state_of_x(part);
 }
 
@@ -499,10 +453,6 @@ static void emit_divided_step(const struct emitter *part)
 	bool *all = ARRAY(bool, (size_t)part->system->states);
 	for (int i = 0; i < part->system->states; i++)
 		all[i] = true;
-	if (part->step->swift) {
-		emit_crossing(part);
-		emit_region_search(part);
-	}
 	say(part, "\n"
 		  "static void $o_step($n *s%s)\n"
 		  "{\n", given_text(part, true));
@@ -510,11 +460,9 @@ static void emit_divided_step(const struct emitter *part)
 		emit_raw_locals(part, all);
 		emit_clear_step(part);
 	} else {
-		say(part, "    int i;\n");
-		declare_region_room(part);
+		declare_region_vector(part);
 		emit_region_vector(part, true);
-		emit_search(part);
-		emit_region_status(part);
+		say(part, "    $o_seek(s, x);\n");
 	}
 	say(part, "}\n");
 }
@@ -562,10 +510,9 @@ static void emit_at_of_part(const struct emitter *part)
 	else
 		say(part, "    pl_contact contact = s->contact$p;\n"
 			  "    pl_crossing crossing[%d];\n", MAX_EVENTS);
-	say(part, "    int i;\n");
-	declare_region_room(part);
+	declare_region_vector(part);
 	emit_region_vector(part, true);
-	emit_region_advance_call(part);
+	say(part, "    $o_search(s, tau, x, &contact, crossing);\n");
 	say(part, "    for (i = 0; i < %d; i++)\n"
 		  "        y[$o_state[i]] = x[i];\n"
 		  "}\n", part->system->states);

@@ -15,18 +15,6 @@ static bool has_guards(const struct emitter *e)
 
 /* ---- tables: of the file, or where params are tunable of an instance ---- */
 
-/* The descriptor of the search: static, or `tables` */
-static const char *descriptor_of(const struct emitter *e)
-{
-	return e->model->retuned ? "&tables" : spell(e, "&$o_switching");
-}
-
-static void declare_descriptor(const struct emitter *e)
-{
-	if (e->model->retuned && !regions_change(e))
-		say(e, "    const %s tables = $o_switching(&s->coeffs);\n", search_of(e));
-}
-
 static const char **expression_names(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e), *shown = e->step->shown->model->switching;
@@ -121,45 +109,6 @@ static void emit_region_numbers(const struct emitter *e)
 	}
 	say(e, "\n"
 	       "};\n");
-}
-
-/* In a segment of time, or always */
-static void emit_switching_in(const struct emitter *e, const char *row, const char *indent)
-{
-	const char *of = prefix_of_tables(e);
-	say(e, "%s    %d, $N_H, %d, %s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
-	       "%s    %sslopes[0][0], %spieces[0][0],\n"
-	       "%s    %s,\n"
-	       "%s    %slean[0][0], %ssag[0][0], %ssway[0][0], %d, $N_MAX_EVENTS, %d\n",
-	    indent, e->step->layout.size, regions_of(e)->expressions, row, of, of, indent, of, of, indent,
-	    ladder_text(e, NULL, format("%sslopes[0][0]", of)), indent, of, of, of, e->step->series.degree, MAX_SPLITS);
-}
-
-/* Of tunable tables it is made anew for each call: an instance that is copied would have to point into itself. */
-static void emit_switching(const struct emitter *e)
-{
-	bool several = regions_change(e), own = e->model->retuned;
-	const char *of = prefix_of_tables(e);
-	if (own)
-		say(e, "\n/* What the search goes by%s */\n"
-		       "static pl_switching $o_switching(const $n_coeffs *c%s)\n"
-		       "{\n"
-		       "    const pl_switching tables = {\n",
-		    several ? ", in a segment of time" : "", several ? ", int segment" : "");
-	else
-		say(e, "\nstatic const pl_switching $o_switching%s = {\n",
-		    several ? format("[%d]", regions_of(e)->segments) : "");
-	if (own || !several)
-		emit_switching_in(e, format("%srow%s[0]", of, several ? "[segment]" : ""), own ? "    " : "");
-	for (int k = 0; k < regions_of(e)->segments && several && !own; k++) {
-		say(e, "  {\n");
-		emit_switching_in(e, spell(e, "$o_row[%d][0]", k), "");
-		say(e, "  },\n");
-	}
-	say(e, own ? "    };\n"
-		     "    return tables;\n"
-		     "}\n"
-		   : "};\n");
 }
 
 static double *added_of(const struct region_piece *piece) { return piece->added; }
@@ -257,16 +206,16 @@ void emit_regions(const struct emitter *e)
 		say(e, "};\n");
 	else if (g)
 		emit_guards(e, g);
-	if (g)
-		emit_guards_descriptor(e, g);
-	else
-		emit_switching(e);
-	if (regions_change(e))
-		emit_region_changes(e);
-	if (e->step->swift)
+	if (e->step->swift) {
 		emit_swift_tables(e, &pieces, expression_names(e));
-	else if (e->step->clears && !g && is_cleared_by_tables(e->step))
+		emit_crossing(e, &pieces);
+	} else if (e->step->clears && !g && is_cleared_by_tables(e->step)) {
 		emit_spans(e);
+	}
+	emit_search(e, ladder_text(e, g));
+	if (e->step->swift)
+		emit_crossing_macros(e, &pieces);
+	say(e, "#include \"search.h\"\n");
 }
 
 /* ---- in the model's own functions ---- */
@@ -340,15 +289,61 @@ void emit_region_vector(const struct emitter *e, bool step)
 /* How much the search has to have for work */
 static const char *room_text(const struct emitter *e)
 {
-	int size = e->step->layout.size, degree = e->step->series.degree;
+	int size = e->step->layout.size, degree = e->step->series.degree, n = regions_of(e)->expressions;
 	const char *kept = keeps_rest(e) ? "KEPT_" : "";
 	return has_guards(e) ? format("PL_GUARDS_%sWORK(%d, %d)", kept, size, degree)
-			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, regions_of(e)->expressions, degree);
+			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, n, degree);
 }
 
-void declare_region_room(const struct emitter *e)
+/* Whether a region can occur before a change and, by its inequalities, not after it */
+static bool any_lost(const struct emitter *e)
 {
-	say(e, "    double x[%d], work[%s];\n", size_of_vector(e), room_text(e));
+	const struct switching *s = regions_of(e);
+	int in_one = regions_at_once(s);
+	bool any = false;
+	for (int r = 0; r + in_one < s->regions; r++)
+		any = any || !s->region[r + in_one].possible;
+	return any;
+}
+
+/* What search.h and few.h have in common */
+void emit_search(const struct emitter *e, const char *ladder)
+{
+	const struct switching *s = regions_of(e);
+	const char *search = has_guards(e) ? "pl_guards" : "pl_switching", *by = keeps_rest(e) ? "_kept" : "";
+	const bool alone = !e->step->shown->parts;
+	say(e, "\n#define PL(name) $o_##name\n");
+	say_macro(e, "TYPE", spell(e, "$n"));
+	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
+	say_macro(e, "KEPT", whole_text(keeps_rest(e)));
+	say_macro(e, "SIZE", whole_text(e->step->layout.size));
+	say_macro(e, "STATES", own_states(e));
+	say_macro(e, "ALL", spell(e, "$N_STATES"));
+	say_macro(e, "VECTOR", whole_text(size_of_vector(e)));
+	say_macro(e, "WORK", room_text(e));
+	say_macro(e, "H", spell(e, "$N_H"));
+	say_macro(e, "DEGREE", whole_text(e->step->series.degree));
+	say_macro(e, "EXPRESSIONS", whole_text(s->expressions));
+	say_macro(e, "IMPACTS", whole_text(s->impacts));
+	say_macro(e, "MAX_EVENTS", spell(e, s->expressions ? "$N_MAX_EVENTS" : "0"));
+	say_macro(e, "MAX_SPLITS", whole_text(has_guards(e) ? max_splits(e->model) : s->expressions ? MAX_SPLITS : 0));
+	say_macro(e, "PLACE(i)", place_in_loop(e));
+	say_macro(e, "PART", e->place);
+	say_macro(e, "SEARCH", search);
+	say_macro(e, "START", format("%s%s_start", search, by));
+	say_macro(e, "ADVANCE", format("%s%s_advance", search, by));
+	say_macro(e, "GUARDS", whole_text(has_guards(e)));
+	say_macro(e, "LADDER", ladder);
+	say_macro(e, "OWN", whole_text(e->model->retuned != NULL));
+	say_macro(e, "SEGMENTS", whole_text(s->segments));
+	say_macro(e, "REGIONS", whole_text(regions_at_once(s)));
+	if (s->segments > 1) {
+		say_macro(e, "LOST", whole_text(any_lost(e)));
+		say_macro(e, "UNTIL(s, k)", spell(e, "$n_until(s, k)"));
+		say_macro(e, "CHANGE", format("%s%s_change", search, by));
+	}
+	say_macro(e, "ALONE", whole_text(alone));
+	say_macro(e, "BOUNCES", whole_text(has_bounces(e->model)));
 }
 
 /* What friction carries now */
@@ -368,6 +363,16 @@ static void emit_grip(const struct emitter *e)
 	       "}\n", e->step->layout.size, e->model->retuned ? "s->coeffs.grips" : spell(e, "$n_grips"));
 }
 
+void declare_region_room(const struct emitter *e)
+{
+	say(e, "    double x[%d], work[%s];\n", size_of_vector(e), room_text(e));
+}
+
+void emit_region_start_call(const struct emitter *e)
+{
+	say(e, "    $o_start(s, %s, x, &s->contact$p, work);\n", regions_change(e) ? "s->segment" : "0");
+}
+
 void emit_region_start(const struct emitter *e)
 {
 	say(e, "\n"
@@ -376,61 +381,12 @@ void emit_region_start(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n");
 	declare_region_room(e);
-	declare_descriptor(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
 	say(e, "}\n");
 	if (regions_of(e)->felts > 0)
 		emit_grip(e);
-}
-
-void emit_region_start_call(const struct emitter *e)
-{
-	if (regions_change(e))
-		say(e, "    $o_start(%ss->segment, x, &s->contact$p, work);\n",
-		    e->model->retuned ? "&s->coeffs, " : "");
-	else
-		say(e, "    %s_start(%s, x, &s->contact$p, work);\n", search_by(e), descriptor_of(e));
-}
-
-static void emit_region_questions(const struct emitter *e)
-{
-	say(e, "\n"
-	       "int $n_region(const $n *s)\n"
-	       "{\n"
-	       "    return s->contact.region%s;\n"
-	       "}\n"
-	       "\n"
-	       "uint64_t $n_crossed(const $n *s)\n"
-	       "{\n"
-	       "    return s->contact.total;\n"
-	       "}\n"
-	       "\n"
-	       "int $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS])\n"
-	       "{\n"
-	       "    const int count = s->contact.crossings < $N_MAX_EVENTS ? s->contact.crossings : $N_MAX_EVENTS;\n"
-	       "    int i;\n"
-	       "    for (i = 0; i < count; i++)\n"
-	       "        crossing[i] = s->crossing[i];\n"
-	       "    return count;\n"
-	       "}\n", regions_change(e) ? format(" %% %d", regions_at_once(e->model->switching)) : "");
-	if (has_bounces(e->model))
-		say(e, "\n"
-		       "int $n_rested(const $n *s)\n"
-		       "{\n"
-		       "    return s->contact.rested;\n"
-		       "}\n");
-}
-
-/* By the search, from x; `i` is declared */
-void emit_search(const struct emitter *e)
-{
-	if (regions_change(e))
-		say(e, "    $o_pass_changes(s, $N_H, x, &s->contact$p, s->crossing$p, work);\n");
-	else
-		say(e, "    %s_step(%s, x, &s->contact$p, s->crossing$p, work);\n", search_by(e), descriptor_of(e));
-	emit_state_of_x(e);
 }
 
 void emit_region_status(const struct emitter *e)
@@ -448,33 +404,22 @@ void emit_segment_end(const struct emitter *e)
 		       "        s->segment++;\n", e->system->segments - 1);
 }
 
+void declare_region_vector(const struct emitter *e)
+{
+	say(e, "    double x[%d];\n"
+	       "    int i;\n", size_of_vector(e));
+}
+
 static void emit_searched_step(const struct emitter *e)
 {
-	say(e, "    int i;\n");
-	declare_region_room(e);
-	declare_descriptor(e);
+	declare_region_vector(e);
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	emit_search(e);
+	say(e, "    $o_seek(s, x);\n");
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
-	emit_region_status(e);
-}
-
-/* What is not seen to be clear, or to cross as little as may be */
-void emit_region_search(const struct emitter *e)
-{
-	say(e, "\n"
-	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
-	       "{\n"
-	       "    double work[%s];\n"
-	       "    int i;\n", size_of_vector(e), room_text(e));
-	declare_descriptor(e);
-	emit_search(e);
-	emit_region_status(e);
-	say(e, "}\n");
 }
 
 static void emit_whole_step(const struct emitter *e)
@@ -489,16 +434,10 @@ static void emit_whole_step(const struct emitter *e)
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
-	if (e->step->carries)           /* what was set aside is in no bound */
-		emit_region_status(e);
 }
 
 void emit_region_step(const struct emitter *e)
 {
-	if (e->step->swift)
-		emit_crossing(e);
-	if (e->step->clears)
-		emit_region_search(e);
 	say(e, "\n"
 	       "void $n_step(%s)\n"
 	       "{\n",
@@ -507,17 +446,9 @@ void emit_region_step(const struct emitter *e)
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);
+	if (e->step->carries)           /* what was set aside is in no bound */
+		emit_region_status(e);
 	say(e, "}\n");
-	emit_region_questions(e);
-}
-
-/* x on by tau; `contact` and `crossing` are declared */
-void emit_region_advance_call(const struct emitter *e)
-{
-	if (regions_change(e))
-		say(e, "    $o_pass_changes(s, tau, x, &contact, crossing, work);\n");
-	else
-		say(e, "    %s_advance(%s, tau, x, &contact, crossing, work);\n", search_by(e), descriptor_of(e));
 }
 
 void emit_region_at(const struct emitter *e)
@@ -527,16 +458,13 @@ void emit_region_at(const struct emitter *e)
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"
 	       "    pl_contact contact = s->contact;\n"
-	       "    pl_crossing crossing[$N_MAX_EVENTS];\n"
-	       "    int i;\n",
-	    u);
-	declare_region_room(e);
-	declare_descriptor(e);
+	       "    pl_crossing crossing[$N_MAX_EVENTS];\n", u);
+	declare_region_vector(e);
 	if (has_guards(e))              /* what is held is put back to its place, off by rounding, in no time too */
 		emit_at_start(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	emit_region_advance_call(e);
+	say(e, "    $o_search(s, tau, x, &contact, crossing);\n");
 	emit_hand_over(e);
 	say(e, "}\n");
 }

@@ -253,16 +253,6 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 	return tree(terms, term, indent);
 }
 
-const char *search_of(const struct emitter *e)
-{
-	return has_events(e->model->switching) ? "pl_guards" : "pl_switching";
-}
-
-const char *search_by(const struct emitter *e)
-{
-	return format("%s%s", search_of(e), keeps_rest(e) ? "_kept" : "");
-}
-
 bool keeps_rest(const struct emitter *e)
 {
 	return e->step->program->compensated;

@@ -168,3 +168,13 @@ const char *two_text(mpq_srcptr q)
 {
 	return format("{%s, %s}", shortest(round_rational(q)), low_text(q));
 }
+
+const char *whole_text(int number)
+{
+	return format("%d", number);
+}
+
+void say_macro(const struct emitter *e, const char *name, const char *text)
+{
+	say(e, "#define PL_%s%s%s\n", name, *text ? " " : "", text);
+}

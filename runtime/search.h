@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* search.h: a piecewise-linear model by the search of the runtime (crossings.c; guards.c, where something sticks, slips
+ * or bounces): what it goes by, the region of a state, x on from event to event, and within a step from change to
+ * change of loads that change their formula in time.  There the number of a region in pl_contact has its segment of
+ * time as the last interval, so that a change goes to the region with the same intervals in the next segment; what has
+ * left its interval by that, the search finds at the start of the stretch.
+ *
+ * Included by the file of the model behind its tables, for each of its independent parts, which defines before it
+ *
+ *     PL(name), PL_TYPE          the prefix of the part before a name; the model, with members contact and crossing
+ *     PL_SINGLE, PL_KEPT         whether its numbers are floats; whether x is in two words
+ *     PL_SIZE, PL_STATES         entries of x, of which the first are states; PL_ALL: of the model's
+ *     PL_VECTOR, PL_WORK         words of x; numbers that the search works in
+ *     PL_H, PL_DEGREE            [s]; of its Taylor polynomials
+ *     PL_EXPRESSIONS, PL_IMPACTS that breakpoints divide; impacts
+ *     PL_MAX_EVENTS, PL_MAX_SPLITS  in a step
+ *     PL_PLACE(i), PL_PART       where state i of the part is in s->y; which of s->contact is its: [1], or nothing
+ *     PL_SEARCH, PL_START, PL_ADVANCE, PL_CHANGE  the search: its descriptor, its functions
+ *     PL_GUARDS                  whether it is that of guards.c
+ *     PL_LADDER                  shorter pieces, as braces around what pl_ladder has
+ *     PL_OWN, PL_SEGMENTS        whether an instance has the tables; of time, each with its own regions
+ *     PL_REGIONS                 in each segment
+ *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
+ *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
+ *     PL_FEW                     crossings by few.h, which is included then; 0: none */
+#include "numbers.h"
+
+/* ---- what the search goes by ---- */
+
+#if PL_OWN
+#define PL_OF(name) s->coeffs.name
+#else
+#define PL_OF(name) PL(name)
+#endif
+
+#if PL_EXPRESSIONS == 0 /* what is theirs is not read */
+#define PL_DIVIDED PL(slopes)[0][0], PL(matrix), PL(slopes)[0][0]
+#elif PL_SEGMENTS > 1
+#define PL_DIVIDED PL_OF(row)[segment][0], PL(breaks), PL_OF(breakpoint)
+#else
+#define PL_DIVIDED PL_OF(row)[0], PL(breaks), PL_OF(breakpoint)
+#endif
+
+#if PL_SEGMENTS > 1
+#define PL_FIRST(count) segment * (count)
+#else
+#define PL_FIRST(count) 0
+#endif
+
+#define PL_MATRICES PL(matrix), PL_OF(halvings), PL_OF(slopes)[0][0], PL_OF(pieces)[0][0], PL_LADDER
+
+#if PL_GUARDS
+#define PL_GATES PL_OF(gate)[0], PL_OF(gate_lean)[0], PL_OF(gate_sag)[0], PL_OF(gate_sway)[0]
+#define PL_PLAYS PL_OF(play) + PL_FIRST(PL_EXPRESSIONS), PL_OF(gate_play)
+#define PL_ENDED PL_OF(lean)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GATES, PL_PLAYS
+#define PL_SET PL(sets), PL(held), PL_OF(value)[0]
+#define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(back)[PL_FIRST(PL_IMPACTS)]
+#define PL_BOUNDS PL_ENDED, PL_SET, PL_IMPACTS, PL_OF(impact) + PL_FIRST(PL_IMPACTS), PL_SPEEDS
+#elif PL_EXPRESSIONS > 0
+#define PL_BOUNDS PL_OF(lean)[0][0], PL_OF(sag)[0][0], PL_OF(sway)[0][0]
+#else
+#define PL_BOUNDS PL(slopes)[0][0], PL(slopes)[0][0], PL(slopes)[0][0]
+#endif
+
+#define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS
+#define PL_TABLES PL_SIZE, PL_H, PL_EXPRESSIONS, PL_DIVIDED, PL_MATRICES, PL_BOUNDS, PL_MOST
+
+#if PL_OWN || PL_SEGMENTS > 1
+/* Made anew for each call: an instance that is copied would have to point into itself. */
+static PL_SEARCH PL(switching)(const PL_TYPE *s, int segment)
+{
+    const PL_SEARCH tables = {PL_TABLES};
+    (void)s;
+    (void)segment;
+    return tables;
+}
+#else
+static const PL_SEARCH PL(switching) = {PL_TABLES};
+#endif
+
+/* ---- regions ---- */
+
+#if PL_EXPRESSIONS > 0
+/* The region of x in a segment of time */
+static void PL(start)(const PL_TYPE *s, int segment, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
+{
+#if PL_SEGMENTS > 1
+    PL_SEARCH here = PL(switching)(s, segment);
+    here.matrix += segment * PL_REGIONS;
+#if PL_GUARDS
+    here.first += segment * PL_REGIONS;
+    here.hold += segment * PL_REGIONS;
+#endif
+    PL_START(&here, x, contact, work);
+    contact->region += segment * PL_REGIONS;
+#elif PL_OWN
+    const PL_SEARCH here = PL(switching)(s, segment);
+    PL_START(&here, x, contact, work);
+#else
+    (void)s;
+    (void)segment;
+    PL_START(&PL(switching), x, contact, work);
+#endif
+}
+#endif
+
+#if PL_SEGMENTS > 1
+
+/* The same intervals after the next change; where they cannot be then, the equations of the region where x is */
+static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
+{
+    contact->region += PL_REGIONS;
+#if PL_LOST
+    if (PL(matrix)[contact->region] < 0) {
+        pl_contact now;
+        PL(start)(s, contact->region / PL_REGIONS, x, &now, work);
+        contact->matrix = now.matrix;
+        return;
+    }
+#else
+    (void)s;
+    (void)x;
+    (void)work;
+#endif
+    contact->matrix = PL(matrix)[contact->region];
+}
+
+/* Counts what is found from `done` on, as of the start. */
+static int PL(counted)(const pl_contact *contact, real done, int count, pl_crossing *crossing)
+{
+    int i;
+    for (i = count; i < count + contact->crossings; i++) {
+        crossing[i].time += done;
+    }
+    return count + contact->crossings;
+}
+
+/* x on by tau, from change to change of the loads.  Of what sticks and bounces a change at the end, too, is decided at
+ * once: outputs read it. */
+static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+{
+    const real never = PL_GUARDS ? 2 * PL_H : tau;
+    real done = 0, work[PL_WORK];
+    int count = 0;
+    for (;;) {
+        const int segment = contact->region / PL_REGIONS;
+        const real change = segment < PL_SEGMENTS - 1 ? PL_UNTIL(s, segment) : never;
+        const real to = change < tau ? change : tau;
+        PL_SEARCH here = PL(switching)(s, segment);
+        here.max_events -= count;
+        PL_ADVANCE(&here, to - done, x, contact, crossing + count, work);
+        count = PL(counted)(contact, done, count, crossing);
+        if (!(PL_GUARDS ? change <= tau : change < tau)) {
+            break;
+        }
+        if (to > done) {
+            done = to;
+        }
+        PL(next_segment)(s, x, contact, work);
+#if PL_GUARDS
+        here = PL(switching)(s, segment + 1);
+        here.max_events -= count;
+        PL_CHANGE(&here, done, x, contact, crossing + count, work);
+        count += contact->crossings;
+#endif
+    }
+    contact->crossings = count;
+}
+
+#else
+
+/* x on by tau */
+static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+{
+    real work[PL_WORK];
+#if PL_OWN
+    const PL_SEARCH here = PL(switching)(s, 0);
+    PL_ADVANCE(&here, tau, x, contact, crossing, work);
+#else
+    (void)s;
+    PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work);
+#endif
+}
+
+#endif
+
+/* ---- a step, and what is asked about it ---- */
+
+#if PL_EXPRESSIONS > 0
+/* By the search, from x */
+static PL_APART void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+{
+    int i;
+    PL(search)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
+    for (i = 0; i < PL_STATES; i++) {
+        s->y[PL_PLACE(i)] = x[i];
+#if PL_KEPT
+        s->rest[PL_PLACE(i)] = x[PL_SIZE + i];
+#endif
+    }
+    s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);
+}
+#endif
+
+#if PL_ALONE
+int PL(region)(const PL_TYPE *s)
+{
+    return s->contact.region % PL_REGIONS;
+}
+
+uint64_t PL(crossed)(const PL_TYPE *s)
+{
+    return s->contact.total;
+}
+
+int PL(crossings)(const PL_TYPE *s, pl_crossing crossing[PL_MAX_EVENTS])
+{
+    const int count = s->contact.crossings < PL_MAX_EVENTS ? s->contact.crossings : PL_MAX_EVENTS;
+    int i;
+    for (i = 0; i < count; i++) {
+        crossing[i] = s->crossing[i];
+    }
+    return count;
+}
+
+#if PL_BOUNCES
+int PL(rested)(const PL_TYPE *s)
+{
+    return s->contact.rested;
+}
+#endif
+#endif
+
+#if PL_FEW > 0
+#include "few.h"
+#endif
+#include "undef.h"
