@@ -12,14 +12,6 @@ struct formulas {
 
 /* ---- what a basis is called ---- */
 
-static int load_of_wave(const struct emitter *e, const struct wave *wave)
-{
-	int l = 0;
-	while (l < e->system->loads && e->system->load[l].wave != wave)
-		l++;            /* none: of a let whose value nothing reads */
-	return l;
-}
-
 static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
 {
 	const struct model *written = speaker(e->model);
@@ -45,19 +37,11 @@ const char *basis_now(const struct emitter *e, const struct basis *basis)
 			text = format("%s * t", text);
 		return text;
 	}
-	l = load_of_wave(e, basis->wave);
+	l = load_of_wave(e->system, basis->wave);
 	return format("load%d[%d]", l + 1, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
 }
 
 /* ---- operands: from forms ---- */
-
-static tape_ref wave_now(struct tape *t, const struct emitter *e, const struct basis *basis)
-{
-	if (is_polynomial(basis->wave))
-		return tape_power_of_time(t, basis->power);
-	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
-	return tape_operand(t, TAPE_LOAD, load_of_wave(e, basis->wave), column);
-}
 
 static tape_ref times_call(struct tape *t, tape_ref product, enum function function, tape_ref x)
 {
@@ -83,9 +67,8 @@ static tape_ref wave_written(struct tape *t, const struct basis *basis)
 static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
 {
 	const struct formulas *f = context;
-	if (basis->kind == BASIS_WAVE)
-		return f->written ? wave_written(t, basis) : wave_now(t, f->e, basis);
-	return tape_operand(t, basis->kind == BASIS_COORD ? TAPE_COORD : TAPE_INPUT, basis->index, basis->order);
+	bool written = basis->kind == BASIS_WAVE && f->written;
+	return written ? wave_written(t, basis) : tape_of_basis(t, f->e->system, basis);
 }
 
 static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)

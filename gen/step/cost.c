@@ -2,63 +2,34 @@
 /* What a step costs: evaluations of what is left over, load states, sums. */
 #include "step/step.h"
 
-static bool is_unit(mpq_srcptr factor)
-{
-	return mpz_cmpabs_ui(mpq_numref(factor), 1) == 0 && mpz_cmp_ui(mpq_denref(factor), 1) == 0;
-}
-
 struct cost { int multiplications, additions, calls; };
-struct counting {
-	struct cost cost;
-	bool *seen;                 /* per atom */
-	int forms;                  /* sums counted so far */
-	const struct form **form;
-};
 
-static void cost_form(struct counting *c, const struct form *form);
-
-static void cost_operand(struct counting *c, const struct form *form)
+static struct cost cost_of_tape(const struct tape *t)
 {
-	for (int i = 0; i < c->forms; i++)
-		if (c->form[i] == form)
-			return;
-	ENLARGE(c->form, (size_t)c->forms + 1);
-	c->form[c->forms++] = form;
-	cost_form(c, form);
+	struct tape_cost cost = tape_cost(t);
+	return (struct cost){ cost.multiplications + cost.divisions, cost.additions, cost.calls };
 }
 
-static void cost_atom(struct counting *c, const struct atom *a)
+static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
 {
-	if (c->seen[a->index])
-		return;
-	c->seen[a->index] = true;
-	int factors = 0;
-	for (int k = 0; k < a->operands; k++) {
-		factors += a->exponent ? (int)a->exponent[k] : 0;
-		cost_operand(c, a->operand[k]);
-	}
-	c->cost.multiplications += a->kind == ATOM_PRODUCT ? factors - 1 : a->kind == ATOM_RECIPROCAL;
-	c->cost.calls += calls_libm(a);
+	return tape_of_basis(t, &((const struct step *)context)->branch->system, basis);
 }
 
-static void cost_form(struct counting *c, const struct form *form)
+static tape_ref friction(struct tape *t, const void *context, const struct atom *atom)
 {
-	c->cost.additions += form->terms > 1 ? form->terms - 1 : 0;
-	for (int i = 0; i < form->terms; i++) {
-		c->cost.multiplications += form->term[i].basis.kind > BASIS_PI && !is_unit(form->term[i].factor);
-		if (form->term[i].basis.atom)
-			cost_atom(c, form->term[i].basis.atom);
-	}
+	(void)context;
+	return tape_operand(t, TAPE_FRICTION, atom->index, 0);
 }
 
-/* Of one evaluation */
-static struct cost leftover_cost(const struct step *step)
+/* Of one evaluation of all */
+static struct cost cost_of_forms(const struct step *step, int count, const struct form *const *form)
 {
-	const struct model *model = step->model;
-	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
-	for (int e = 0; e < model->channels; e++)
-		cost_form(&c, model->operator[0].left[e]);
-	return c.cost;
+	struct tape *t = tape_new();
+	const struct tape_reader reader = { leaf, NULL, friction, step, false };
+	struct tape_forms *f = tape_forms_new(t, reader, atoms_count(step->model->atoms), count, form, 0, NULL);
+	for (int i = 0; i < count; i++)
+		tape_set(t, "", tape_form(f, form[i]), 0, NULL);
+	return cost_of_tape(t);
 }
 
 /* Functions of a load: cos and sin together, e^{a t} */
@@ -130,48 +101,26 @@ void count_turned_loads(struct program *program, const struct step *step)
 
 /* ---- the look for peaks ---- */
 
-/* Does a column of x have a factor in an output, and does it take a multiplication? */
-static bool output_reads(const struct step *step, const struct output *output, mpq_srcptr factor, int column,
-			 bool *multiplied)
+static bool is_row(const struct output *output)
 {
-	const struct tuning *t = step->model->tuning;
-	int row = t ? t->output[output - step->model->output] : -1;
-	*multiplied = row >= 0 || !is_unit(factor);
-	return row >= 0 ? t->acts[row * t->x.size + column] : mpq_sgn(factor) != 0;
+	return !output->left && !output->peak;
 }
 
-static bool is_one(const struct load *load, int column)
+static bool is_any(const struct output *output)
 {
-	return column == 0 && !oscillates(load->wave) && mpq_sgn(load->wave->a) == 0;
+	return output != NULL;
 }
 
-/* An output now: a row over x; `reads`, per load, marks those whose load states it reads. */
-static void cost_output(struct cost *cost, const struct step *step, const struct output *output, bool *reads)
+/* Outputs now; `reads`, per load, marks those whose load states they read. */
+static struct cost cost_of_outputs(const struct step *step, bool (*counts)(const struct output *output), bool *reads)
 {
-	const struct linear *system = &step->branch->system;
-	const struct layout *x = step->model->tuning ? &step->model->tuning->x : &step->layout;
-	int terms = 0;
-	bool multiplied;
-	for (int i = 0; i < system->states; i++)
-		if (output_reads(step, output, output->state[i], i, &multiplied)) {
-			terms++;
-			cost->multiplications += multiplied;
-		}
-	for (int l = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++)
-			if (output_reads(step, output, output->load[l][k], x->load[l] + k, &multiplied)) {
-				bool one = is_one(&system->load[l], k);
-				terms++;
-				cost->multiplications += multiplied && !one;
-				reads[l] = reads[l] || !one;
-			}
-	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k <= (system->input[i].hold > 0); k++)
-			if (output_reads(step, output, output->input[k][i], x->input[i] + k, &multiplied)) {
-				terms++;
-				cost->multiplications += multiplied;
-			}
-	cost->additions += terms > 1 ? terms - 1 : 0;
+	struct tape *t = tape_new();
+	for (int i = 0; i < step->model->outputs; i++)
+		if (counts(&step->model->output[i]))
+			tape_set(t, "", tape_of_row(t, step, &step->model->output[i]), 0, NULL);
+	for (int l = 0; l < step->branch->system.loads; l++)
+		reads[l] = tape_reads(t, TAPE_LOAD, l, -1);
+	return cost_of_tape(t);
 }
 
 /* Load states: anew, or from the anchor's */
@@ -205,13 +154,13 @@ double cost_of_step(const struct step *step, const struct target *target)
 		cost.multiplications += step->forced->multiplications;
 		cost.additions += step->forced->additions;
 	}
-	for (int i = 0; i < model->outputs && model->declared_outputs && !step->modal; i++)
-		if (!model->output[i].left && !model->output[i].peak)
-			cost_output(&cost, step, &model->output[i], reads);
+	struct cost seen = { 0, 0, 0 };
 	if (step->modal)
-		cost.multiplications += model->outputs * step->modal->states;
-	if (step->modal)
-		cost.additions += model->outputs * step->modal->states;
+		seen.multiplications = seen.additions = model->outputs * step->modal->states;
+	else if (model->declared_outputs)
+		seen = cost_of_outputs(step, is_row, reads);
+	cost.multiplications += seen.multiplications;
+	cost.additions += seen.additions;
 	double multiplications = cost.multiplications, additions = cost.additions;
 	if (step->anchors) {
 		multiplications += (double)program->wave_multiplications / anchor;
@@ -232,9 +181,9 @@ void count_peaks(struct step *step)
 		return;
 	bool *reads = ARRAY(bool, (size_t)system->loads);
 	/* of each the sums row . x and bend . |x|; their sum */
-	struct cost cost = { 2 * size * count, (2 * size + 1) * count, 0 };
-	for (int i = 0; i < model->outputs; i++)
-		cost_output(&cost, step, &model->output[i], reads);
+	struct cost cost = cost_of_outputs(step, is_any, reads);
+	cost.multiplications += 2 * size * count;
+	cost.additions += (2 * size + 1) * count;
 	for (int l = 0; l < system->loads; l++) {
 		if (step->layout.load[l] >= 0)
 			cost_load(&cost, step, l, false);
@@ -351,7 +300,8 @@ void count_program(const struct step *step, struct program *program)
 {
 	struct tally t = { step, program, NULL };
 	bool first = true;
-	struct cost left = leftover_cost(step);
+	struct cost left = cost_of_forms(step, step->model->channels,
+					 (const struct form *const *)step->model->operator[0].left);
 	for (int i = 0; i < program->actions; i++) {
 		const struct action *a = &program->action[i];
 		if (a->kind == ACTION_SUM)
@@ -473,16 +423,17 @@ void count_collocation(struct step *step)
 	const struct motion *m = step->motion;
 	int s = step->collocation->stages, n = m->coords, sums = 2 * s * s * n, solved;
 	bool apart = m->apart;
-	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(step->model->atoms)) };
+	const struct form **form = ARRAY(const struct form *, (size_t)(n + m->entries) + 1);
 	for (int i = 0; i < n; i++)
-		cost_form(&c, m->force[i]);
-	for (int k = 0; k < m->entries && !apart; k++)
-		cost_form(&c, m->entry[k].slope);
+		form[i] = m->force[i];
+	for (int k = 0; k < m->entries; k++)
+		form[n + k] = m->entry[k].slope;
+	struct cost cost = cost_of_forms(step, apart ? n : n + m->entries, form);
 	solved = apart ? n * n * (1 + OF_COMPLEX * (s - 1) / 2) + 2 * s * s * n
 		       : elimination(s * n) + m->entries * s * s;
-	step->iteration.multiplications = s * c.cost.multiplications + sums + solved;
-	step->iteration.additions = s * c.cost.additions + sums + solved;
-	step->iteration.calls = s * c.cost.calls;
+	step->iteration.multiplications = s * cost.multiplications + sums + solved;
+	step->iteration.additions = s * cost.additions + sums + solved;
+	step->iteration.calls = s * cost.calls;
 	if (step->expansion)
 		return;
 	step->program->multiplications = step->iteration.multiplications;
@@ -550,22 +501,23 @@ void count_normal(const struct step *step, struct program *program)
 {
 	const struct normal *normal = step->normal;
 	const struct splitting *split = step->model->split;
-	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(step->model->atoms)) };
 	struct cost force = cost_of_forces(step);
-	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1;
+	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1, forms = 0;
+	const struct form **form = ARRAY(const struct form *, (size_t)(split->functions + split->rests) + 1);
 	for (int f = 1; f < split->functions; f++)
-		cost_form(&c, split->function[f].form);
-	struct counting rest = { .seen = c.seen };
+		form[forms++] = split->function[f].form;
+	struct cost c = cost_of_forms(step, forms, form);
 	for (int k = 0; k < split->rests; k++)
-		cost_form(&rest, split->rest[k].form);
-	force.multiplications += rest.cost.multiplications + (n + 1) * split->rests;
-	force.additions += rest.cost.additions + n * split->rests;
-	c.cost.calls += evaluations * rest.cost.calls;
-	c.cost.multiplications += wave_products(step);
-	c.cost.additions += wave_products(step);
-	program->multiplications = c.cost.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
-	program->additions = c.cost.additions + evaluations * force.additions + n * (3 * points + 6);
-	program->calls = c.cost.calls;
+		form[forms + k] = split->rest[k].form;
+	struct cost all = cost_of_forms(step, forms + split->rests, form);
+	force.multiplications += all.multiplications - c.multiplications + (n + 1) * split->rests;
+	force.additions += all.additions - c.additions + n * split->rests;
+	c.calls += evaluations * (all.calls - c.calls);
+	c.multiplications += wave_products(step);
+	c.additions += wave_products(step);
+	program->multiplications = c.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
+	program->additions = c.additions + evaluations * force.additions + n * (3 * points + 6);
+	program->calls = c.calls;
 	mark_loads_read(step, program);
 	count_loads(program, step);
 }

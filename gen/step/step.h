@@ -327,7 +327,11 @@ bool *loads_of_regions(const struct step *step);
 bool has_leftover(const struct step *step);                 /* it is of that kind, or expanded */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
-/* ---- tapes.c: linear sums as nodes of a tape ---- */
+/* ---- tapes.c: what forms read, a linear step and rows of outputs as nodes of a tape ---- */
+
+int load_of_wave(const struct linear *system, const struct wave *wave); /* the number of loads: of none */
+/* What a form reads of a coordinate, an input, a load now */
+tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct basis *basis);
 
 /* What TAPE_TABLE is an entry of: */
 enum linear_table {

@@ -337,32 +337,11 @@ static bool is_identity(const struct assignment *a)
 	       a->term[0].factor->value == 1;
 }
 
-/* A load that is added as it is */
-static bool is_constant_load(const struct product *p, const struct linear *system)
-{
-	return p->operand.kind == OPERAND_LOAD && is_constant_column(system, p->operand.index);
-}
-
 static bool is_turned(const struct product *p, const struct step *step)
 {
 	int first;
 	return p->operand.kind == OPERAND_LOAD &&
 	       is_anchored(step, load_of_column(&step->branch->system, p->operand.index, &first));
-}
-
-static bool is_unit(const struct product *p, const struct step *step)
-{
-	double value = p->factor->value;
-	return ((value == 1 || value == -1) && !is_turned(p, step)) || is_constant_load(p, &step->branch->system);
-}
-
-static void count_term(struct program *program, const struct product *p, const struct step *step)
-{
-	program->multiplications += program->tuned ? !is_constant_load(p, &step->branch->system) : !is_unit(p, step);
-	if (p->operand.kind == OPERAND_STATE)
-		program->reads[p->operand.index] = true;
-	if (p->operand.kind == OPERAND_LOAD)
-		program->uses[p->operand.index] = true;
 }
 
 bool has_second_word(const struct product *p, const struct step *step)
@@ -371,30 +350,28 @@ bool has_second_word(const struct product *p, const struct step *step)
 	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
 }
 
-/* pl_accumulate in place of the last addition, and the sum of the factors' second words */
-static void count_compensation(struct program *program, const struct assignment *a, const struct step *step)
+static void mark_reads(struct program *program)
 {
-	int seconds = 0;
-	for (int k = 0; k < a->terms; k++)
-		seconds += has_second_word(&a->term[k], step);
-	program->multiplications += seconds;
-	program->additions += PL_ACCUMULATE_ADD - 1 + (seconds > 0 ? seconds - 1 : 0);
+	for (int i = 0; i < program->assignments; i++) {
+		const struct assignment *a = &program->assignment[i];
+		program->reads[a->target] = program->reads[a->target] || a->added;
+		for (int k = 0; k < a->terms; k++) {
+			const struct operand *o = &a->term[k].operand;
+			if (o->kind != OPERAND_INPUT)
+				(o->kind == OPERAND_STATE ? program->reads : program->uses)[o->index] = true;
+		}
+	}
 }
 
 static void count(struct program *program, const struct step *step)
 {
-	for (int i = 0; i < program->assignments; i++) {
-		const struct assignment *a = &program->assignment[i];
-		program->additions += a->terms > 0 ? a->terms - !a->added : 0;
-		if (a->added)
-			program->reads[a->target] = true;
-		for (int k = 0; k < a->terms; k++)
-			count_term(program, &a->term[k], step);
-		if (program->compensated)
-			count_compensation(program, a, step);
-		else if (a->carried)
-			program->additions += PL_ACCUMULATE_ADD - 1;
-	}
+	struct step view = *step;
+	struct tape *t = tape_new();
+	view.program = program;
+	tape_of_step(t, &view, NULL, "");
+	struct tape_cost cost = tape_cost(t);
+	program->multiplications = cost.multiplications;
+	program->additions = cost.additions + PL_ACCUMULATE_ADD * cost.accumulations;
 	count_loads(program, step);
 }
 
@@ -493,11 +470,9 @@ struct program *linear_program(const struct step *step)
 		write_delta(program, step);
 	else
 		write_kick_drift_kick(program, step);
-	count(program, step);
-	if (table->states > LIMIT_UNROLLED_STATES) {
-		program->loops = true;
-		program->products_added = step->form == FORM_DELTA;
-		find_groups(program, step);
-	}
+	mark_reads(program);
+	program->loops = table->states > LIMIT_UNROLLED_STATES;
+	program->products_added = program->loops && step->form == FORM_DELTA;
+	(program->loops ? find_groups : count)(program, step);
 	return program;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Linear sums as nodes of a tape: what a step assigns to its states, and rows of outputs. */
+/* As nodes of a tape: what forms read, what a step assigns to its states, rows of outputs. */
 #include "step/step.h"
 
 static tape_ref entry(struct tape *t, enum linear_table table, int index, tape_ref x)
@@ -18,6 +18,27 @@ static tape_ref load_ref(struct tape *t, const struct linear *system, int column
 static tape_ref number_times(struct tape *t, double factor, tape_ref x)
 {
 	return x == TAPE_NONE ? tape_double(t, factor) : tape_scaled(t, factor, x);
+}
+
+/* ---- what forms read ---- */
+
+int load_of_wave(const struct linear *system, const struct wave *wave)
+{
+	int l = 0;
+	while (l < system->loads && system->load[l].wave != wave)
+		l++;            /* none: of a let whose value nothing reads */
+	return l;
+}
+
+tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct basis *basis)
+{
+	if (basis->kind != BASIS_WAVE)
+		return tape_operand(t, basis->kind == BASIS_COORD ? TAPE_COORD : TAPE_INPUT, basis->index,
+				    basis->order);
+	if (is_polynomial(basis->wave))
+		return tape_power_of_time(t, basis->power);
+	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
+	return tape_operand(t, TAPE_LOAD, load_of_wave(system, basis->wave), column);
 }
 
 /* ---- what a step assigns ---- */

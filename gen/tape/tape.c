@@ -352,11 +352,13 @@ struct tape_cost tape_cost(const struct tape *t)
 	struct tape_cost cost = { 0 };
 	int *uses = tape_uses(t);
 	for (int i = 0; i < t->nodes; i++) {
-		enum tape_op op = uses[i] ? t->node[i].op : TAPE_CONSTANT;
-		cost.multiplications += op == TAPE_MUL;
-		cost.divisions += op == TAPE_DIV;
-		cost.additions += op == TAPE_ADD;
-		cost.calls += op == TAPE_CALL || op == TAPE_POWER || op == TAPE_ATAN2;
+		enum tape_op op = t->node[i].op;
+		int times = tape_is_cheap(t, i) && !t->node[i].name ? uses[i] : uses[i] > 0;
+		cost.multiplications += op == TAPE_MUL ? times : 0;
+		cost.divisions += op == TAPE_DIV ? times : 0;
+		cost.additions += op == TAPE_ADD ? times : 0;
+		cost.calls += op == TAPE_CALL || op == TAPE_POWER || op == TAPE_ATAN2 ? times : 0;
+		cost.accumulations += op == TAPE_ACCUMULATE ? times : 0;
 	}
 	discard(uses);
 	return cost;

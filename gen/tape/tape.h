@@ -93,8 +93,9 @@ int *tape_uses(const struct tape *t);
 bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part);
 /* flag[index] = true of each operand of this kind and part that is read */
 void tape_mark(const struct tape *t, enum tape_op kind, int part, bool *flag);
-struct tape_cost { int multiplications, divisions, additions, calls; };
-struct tape_cost tape_cost(const struct tape *t); /* of what is set, each node once; negations cost nothing */
+struct tape_cost { int multiplications, divisions, additions, calls, accumulations; };
+/* Of what is set, each node once, or as often as it is made anew; negations cost nothing */
+struct tape_cost tape_cost(const struct tape *t);
 
 /* ---- forms.c: forms as nodes ---- */
 

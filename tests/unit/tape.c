@@ -236,10 +236,12 @@ static void tape_counts_what_lives(void **state)
 	struct tape *t = tape_new();
 	tape_ref product = tape_binary(t, TAPE_MUL, x(t, 0), x(t, 1)), sine = tape_call(t, FN_SIN, product);
 	tape_binary(t, TAPE_DIV, sine, x(t, 2));        /* nothing reads it */
+	tape_ref half = tape_scaled(t, 0.5, x(t, 0));   /* is made anew where it is read */
 	tape_set(t, "y", tape_binary(t, TAPE_ADD, sine, product), 4, NULL);
+	tape_set(t, "z", tape_binary(t, TAPE_ADD, half, tape_binary(t, TAPE_ADD, half, x(t, 1))), 4, NULL);
 	struct tape_cost cost = tape_cost(t);
-	assert_int_equal(cost.multiplications, 1);
-	assert_int_equal(cost.additions, 1);
+	assert_int_equal(cost.multiplications, 3);
+	assert_int_equal(cost.additions, 3);
 	assert_int_equal(cost.divisions, 0);
 	assert_int_equal(cost.calls, 1);
 	assert_true(tape_reads(t, TAPE_COORD, 1, 0));
