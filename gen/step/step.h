@@ -348,6 +348,7 @@ enum { PLACE_REST, PLACE_CARRY };   /* `part` of TAPE_ACCUMULATE */
 const struct linear *system_of_outputs(const struct step *step); /* of regions one with all segments of time */
 /* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
+bool has_second_word(const struct product *p, const struct step *step);
 int place_of_operand(const struct table *table, const struct operand *o); /* states, then loads, then inputs */
 tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not what is left over */
 int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */
@@ -688,7 +689,6 @@ void choose_form_of_regions(struct step *step);             /* the same of a pie
 void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
 /* in the code: loads that change have none */
-bool has_second_word(const struct product *p, const struct step *step);
 bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 
 /* ---- large.c: a large step by its independent blocks ---- */

@@ -337,19 +337,6 @@ static bool is_identity(const struct assignment *a)
 	       a->term[0].factor->value == 1;
 }
 
-static bool is_turned(const struct product *p, const struct step *step)
-{
-	int first;
-	return p->operand.kind == OPERAND_LOAD &&
-	       is_anchored(step, load_of_column(&step->branch->system, p->operand.index, &first));
-}
-
-bool has_second_word(const struct product *p, const struct step *step)
-{
-	return is_turned(p, step) ||
-	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
-}
-
 static void mark_reads(struct program *program)
 {
 	for (int i = 0; i < program->assignments; i++) {

@@ -70,6 +70,19 @@ static bool has_own_factors(const struct step *step, int state)
 	return step->program->tuned && (!step->blocks || group_of_state(step, state, &index, &row)->tuned);
 }
 
+static bool is_turned(const struct product *p, const struct step *step)
+{
+	int first;
+	return p->operand.kind == OPERAND_LOAD &&
+	       is_anchored(step, load_of_column(&step->branch->system, p->operand.index, &first));
+}
+
+bool has_second_word(const struct product *p, const struct step *step)
+{
+	return is_turned(p, step) ||
+	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
+}
+
 int place_of_operand(const struct table *table, const struct operand *o)
 {
 	return o->index + (o->kind == OPERAND_STATE  ? 0
