@@ -28,6 +28,10 @@
 #define pl_solve pl_solvef
 #define pl_factor_complex pl_factorf_complex
 #define pl_solve_complex pl_solvef_complex
+#define pl_series pl_seriesf
+#define pl_series_advance pl_seriesf_advance
+#define pl_two pl_twof
+#define pl_power_apply pl_powerf_apply
 #else
 #define real double
 #endif

@@ -48,9 +48,10 @@ const char *scaled(double factor, const char *operand);           /* operand NUL
 double finite_number(const struct emitter *e, mpq_srcptr q);
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
 void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
-/* static const double NAME_name[size[0]]...[size[dimensions - 1]] */
+/* static const double NAME_name[size[0]]...[size[dimensions - 1]]; `row`: of those of the last dimension, NULL: nothing
+ * is said of them */
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
-		const double *value);
+		const double *value, const char *const *row);
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name);
 const char *low_text(mpq_srcptr q);                               /* what its rounding leaves out, rounded */
 const char *two_text(mpq_srcptr q);                               /* {hi, lo} */
@@ -137,6 +138,12 @@ const char *of_step(const struct emitter *e, const char *table);
 struct size { const char *name; int value; };
 /* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size */
 void emit_sizes(const struct emitter *e, int count, const struct size *size);
+
+void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
+const char *param_list(const struct emitter *e);                  /* names, commas between */
+void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
+void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
+void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 
 /* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
@@ -352,7 +359,7 @@ int  most_served(const struct emitter *e);      /* steps, by one expansion; with
 void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
 void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
 
-/* ---- emit_unseen.c: how far what coefficients do not show is followed ---- */
+/* ---- emit_reach.c: how far what coefficients do not show is followed ---- */
 
 bool has_unseen(const struct emitter *e);
 bool traces(const struct emitter *e);                            /* some of it by its argument */
@@ -414,11 +421,6 @@ void emit_divided_functions(const struct emitter *e);             /* tables; NAM
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
 int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
-
-/* ---- emit_passage.c: what passage.h is told ---- */
-
-void emit_passing_table(const struct emitter *e);
-void emit_passage_limits(const struct emitter *e);
 
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 
@@ -754,13 +756,8 @@ int  retuned_numbers(const struct emitter *e);                    /* of matrices
 void emit_gathering(const struct emitter *e);                     /* emit_gathered.c: $n_gather */
 int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
 
-/* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
+/* ---- emit_held.c: params that an instance holds; of models without, nothing is printed ---- */
 
-void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
-const char *param_list(const struct emitter *e);                  /* names, commas between */
-void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
-void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
-void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 void emit_held_types(const struct emitter *e);
 void emit_held_member(const struct emitter *e);
 void emit_held_set(const struct emitter *e);

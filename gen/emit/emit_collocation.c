@@ -118,6 +118,33 @@ static void emit_limits(const struct emitter *e)
 		    trace_reads_known(e), 2 * stages(e), shortest(exp(2 * stages(e))));
 }
 
+/* Formulas that the state chooses, for passage.h */
+static int expressions(const struct emitter *e)
+{
+	return e->step->divided->expressions;
+}
+
+static void emit_passing_table(const struct emitter *e)
+{
+	const char *column = "";
+	for (int i = 0; i < expressions(e); i++)
+		column = format("%s%s%d", column, i ? ", " : "", i);
+	say(e, "\n/* Along a step of the collocation */\n"
+	       "static const int $n_each[] = {%s};\n"
+	       "static const pl_divided $n_passing = {\n"
+	       "    %d, %d, %d, $n_each, $n_breaks, $n_breakpoint\n"
+	       "};\n", column, expressions(e), expressions(e), e->step->collocation->stages);
+}
+
+static void emit_passage_limits(const struct emitter *e)
+{
+	say(e, "#define PL_CHANGES %d  /* of intervals, until all of them stand */\n"
+	       "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
+	       "#define PL_MAX_SPLITS %d\n"
+	       "#define PL_WATCH_READS %d  /* known numbers */\n",
+	    most_changes(e->step->divided), MAX_SPLITS, watch_reads_known(e));
+}
+
 static void emit_include(const struct emitter *e)
 {
 	const struct expansion *x = e->step->expansion, *d = e->step->divided;

@@ -50,7 +50,7 @@ const char *emit_bank_table(const struct emitter *e, const char *name, const cha
 	const struct bank_table t = table_of_banks(e, (outer ? outer : 1) * row, value);
 	const int banks = t.alike ? 1 : normal_of_step(e)->banks;
 	const int *size = outer ? (const int[]){ banks, outer, row } : (const int[]){ banks, row };
-	emit_array(e, note, name, outer ? 3 : 2, size, value);
+	emit_array(e, note, name, outer ? 3 : 2, size, value, NULL);
 	return spell(e, t.alike ? "$n_%s[0]" : "$n_%s[which]", name);
 }
 

@@ -110,7 +110,7 @@ static void emit_stage_table(const struct emitter *e, const char *note, const ch
 		return;
 	for (int i = 0; i < stages; i++)
 		memcpy(value + (size_t)i * each, of_stage[i], each * sizeof *value);
-	emit_array(e, note, name, 4, (const int[]){ stages, m->banks, rows, m->width }, value);
+	emit_array(e, note, name, 4, (const int[]){ stages, m->banks, rows, m->width }, value, NULL);
 }
 
 static void emit_node_tables(const struct emitter *e)
@@ -195,9 +195,9 @@ static void emit_predict(const struct emitter *e)
 	for (int k = 0; k < m->points; k++)
 		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
 	emit_array(e, "Modes after a step, from past forces, the last first", "past_weight", 3,
-		   (const int[]){ m->banks, 2 * m->points, m->width }, m->step.weight);
+		   (const int[]){ m->banks, 2 * m->points, m->width }, m->step.weight, NULL);
 	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
-		   (const int[]){ m->banks, 2, m->width }, m->correct);
+		   (const int[]){ m->banks, 2, m->width }, m->correct, NULL);
 	say(e, "\nstatic inline void $n_predict(const $n *s, int which, const double wave[],\n"
 	       "    double eta[%d], double rate[%d], double expected[%d])\n"
 	       "{\n", m->width, m->width, m->width);
@@ -227,9 +227,9 @@ static void emit_bank(const struct emitter *e)
 		return;
 	for (int b = 0; b < last; b++)
 		bound[b] = equation_number(e->model, e->model->operator[b].at).value;
-	emit_array(e, "Values up to which the operators serve, but the last", "bound", 1, &last, bound);
+	emit_array(e, "Values up to which the operators serve, but the last", "bound", 1, &last, bound, NULL);
 	emit_array(e, "Modes of the next operator from those of each, beyond what they are themselves", "next", 3,
-		   (const int[]){ last, m->width, m->width }, m->turn);
+		   (const int[]){ last, m->width, m->width }, m->turn, NULL);
 }
 
 /* ---- once all functions of time are constant ---- */
@@ -245,9 +245,9 @@ static void emit_still(const struct emitter *e)
 		omega[width + i] = m->period[i];
 	}
 	emit_array(e, "Frequencies that amplitudes are scaled by, and 1 over them", "omega", 2,
-		   (const int[]){ 2, width }, omega);
+		   (const int[]){ 2, width }, omega, NULL);
 	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
-		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->settled);
+		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->settled, NULL);
 	say(e, "\nstatic inline void $n_still(const double x[%d], const double wave[], double sum[%d])\n"
 	       "{\n"
 	       "    int i;\n", 2 * width, 2 * width);

@@ -2,6 +2,8 @@
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
 #include "emit/emit.h"
 
+#include <string.h>
+
 /* ---- at ---- */
 
 /* Names of the entries of the series' vector; `slopes`: of the states' rows. */
@@ -90,62 +92,22 @@ static void store_inputs(const struct emitter *e, const int *index)
 /* Of a bank: one matrix for each operator */
 void emit_series_slopes(const struct emitter *e)
 {
-	const struct layout *layout = &e->step->layout;
-	int size = layout->size;
-	bool bank = e->step->branches > 1;
-	say(e, "\n"
-	       "/* x' = A x; x = y%s%s */\n"
-	       "static const double $n_slope%s[%d][%d] = {\n",
-	    size > e->system->states ? ", then what acts on it" : "", bank ? "; for each operator" : "",
-	    bank ? format("[%d]", e->step->branches) : "", size, size);
-	for (int k = 0; k < e->step->branches; k++) {
-		say(e, bank ? "  {\n" : "");
-		emit_number_rows(e, size, size, slopes_of(e->step, k), series_names(e));
-		say(e, bank ? "  },\n" : "");
-	}
-	say(e, "};\n");
+	const int size = e->step->layout.size, branches = e->step->branches, each = size * size;
+	const char *acts = size > e->system->states ? ", then what acts on it" : "";
+	double *value = ARRAY(double, (size_t)(branches * each));
+	for (int k = 0; k < branches; k++)
+		memcpy(value + k * each, slopes_of(e->step, k), (size_t)each * sizeof *value);
+	const int sizes[] = { branches, size, size };
+	if (branches > 1)
+		emit_array(e, format("x' = A x; x = y%s; for each operator", acts), "slope", 3, sizes, value,
+			   series_names(e));
+	else
+		emit_array(e, format("x' = A x; x = y%s", acts), "slope", 2, sizes + 1, value, series_names(e));
 }
 
 static const char *slope_text(const struct emitter *e)
 {
 	return e->step->branches > 1 ? format("%s_slope[which]", e->name) : format("%s_slope", e->name);
-}
-
-/* ---- loads that change their formula: A's columns of the loads, for each segment of time ---- */
-
-/* vector += x[...] of the loads that the step leaves out, each times its place in a table [segment][state][column] */
-static void emit_forced_sum(const struct emitter *e, const char *table, const char *vector)
-{
-	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
-		if (e->step->forced->load[l])
-			say(e, "        for (i = 0; i < $N_STATES; i++)\n"
-			       "            for (j = 0; j < %d; j++)\n"
-			       "                %s[i] += $n_%s[segment][i][%d + j] * x[%d + j];\n",
-			    e->system->load[l].columns, vector, table, column, e->step->layout.load[l]);
-}
-
-static void emit_load_slopes(const struct emitter *e, const struct load_slopes *slopes)
-{
-	int columns = slopes->columns;
-	say(e, "\n"
-	       "/* The columns of A from %d on, in each segment of time */\n"
-	       "static const double $n_load_slope[%d][$N_STATES][%d] = {\n",
-	    slopes->first, e->system->segments, columns);
-	for (int s = 0; s < e->system->segments; s++) {
-		say(e, "  {\n");
-		emit_number_rows(e, e->system->states, columns, slopes->segment[s], series_names(e));
-		say(e, "  },\n");
-	}
-	say(e, "};\n"
-	       "\n"
-	       "static void $n_use_segment(double A[][%d], int segment)\n"
-	       "{\n"
-	       "    int i, j;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            A[i][%d + j] = $n_load_slope[segment][i][j];\n"
-	       "}\n",
-	    e->step->layout.size, columns, slopes->first);
 }
 
 static const char *input_parameter(const struct emitter *e)
@@ -179,70 +141,72 @@ void emit_series_vector(const struct emitter *e)
 		    e->system->channels, layout->channel, e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
 }
 
-static void emit_pass_head(const struct emitter *e)
+/* ---- loads that change their formula ---- */
+
+/* Of the load states that the step leaves out: their places in rows of what they add, and in x; returns how many */
+static int emit_forced_places(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	const struct layout *layout = &e->step->layout;
-	int size = layout->size;
-	say(e, "\n"
-	       "/* The state tau after now, from change to change of the loads on the way. */\n"
-	       "static %s $n_pass(const $n *s, %s%s%sdouble tau, %sdouble y[$N_STATES])\n"
-	       "{\n"
-	       "    double A[%d][%d], done = 0.0, x[%d], work[%d];\n"
-	       "    int j, segment = s->segment;\n"
-	       "    pl_series series;\n",
-	    e->step->forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
-	    layout->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "",
-	    size, size, size, 2 * size);
-	emit_series_vector(e);
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            A[i][j] = %s[i][j];\n"
-	       "    series.size = %d;\n"
-	       "    series.states = $N_STATES;\n"
-	       "    series.degree = %d;\n"
-	       "    series.halvings = %d;\n"
-	       "    series.A = A[0];\n",
-	    size, size, slope_text(e), size, series->degree, series->halvings);
+	int count = 0;
+	const char *list = "";
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
+		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++)
+			list = format("%s%s{%d, %d}", list, count++ ? ", " : "", column + j,
+				      e->step->layout.load[l] + j);
+	if (count)
+		say(e, "\nstatic const int $n_forced_at[%d][2] = {%s};  /* in rows of the next, in x */\n", count,
+		    list);
+	return count;
 }
 
-static void emit_pass_end(const struct emitter *e)
+/* Columns of A that each segment has its own of */
+static void emit_load_slopes(const struct emitter *e, const struct load_slopes *slopes)
 {
-	say(e, "    pl_series_advance(&series, tau - done, x, work);\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        y[i] = x[i];\n");
-	if (e->step->forced) {
-		say(e, "    if (whole) {\n");
-		emit_forced_sum(e, "forced_part", "y");
-		say(e, "    }\n"
-		       "    return segment;\n");
-	}
-	say(e, "}\n");
+	const int states = e->system->states, sizes[] = { e->system->segments, states, slopes->columns };
+	const int each = states * slopes->columns;
+	double *value = ARRAY(double, (size_t)(e->system->segments * each));
+	for (int s = 0; s < e->system->segments; s++)
+		memcpy(value + s * each, slopes->segment[s], (size_t)each * sizeof *value);
+	emit_array(e, format("The columns of A from %d on, in each segment of time", slopes->first), "load_slope", 3,
+		   sizes, value, series_names(e));
+}
+
+static void emit_passing_algorithm(const struct emitter *e)
+{
+	const struct load_slopes slopes = load_slopes_of(e->step);
+	const struct forced *forced = e->step->forced;
+	if (slopes.first >= 0)
+		emit_load_slopes(e, &slopes);
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "SIZE", e->step->layout.size },
+		{ "SEGMENTS", e->system->segments },
+		{ "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
+		{ "CHANGING", slopes.first >= 0 ? slopes.columns : 0 }, { "FIRST", slopes.first },
+		{ "FORCED", emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
+		{ "LOSES", forced && forced->changes }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#include \"changes.h\"\n");
 }
 
 /* y at tau after now, from change to change */
-static void emit_pass(const struct emitter *e)
+void emit_passing(const struct emitter *e)
 {
-	struct load_slopes slopes = load_slopes_of(e->step);
-	bool acts = slopes.first >= 0;
-	if (acts)
-		emit_load_slopes(e, &slopes);
-	emit_pass_head(e);
-	say(e, "    for (; segment < %d && $n_until(s, segment) < tau; segment++) {\n"
-	       "        const double ahead = $n_until(s, segment);\n",
-	    e->system->segments - 1);
-	if (acts)
-		say(e, "        $n_use_segment(A, segment);\n");
-	say(e, "        if (ahead > done) {\n"
-	       "            pl_series_advance(&series, ahead - done, x, work);\n"
-	       "            done = ahead;\n"
-	       "        }\n");
-	if (e->step->forced && e->step->forced->changes)
-		emit_forced_sum(e, "forced_change", "x");
-	say(e, "    }\n");
-	if (acts)
-		say(e, "    $n_use_segment(A, segment);\n");
-	emit_pass_end(e);
+	const struct layout *layout = &e->step->layout;
+	const bool forced = e->step->forced != NULL;
+	emit_series_slopes(e);
+	emit_passing_algorithm(e);
+	say(e, "\n/* The state tau after now, from change to change of the loads on the way. */\n"
+	       "static %s $n_pass(const $n *s, %s%s%s%sdouble tau, double y[$N_STATES])\n"
+	       "{\n"
+	       "    double x[%d];\n", forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "",
+	    input_parameter(e), layout->powers ? "const double *left, " : "", forced ? "int whole, " : "",
+	    layout->size);
+	emit_series_vector(e);
+	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] = x[i];\n"
+	       "%s}\n", forced ? "const int segment = " : "(void)", slope_text(e), forced ? "whole" : "0",
+	    forced ? "    return segment;\n" : "");
 }
 
 void emit_changes(const struct emitter *e)
@@ -258,21 +222,11 @@ void emit_changes(const struct emitter *e)
 	       "\n"
 	       "/* Time from now to a change */\n"
 	       "static double $n_until(const $n *s, int change)\n"
-	       "{\n");
-	if (e->kind->own_factors)
-		say(e, "    pl_two h;\n"
-		       "    h.hi = s->coeffs.h;\n"
-		       "    h.lo = s->coeffs.h_low;\n");
-	else
-		say(e, "    static const pl_two h = %s;\n", two_text(e->model->h));
-	say(e, "    return pl_until(s->t0, s->k, h, $n_change[change]);\n"
-	       "}\n");
-}
-
-void emit_passing(const struct emitter *e)
-{
-	emit_series_slopes(e);
-	emit_pass(e);
+	       "{\n"
+	       "    %sconst pl_two h = %s;\n"
+	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n"
+	       "}\n", e->kind->own_factors ? "" : "static ",
+	    e->kind->own_factors ? "{s->coeffs.h, s->coeffs.h_low}" : two_text(e->model->h));
 }
 
 void emit_held_leftover(const struct emitter *e)
@@ -364,12 +318,8 @@ static void emit_second_words(const struct emitter *e)
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->branch->whole->Phi[i].low;
-	say(e, "\n"
-	       "/* %s + $n_Phi_low is the transfer matrix in two words */\n"
-	       "static const double $n_Phi_low[$N_STATES][$N_STATES] = {\n",
-	    stepped_table(e, "Phi"));
-	emit_number_rows(e, n, n, low, e->model->state_name);
-	say(e, "};\n");
+	emit_array(e, format("%s + this is the transfer matrix in two words", stepped_table(e, "Phi")), "Phi_low", 2,
+		   (const int[]){ n, n }, low, e->model->state_name);
 }
 
 /* What the load states add to the one-step matrix, in two words: the columns beyond Phi, in each segment of time */
@@ -390,76 +340,40 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 	say(e, "};\n");
 }
 
-static void emit_fill_power(const struct emitter *e, int size, int entries)
+/* What is kept is made of the states, in one word */
+static bool converts(const struct emitter *e)
 {
-	say(e, "    for (i = 0; i < %d; i++) {\n"
-	       "        power[i].hi = 0.0;\n"
-	       "        power[i].lo = 0.0;\n"
-	       "    }\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        for (j = 0; j < $N_STATES; j++) {\n"
-	       "            power[%d * i + j].hi = %s[i][j];\n"
-	       "            power[%d * i + j].lo = $n_Phi_low[i][j];\n"
-	       "        }\n",
-	    size * size, size, stepped_table(e, "Phi"), size);
-	if (entries == 0)
-		return;
-	say(e, "    for (i = 0; i < %d; i++)\n", entries);
-	if (e->system->segments > 1)
-		say(e, "        if ($n_power_entry[i].segment == s->segment)\n    ");
-	say(e, "        power[%d * $n_power_entry[i].row + $n_power_entry[i].column] = $n_power_entry[i].value;\n",
-	    size);
+	return e->step->momenta || e->step->modal;
 }
 
-/* y in one word, without masses */
-static void emit_leap_from_velocities(const struct emitter *e)
+static void emit_conversion(const struct emitter *e)
 {
-	if (e->step->forced)
-		emit_get_kept_state(e, "y");
-	else if (e->model->relative)
-		emit_get_state(e, "y");
-	else
+	say(e, "\nstatic void $n_kept_state(const $n *s, double y[$N_STATES])\n"
+	       "{\n");
+	if (e->step->forced || e->model->relative) {
+		say(e, "    int i;\n");
+		(e->step->forced ? emit_get_kept_state : emit_get_state)(e, "y");
+	} else {
 		say(e, "    $n_get(s, y);\n");
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        x[i].hi = y[i];\n");
+	}
+	say(e, "}\n\nstatic void $n_keep_state($n *s, const double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n");
+	emit_set_state(e, "y", "    ");
+	say(e, "}\n");
 }
 
-static void emit_leap_start(const struct emitter *e)
+/* Of the states that have a low word, in its order; returns how many */
+static int emit_carried(const struct emitter *e)
 {
-	if (e->step->momenta || e->step->modal) {
-		emit_leap_from_velocities(e);
-		return;
-	}
-	bool rest = e->step->program->compensated;
-	say(e, "    for (i = 0; i < $N_STATES; i++)%s\n"
-	       "        x[i].hi = s->y[i];\n",
-	    rest ? " {" : "");
-	if (rest)
-		say(e, "        x[i].lo = s->rest[i];\n"
-		       "    }\n");
-	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			say(e, "    x[%d].lo = s->carry[%d];\n", i, e->step->carry[i]);
-}
-
-static void emit_leap_end(const struct emitter *e)
-{
-	if (e->step->momenta || e->step->modal) {
-		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        y[i] = x[i].hi;\n");
-		emit_set_state(e, "y", "    ");
-		return;
-	}
-	bool rest = e->step->program->compensated;
-	say(e, "    for (i = 0; i < $N_STATES; i++)%s\n"
-	       "        s->y[i] = x[i].hi;\n",
-	    rest ? " {" : "");
-	if (rest)
-		say(e, "        s->rest[i] = x[i].lo;\n"
-		       "    }\n");
-	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			say(e, "    s->carry[%d] = x[%d].lo;\n", e->step->carry[i], i);
+	const char *list = "";
+	for (int k = 0; k < e->step->carries; k++)
+		for (int i = 0; i < e->system->states; i++)
+			if (e->step->carry[i] == k)
+				list = format("%s%s%d", list, k ? ", " : "", i);
+	if (*list)
+		say(e, "\nstatic const int $n_carried[%d] = {%s};\n", e->step->carries, list);
+	return e->step->carries;
 }
 
 /* load[...] = the load states that the step reads, behind the states */
@@ -475,8 +389,10 @@ static void emit_leap_loads(const struct emitter *e, const struct leap *leap, co
 		}
 }
 
-static void emit_leap_end_of_all(const struct emitter *e)
+static void emit_pass_steps(const struct emitter *e)
 {
+	say(e, "\nstatic void $n_pass_steps($n *s, uint64_t n)\n"
+	       "{\n");
 	emit_load_advance(e, "n");
 	say(e, "    s->k += n;\n");
 	if (e->step->anchors)
@@ -484,65 +400,50 @@ static void emit_leap_end_of_all(const struct emitter *e)
 	say(e, "}\n");
 }
 
-/* n steps without a change of the loads: by powers of the one-step matrix */
-static void emit_leap(const struct emitter *e, const char *declaration)
+/* n steps without a change of the loads, of independent blocks */
+static void emit_leap_by_blocks(const struct emitter *e, const struct leap *leap, int entries)
 {
-	struct leap leap = leap_of(e->step);
-	struct leap_entry *entry;
-	int size = leap.size, entries = leap_entries_of(e->step, &leap, &entry);
-	emit_power_entries(e, entries, entry);
-	say(e, "\n"
-	       "%s($n *s, uint64_t n)\n"
-	       "{\n", declaration);
-	if (is_blockwise(e)) {
-		declare_blockwise_leap(e, &leap);
-		emit_leap_loads(e, &leap, "load");
-		emit_blockwise_leap(e, &leap, entries);
-		emit_leap_end_of_all(e);
+	say(e, "\nstatic void $n_leap($n *s, uint64_t n)\n"
+	       "{\n");
+	declare_blockwise_leap(e, leap);
+	emit_leap_loads(e, leap, "load");
+	emit_blockwise_leap(e, leap, entries);
+	say(e, "    $n_pass_steps(s, n);\n"
+	       "}\n");
+}
+
+static void emit_leap_functions(const struct emitter *e, const struct leap *leap)
+{
+	if (converts(e))
+		emit_conversion(e);
+	if (leap->size == e->system->states)
 		return;
-	}
-	say(e, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
-	if (e->step->momenta || e->step->modal)
-		say(e, "    double y[$N_STATES];\n");
-	emit_load_states(e, wanted_loads(e, leap.load), false);
-	say(e, "    int i, j;\n");
-	emit_fill_power(e, size, entries);
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        x[i].lo = 0.0;\n",
-	    size);
-	emit_leap_start(e);
-	store_loads(e, leap.load, ".hi");
-	say(e, "    pl_power_apply(%d, power, work, x, w, n);\n", size);
-	emit_leap_end(e);
-	emit_leap_end_of_all(e);
+	say(e, "\nstatic void $n_leap_loads(const $n *s, pl_two load[%d])\n"
+	       "{\n", leap->size - e->system->states);
+	emit_leap_loads(e, leap, "load");
+	say(e, "    (void)s;\n"
+	       "}\n");
 }
 
 void emit_jump(const struct emitter *e)
 {
-	int changes = e->system->segments - 1;
+	const struct leap leap = leap_of(e->step);
+	struct leap_entry *entry;
+	const int entries = leap_entries_of(e->step, &leap, &entry);
+	const bool blocks = is_blockwise(e), whole = !converts(e) && !blocks;
 	emit_second_words(e);
-	if (changes == 0) {
-		emit_leap(e, format("void %s_jump", e->name));
-		return;
-	}
-	emit_leap(e, format("static void %s_leap", e->name));
-	say(e, "\n"
-	       "/* Leaps up to one step before each change of the loads, and steps across it. */\n"
-	       "void $n_jump($n *s, uint64_t n)\n"
-	       "{\n"
-	       "    while (n > 0 && s->segment < %d) {\n"
-	       "        const double ahead = $n_until(s, s->segment) / $N_H - 1.0;\n"
-	       "        const uint64_t free = ahead < 1.0 ? 0 : ahead < (double)n ? (uint64_t)ahead : n;\n"
-	       "        if (free > 0) {\n"
-	       "            $n_leap(s, free);\n"
-	       "            n -= free;\n"
-	       "        } else {\n"
-	       "            $n_step(s);\n"
-	       "            n--;\n"
-	       "        }\n"
-	       "    }\n"
-	       "    if (n > 0)\n"
-	       "        $n_leap(s, n);\n"
-	       "}\n",
-	    changes);
+	emit_power_entries(e, entries, entry);
+	emit_pass_steps(e);
+	if (blocks)
+		emit_leap_by_blocks(e, &leap, entries);
+	else
+		emit_leap_functions(e, &leap);
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "SIZE", leap.size }, { "SEGMENTS", e->system->segments },
+		{ "BLOCKS", blocks }, { "CONVERTED", converts(e) }, { "KEPT", whole && e->step->program->compensated },
+		{ "CARRIES", whole ? emit_carried(e) : 0 }, { "ENTRIES", entries }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#define PL_PHI %s\n"
+	       "#include \"jump.h\"\n", stepped_table(e, "Phi"));
 }

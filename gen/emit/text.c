@@ -92,63 +92,61 @@ double finite_number(const struct emitter *e, mpq_srcptr q)
 	return equation_number(e->model, q).value;
 }
 
-void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
+/* Of an initialiser, without its braces; `row` says of what a number may be too large, NULL: it is not known */
+static void say_row(const struct emitter *e, int count, const double *value, const char *row)
 {
-	for (int i = 0; i < rows; i++) {
-		say(e, "    {");
-		for (int j = 0; j < columns; j++) {
-			if (!isfinite(value[i * columns + j]))
-				error(e->model->asked.step_at, NULL,
-				      "a number in the row of %s is beyond the range of %s", row_note[i],
-				      target_name());
-			say(e, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
-		}
-		say(e, "},  /* %s */\n", row_note[i]);
-	}
-}
-
-/* Numbers of an initialiser, without its braces */
-void say_numbers(const struct emitter *e, int count, const double *value)
-{
-	int width = 0;
+	size_t width = 0;
 	for (int i = 0; i < count; i++) {
 		if (!isfinite(value[i]))
-			error(e->model->asked.step_at, NULL, "a number is beyond the range of %s",
-			      target_name());
+			error(e->model->asked.step_at, NULL, "a number%s is beyond the range of %s",
+			      row ? format(" in the row of %s", row) : "", target_name());
 		const char *text = format("%s%s", shortest(value[i]), i + 1 < count ? ", " : "");
-		for (const char *c = text; *c; c++)
-			width++;
+		width += strlen(text);
 		say(e, "%s%s", text, width > 90 && i + 1 < count ? "\n     " : "");
 		width = width > 90 ? 0 : width;
 	}
 }
 
-/* Rows of the innermost dimension, in braces of those further out */
-static void say_array(const struct emitter *e, int dimensions, const int *size, int depth, const double *value)
+void say_numbers(const struct emitter *e, int count, const double *value)
+{
+	say_row(e, count, value, NULL);
+}
+
+void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
+{
+	for (int i = 0; i < rows; i++) {
+		say(e, "    {");
+		say_row(e, columns, value + i * columns, row_note[i]);
+		say(e, "},  /* %s */\n", row_note[i]);
+	}
+}
+
+/* Rows of the innermost dimension, in braces of those further out; `row`: of it, or of its rows, what they are */
+static void say_array(const struct emitter *e, int dimensions, const int *size, int depth, const double *value,
+		      const char *const *row)
 {
 	int each = 1;
 	for (int k = 1; k < dimensions; k++)
 		each *= size[k];
-	say(e, "%*s{", 2 * depth, "");
-	if (dimensions == 1) {
-		say_numbers(e, *size, value);
-	} else {
-		say(e, "\n");
-		for (int i = 0; i < *size; i++)
-			say_array(e, dimensions - 1, size + 1, depth + 1, value + i * each);
-	}
-	say(e, "%*s}%s\n", dimensions == 1 ? 0 : 2 * depth, "", depth ? "," : ";");
+	say(e, "%*s{%s", 2 * depth, "", dimensions == 1 ? "" : "\n");
+	if (dimensions == 1)
+		say_row(e, *size, value, row ? *row : NULL);
+	for (int i = 0; dimensions > 1 && i < *size; i++)
+		say_array(e, dimensions - 1, size + 1, depth + 1, value + i * each,
+			  row && dimensions == 2 ? row + i : row);
+	say(e, "%*s}%s%s\n", dimensions == 1 ? 0 : 2 * depth, "", depth ? "," : ";",
+	    row && dimensions == 1 ? format("  /* %s */", *row) : "");
 }
 
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
-		const double *value)
+		const double *value, const char *const *row)
 {
 	say(e, "\n/* %s */\n"
 	       "static const double $n_%s", note, name);
 	for (int k = 0; k < dimensions; k++)
 		say(e, "[%d]", size[k]);
 	say(e, " = ");
-	say_array(e, dimensions, size, 0, value);
+	say_array(e, dimensions, size, 0, value, row);
 }
 
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)

@@ -225,6 +225,90 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     assert_double(x[2].hi, 0.0, "no terms");
 }
 
+/* y triples at each step of 1 s and gains 1, after 4 s 2, after 9 s 0: jump.h without the generator */
+typedef struct tripled {
+    real y[1], rest[1];
+    int segment, k;
+} tripled;
+typedef struct tripled_entry {
+    int segment, row, column;
+    pl_two value;
+} tripled_entry;
+static const real tripled_Phi[1][1] = {{3}}, tripled_Phi_low[1][1] = {{0}};
+static const tripled_entry tripled_power_entry[] = {
+    {0, 0, 1, {1, 0}}, {0, 1, 1, {1, 0}}, {1, 0, 1, {2, 0}}, {1, 1, 1, {1, 0}}, {2, 1, 1, {1, 0}},
+};
+static int crossed; /* changes, in a step */
+
+static real tripled_until(const tripled *s, int change)
+{
+    return (real)(change ? 9 : 4) - (real)s->k;
+}
+
+static void tripled_leap_loads(const tripled *s, pl_two load[])
+{
+    (void)s;
+    load[0] = word_of(1.0);
+}
+
+static void tripled_pass_steps(tripled *s, uint64_t n)
+{
+    s->k += (int)n;
+}
+
+static double tripled_sum(const tripled *s)
+{
+    return (double)s->y[0] + (double)s->rest[0];
+}
+
+static void tripled_step(tripled *s)
+{
+    const int before = s->segment;
+    const double next = 3 * tripled_sum(s) + (before == 0 ? 1 : before == 1 ? 2 : 0);
+    s->y[0] = (real)next;
+    s->rest[0] = (real)(next - (double)s->y[0]);
+    s->k++;
+    while (s->segment < 2 && tripled_until(s, s->segment) <= 0)
+        s->segment++;
+    crossed += s->segment != before;
+}
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) tripled_##name
+#define PL_TYPE tripled
+#define PL_STATES 1
+#define PL_SIZE 2
+#define PL_SEGMENTS 3
+#define PL_BLOCKS 0
+#define PL_CONVERTED 0
+#define PL_KEPT 1
+#define PL_CARRIES 0
+#define PL_PHI tripled_Phi
+#define PL_ENTRIES 5
+#define PL_H 1
+void tripled_jump(tripled *s, uint64_t n);
+#include "jump.h"
+
+static void from_change_to_change(void **state)
+{
+    int n, k;
+    (void)state;
+    for (n = 0; n <= 20; n++) {
+        tripled stepped = {{1}, {0}, 0, 0}, jumped = stepped;
+        for (k = 0; k < n; k++)
+            tripled_step(&stepped);
+        crossed = 0;
+        tripled_jump(&jumped, (uint64_t)n);
+        assert_double(tripled_sum(&jumped), tripled_sum(&stepped), "the state");
+        assert_int_equal(jumped.k, n);
+        assert_int_equal(crossed, n < 4 ? 0 : n < 9 ? 1 : 2);
+    }
+}
+
 static void report(void)
 {
     print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
@@ -236,4 +320,5 @@ ROOM_WITH(power, NULL, report,
     cmocka_unit_test(fibonacci),
     cmocka_unit_test(no_steps),
     cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
-    cmocka_unit_test(overflow_has_the_sign_of_the_sum))
+    cmocka_unit_test(overflow_has_the_sign_of_the_sum),
+    cmocka_unit_test(from_change_to_change))

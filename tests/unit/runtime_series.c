@@ -266,6 +266,73 @@ static void free_fall_is_exact(void **state)
     assert_exactly(x[2], 2.0, "acceleration");
 }
 
+/* A mass of 1 under a force of 2, from 1 s on of -1, from 3 s on of 0: changes.h without the generator. What is kept of
+ * its place is less by 1, 2, 3 in these times. */
+typedef struct pushed {
+    real now;
+    int segment;
+} pushed;
+static const real pushed_slope[3][3] = {{0, 1, 0}, {0, 0, 5}, {0, 0, 0}}; /* x, v, 1; its forces: below */
+static const real pushed_load_slope[3][2][1] = {{{0}, {2}}, {{0}, {-1}}, {{0}, {0}}};
+static const int pushed_forced_at[1][2] = {{1, 2}};
+static const real pushed_forced_part[3][2][2] = {{{7, 1}, {7, 0}}, {{7, 2}, {7, 0}}, {{7, 3}, {7, 0}}};
+static const real pushed_forced_change[2][2][2] = {{{7, -1}, {7, 0}}, {{7, -1}, {7, 0}}};
+static real pushed_until(const pushed *s, int change)
+{
+    return (real)(change ? 3 : 1) - s->now;
+}
+
+/* Where it is at t, from 0 and at rest; its speed */
+static void pushed_at(double t, double at[2])
+{
+    const double late = fmin(t, 3) - 1, end = fmax(t - 3, 0);
+    at[1] = t < 1 ? 2 * t : 2 - late;
+    at[0] = t < 1 ? t * t : 1 + 2 * late - late * late / 2 + end * at[1];
+}
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) pushed_##name
+#define PL_TYPE pushed
+#define PL_STATES 2
+#define PL_SIZE 3
+#define PL_SEGMENTS 3
+#define PL_DEGREE 2
+#define PL_HALVINGS 0
+#define PL_CHANGING 1
+#define PL_FIRST 2
+#define PL_FORCED 1
+#define PL_LOAD_STATES 2
+#define PL_LOSES 1
+#include "changes.h"
+
+static void from_change_to_change(void **state)
+{
+    const double from[] = {0, 0.5, 1, 2.5, 3}, to[] = {0, 0.75, 1, 3, 6};
+    int i, k, whole;
+    (void)state;
+    for (i = 0; i < 5; i++)
+        for (k = 0; k < 5; k++)
+            for (whole = 0; whole <= 1 && to[k] >= from[i]; whole++) {
+                const pushed s = {(real)from[i], from[i] < 1 ? 0 : from[i] < 3 ? 1 : 2};
+                const int last = to[k] <= 1 && s.segment == 0 ? 0 : to[k] <= 3 && s.segment < 2 ? 1 : 2;
+                double start[2], end[2];
+                real x[3];
+                pushed_at(from[i], start);
+                pushed_at(to[k], end);
+                x[0] = (real)(start[0] - 1 - s.segment);
+                x[1] = (real)start[1];
+                x[2] = 1;
+                assert_int_equal(pushed_pass_changes(&s, pushed_slope, whole, (real)(to[k] - from[i]), x), last);
+                assert_exactly(x[0], end[0] - (whole ? 0 : 1 + last), "where it is");
+                assert_exactly(x[1], end[1], "its speed");
+            }
+}
+
 ROOM(series,
     cmocka_unit_test(free_fall_is_exact),
+    cmocka_unit_test(from_change_to_change),
     cmocka_unit_test(chains_within_a_step))

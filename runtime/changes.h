@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* changes.h: a linear model over a time in which loads change their formula: x' = A x, x being the states and what acts
+ * on them, by Taylor's series from change to change.  Included by the file of the model, which defines before it
+ *
+ *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
+ *     PL_TYPE                    the model, with member segment
+ *     PL_STATES, PL_SIZE         the states; length of x
+ *     PL_SEGMENTS                of time, in which loads have their formulas
+ *     PL_DEGREE, PL_HALVINGS     of a series: as in pl_series
+ *     PL_CHANGING, PL_FIRST      columns of A that are others in each segment; the first of them
+ *     PL_FORCED                  load states whose share the model leaves out of the state that it keeps
+ *     PL_LOSES                   whether what is kept changes where their formulas do
+ *
+ *     PL(load_slope)[PL_SEGMENTS][PL_STATES][PL_CHANGING]   those columns
+ *     PL(forced_at)[PL_FORCED][2]        places of such a load state in the next two, and in x
+ *     PL(forced_part)[PL_SEGMENTS][PL_STATES][]     its share
+ *     PL(forced_change)[][PL_STATES][]   what the state gains at each change
+ *     PL(until)(s, change)               time from now to a change [s] */
+#include "numbers.h"
+
+#if PL_FORCED > 0
+static void PL(add_forced)(const real share[PL_STATES][PL_LOAD_STATES], real x[PL_SIZE])
+{
+    int i, k;
+    for (i = 0; i < PL_STATES; i++) {
+        for (k = 0; k < PL_FORCED; k++) {
+            x[i] += share[i][PL(forced_at)[k][0]] * x[PL(forced_at)[k][1]];
+        }
+    }
+}
+#endif
+
+static void PL(use_segment)(real A[PL_SIZE][PL_SIZE], int segment)
+{
+#if PL_CHANGING > 0
+    int i, j;
+    for (i = 0; i < PL_STATES; i++) {
+        for (j = 0; j < PL_CHANGING; j++) {
+            A[i][PL_FIRST + j] = PL(load_slope)[segment][i][j];
+        }
+    }
+#else
+    (void)A;
+    (void)segment;
+#endif
+}
+
+/* x goes on by tau [s]; `whole`: then to the state as it is known outside.  The segment in which that is */
+static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE], int whole, real tau, real x[PL_SIZE])
+{
+    real A[PL_SIZE][PL_SIZE], work[2 * PL_SIZE], done = 0;
+    int i, j, segment = s->segment;
+    pl_series series;
+    for (i = 0; i < PL_SIZE; i++) {
+        for (j = 0; j < PL_SIZE; j++) {
+            A[i][j] = slope[i][j];
+        }
+    }
+    series.size = PL_SIZE;
+    series.states = PL_STATES;
+    series.degree = PL_DEGREE;
+    series.halvings = PL_HALVINGS;
+    series.A = A[0];
+    for (; segment < PL_SEGMENTS - 1 && PL(until)(s, segment) < tau; segment++) {
+        const real ahead = PL(until)(s, segment);
+        PL(use_segment)(A, segment);
+        if (ahead > done) {
+            pl_series_advance(&series, ahead - done, x, work);
+            done = ahead;
+        }
+#if PL_LOSES
+        PL(add_forced)(PL(forced_change)[segment], x);
+#endif
+    }
+    PL(use_segment)(A, segment);
+    pl_series_advance(&series, tau - done, x, work);
+#if PL_FORCED > 0
+    if (whole) {
+        PL(add_forced)(PL(forced_part)[segment], x);
+    }
+#endif
+    (void)whole;
+    return segment;
+}
+
+#include "undef.h"
