@@ -282,6 +282,7 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
         return PL(gave_up)(p);
     } else {
         p->fresh = 1;
+        p->parts--; /* events have a limit of their own */
     }
 #endif
     return 0;

@@ -163,7 +163,19 @@ static int way_of(const column *w)
     return 0;
 }
 
-/* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance */
+/* What a column is at most over h */
+static real most_of(const column *w)
+{
+    real most = w->terms;
+    int k;
+    for (k = 1; k <= w->m->degree; k++) {
+        most += magnitude(column_at(w, k));
+    }
+    return most;
+}
+
+/* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance.  The root at which
+ * it is let go may be off by what does not show beside the force over h, as one of third order is. */
 static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
 {
     const int watch = up ? m->hold[hold].up : m->hold[hold].down;
@@ -174,7 +186,7 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
     }
     w = watched(m, at, watch);
     pull = certain(&w);
-    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * w.terms) {
+    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * most_of(&w)) {
         return 1;
     }
     return pull > 0 ? 1 : pull < 0 ? -1 : way_of(&w);
@@ -241,11 +253,12 @@ static real terms_behind(const pl_events *m, const pl_instant *at, const pl_stri
 }
 
 /* What has just been let go at this breakpoint may be driven back by what the time of that is off: no sticking if it
- * turns by itself within a part of h */
-static void pass_brief(beyond *f, real end)
+ * turns by itself within a part of h, no impact of a speed that is but rounding */
+static void pass_brief(beyond *f, real behind, real end)
 {
-    if (f->coefficient[0] <= f->noise && f->coefficient[1] > 0 && f->coefficient[2] < 0 &&
-        f->coefficient[1] * end <= -NEAR * f->coefficient[2]) {
+    const int turns = f->coefficient[2] < 0 && f->coefficient[1] * end <= -NEAR * f->coefficient[2];
+    if (f->coefficient[0] <= f->noise && f->coefficient[1] > 0 &&
+        (turns || (behind >= 0 && f->coefficient[1] <= noise_of(behind)))) {
         f->coefficient[1] = 0;
     }
 }
@@ -275,7 +288,7 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
         return 0;
     }
     if (last) {
-        pass_brief(&f, end);
+        pass_brief(&f, behind, end);
     }
     s = first_root(&f, *first, splits);
     if (s < 0) {

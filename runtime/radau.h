@@ -389,7 +389,7 @@ static int PL(shows_along)(const PL_TYPE *s, const real start[], const real slop
         PL(add_node)(PL_ARGUMENTS, k, value, c[0]);
     }
     for (i = 0; i < PL_ARGUMENTS; i++) {
-        if (!PL(follows)(&c[0][i], PL_ARGUMENTS, PL_STAGES, 1, PL(argument)[i][1], PL_RISE / PL(argument)[i][2],
+        if (!PL(follows)(&c[0][i], PL_ARGUMENTS, PL_STAGES, 1, PL(argument)[i][1], PL_RISE / (real)PL(argument)[i][2],
                          PL_RISE_FACTOR)) {
             return 0;
         }

@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # stacks.sh PLGEN STACKS STANDS.C SOURCE FIRST COUNT VARIANT ...
 #
-# COUNT random scenes from seed FIRST on, the VARIANTs in turn: stacks, walls, wedges. What is emitted
-# keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants: exact,
-# float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring), float_curved.
+# COUNT random scenes from seed FIRST on, or from each of several, the VARIANTs in turn: stacks, walls, wedges. What is
+# emitted keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants:
+# exact, float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring),
+# float_curved.
 # $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 stacks=$(realpath "$2")
 stands=$(realpath "$3")
 source=$(realpath "$4")
-seed=$5
-last=$(($5 + $6))
+seeds=$(for first in $5; do seq "$first" $((first + $6 - 1)); done)
 shift 6
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
@@ -43,7 +43,7 @@ stands_up() {
 	./stands $digits 2 >>log 2>&1
 }
 
-while [ $seed -lt $last ]; do
+for seed in $seeds; do
 	variant=$1                              # the next one comes first the next time
 	shift
 	set -- "$@" $variant
@@ -61,6 +61,5 @@ while [ $seed -lt $last ]; do
 			cp scene.* drawn.h log "$KEEP/$name/"
 		fi
 	fi
-	seed=$((seed + 1))
 done
 tap_end
