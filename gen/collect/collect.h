@@ -197,15 +197,6 @@ void point_at_values(struct point *point);                  /* tunable params ha
 /* leaves the statement where the form is not defined there */
 struct form *form_at(struct point *point, const struct form *form);
 
-/* ---- value.c: forms as numbers at a point ---- */
-
-struct sample;                      /* `leaf` says what a coordinate or an input is there */
-struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value),
-			  void *context);
-long sample_work(const struct sample *sample);             /* terms that were taken so far */
-void sample_at(struct sample *sample, mpfr_srcptr t);       /* a new point: what was found at the last is forgotten */
-void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value); /* NaN where it is not defined */
-
 /* ---- lead.c: phases that go on where the frequency of a sine changes ---- */
 
 struct lead {

@@ -43,32 +43,11 @@ const char *basis_now(const struct emitter *e, const struct basis *basis)
 
 /* ---- operands: from forms ---- */
 
-static tape_ref times_call(struct tape *t, tape_ref product, enum function function, tape_ref x)
-{
-	tape_ref value = tape_call(t, function, x);
-	return product == TAPE_NONE ? value : tape_binary(t, TAPE_MUL, product, value);
-}
-
-/* t^k e^{a t} cos(w t + p) */
-static tape_ref wave_written(struct tape *t, const struct basis *basis)
-{
-	const struct wave *wave = basis->wave;
-	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = tape_power_of_time(t, basis->power);
-	if (mpq_sgn(wave->a) != 0)
-		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, wave->a), time));
-	if (!oscillates(wave))
-		return product;
-	tape_ref angle = tape_binary(t, TAPE_MUL, tape_constant(t, wave->w), time);
-	if (mpq_sgn(wave->p) != 0)
-		angle = tape_binary(t, TAPE_ADD, angle, tape_constant(t, wave->p));
-	return times_call(t, product, basis->sine ? FN_SIN : FN_COS, angle);
-}
-
 static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
 {
 	const struct formulas *f = context;
 	bool written = basis->kind == BASIS_WAVE && f->written;
-	return written ? wave_written(t, basis) : tape_of_basis(t, f->e->system, basis);
+	return written ? tape_wave(t, basis) : tape_of_basis(t, f->e->system, basis);
 }
 
 static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)
@@ -170,11 +149,10 @@ struct formulas *formulas_new(const struct emitter *e, struct reading how, int c
 {
 	struct formulas *f = NEW(struct formulas);
 	*f = (struct formulas){ .e = e, .tape = tape_new(), .written = how.written, .when = how.when };
-	struct tape_reader reader = { leaf, how.by_intervals ? above : NULL, friction_now, f, how.when != NULL };
+	struct tape_reader reader = { leaf, how.by_intervals ? above : NULL, friction_now, f, how.when != NULL, false };
 	int lets;
 	const struct tape_let *let = lets_of(e, &lets);
-	int atoms = e->model->atoms ? atoms_count(e->model->atoms) : 0;
-	f->forms = tape_forms_new(f->tape, reader, atoms, count, form, lets, let);
+	f->forms = tape_forms_new(f->tape, reader, count, form, lets, let);
 	return f;
 }
 

@@ -25,8 +25,8 @@ static tape_ref friction(struct tape *t, const void *context, const struct atom 
 static struct cost cost_of_forms(const struct step *step, int count, const struct form *const *form)
 {
 	struct tape *t = tape_new();
-	const struct tape_reader reader = { leaf, NULL, friction, step, false };
-	struct tape_forms *f = tape_forms_new(t, reader, atoms_count(step->model->atoms), count, form, 0, NULL);
+	const struct tape_reader reader = { leaf, NULL, friction, step, false, false };
+	struct tape_forms *f = tape_forms_new(t, reader, count, form, 0, NULL);
 	for (int i = 0; i < count; i++)
 		tape_set(t, "", tape_form(f, form[i]), 0, NULL);
 	return cost_of_tape(t);

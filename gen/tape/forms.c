@@ -5,6 +5,7 @@
 struct tape_forms {
 	struct tape *tape;
 	struct tape_reader reader;
+	int room;                   /* for atoms */
 	int *uses;                  /* per atom: by how many terms */
 	tape_ref *made;             /* per atom; TAPE_NONE: not yet */
 	int lets;
@@ -13,14 +14,29 @@ struct tape_forms {
 
 /* ---- what is read how often ---- */
 
-static void count_form(struct tape_forms *f, const struct form *form)
+static void make_room(struct tape_forms *f, int atoms)
+{
+	if (atoms <= f->room)
+		return;
+	int room = f->room;
+	f->room = 2 * atoms;
+	ENLARGE(f->uses, (size_t)f->room);
+	ENLARGE(f->made, (size_t)f->room);
+	for (int i = room; i < f->room; i++) {
+		f->uses[i] = 0;
+		f->made[i] = TAPE_NONE;
+	}
+}
+
+void tape_count_form(struct tape_forms *f, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *atom = form->term[i].basis.atom;
+		make_room(f, atom ? atom->index + 1 : 0);
 		if (!atom || f->uses[atom->index]++ > 0)
 			continue;
 		for (int k = 0; k < atom->operands; k++)
-			count_form(f, atom->operand[k]);
+			tape_count_form(f, atom->operand[k]);
 	}
 }
 
@@ -30,21 +46,19 @@ static const struct atom *only_atom(const struct form *form)
 	return plain ? form->term[0].basis.atom : NULL;
 }
 
-struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int atoms, int count,
+struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int count,
 				  const struct form *const *form, int lets, const struct tape_let *let)
 {
 	struct tape_forms *f = NEW(struct tape_forms);
 	*f = (struct tape_forms){ .tape = t, .reader = reader, .lets = lets, .let = let };
-	f->uses = ARRAY(int, (size_t)atoms + 1);
-	f->made = ARRAY(tape_ref, (size_t)atoms + 1);
-	for (int i = 0; i < atoms; i++)
-		f->made[i] = TAPE_NONE;
 	for (int i = 0; i < count; i++)
-		count_form(f, form[i]);
+		tape_count_form(f, form[i]);
 	for (int i = 0; i < lets; i++) {        /* where a let stands its factor does not go into it */
 		const struct atom *atom = only_atom(let[i].form);
-		if (atom)
-			f->uses[atom->index] += 2;
+		if (!atom)
+			continue;
+		make_room(f, atom->index + 1);
+		f->uses[atom->index] += 2;
 	}
 	return f;
 }
@@ -245,12 +259,23 @@ tape_ref tape_condition(struct tape_forms *f, const struct form *condition)
 	return tape_binary(f->tape, TAPE_UNEQUAL, tape_form(f, condition), tape_number(f->tape, 0));
 }
 
+static tape_ref nominal_ref(struct tape *t, const struct symbol *param)
+{
+	mpq_t value;
+	mpq_init(value);
+	param_value(param, value);
+	tape_ref ref = tape_constant(t, value);
+	mpq_clear(value);
+	return ref;
+}
+
 static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 {
 	struct tape *t = f->tape;
 	tape_ref x, condition;
 	switch (a->kind) {
-	case ATOM_PARAM:      return tape_operand(t, TAPE_PARAM, a->param->tunable - 1, 0);
+	case ATOM_PARAM:      return f->reader.nominal ? nominal_ref(t, a->param)
+						      : tape_operand(t, TAPE_PARAM, a->param->tunable - 1, 0);
 	case ATOM_PRODUCT:    return product_ref(f, a, TAPE_NONE);
 	case ATOM_RECIPROCAL: return tape_binary(t, TAPE_DIV, tape_number(t, 1), tape_form(f, a->operand[0]));
 	case ATOM_POWER:
@@ -267,12 +292,33 @@ static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 
 static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
 {
+	make_room(f, a->index + 1);     /* of a let that nothing reads */
 	if (f->made[a->index] == TAPE_NONE)
 		f->made[a->index] = new_atom_ref(f, a);
 	return f->made[a->index];
 }
 
 /* ---- forms ---- */
+
+static tape_ref times_call(struct tape *t, tape_ref product, enum function function, tape_ref x)
+{
+	tape_ref value = tape_call(t, function, x);
+	return product == TAPE_NONE ? value : tape_binary(t, TAPE_MUL, product, value);
+}
+
+tape_ref tape_wave(struct tape *t, const struct basis *basis)
+{
+	const struct wave *wave = basis->wave;
+	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = tape_power_of_time(t, basis->power);
+	if (mpq_sgn(wave->a) != 0)
+		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, wave->a), time));
+	if (!oscillates(wave))
+		return product;
+	tape_ref angle = tape_binary(t, TAPE_MUL, tape_constant(t, wave->w), time);
+	if (mpq_sgn(wave->p) != 0)
+		angle = tape_binary(t, TAPE_ADD, angle, tape_constant(t, wave->p));
+	return times_call(t, product, basis->sine ? FN_SIN : FN_COS, angle);
+}
 
 /* A factor goes into a product that nothing else reads, so that both take one multiplication less. */
 tape_ref tape_term(struct tape_forms *f, const struct form_term *term)

@@ -82,7 +82,7 @@ static void choose_mpfr(const struct tape_node *n, mpfr_t *value, mpfr_ptr resul
 		mpfr_set(result, value[mpfr_zero_p(value[n->a]) ? n->c : n->b], MPFR_RNDN);
 }
 
-static void node_mpfr(const struct tape_node *n, const struct tape_values *from, mpfr_t *value, mpfr_ptr result)
+void tape_node_mpfr(const struct tape_node *n, const struct tape_values *from, mpfr_t *value, mpfr_ptr result)
 {
 	mpfr_srcptr a = n->a == TAPE_NONE ? NULL : value[n->a], b = n->b == TAPE_NONE ? NULL : value[n->b];
 	switch (n->op) {
@@ -118,5 +118,5 @@ static void node_mpfr(const struct tape_node *n, const struct tape_values *from,
 void tape_run_mpfr(const struct tape *t, const struct tape_values *from, mpfr_t *value)
 {
 	for (int i = 0; i < tape_length(t); i++)
-		node_mpfr(tape_node(t, i), from, value, value[i]);
+		tape_node_mpfr(tape_node(t, i), from, value, value[i]);
 }

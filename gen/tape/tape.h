@@ -110,12 +110,15 @@ struct tape_reader {
 	tape_ref (*friction)(struct tape *t, const void *context, const struct atom *atom);
 	const void *context;
 	bool timed;
+	bool nominal;               /* tunable params are constants, of the spec's values */
 };
 /* Forms are counted first: what several terms read is kept apart from their factors. A let's value has its name. */
-struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int atoms, int count,
+struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int count,
 				  const struct form *const *form, int lets, const struct tape_let *let);
+void tape_count_form(struct tape_forms *f, const struct form *form); /* one more */
 struct tape *tape_of_forms(const struct tape_forms *f);
 tape_ref tape_form(struct tape_forms *f, const struct form *form);
+tape_ref tape_wave(struct tape *t, const struct basis *basis); /* t^k e^{a t} cos(w t + p), or sin */
 tape_ref tape_term(struct tape_forms *f, const struct form_term *term);
 /* Of numbers and t: at the time at which conditions on time hold as they do */
 tape_ref tape_form_in_time(struct tape *t, const struct form *form);
@@ -165,6 +168,19 @@ struct tape_values {                /* what operands are; NULL where the tape ha
 /* value: one a node. Where a condition is undefined so is what it chooses; only what is chosen has to be defined. */
 void tape_run_double(const struct tape *t, const struct tape_values *from, double *value);
 void tape_run_mpfr(const struct tape *t, const struct tape_values *from, mpfr_t *value);
+
+/* of one node, once what it reads has its value */
+void tape_node_mpfr(const struct tape_node *n, const struct tape_values *from, mpfr_t *value, mpfr_ptr result);
+
+/* ---- sample.c: forms as numbers at points ---- */
+
+struct sample;                      /* `leaf` says what a coordinate or an input is there */
+struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value),
+			  void *context);
+long sample_work(const struct sample *sample);             /* products and calls so far */
+void sample_at(struct sample *sample, mpfr_srcptr t);       /* a new point: what was found at the last is forgotten */
+/* NaN where it is not defined. A form stays as it is once it was asked for. */
+void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value);
 
 /* ---- slopes.c: derivatives, as further nodes ---- */
 

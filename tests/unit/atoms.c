@@ -3,7 +3,7 @@
  * are evaluated by MPFR directly; both have the same values. Derivatives are held against difference quotients of the
  * tree. */
 #include "draw.h"
-#include "collect/collect.h"
+#include "tape/tape.h"
 
 #include <math.h>
 #include <string.h>
