@@ -32,6 +32,15 @@
 #define pl_series_advance pl_seriesf_advance
 #define pl_two pl_twof
 #define pl_power_apply pl_powerf_apply
+#define pl_peak pl_peakf
+#define pl_peak_bend pl_peakf_bend
+#define pl_larger_size pl_larger_sizef
+#define pl_lanes pl_lanesf
+#define pl_lanes_load pl_lanesf_load
+#define pl_lanes_store pl_lanesf_store
+#define pl_lanes_all pl_lanesf_all
+#define pl_lanes_peak pl_lanesf_peak
+#define pl_lanes_above pl_lanesf_above
 #else
 #define real double
 #endif

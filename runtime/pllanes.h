@@ -29,10 +29,20 @@ typedef double pl_lanes __attribute__((vector_size(PL_LANES_BYTES)));
 typedef float pl_lanesf __attribute__((vector_size(PL_LANES_BYTES)));
 typedef int64_t pl_lanes_bits __attribute__((vector_size(PL_LANES_BYTES)));
 typedef int32_t pl_lanesf_bits __attribute__((vector_size(PL_LANES_BYTES)));
+#ifdef __clang__
+#define PL_LANES_UNROLL _Pragma("clang loop unroll(full)")
+#elif __GNUC__ >= 8
+#define PL_LANES_UNROLL _Pragma("GCC unroll 16")
+#endif
 #else
 #define PL_LANES_INLINE static inline
 typedef double pl_lanes;
 typedef float pl_lanesf;
+#endif
+
+/* The loop that follows is of constant length; written out its lanes stay in registers. */
+#ifndef PL_LANES_UNROLL
+#define PL_LANES_UNROLL
 #endif
 
 /* The first `count` numbers, as many as there are lanes at most; 0 in the other lanes */

@@ -24,11 +24,11 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));
 	if (e->step->program->compensated)
 		say(e, "    double rest[$N_STATES];  /* what rounding took from y so far */\n");
-	else if (e->step->forced)
-		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
 	if (e->step->carries)
 		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries,
 		       carried_text(e));
+	if (e->step->forced && !e->step->program->compensated)
+		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
 	if (e->model->relative)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");

@@ -38,6 +38,8 @@ void say(const struct emitter *e, const char *layout, ...) __attribute__((format
 /* the same as text */
 const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
+/* {..., ...} of its own */
+void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *whole_text(int number);
@@ -229,14 +231,12 @@ void emit_peak_tables(const struct emitter *e);
 void emit_peak_members(const struct emitter *e);
 void emit_peak_set(const struct emitter *e);
 void emit_peak_step(const struct emitter *e);
-/* peak = the larger of it and of what is inside the step from x to the output `end`; in locals x, row, work, i */
-void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end);
 /* Of tunable models, in NAME_coeffs: members, the spec's, retuned */
 void emit_peak_coefficients(const struct emitter *e);
 void emit_nominal_peaks(const struct emitter *e);
 void emit_retune_peaks(const struct emitter *e);
 
-/* ---- emit_lanes.c, batch_peaks.c, emit_batch.c: many instances in one call ---- */
+/* ---- emit_lanes.c, emit_batch.c: many instances in one call ---- */
 
 struct batch {
 	const struct emitter *e;
@@ -245,32 +245,20 @@ struct batch {
 	int after;                      /* from here on those of the outputs, after it */
 	struct tape *step, *out;        /* what lanes compute */
 	int forced;                     /* index of the forced part; -1: none */
-	/* Of peaks: what acts on the states before the step, then how far it bends each; is that computed only where
-	 * it is read, elsewhere bounded by the samples? */
-	int acting;
-	bool sampled;
+	bool sampled;                   /* of peaks: nothing acts on the states but polynomials through samples */
 	int lanes;                      /* factors of the instance that lanes have; */
 	int factors;                    /* of an instance, that its params decide */
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
 struct batch plan_batch(const struct emitter *e);
 bool acts_beside_states(const struct emitter *e);                 /* more is in x than the states */
-int batch_shared_rows(const struct batch *b);                     /* of `now` */
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */
 /* The name of a factor of the instance's own, in a function over lanes */
 const char *batch_factor(struct batch *b, const char *text);
 void emit_lanes_step(struct batch *b);
 void emit_lanes_out(struct batch *b);
-void emit_lanes_take(const struct batch *b);                      /* NAME_lanes_take, and _give back */
-/* Of peaks: what acts on the states, and how far that bends outputs; which lanes may have passed theirs */
-void emit_batch_acting(const struct batch *b);
-void emit_batch_reach(const struct batch *b);
-void emit_lanes_may_pass(struct batch *b);
-void emit_lanes_look(struct batch *b);
-void emit_lanes_tell(struct batch *b);                            /* outputs of a step's end, with peaks or without */
-void emit_lanes_widen(const struct batch *b);
-void emit_lanes_end(const struct batch *b);
+void emit_lanes_bend(struct batch *b);                            /* how far outputs may be off their chords */
 void emit_batch_declarations(const struct emitter *e);
 void emit_batch(const struct emitter *e);
 

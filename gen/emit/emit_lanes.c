@@ -92,17 +92,10 @@ struct batch plan_batch(const struct emitter *e)
 		b.forced = b.shared;
 		b.shared += e->system->states;
 	}
-	if (has_peaks(e) && acts_beside_states(e))
-		b.acting = e->step->layout.size - e->system->states + peak_outputs(e->model);
-	b.sampled = b.acting && only_samples_act(e);
+	b.sampled = has_peaks(e) && acts_beside_states(e) && only_samples_act(e);
 	if (e->kind->own_factors)
 		number_factors(&b);
 	return b;
-}
-
-int batch_shared_rows(const struct batch *b)
-{
-	return b->shared ? b->shared : 1;
 }
 
 /* Rows that a step changes of an instance's memory, the first of them */
@@ -163,8 +156,8 @@ static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
 					.lanes = &lanes };
 	tape_print(t, &to, b->e->to);
 	say(b->e, "    (void)now;\n"
-		  "%s"
-		  "}\n", b->factors ? "    (void)factor;\n" : "");
+		  "    (void)factor;\n"
+		  "}\n");
 }
 
 static void number_entries(struct batch *b, const struct tape *t)
@@ -198,8 +191,8 @@ void emit_lanes_step(struct batch *b)
 {
 	const struct emitter *e = b->e;
 	say(e, "\n/* One step of as many instances as there are lanes; now: what they share */\n"
-	       "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, %sconst double *now)\n"
-	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
+	       "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)\n"
+	       "{\n");
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->step, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
@@ -218,61 +211,49 @@ static const char *state_over_lanes(const struct batch *b, int i)
 void emit_lanes_out(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\nPL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, %sconst double *now, pl_lanes *out)\n"
-	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
+	say(e, "\n"
+	       "PL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, const pl_lanes *factor, const double *now, "
+	       "pl_lanes *out)\n"
+	       "{\n");
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->out, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
 	emit_over_lanes(b, b->out, b->after);
 }
 
-/* ---- lanes from the arrays and back ---- */
+/* ---- peaks ---- */
 
-static void emit_take_own(const struct batch *b)
+static const char *bend_over_lanes(struct batch *b, int p)
 {
 	const struct emitter *e = b->e;
-	if (!b->factors)
-		return;
-	say(e, "    if (b->factors) {\n"
-	       "        size_t i;\n"
-	       "        for (i = 0; i < %d; i++)\n"
-	       "            factor[i] = pl_lanes_load(b->factors + i * b->count + j, left);\n"
-	       "    } else {\n"
-	       "        const $n *s = &b->shared;\n", b->lanes);
-	for (int k = 0; k < b->lanes; k++)
-		say(e, "        factor[%d] = pl_lanes_all(%s);\n", k, b->factor_text[k]);
-	say(e, "    }\n");
+	const char **term = ARRAY(const char *, (size_t)e->system->states + 1);
+	const struct peaks peaks = peaks_of(e->step);
+	int terms = 0;
+	for (int i = 0; i < e->system->states; i++) {
+		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), state[%d]%s%s)", i,
+					  factor_of_momentum(e, i) ? " / " : "",
+					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
+		term[terms++] = e->kind->own_factors
+			? format("%s * %s", batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i)), size)
+			: scaled(peaks.bend[p * e->step->layout.size + i], size);
+	}
+	if (acts_beside_states(e) && e->kind->own_factors)
+		term[terms++] = format("%s * reach[%d]", batch_factor(b, format("s->coeffs.reach[%d]", p)), p);
+	else if (acts_beside_states(e))
+		term[terms++] = format("reach[%d]", p);
+	return tree(terms, term, 15);
 }
 
-/* For the lanes from instance j on; beyond the last there are none. */
-static void say_left(const struct emitter *e)
-{
-	say(e, "    const size_t left = j < b->count ? b->count - j : 0;\n"
-	       "    j = left ? j : 0;\n");
-}
-
-void emit_lanes_take(const struct batch *b)
+void emit_lanes_bend(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\n/* As many instances as there are lanes, from j on */\n"
-	       "PL_LANES_INLINE void $n_lanes_take(const $n_instances *b, size_t j, pl_lanes *y,%s pl_lanes *peak)\n"
-	       "{\n", b->factors ? " pl_lanes *factor," : "");
-	say_left(e);
-	for (int i = 0; i < batch_stepped_rows(e); i++)
-		say(e, "    y[%d] = pl_lanes_load(b->y + %d * b->count + j, left);\n", i, i);
-	for (int o = 0; o < e->model->outputs; o++)
-		say(e, "    peak[%d] = pl_lanes_load(b->peak + %d * b->count + j, b->peak ? left : 0);\n", o, o);
-	emit_take_own(b);
-	say(e, "}\n"
-	       "\nPL_LANES_INLINE void $n_lanes_give($n_instances *b, size_t j, const pl_lanes *y, "
-	       "const pl_lanes *peak)\n"
+	say(e, "\n/* How far outputs are off their chords at most, by |states| and what else acts on them */\n"
+	       "PL_LANES_INLINE void $n_lanes_bend(const pl_lanes *state, const pl_lanes *factor, "
+	       "const double *reach, pl_lanes *bend)\n"
 	       "{\n");
-	say_left(e);
-	for (int i = 0; i < batch_stepped_rows(e); i++)
-		say(e, "    pl_lanes_store(b->y + %d * b->count + j, y[%d], left);\n", i, i);
-	say(e, "    if (!b->peak)\n"
-	       "        return;\n");
-	for (int o = 0; o < e->model->outputs; o++)
-		say(e, "    pl_lanes_store(b->peak + %d * b->count + j, peak[%d], left);\n", o, o);
-	say(e, "}\n");
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		say(e, "    bend[%d] = %s;\n", p, bend_over_lanes(b, p));
+	say(e, "    (void)factor;\n"
+	       "    (void)reach;\n"
+	       "}\n");
 }

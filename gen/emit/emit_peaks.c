@@ -15,10 +15,8 @@ static const char **peak_names(const struct emitter *e)
 
 static void emit_rows(const struct emitter *e, const char *name, const char *what, const double *value)
 {
-	int count = peak_outputs(e->model), size = e->step->layout.size;
-	say(e, "\nstatic const double $n_%s[%d][%d] = {  /* %s */\n", name, count, size, what);
-	emit_number_rows(e, count, size, value, peak_names(e));
-	say(e, "};\n");
+	const int size[] = { peak_outputs(e->model), e->step->layout.size };
+	emit_array(e, what, name, 2, size, value, peak_names(e));
 }
 
 /* Instances of a batch have that of what they share in one number. */
@@ -57,44 +55,10 @@ void emit_nominal_peaks(const struct emitter *e)
 		say(e, "},\n");
 }
 
-/* row[...] = the output over x: of tunable outputs from the instance's factors */
-static void emit_row_of(const struct emitter *e, const struct output *output, const char *coeffs, const char *indent)
-{
-	int size = e->step->layout.size, place = peak_place(e->model, output);
-	if (is_tuned_output(e, output))
-		say(e, "%sfor (i = 0; i < %d; i++)\n"
-		       "%s    row[i] = %s%s[i];\n", indent, size, indent, coeffs,
-		    tuned_output_row(e, output));
-	else
-		say(e, "%sfor (i = 0; i < %d; i++)\n"
-		       "%s    row[i] = $n_peak_row[%d][i];\n", indent, size, indent, place);
-}
-
 void emit_retune_peaks(const struct emitter *e)
 {
-	int size = e->step->layout.size;
-	if (!has_peaks(e))
-		return;
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            c->slope[i][j] = A[i][j].hi;\n"
-	       "    {\n"
-	       "        double row[%d], space[PL_PEAK_WORK(%d)];\n", size, size, size, size);
-	for (int i = 0; i < e->model->outputs; i++) {
-		const struct output *output = &e->model->output[i];
-		if (!output->peak)
-			continue;
-		emit_row_of(e, output, "c->", "        ");
-		int place = peak_place(e->model, output);
-		say(e, "        pl_peak_bend(%d, c->slope[0], row, h, c->bend[%d], space);\n", size, place);
-		if (has_reach(e))
-			say(e, "        c->reach[%d] = 0.0;\n"
-			       "        for (i = $N_STATES; i < %d; i++)\n"
-			       "            if (c->bend[%d][i] > c->reach[%d] * $n_nominal.bend[%d][i])\n"
-			       "                c->reach[%d] = c->bend[%d][i] / $n_nominal.bend[%d][i];\n",
-			    place, size, place, place, place, place, place, place);
-	}
-	say(e, "    }\n");
+	if (has_peaks(e))
+		say(e, "    $n_retune_peaks(c, A, h);\n");
 }
 
 /* Is there one whose row no param changes? */
@@ -106,17 +70,57 @@ static bool any_fixed(const struct emitter *e)
 	return any;
 }
 
+/* Of peak p, in coefficients c where params change it */
+static const char *peak_row_text(const struct emitter *e)
+{
+	const char *text = any_fixed(e) ? spell(e, "$n_peak_row[p]") : NULL;
+	for (int i = 0; i < e->model->outputs; i++) {
+		const struct output *output = &e->model->output[i];
+		const char *row = output->peak && is_tuned_output(e, output)
+				? format("(c)->%s", tuned_output_row(e, output)) : NULL;
+		if (row)
+			text = text ? format("((p) == %d ? %s : %s)", peak_place(e->model, output), row, text) : row;
+	}
+	return text;
+}
+
+static void emit_peak_places(const struct emitter *e)
+{
+	int *output = ARRAY(int, (size_t)e->model->outputs);
+	for (int i = 0; i < e->model->outputs; i++)
+		if (e->model->output[i].peak)
+			output[peak_place(e->model, &e->model->output[i])] = i;
+	emit_int_list(e, "peak_output", peak_outputs(e->model), output);
+}
+
+static void emit_include(const struct emitter *e)
+{
+	bool own = e->kind->own_factors;
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		{ "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
+		{ "REACHES", has_reach(e) }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say_macro(e, "SLOPE", own ? "s->coeffs.slope" : spell(e, "$n_slope"));
+	say_macro(e, "BEND", own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"));
+	say_macro(e, "PEAK_ROW(c, p)", peak_row_text(e));
+	say(e, "#include \"peaks.h\"\n");
+}
+
 void emit_peak_tables(const struct emitter *e)
 {
 	if (!has_peaks(e))
 		return;
 	struct peaks peaks = peaks_of(e->step);
 	if (any_fixed(e))
-		emit_rows(e, "peak_row", "over x: the states and what acts on them", peaks.row);
-	if (e->kind->own_factors)
-		return;
-	emit_series_slopes(e);
-	emit_rows(e, "peak_bend", "of |x|: how far at most off the chord in a step", peaks.bend);
+		emit_rows(e, "peak_row", "Outputs over x: the states and what acts on them", peaks.row);
+	if (!e->kind->own_factors) {
+		emit_series_slopes(e);
+		emit_rows(e, "peak_bend", "How far they are off their chords in a step at most, by |x|", peaks.bend);
+	}
+	emit_peak_places(e);
+	emit_include(e);
 }
 
 /* ---- in the state ---- */
@@ -133,58 +137,14 @@ void emit_peak_set(const struct emitter *e)
 		say(e, "    s->peak[%d] = 0.0;\n", i);
 }
 
-/* ---- the step ---- */
-
-void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end)
-{
-	bool own = e->kind->own_factors;
-	int size = e->step->layout.size, place = peak_place(e->model, output);
-	const char *row = spell(e, "$n_peak_row[%d]", place);
-	if (is_tuned_output(e, output)) {
-		emit_row_of(e, output, "s->coeffs.", "    ");
-		row = "row";
-	}
-	say(e, "    %s = pl_peak(%d, %s, %s, %s[%d], %s, x,\n"
-	       "        %s, %s, work);  /* %s */\n", peak, size,
-	    own ? "s->coeffs.slope[0]" : spell(e, "$n_slope[0]"), row,
-	    own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"), place, step_length(e), end, peak, output->name);
-}
-
 void emit_peak_step(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0, tuned = false;
-	int size = e->step->layout.size;
 	if (!has_peaks(e))
 		return;
-	for (int i = 0; i < e->model->outputs; i++)
-		tuned = tuned || (e->model->output[i].peak && is_tuned_output(e, &e->model->output[i]));
 	say(e, "\n/* x at the start of a step */\n"
-	       "static void $n_begin_step(const $n *s, %sdouble *x)\n"
-	       "{\n", inputs ? "const double *u, " : "");
+	       "static void $n_begin_step(const $n *s, const double *u, double x[%d])\n"
+	       "{\n", e->step->layout.size);
 	emit_series_vector(e);
-	say(e, "}\n"
-	       "\nvoid $n_step(%s)\n"
-	       "{\n"
-	       "    double x[%d], work[PL_PEAK_WORK(%d)], now[$N_OUTPUTS]%s;\n%s", step_parameters(e), size, size,
-	    tuned ? format(", row[%d]", size) : "", tuned ? "    int i;\n" : "");
-	say(e, "    $n_begin_step(s, %sx);\n"
-	       "    $n_move(s%s);\n"
-	       "    $n_now(s, now);\n", inputs ? "u, " : "", inputs ? ", u" : "");
-	for (int i = 0; i < e->model->outputs; i++)
-		if (e->model->output[i].peak)
-			emit_peak_look(e, &e->model->output[i],
-				       format("s->peak[%d]", peak_place(e->model, &e->model->output[i])),
-				       format("now[%d]", i));
-	say(e, "}\n"
-	       "\nvoid $n_out(const $n *s, double out[$N_OUTPUTS])\n"
-	       "{\n"
-	       "    $n_now(s, out);\n");
-	for (int i = 0; i < e->model->outputs; i++) {
-		int place = peak_place(e->model, &e->model->output[i]);
-		if (e->model->output[i].peak)
-			say(e, "    out[%d] = out[%d] < 0.0 ? -out[%d] : out[%d];  /* %s */\n"
-			       "    out[%d] = s->peak[%d] > out[%d] ? s->peak[%d] : out[%d];\n", i, i, i, i,
-			    e->model->output[i].name, i, place, i, place, i);
-	}
-	say(e, "}\n");
+	say(e, "    (void)u;\n"
+	       "}\n");
 }

@@ -176,3 +176,11 @@ void say_macro(const struct emitter *e, const char *name, const char *text)
 {
 	say(e, "#define PL_%s%s%s\n", name, *text ? " " : "", text);
 }
+
+void emit_int_list(const struct emitter *e, const char *name, int count, const int *value)
+{
+	say(e, "static const int $n_%s[%d] = {", name, count);
+	for (int i = 0; i < count; i++)
+		say(e, i ? ", %d" : "%d", value[i]);
+	say(e, "};\n");
+}

@@ -1,0 +1,592 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* batch.h: NAME_batch, the step of a linear model over lanes, each an instance.  What instances share of a step (load
+ * states, samples) is computed once, for some steps ahead; then groups of lanes go through these, their states in
+ * locals.  The sums are those of NAME_step, in its order, so that an instance gets the bits of one that steps alone.
+ * Included by the file of the model, behind pllanes.h and where it defines
+ *
+ *     PL(name), PL_TYPE, PL_SINGLE   the model's prefix before a name; its type; 1: in float
+ *     PL_STATES, PL_INPUTS, PL_OUTPUTS
+ *     PL_ROWS, PL_STEPPED            numbers of an instance, the first of PL_TYPE: those that it has of its own, and,
+ *                                    at the head of these, those that a step changes
+ *     PL_GROUPS                      of lanes, that step in turns: sums of one wait for none of their own
+ *     PL_SHARED                      numbers of a step that instances share: `now`
+ *     PL_FACTORS, PL_LANES           that params decide: of an instance; of these those that lanes read
+ *
+ *     PL(factor_at)[PL_FACTORS]               where in PL_TYPE each is
+ *     PL(share_step)(s, u, now)               what a step reads of what instances share, which takes the step
+ *     PL(share_out)(s, now)                   what outputs read of it
+ *     PL(lanes_step)(y, factor, now)          one step of as many instances as there are lanes
+ *     PL(lanes_out)(y, factor, now, out)      and their outputs
+ *
+ * and where there are outputs that are the largest of something (peaks.h)
+ *
+ *     PL_PEAKS, PL(peak_output)[]             how many, and which
+ *     PL_SIZE                                 numbers of x: the states and what acts on them
+ *     PL_MOMENTA                              whether PL(velocities)(x) divides what is kept by masses
+ *     PL_NOMINAL                              the bends of peaks.h with the values of the spec
+ *     PL(lanes_bend)(state, factor, reach, bend)      how far outputs are off their chords at most, by |states| and by
+ *                                             what else acts with the values of the spec
+ *     PL_SAMPLED                              whether nothing acts but polynomials through samples:
+ *     PL_H                                    a step of s [s],
+ *     PL(sample_column)[], PL(sample_degree)[], PL(sample_reach)[][]     of each input where in x its polynomial is,
+ *                                             its degree; how much of the largest sample is in each derivative, in h */
+#include "numbers.h"
+
+#define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
+#define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
+#if PL_PEAKS > 0
+#define PL_AHEAD 256
+#else
+#define PL_AHEAD 64
+#endif
+
+/* What instances share in some steps ahead: [0] before the first, [k] in step k and behind it */
+typedef struct PL(ahead) {
+    size_t steps;
+    real now[PL_AHEAD + 1][PL_HAS(PL_SHARED)];
+#if PL_PEAKS > 0
+    real acting[PL_AHEAD + 1][PL_SIZE - PL_STATES + PL_PEAKS]; /* on the states, then how far it bends outputs */
+    real reach[PL_PEAKS];                                      /* that at most */
+    int known; /* is `acting` filled in?  From these, the samples of the steps: */
+    PL_TYPE from;
+    const real *u;
+#endif
+} PL(ahead);
+
+/* ---- an instance alone ---- */
+
+#if PL_FACTORS > 0
+static void PL(batch_factors)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+{
+    size_t i;
+    for (i = 0; i < PL_FACTORS && b->factors; i++) {
+        memcpy((char *)one + PL(factor_at)[i], &b->factors[i * b->count + j], sizeof(real));
+    }
+}
+#endif
+
+/* Its coefficients are those of all: nothing that is asked of it behind this reads them. */
+static void PL(batch_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+{
+    real row[PL_ROWS];
+    size_t i;
+    for (i = 0; i < PL_ROWS; i++) {
+        row[i] = b->y[i * b->count + j];
+    }
+    *one = b->shared;
+    memcpy(one, row, sizeof row);
+}
+
+/* As instance j; its peaks are what its outputs are now. */
+static void PL(batch_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    PL_TYPE one = *s;
+    real row[PL_ROWS], out[PL_OUTPUTS];
+    size_t i;
+    memcpy(row, s, sizeof row);
+    for (i = 0; i < PL_ROWS; i++) {
+        b->y[i * b->count + j] = row[i];
+    }
+#if PL_FACTORS > 0
+    PL(batch_factors)(b, j, &one);
+#endif
+    PL(out)(&one, out);
+    for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
+        b->peak[i * b->count + j] = pl_magnitude(out[i]);
+    }
+}
+
+#if PL_FACTORS > 0
+int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
+{
+    PL_TYPE one = b->shared;
+    size_t i;
+    if (!b->factors || !(c->h == b->shared.coeffs.h)) {
+        return PL_NO_STEP;
+    }
+    one.coeffs = *c;
+    for (i = 0; i < PL_FACTORS; i++) {
+        memcpy(&b->factors[i * b->count + j], (const char *)&one + PL(factor_at)[i], sizeof(real));
+    }
+    return 0;
+}
+#endif
+
+void PL(batch_init)(PL_INSTANCES *b)
+{
+    size_t j;
+    PL(init)(&b->shared);
+    for (j = 0; j < b->count; j++) {
+#if PL_FACTORS > 0
+        (void)PL(batch_use)(b, j, &b->shared.coeffs);
+#endif
+        PL(batch_write)(b, j, &b->shared);
+    }
+}
+
+void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
+{
+    PL_TYPE one = b->shared;
+    PL(set)(&one, PL(time)(&b->shared), y);
+    PL(batch_write)(b, j, &one);
+}
+
+void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
+{
+    PL_TYPE one;
+    PL(batch_read)(b, j, &one);
+    PL(get)(&one, y);
+}
+
+int PL(batch_status)(const PL_INSTANCES *b, size_t j)
+{
+    PL_TYPE one;
+    PL(batch_read)(b, j, &one);
+    return PL(status)(&one);
+}
+
+/* ---- lanes from the arrays and back ---- */
+
+/* From j on: beyond the last there are none. */
+PL_LANES_INLINE size_t PL(lanes_left)(const PL_INSTANCES *b, size_t j)
+{
+    return j < b->count ? b->count - j : 0;
+}
+
+/* As many instances as there are lanes, from j on */
+PL_LANES_INLINE void PL(lanes_take)(const PL_INSTANCES *b, size_t j, pl_lanes *y, pl_lanes *factor, pl_lanes *peak)
+{
+    const size_t left = PL(lanes_left)(b, j), first = left ? j : 0;
+    size_t i;
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_STEPPED; i++) {
+        y[i] = pl_lanes_load(b->y + i * b->count + first, left);
+    }
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        peak[i] = pl_lanes_load(b->peak ? b->peak + i * b->count + first : b->y, b->peak ? left : 0);
+    }
+#if PL_FACTORS > 0
+    for (i = 0; i < PL_LANES; i++) {
+        if (b->factors) {
+            factor[i] = pl_lanes_load(b->factors + i * b->count + first, left);
+        } else {
+            real all;
+            memcpy(&all, (const char *)&b->shared + PL(factor_at)[i], sizeof all);
+            factor[i] = pl_lanes_all(all);
+        }
+    }
+#else
+    factor[0] = pl_lanes_all(0);
+#endif
+}
+
+PL_LANES_INLINE void PL(lanes_give)(PL_INSTANCES *b, size_t j, const pl_lanes *y, const pl_lanes *peak)
+{
+    const size_t left = PL(lanes_left)(b, j), first = left ? j : 0;
+    size_t i;
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_STEPPED; i++) {
+        pl_lanes_store(b->y + i * b->count + first, y[i], left);
+    }
+    if (!b->peak) {
+        return;
+    }
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        pl_lanes_store(b->peak + i * b->count + first, peak[i], left);
+    }
+}
+
+/* The larger of each */
+PL_LANES_INLINE void PL(lanes_widen)(pl_lanes *most, const pl_lanes *value, const int count)
+{
+    int i;
+    PL_LANES_UNROLL
+    for (i = 0; i < count; i++) {
+        most[i] = pl_lanes_peak(most[i], value[i]);
+    }
+}
+
+#if PL_PEAKS > 0
+/* ---- what acts on the states, and how far it bends outputs ---- */
+
+/* At the start of a step, with the values of the spec */
+static void PL(share_acting)(const PL_TYPE *s, const real *u, real acting[PL_SIZE - PL_STATES + PL_PEAKS])
+{
+    real x[PL_SIZE];
+    int i, p;
+    PL(begin_step)(s, u, x);
+    for (i = PL_STATES; i < PL_SIZE; i++) {
+        acting[i - PL_STATES] = x[i];
+    }
+    for (p = 0; p < PL_PEAKS; p++) {
+        real reach = 0;
+        for (i = PL_STATES; i < PL_SIZE; i++) {
+            reach += PL_NOMINAL[p][i] * pl_magnitude(x[i]);
+        }
+        acting[PL_SIZE - PL_STATES + p] = reach;
+    }
+}
+
+#if PL_SAMPLED
+/* How far at most the samples of the steps bend outputs: by each derivative of the polynomial through them */
+static void PL(share_reach)(const PL_TYPE *s, const real *u, size_t n, real reach[PL_PEAKS])
+{
+    size_t k;
+    int i, m, p;
+    for (p = 0; p < PL_PEAKS; p++) {
+        reach[p] = 0;
+    }
+    for (i = 0; i < PL_INPUTS; i++) {
+        real most = 0;
+        for (m = 0; m < PL(sample_degree)[i]; m++) {
+            most = pl_larger_size(most, s->past[i][m]);
+        }
+        for (k = 0; k < n; k++) {
+            most = pl_larger_size(most, u[k * PL_INPUTS + (size_t)i]);
+        }
+        for (m = 0; m <= PL(sample_degree)[i]; m++) {
+            for (p = 0; p < PL_PEAKS; p++) {
+                reach[p] += most * (PL(sample_reach)[i][m] * PL_NOMINAL[p][PL(sample_column)[i] + m]);
+            }
+            most /= PL_H;
+        }
+    }
+}
+#endif
+
+/* What acts on the states in the steps ahead, where samples alone did not say */
+static void PL(ahead_acting)(PL(ahead) *ahead)
+{
+    real now[PL_HAS(PL_SHARED)];
+    size_t k;
+    for (k = 1; k <= ahead->steps && !ahead->known; k++) {
+        PL(share_acting)(&ahead->from, ahead->u, ahead->acting[k]);
+        PL(share_step)(&ahead->from, ahead->u, now);
+        ahead->u += PL_INPUTS;
+    }
+    ahead->known = 1;
+}
+
+/* ---- peaks in a step ---- */
+
+/* Of what lanes' states and outputs are at most, in a step or in some: may values in between have passed a peak? */
+PL_LANES_INLINE int PL(lanes_may_pass)(const pl_lanes *state, const pl_lanes *factor, const real *reach,
+                                       const pl_lanes *top, const pl_lanes *peak, pl_lanes *most)
+{
+    int any = 0, p;
+    PL(lanes_bend)(state, factor, reach, most);
+    PL_LANES_UNROLL
+    for (p = 0; p < PL_PEAKS; p++) {
+        most[p] = top[PL(peak_output)[p]] + most[p];
+        any |= pl_lanes_above(most[p], peak[PL(peak_output)[p]]);
+    }
+    return any;
+}
+
+static real PL(lane)(const pl_lanes *all, size_t l)
+{
+    real one;
+    memcpy(&one, (const char *)all + l * sizeof one, sizeof one);
+    return one;
+}
+
+/* Instance j by itself, from states x on: larger values inside the step that ends at outputs `end` */
+static void PL(look_alone)(const PL_INSTANCES *b, size_t j, real *x, const real *acting, const real *end, real *peak)
+{
+    int i;
+#if PL_FACTORS > 0
+    PL_TYPE one = b->shared;
+    const PL_TYPE *const s = &one;
+    PL(batch_factors)(b, j, &one);
+#else
+    const PL_TYPE *const s = &b->shared;
+    (void)j;
+#endif
+#if PL_MOMENTA
+    PL(velocities)(x);
+#endif
+    for (i = PL_STATES; i < PL_SIZE; i++) {
+        x[i] = acting[i - PL_STATES];
+    }
+    PL(look)(s, x, end, peak);
+}
+
+/* Where a lane may have passed a peak, each is looked at by itself. */
+static void PL(lanes_look)(const PL_INSTANCES *b, size_t j, const pl_lanes *start, const real *acting,
+                           const pl_lanes *most, const pl_lanes *value, pl_lanes *peak)
+{
+    size_t l;
+    int i, p;
+    for (l = 0; l < PL_AT_ONCE && j + l < b->count; l++) {
+        real x[PL_SIZE], end[PL_OUTPUTS], largest[PL_PEAKS];
+        int any = 0;
+        for (p = 0; p < PL_PEAKS; p++) {
+            largest[p] = PL(lane)(&peak[PL(peak_output)[p]], l);
+            any |= !(PL(lane)(&most[p], l) <= largest[p]);
+        }
+        if (!any) {
+            continue;
+        }
+        for (i = 0; i < PL_STATES; i++) {
+            x[i] = PL(lane)(&start[i], l);
+        }
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            end[i] = PL(lane)(&value[i], l);
+        }
+        PL(look_alone)(b, j + l, x, acting, end, largest);
+        for (p = 0; p < PL_PEAKS; p++) {
+            memcpy((char *)&peak[PL(peak_output)[p]] + l * sizeof(real), &largest[p], sizeof(real));
+        }
+    }
+}
+
+/* Peaks of which values inside the step may pass are looked for: only then lanes are in memory. */
+PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl_lanes *start, const pl_lanes *factor,
+                                       const real *acting, pl_lanes *before, pl_lanes *value, pl_lanes *peak)
+{
+    pl_lanes top[PL_OUTPUTS], most[PL_PEAKS]; /* at its ends, in it */
+    int i;
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        top[i] = pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0), before[i]), value[i]);
+    }
+    if (PL(lanes_may_pass)(start, factor, acting + (PL_SIZE - PL_STATES), top, peak, most)) {
+        pl_lanes from[PL_STATES], bound[PL_PEAKS], to[PL_OUTPUTS], largest[PL_OUTPUTS];
+        memcpy(from, start, sizeof from);
+        memcpy(bound, most, sizeof bound);
+        memcpy(to, value, sizeof to);
+        memcpy(largest, peak, sizeof largest);
+        PL(lanes_look)(b, j, from, acting, bound, to, largest);
+        memcpy(peak, largest, sizeof largest);
+    }
+    PL(lanes_widen)(peak, value, PL_OUTPUTS);
+    memcpy(before, value, PL_OUTPUTS * sizeof *before);
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_PEAKS; i++) {
+        value[PL(peak_output)[i]] = peak[PL(peak_output)[i]];
+    }
+}
+#endif
+
+/* ---- groups of lanes over the steps ahead ---- */
+
+PL_LANES_INLINE void PL(lanes_tell)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
+{
+    size_t i;
+    if (out && j < b->count) {
+        PL_LANES_UNROLL
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            pl_lanes_store(out + i * b->count + j, value[i], b->count - j);
+        }
+    }
+}
+
+/* Instances from `first` on, `groups` a lane, step by step with outputs of each */
+PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out, const int groups)
+{
+    pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
+#if PL_PEAKS > 0
+    pl_lanes start[PL_GROUPS][PL_STATES], before[PL_GROUPS][PL_OUTPUTS];
+#endif
+    size_t k;
+    int g;
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        PL(lanes_take)(b, first + (size_t)g * PL_AT_ONCE, y[g], factor[g], peak[g]);
+#if PL_PEAKS > 0
+        PL(lanes_out)(y[g], factor[g], ahead->now[0], before[g]);
+#endif
+    }
+    for (k = 1; k <= ahead->steps; k++) {
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+#if PL_PEAKS > 0
+            memcpy(start[g], y[g], sizeof start[g]);
+#endif
+            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
+        }
+        if (b->peak || out) {
+            PL_LANES_UNROLL
+            for (g = 0; g < groups; g++) {
+                const size_t j = first + (size_t)g * PL_AT_ONCE;
+                pl_lanes value[PL_OUTPUTS];
+                PL(lanes_out)(y[g], factor[g], ahead->now[k], value);
+#if PL_PEAKS > 0
+                PL(lanes_between)(b, j, start[g], factor[g], ahead->acting[k], before[g], value, peak[g]);
+#else
+                PL(lanes_widen)(peak[g], value, PL_OUTPUTS);
+#endif
+                PL(lanes_tell)(b, j, value, out);
+            }
+            out = out ? out + PL_OUTPUTS * b->count : NULL;
+        }
+    }
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        PL(lanes_give)(b, first + (size_t)g * PL_AT_ONCE, y[g], peak[g]);
+    }
+}
+
+#if PL_PEAKS > 0
+static void PL(batch_one_by_one)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+{
+    PL(ahead_acting)(ahead);
+    PL(lanes_go)(b, first, ahead, out, 1);
+}
+
+/* After steps of which only the peaks are wanted: those at ends of steps are known before extremes are looked for, and
+ * few are larger.  Where there may be more in between the steps are taken again, one by one. */
+PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(ahead) *ahead, const pl_lanes *y,
+                                   const pl_lanes *factor, const pl_lanes *state, const pl_lanes *top, pl_lanes *peak)
+{
+    pl_lanes most[PL_PEAKS];
+    size_t i;
+    PL(lanes_widen)(peak, top, PL_OUTPUTS);
+    if (!b->peak || !PL(lanes_may_pass)(state, factor, ahead->reach, top, peak, most)) {
+        PL(lanes_give)(b, j, y, peak);
+        return;
+    }
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        pl_lanes_store(b->peak + i * b->count + j, peak[i], b->count - j);
+    }
+    PL(batch_one_by_one)(b, j, ahead, NULL);
+}
+
+/* Instances from `first` on: mostly clear by what states and outputs are at most */
+PL_LANES_INLINE void PL(lanes_clear)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, const int groups)
+{
+    pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
+    pl_lanes state[PL_GROUPS][PL_STATES], top[PL_GROUPS][PL_OUTPUTS]; /* the largest |state|, |output| */
+    size_t k;
+    int g, i;
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        pl_lanes value[PL_OUTPUTS];
+        PL(lanes_take)(b, first + (size_t)g * PL_AT_ONCE, y[g], factor[g], peak[g]);
+        PL(lanes_out)(y[g], factor[g], ahead->now[0], value);
+        PL_LANES_UNROLL
+        for (i = 0; i < PL_STATES; i++) {
+            state[g][i] = pl_lanes_peak(pl_lanes_all(0), y[g][i]);
+        }
+        PL_LANES_UNROLL
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            top[g][i] = pl_lanes_all(0);
+        }
+        PL_LANES_UNROLL
+        for (i = 0; i < PL_PEAKS; i++) {
+            top[g][PL(peak_output)[i]] = pl_lanes_peak(pl_lanes_all(0), value[PL(peak_output)[i]]);
+        }
+    }
+    for (k = 1; k <= ahead->steps; k++) {
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
+        }
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+            pl_lanes value[PL_OUTPUTS];
+            PL(lanes_out)(y[g], factor[g], ahead->now[k], value);
+            PL(lanes_widen)(state[g], y[g], PL_STATES);
+            PL(lanes_widen)(top[g], value, PL_OUTPUTS);
+        }
+    }
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        PL(lanes_end)(b, first + (size_t)g * PL_AT_ONCE, ahead, y[g], factor[g], state[g], top[g], peak[g]);
+    }
+}
+#define PL_GO(groups) PL(lanes_clear)(b, first, ahead, groups)
+#else
+#define PL_GO(groups) PL(lanes_go)(b, first, ahead, out, groups)
+#endif
+
+static void PL(batch_block)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+{
+    PL_GO(PL_GROUPS);
+    (void)out;
+}
+
+#if PL_GROUPS > 1
+static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+{
+    PL_GO(1);
+    (void)out;
+}
+#endif
+
+/* As many whole blocks as there are, then single groups */
+static void PL(batch_go)(PL_INSTANCES *b, PL(ahead) *ahead, real *out)
+{
+    size_t first = 0;
+#if PL_PEAKS > 0
+    for (; out && first < b->count; first += PL_AT_ONCE) {
+        PL(batch_one_by_one)(b, first, ahead, out);
+    }
+#endif
+    for (; first < b->count && b->count - first > (PL_GROUPS - 1) * PL_AT_ONCE; first += PL_GROUPS * PL_AT_ONCE) {
+        PL(batch_block)(b, first, ahead, out);
+    }
+#if PL_GROUPS > 1
+    for (; first < b->count; first += PL_AT_ONCE) {
+        PL(batch_group)(b, first, ahead, out);
+    }
+#endif
+}
+
+/* ---- NAME_batch ---- */
+
+/* What instances share in the steps ahead, computed; of samples bounded where that does */
+static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
+{
+    size_t k;
+#if PL_PEAKS > 0
+    int p;
+    ahead->known = !PL_SAMPLED;
+    ahead->from = *s;
+    ahead->u = u;
+    for (p = 0; p < PL_PEAKS; p++) {
+        ahead->reach[p] = 0;
+    }
+#endif
+#if PL_SAMPLED
+    PL(share_reach)(s, u, ahead->steps, ahead->reach);
+#endif
+    PL(share_out)(s, ahead->now[0]);
+    for (k = 1; k <= ahead->steps; k++) {
+#if PL_PEAKS > 0 && PL_SIZE > PL_STATES && !PL_SAMPLED
+        PL(share_acting)(s, u, ahead->acting[k]);
+        for (p = 0; p < PL_PEAKS; p++) {
+            ahead->reach[p] = pl_larger_size(ahead->reach[p], ahead->acting[k][PL_SIZE - PL_STATES + p]);
+        }
+#endif
+        PL(share_step)(s, u, ahead->now[k]);
+        PL(share_out)(s, ahead->now[k]);
+#if PL_INPUTS > 0
+        u += PL_INPUTS;
+#endif
+    }
+}
+
+#if PL_INPUTS > 0
+void PL(batch)(PL_INSTANCES *b, size_t n, const real *u, real *out)
+#else
+void PL(batch)(PL_INSTANCES *b, size_t n, real *out)
+#endif
+{
+    PL(ahead) ahead;
+    for (; n > 0; n -= ahead.steps) {
+        ahead.steps = n < PL_AHEAD ? n : PL_AHEAD;
+#if PL_INPUTS > 0
+        PL(share)(&b->shared, u, &ahead);
+        u += ahead.steps * PL_INPUTS;
+#else
+        PL(share)(&b->shared, NULL, &ahead);
+#endif
+        PL(batch_go)(b, &ahead, out);
+        out = out ? out + ahead.steps * PL_OUTPUTS * b->count : NULL;
+    }
+}
+
+#include "undef.h"
