@@ -37,6 +37,11 @@ struct emitter {
 void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 /* the same as text */
 const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
+/* Behind a blank line and the note, NULL: none, what is before the body, which begins; the end of it, before which
+ * stand the names that nothing may have read, blanks between */
+void open_function(const struct emitter *e, const char *note, const char *layout, ...)
+	__attribute__((format(printf, 3, 4)));
+void close_function(const struct emitter *e, const char *unread);
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
 /* {..., ...} of its own */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);

@@ -25,12 +25,9 @@ static void emit_factors(const struct emitter *e)
 			const struct coefficient *c = &anchors->factor[l * anchors->terms + k % anchors->terms];
 			value[l * columns + k] = k < anchors->terms ? c->value : c->low;
 		}
-	say(e, "\n"
-	       "/* What a step adds for each load state of the last anchor%s, so many steps after it */\n"
-	       "static const double $n_turned[%d][%d] = {\n",
-	    words == 2 ? ", then the second words of that" : "", anchors->steps, columns);
-	emit_number_rows(e, anchors->steps, columns, value, step_names(anchors->steps));
-	say(e, "};\n");
+	emit_array(e, format("What a step adds for each load state of the last anchor%s, so many steps after it",
+			     words == 2 ? ", then the second words of that" : ""), "turned", 2,
+		   (const int[]){ anchors->steps, columns }, value, step_names(anchors->steps));
 }
 
 static bool are_turned(const struct emitter *e)
@@ -66,13 +63,9 @@ static void emit_turns(const struct emitter *e)
 			for (int f = 0; f <= oscillates(e->system->load[l].wave); f++)
 				value[k * columns + place + f] = anchors->turn[2 * (l * anchors->steps + k) + f];
 	}
-	say(e, "\n"
-	       "/* How loads have turned and grown so many steps after the anchor: e^{a t} cos(w t), and sin, of\n"
-	       " * %s */\n"
-	       "static const double $n_turn[%d][%d] = {\n",
-	    list, anchors->steps, columns);
-	emit_number_rows(e, anchors->steps, columns, value, step_names(anchors->steps));
-	say(e, "};\n");
+	emit_array(e, format("How loads have turned and grown so many steps after the anchor: e^{a t} cos(w t),\n"
+			     " * and sin, of %s", list), "turn", 2, (const int[]){ anchors->steps, columns }, value,
+		   step_names(anchors->steps));
 }
 
 /* ---- at the anchor ---- */
@@ -93,10 +86,8 @@ static void emit_anchor(const struct emitter *e)
 		time = time || (e->anchor[l] >= 0 && e->system->load[l].powers > 1);
 		growth = growth || (e->anchor[l] >= 0 && e->growth[l] >= 0 && e->phase[l] >= 0);
 	}
-	say(e, "\n"
-	       "/* An anchor now: the functions of the loads, from phases that lose nothing however long a run is */\n"
-	       "static void $n_drop_anchor($n *s)\n"
-	       "{\n");
+	open_function(e, "An anchor now: functions of the loads, from phases that lose nothing however long a run is",
+		      "static void $n_drop_anchor($n *s)");
 	if (time)
 		say(e, "    const double t = $n_time(s);\n");
 	if (growth)
@@ -106,8 +97,8 @@ static void emit_anchor(const struct emitter *e)
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->anchor[l] >= 0)
 			emit_load_functions(&there, l);
-	say(e, "    s->since = 0;\n"
-	       "}\n");
+	say(e, "    s->since = 0;\n");
+	close_function(e, "");
 }
 
 void emit_anchor_tables(const struct emitter *e)

@@ -35,34 +35,26 @@ static void emit_horner(const struct emitter *e, const char *c, int degree)
 			    i % 4 == 3 || i == states - 1 ? "\n" : "");
 }
 
-static void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
-{
-	int states = e->system->states;
-	say(e, "static void $n_%s(const double c[%d][$c], double theta, double gain[$N_STATES])\n"
-	       "{\n", name, rows);
-	if (!is_written_out(e, degree)) {
-		say(e, "    int i, k;\n"
-		       "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        gain[i] = c[%d][i];\n"
-		       "    for (k = %d; k > 0; k--)\n"
-		       "        for (i = 0; i < $N_STATES; i++)\n"
-		       "            gain[i] = gain[i] * theta + c[k][i];\n"
-		       "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        gain[i] *= theta;\n"
-		       "}\n", degree, degree - 1);
-		return;
-	}
-	emit_horner(e, "c", degree);
-	for (int i = 0; i < states; i++)
-		say(e, "    gain[%d] = g%d * theta;\n", i, i);
-	say(e, "}\n");
-}
-
 void emit_series_ahead(const struct emitter *e)
 {
 	const char *unit = spans_steps(e) ? format("%d ", truncation(e)->over) : "";
-	say(e, "\n/* What the series gains from its start, theta %sh later */\n", unit);
-	emit_polynomial(e, "ahead", expansion(e)->order + 1, expansion(e)->order);
+	open_function(e, format("What the series gains from its start, theta %sh later", unit),
+		      "static void $n_ahead(const double c[%d][$c], double theta, double gain[$N_STATES])",
+		      expansion(e)->order + 1);
+	if (is_written_out(e, expansion(e)->order)) {
+		emit_horner(e, "c", expansion(e)->order);
+		for (int i = 0; i < e->system->states; i++)
+			say(e, "    gain[%d] = g%d * theta;\n", i, i);
+	} else {                        /* beside a collocation: taylor.h has it */
+		say(e, "    int i, k;\n"
+		       "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "        gain[i] = c[%d][i];\n"
+		       "        for (k = %d; k > 0; k--)\n"
+		       "            gain[i] = gain[i] * theta + c[k][i];\n"
+		       "        gain[i] *= theta;\n"
+		       "    }\n", expansion(e)->order, expansion(e)->order - 1);
+	}
+	close_function(e, "");
 }
 
 /* ---- the step ---- */
@@ -98,9 +90,8 @@ static void emit_keep(const struct emitter *e)
 /* Of fixed order, all coefficients as locals: one way through but for what is kept */
 static void emit_straight_step(const struct emitter *e)
 {
-	say(e, "\nvoid $n_step(%s)\n"
-	       "{\n"
-	       "    const double *const y = s->y;\n", step_parameters(e));
+	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
+	say(e, "    const double *const y = s->y;\n");
 	emit_coefficients(e);
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "    double rest%d = s->rest[%d];\n", i, i);
@@ -111,7 +102,7 @@ static void emit_straight_step(const struct emitter *e)
 	}
 	emit_keep(e);
 	emit_step_end(e);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* ---- sums of a series that is an array ---- */
@@ -125,16 +116,15 @@ static const char *term_of_series(const struct emitter *e, int state, int k)
 /* Of fixed order: all of it */
 static void emit_total(const struct emitter *e)
 {
-	say(e, "\n/* Where the series ends that begins at y, and what rounding takes from it */\n"
-	       "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], double end[$N_STATES], "
-	       "double rest[$N_STATES])\n"
-	       "{\n", expansion(e)->order + 1);
+	open_function(e, "Where the series ends that begins at y, and what rounding takes from it",
+		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
+		      "double end[$N_STATES], double rest[$N_STATES])", expansion(e)->order + 1);
 	for (int i = 0; i < e->system->states; i++) {
 		say(e, "    ");
 		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &rest[%d]);\n", i, i,
 				      whole_gain(e, i, term_of_series), i));
 	}
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* m^2 to m^order, each from two before it: then no more than a product and sums wait for the last coefficient */
@@ -155,10 +145,9 @@ static void emit_end(const struct emitter *e)
 {
 	enum { LATE = 2 };              /* of at least 4 */
 	int order = expansion(e)->order, states = e->system->states;
-	say(e, "\n/* The state m steps after the start of the series, and what rounding takes from it */\n"
-	       "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
-	       "double rest[$N_STATES])\n"
-	       "{\n", order + 1);
+	open_function(e, "The state m steps after the start of the series, and what rounding takes from it",
+		      "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
+		      "double rest[$N_STATES])", order + 1);
 	emit_powers(e, order);
 	for (int i = 0; i < states; i++) {
 		const char *text = "", *late = "";
@@ -170,7 +159,7 @@ static void emit_end(const struct emitter *e)
 		say_wrapped(e, format("end[%d] = pl_accumulate(c[0][%d], %s, %s + %s, &rest[%d]);\n", i, i,
 				      term_of_end(i, 1), text, late, i));
 	}
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 bool serves_rows(const struct emitter *e)
@@ -187,11 +176,10 @@ static const char *kept_term(const struct emitter *e, int state, int k)
 /* The same where the instance has the series: the steps before its end */
 static void emit_within(const struct emitter *e)
 {
-	say(e, "\n/* The state theta after the start of the series */\n"
-	       "static inline void $n_within($n *s, double theta)\n"
-	       "{\n");
+	open_function(e, "The state theta after the start of the series",
+		      "static inline void $n_within($n *s, double theta)");
 	emit_value(e, "theta", kept_term, truncation(e)->adaptive ? "s->base[%d]" : "s->rest[%d]", "    ");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 static void emit_sums(const struct emitter *e)
@@ -233,15 +221,17 @@ static void emit_handed_on(const struct emitter *e, const char *name, const char
 {
 	static const char *const handed[] = { "u", "slope", "tau", "when", "segment", "interval", "terms" };
 	bool terms = strcmp(name, "expand_from") == 0;
-	say(e, "static inline void $n_%s(const $n *s, const double u[], const double slope[], double tau,\n"
-	       "    double when, int segment, const int interval[], const double y[$N_STATES], double %s)\n"
-	       "{\n"
-	       "    %s\n", name, terms ? spell(e, "c[%d][$c], double terms[]", expansion(e)->order + 1)
-					: spell(e, "left[$N_STATES]"), call);
+	const char *unread = "";
+	open_function(e, NULL, "static inline void $n_%s(const $n *s, const double u[], const double slope[],\n"
+		      "    double tau, double when, int segment, const int interval[], const double y[$N_STATES],\n"
+		      "    double %s)", name,
+		      terms ? spell(e, "c[%d][$c], double terms[]", expansion(e)->order + 1)
+			    : spell(e, "left[$N_STATES]"));
+	say(e, "    %s\n", call);
 	for (size_t i = 0; i < sizeof handed / sizeof *handed - !terms; i++)
 		if (!mentions(call, handed[i]))
-			say(e, "    (void)%s;\n", handed[i]);
-	say(e, "}\n");
+			unread = format("%s%s ", unread, handed[i]);
+	close_function(e, unread);
 }
 
 static const char *handed_to(const struct emitter *e)
@@ -251,18 +241,15 @@ static const char *handed_to(const struct emitter *e)
 
 void emit_pass_time(const struct emitter *e)
 {
-	say(e, "\n/* What else takes part in a step */\n"
-	       "static inline void $n_pass_time($n *s, const double u[])\n"
-	       "{\n");
+	open_function(e, "What else takes part in a step",
+		      "static inline void $n_pass_time($n *s, const double u[])");
 	emit_step_end(e);
-	say(e, "    (void)u;\n"
-	       "}\n");
+	close_function(e, "u");
 }
 
 void emit_expand_from(const struct emitter *e)
 {
 	emit_expand_function(e);
-	say(e, "\n");
 	emit_handed_on(e, "expand_from",
 		       spell(e, "$n_expand(s, %sy, c%s);", handed_to(e), is_divided(e) ? ", terms" : ""));
 }
@@ -274,7 +261,6 @@ void emit_series_functions(const struct emitter *e)
 	if (e->step->slopes) {
 		const struct emitter *slopes = sloping(e);
 		emit_slopes_function(slopes);
-		say(e, "\n");
 		emit_handed_on(e, "slopes_at", spell(e, "$n_slopes(s, %sy, left);", handed_to(slopes)));
 	}
 }
@@ -335,10 +321,7 @@ void emit_expansion_step(const struct emitter *e)
 	if (is_straight(e))
 		emit_straight_step(e);
 	else
-		say(e, "\nvoid $n_step(%s)\n"
-		       "{\n"
-		       "    $n_serve(s, %s);\n"
-		       "}\n", step_parameters(e), u);
+		say(e, "\nvoid $n_step(%s) { $n_serve(s, %s); }\n", step_parameters(e), u);
 	if (is_divided(e))
 		emit_divided_questions(e);
 }
@@ -346,12 +329,11 @@ void emit_expansion_step(const struct emitter *e)
 void emit_expansion_at(const struct emitter *e)
 {
 	const char *y = e->model->relative ? "x" : "y";
-	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n"
-	       "%s"
-	       "    $n_state_at(s, %s, tau, %s);\n", driven_parameter(e),
-	    e->model->relative ? spell(e, "    double x[$N_STATES];\n") : "", e->system->inputs ? "u" : "NULL", y);
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", driven_parameter(e));
+	say(e, "%s"
+	       "    $n_state_at(s, %s, tau, %s);\n", e->model->relative ? spell(e, "    double x[$N_STATES];\n") : "",
+	    e->system->inputs ? "u" : "NULL", y);
 	if (e->model->relative)
 		say(e, "    $n_written(s, x, y);\n");
-	say(e, "}\n");
+	close_function(e, "");
 }

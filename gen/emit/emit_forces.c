@@ -129,10 +129,9 @@ void emit_to_modes(const struct emitter *e)
 	for (int b = 0; b < m->blocks; b++)
 		table[b] = emit_bank_table(e, format("to_modes%d", b + 1), "Modes from coordinates, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->to, b, true));
-	say(e, "\n/* The modes of coordinates, or of their velocities */\n"
-	       "static void $n_modes_of(int which, const double q[%d], double mode[%d])\n"
-	       "{\n"
-	       "    int i;\n", m->modes, m->width);
+	open_function(e, "The modes of coordinates, or of their velocities",
+		      "static void $n_modes_of(int which, const double q[%d], double mode[%d])", m->modes, m->width);
+	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++) {
 		const struct mode_block *own = &m->block[b];
 		struct row_sum s = { 0 };
@@ -140,8 +139,7 @@ void emit_to_modes(const struct emitter *e)
 			add_summand(&s, format("%s[%d][i] * q[%d]", table[b], j, own->coord[j]));
 		say_row_sum(e, own->place ? format("mode[%d + i]", own->place) : "mode[i]", own->rows, &s);
 	}
-	say(e, "    (void)which;\n"
-	       "}\n");
+	close_function(e, "which");
 }
 
 void emit_from_modes(const struct emitter *e)
@@ -151,11 +149,10 @@ void emit_from_modes(const struct emitter *e)
 	for (int b = 0; b < m->blocks; b++)
 		table[b] = emit_bank_table(e, format("from_modes%d", b + 1), "Coordinates from modes, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->from, b, false));
-	say(e, "\n/* Coordinates from their modes, or velocities */\n"
-	       "static void $n_of_modes(int which, const double mode[%d], double q[%d])\n"
-	       "{\n"
-	       "    double x[%d];\n"
-	       "    int i;\n", m->width, m->modes, m->width);
+	open_function(e, "Coordinates from their modes, or velocities",
+		      "static void $n_of_modes(int which, const double mode[%d], double q[%d])", m->width, m->modes);
+	say(e, "    double x[%d];\n"
+	       "    int i;\n", m->width);
 	for (int b = 0; b < m->blocks; b++) {
 		const struct mode_block *own = &m->block[b];
 		struct row_sum s = { 0 };
@@ -166,8 +163,7 @@ void emit_from_modes(const struct emitter *e)
 			say(e, "%sq[%d] = x[%d];%s", i % 6 ? " " : "    ", own->coord[i], own->place + i,
 			    i % 6 == 5 || i == own->modes - 1 ? "\n" : "");
 	}
-	say(e, "    (void)which;\n"
-	       "}\n");
+	close_function(e, "which");
 }
 
 /* ---- functions of time ---- */
@@ -183,17 +179,17 @@ void emit_function_values(const struct emitter *e)
 	const struct program *program = e->step->program;
 	struct emitter here = *e;
 	here.at_node = true;
-	if (r.time) {
-		say(e, "\nstatic const double $n_node[%d] = {", program->nodes);
-		for (int i = 0; i < program->nodes; i++)
-			say(e, "%s%s", i ? ", " : "", shortest(time_in_step(e->model, program->node[i])));
-		say(e, "};  /* times after the start of the step [s] */\n");
-	}
+	double *after = ARRAY(double, (size_t)program->nodes);
+	for (int i = 0; i < program->nodes; i++)
+		after[i] = time_in_step(e->model, program->node[i]);
+	if (r.time)
+		emit_array(e, "Times of nodes after the start of the step [s]", "node", 1, &program->nodes, after,
+			   NULL);
 	if (any_of(r.load, e->system->loads))
 		emit_node_phases(e, r.load);
-	say(e, "\n/* What forces and factors of forces are at a node of the step, as functions of time%s */\n"
-	       "static void $n_functions(const $n *s, int node, double start, double left[%d])\n"
-	       "{\n", has_changes(e) ? ", their\n * formulas those that hold at another time" : "", count);
+	open_function(e, format("What forces and factors of forces are at a node, as functions of time%s",
+				has_changes(e) ? ", their\n * formulas those that hold at another time" : ""),
+		      "static void $n_functions(const $n *s, int node, double start, double left[%d])", count);
 	emit_param_locals(e, r.param);
 	if (r.time)
 		say(e, "    const double t = $n_time(s) + $n_node[node];\n");
@@ -203,12 +199,8 @@ void emit_function_values(const struct emitter *e)
 	for (int k = 0; k < count; k++)
 		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 14, NULL);
 	emit_formulas(f, 4);
-	if (r.time && has_changes(e))   /* conditions alone may read it */
-		say(e, "    (void)t;\n");
-	say(e, "    (void)s;\n"
-	       "    (void)node;\n"
-	       "    (void)start;\n"
-	       "}\n");
+	/* conditions alone may read t */
+	close_function(e, r.time && has_changes(e) ? "t s node start" : "s node start");
 }
 
 /* ---- forces on the modes ---- */
@@ -281,9 +273,7 @@ static const char *factor_text(const struct emitter *e, const char *name, int fu
 	if (t.alike) {
 		text = scaled(factor[0], function ? function_text(function) : NULL);
 	} else {
-		say(e, "\nstatic const double $n_%s[%d] = {", name, normal_of_step(e)->banks);
-		say_numbers(e, normal_of_step(e)->banks, factor);
-		say(e, "};\n");
+		emit_array(e, "Of each operator", name, 1, &normal_of_step(e)->banks, factor, NULL);
 		text = spell(e, function ? "$n_%s[which] * %s" : "$n_%s[which]", name, function_text(function));
 	}
 	return text;
@@ -314,12 +304,6 @@ static struct reads reads_of_rest(const struct emitter *e)
 	return reads_of(e->model, split->rests, form);
 }
 
-/* "s, " of a function that reads the instance's own params, else "" */
-static const char *instance_of_rest(const struct emitter *e)
-{
-	return any_of(reads_of_rest(e).param, held_values(e->model)) ? "s, " : "";
-}
-
 static void emit_rest_forces(const struct emitter *e)
 {
 	const struct splitting *split = e->model->split;
@@ -329,9 +313,8 @@ static void emit_rest_forces(const struct emitter *e)
 		return;
 	for (int k = 0; k < split->rests; k++)
 		form[k] = split->rest[k].form;
-	say(e, "\n/* What is not linear in the states, before it is multiplied with a function of time */\n"
-	       "static void $n_rest(%sconst double y[$N_STATES], double left[%d])\n"
-	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "", split->rests);
+	open_function(e, "What is not linear in the states, before it is multiplied with a function of time",
+		      "static void $n_rest(const $n *s, const double y[$N_STATES], double left[%d])", split->rests);
 	emit_locals_of(e, r.state, "y");
 	emit_param_locals(e, r.param);
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, split->rests, form);
@@ -339,7 +322,7 @@ static void emit_rest_forces(const struct emitter *e)
 		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 15,
 			 e->model->coord_name[split->rest[k].coord]);
 	emit_formulas(f, 4);
-	say(e, "}\n");
+	close_function(e, "s");
 }
 
 /* Of a coordinate: its block, and its place in that */
@@ -394,7 +377,7 @@ static void emit_rest_values(const struct emitter *e)
 					       own->place + j));
 		say(e, "    y[%d] = %s;\n", i, tree(s.terms, s.term, 11));
 	}
-	say(e, "    $n_rest(%sy, left);\n", instance_of_rest(e));
+	say(e, "    $n_rest(s, y, left);\n");
 	for (int k = 0; k < split->rests; k++)
 		say(e, "    const double rest%d = left[%d]%s%s;\n", k + 1, k, split->rest[k].function ? " * " : "",
 		    split->rest[k].function ? function_text(split->rest[k].function) : "");
@@ -445,10 +428,9 @@ void emit_forces(const struct emitter *e)
 				add_block(e, &sum[b], k, b, c);
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
-	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
-	       "static void $n_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
-	       "    const double rate[%d], double force[%d])\n"
-	       "{\n", m->width, m->width, m->width);
+	open_function(e, "Forces on the modes: what is left over, loads among it",
+		      "static void $n_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
+		      "    const double rate[%d], double force[%d])", m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
 		if (m->force[f])
@@ -457,10 +439,5 @@ void emit_forces(const struct emitter *e)
 	emit_rest_values(e);
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
-	say(e, "    (void)s;\n"
-	       "    (void)which;\n"
-	       "    (void)f;\n"
-	       "    (void)eta;\n"
-	       "    (void)rate;\n"
-	       "}\n");
+	close_function(e, "s which f eta rate");
 }

@@ -13,27 +13,11 @@ static const char **mode_names(const struct emitter *e)
 	return name;
 }
 
-static void emit_turns(const struct emitter *e)
+/* Rows over all modes */
+static void emit_mode_rows(const struct emitter *e, const char *what, const char *name, int rows, const double *value,
+			   const char *const *note)
 {
-	const struct modal *modal = e->step->modal;
-	say(e, "\n"
-	       "/* e^{p h} of each mode's pole p: real parts, imaginary parts%s */\n"
-	       "static const double $n_turn[$N_STATES] = {",
-	    modal->reals ? ", what is real" : "");
-	for (int i = 0; i < modal->states; i++)
-		say(e, "%s%s", !i ? "" : i % 5 ? ", " : ",\n    ", shortest(modal->turn[i]));
-	say(e, "};\n");
-}
-
-static void emit_square(const struct emitter *e, const char *what, const char *name, const double *value,
-			const char *const *note)
-{
-	say(e, "\n"
-	       "/* %s */\n"
-	       "static const double $n_%s[$N_STATES][$N_STATES] = {\n",
-	    what, name);
-	emit_number_rows(e, e->system->states, e->system->states, value, note);
-	say(e, "};\n");
+	emit_array(e, what, name, 2, (const int[]){ rows, e->step->modal->states }, value, note);
 }
 
 static const double *column_of(const struct emitter *e, const struct operand *operand)
@@ -85,12 +69,7 @@ static void emit_driving(const struct emitter *e)
 			value[k * states + i] = column[i];
 		note[k] = list[k].kind == OPERAND_LOAD ? "a load" : "an input";
 	}
-	say(e, "\n"
-	       "/* What loads and inputs add to the modes in a step */\n"
-	       "static const double $n_driven[%d][$N_STATES] = {\n",
-	    count);
-	emit_number_rows(e, count, states, value, note);
-	say(e, "};\n");
+	emit_mode_rows(e, "What loads and inputs add to the modes in a step", "driven", count, value, note);
 }
 
 static void emit_output_modes(const struct emitter *e)
@@ -99,11 +78,7 @@ static void emit_output_modes(const struct emitter *e)
 	const char **note = ARRAY(const char *, (size_t)model->outputs);
 	for (int i = 0; i < model->outputs; i++)
 		note[i] = model->output[i].name;
-	say(e, "\n"
-	       "/* What the outputs see of the modes */\n"
-	       "static const double $n_seen[$N_OUTPUTS][$N_STATES] = {\n");
-	emit_number_rows(e, model->outputs, e->system->states, e->step->modal->output, note);
-	say(e, "};\n");
+	emit_mode_rows(e, "What the outputs see of the modes", "seen", model->outputs, e->step->modal->output, note);
 }
 
 /* row . x, in eight sums that compilers keep in registers */
@@ -111,10 +86,8 @@ static void emit_dot(const struct emitter *e)
 {
 	enum { SUMS = 8 };
 	const int states = e->system->states, whole = states / SUMS * SUMS;
-	say(e, "\n"
-	       "static double $n_dot(const double row[$N_STATES], const double x[$N_STATES])\n"
-	       "{\n"
-	       "    double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0, f = 0.0, g = 0.0, h = 0.0;\n");
+	open_function(e, NULL, "static double $n_dot(const double row[$N_STATES], const double x[$N_STATES])");
+	say(e, "    double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0, f = 0.0, g = 0.0, h = 0.0;\n");
 	if (whole)
 		say(e, "    int i;\n"
 		       "    for (i = 0; i < %d; i += %d) {\n", whole, SUMS);
@@ -125,8 +98,8 @@ static void emit_dot(const struct emitter *e)
 		say(e, "    }\n");
 	for (int k = whole; k < states; k++)
 		say(e, "    %c += row[%d] * x[%d];\n", 'a' + k - whole, k, k);
-	say(e, "    return ((a + e) + (b + f)) + ((c + g) + (d + h));\n"
-	       "}\n");
+	say(e, "    return ((a + e) + (b + f)) + ((c + g) + (d + h));\n");
+	close_function(e, "");
 }
 
 void emit_modes(const struct emitter *e)
@@ -134,9 +107,10 @@ void emit_modes(const struct emitter *e)
 	const struct modal *modal = e->step->modal;
 	if (!modal)
 		return;
-	emit_turns(e);
-	emit_square(e, "Modes from states", "to_modes", modal->to, mode_names(e));
-	emit_square(e, "States from modes", "from_modes", modal->from, e->model->state_name);
+	emit_array(e, format("e^{p h} of each mode's pole p: real parts, imaginary parts%s",
+			     modal->reals ? ", what is real" : ""), "turn", 1, &modal->states, modal->turn, NULL);
+	emit_mode_rows(e, "Modes from states", "to_modes", modal->states, modal->to, mode_names(e));
+	emit_mode_rows(e, "States from modes", "from_modes", modal->states, modal->from, e->model->state_name);
 	emit_driving(e);
 	struct tape *rows = tape_new();
 	for (int i = 0; i < e->model->outputs; i++)

@@ -29,13 +29,11 @@ static void emit_waves(const struct emitter *e)
 		form[k] = form_unit((struct basis){ .kind = BASIS_WAVE, .wave = e->model->split->wave[k / 2].wave,
 						    .sine = k % 2 && is_there(e, k) });
 	struct reads r = reads_of(e->model, count, form);
-	say(e, "\n/* Known loads now */\n"
-	       "static void $n_waves(const $n *s, double wave[%d])\n"
-	       "{\n", count);
+	open_function(e, "Known loads now", "static void $n_waves(const $n *s, double wave[%d])", count);
 	emit_load_states(e, r.load, false);
 	for (int k = 0; k < count; k++)
 		say(e, "    wave[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* Where a step has them */
@@ -150,22 +148,28 @@ static void emit_rows_of_node(const struct emitter *e, const char *node, const c
 		    i == 0 ? "flow" : i == 1 ? "weight" : "of_wave", normal_of_step(e)->width, row[i]);
 }
 
-static void emit_node_modes(const struct emitter *e)
+/* Modes in a loop, and what the force is expected to be; NULL: it is not asked. The end of the function */
+static void emit_stage_sums(const struct emitter *e, int forces, const char *force, const char *expected)
 {
-	const struct normal *m = normal_of_step(e);
-	emit_node_tables(e);
-	say(e, "\nstatic inline void $n_node_modes(const $n *s, int which, int node, double force[%d][%d],\n"
-	       "    const double wave[], double eta[%d], double rate[%d])\n"
-	       "{\n", m->stages + 1, m->width, m->width, m->width);
-	emit_rows_of_node(e, "node - 1", "weight[node - 1]");
 	say(e, "    int i;\n"
 	       "    for (i = 0; i < %d; i++) {\n"
 	       "        eta[i] = %s;\n"
 	       "        rate[i] = %s;\n"
-	       "    }\n"
-	       "    (void)wave;\n"
-	       "}\n", m->width, stage_sum(e, 0, m->stages + 1, "force[%d][i]"),
-	    stage_sum(e, 1, m->stages + 1, "force[%d][i]"));
+	       "%s"
+	       "    }\n", normal_of_step(e)->width, stage_sum(e, 0, forces, force), stage_sum(e, 1, forces, force),
+	    expected ? format("        expected[i] = %s;\n", expected) : "");
+	close_function(e, "wave");
+}
+
+static void emit_node_modes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	emit_node_tables(e);
+	open_function(e, NULL, "static inline void $n_node_modes(const $n *s, int which, int node,\n"
+		      "    double force[%d][%d], const double wave[], double eta[], double rate[])", m->stages + 1,
+		      m->width);
+	emit_rows_of_node(e, "node - 1", "weight[node - 1]");
+	emit_stage_sums(e, m->stages + 1, "force[%d][i]", NULL);
 }
 
 /* From forces at the nodes of the last step, the last of which is the start of this one */
@@ -173,19 +177,19 @@ static void emit_forces_ahead(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	const int nodes = m->stages + 1;
-	say(e, "\nstatic inline void $n_forces_ahead(const $n *s, double force[%d][%d])\n"
-	       "{\n"
-	       "    int i;\n"
+	open_function(e, NULL, "static inline void $n_forces_ahead(const $n *s, double force[%d][%d])", nodes,
+		      m->width);
+	say(e, "    int i;\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        force[0][i] = s->force[%d][i];\n", nodes, m->width, m->width, m->stages);
+	       "        force[0][i] = s->force[%d][i];\n", m->width, m->stages);
 	for (int i = 0; i < m->stages; i++) {
 		struct row_sum s = { 0 };
 		for (int k = 0; k < nodes; k++)
 			add_summand(&s, scaled(m->ahead[i * nodes + k], format("s->force[%d][i]", k)));
 		say(e, "        force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 22));
 	}
-	say(e, "    }\n"
-	       "}\n");
+	say(e, "    }\n");
+	close_function(e, "");
 }
 
 static void emit_predict(const struct emitter *e)
@@ -198,22 +202,13 @@ static void emit_predict(const struct emitter *e)
 		   (const int[]){ m->banks, 2 * m->points, m->width }, m->step.weight, NULL);
 	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
 		   (const int[]){ m->banks, 2, m->width }, m->correct, NULL);
-	say(e, "\nstatic inline void $n_predict(const $n *s, int which, const double wave[],\n"
-	       "    double eta[%d], double rate[%d], double expected[%d])\n"
-	       "{\n", m->width, m->width, m->width);
+	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double wave[],\n"
+		      "    double eta[], double rate[], double expected[])");
 	emit_rows_of_node(e, format("%d", m->stages - 1), "past_weight");
 	for (int k = 0; k < m->points; k++)
 		say(e, "    const double *const force%d = s->force[%s];\n", k, k == 0 ? "s->newest" :
 		    format("s->newest >= %d ? s->newest - %d : s->newest + %d", k, k, m->points - k));
-	say(e, "    int i;\n"
-	       "    for (i = 0; i < %d; i++) {\n"
-	       "        eta[i] = %s;\n"
-	       "        rate[i] = %s;\n"
-	       "        expected[i] = %s;\n"
-	       "    }\n"
-	       "    (void)wave;\n"
-	       "}\n", m->width, stage_sum(e, 0, m->points, "force%d[i]"), stage_sum(e, 1, m->points, "force%d[i]"),
-	    tree(extrapolated.terms, extrapolated.term, 22));
+	emit_stage_sums(e, m->points, "force%d[i]", tree(extrapolated.terms, extrapolated.term, 22));
 }
 
 /* ---- a bank ---- */
@@ -248,17 +243,15 @@ static void emit_still(const struct emitter *e)
 		   (const int[]){ 2, width }, omega, NULL);
 	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
 		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->settled, NULL);
-	say(e, "\nstatic inline void $n_still(const double x[%d], const double wave[], double sum[%d])\n"
-	       "{\n"
-	       "    int i;\n", 2 * width, 2 * width);
+	open_function(e, NULL, "static inline void $n_still(const double x[], const double wave[], double sum[])");
+	say(e, "    int i;\n");
 	for (int j = 0; j < 2 * m->modes; j++)
 		add_summand(&s, spell(e, "$n_settled[%d][i] * x[%d]", j,
 				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
 	add_summand(&s, spell(e, "$n_settled[%d][i]", 2 * m->modes));
 	add_waves_of_columns(e, &s, 2 * m->modes + 1);
 	say_row_sum(e, "sum[i]", 2 * width, &s);
-	say(e, "    (void)wave;\n"
-	       "}\n");
+	close_function(e, "wave");
 }
 
 /* ---- the whole ---- */

@@ -74,9 +74,9 @@ void emit_input_samples(const struct emitter *e)
 void emit_inputs_now(const struct emitter *e)
 {
 	int inputs = e->system->inputs;
-	say(e, "\n/* Samples at the start of this step, their slopes in h */\n"
-	       "static inline void $n_inputs_now(const $n *s, const double u[], double start[], double slope[])\n"
-	       "{\n");
+	open_function(e, "Samples at the start of this step, their slopes in h",
+		      "static inline void $n_inputs_now(const $n *s, const double u[], double start[], "
+		      "double slope[])");
 	for (int i = 0; i < inputs; i++) {
 		bool ramp = e->system->input[i].hold;
 		say(e, "    start[%d] = %s[%d];\n"
@@ -84,9 +84,7 @@ void emit_inputs_now(const struct emitter *e)
 	}
 	if (!inputs)
 		say(e, "    start[0] = slope[0] = 0.0;  /* there are none */\n");
-	say(e, "    (void)s;\n"
-	       "    (void)u;\n"
-	       "}\n");
+	close_function(e, "s u");
 }
 
 static void emit_expansion_locals(const struct emitter *e)
@@ -121,28 +119,13 @@ void emit_force_table(const struct emitter *e)
 	const char **note = ARRAY(const char *, (size_t)x->order);
 	for (int k = 0; k < x->order; k++)
 		note[k] = format("of coefficient %d", k + 1);
-	say(e, "\n/* What the load states add to each coefficient, in each segment of time */\n"
-	       "static const double $n_force[%d][%d][%d] = {\n", segments, x->order, x->slots);
-	for (int s = 0; s < segments; s++) {
-		double *value = ARRAY(double, (size_t)(x->order * x->slots));
+	double *value = ARRAY(double, (size_t)(segments * x->order * x->slots)), *to = value;
+	for (int s = 0; s < segments; s++)
 		for (int k = 0; k < x->order; k++)
 			for (int j = 0; j < x->slots; j++)
-				value[k * x->slots + j] = x->changing[(j * segments + s) * stride + k];
-		say(e, "  {\n");
-		emit_number_rows(e, x->order, x->slots, value, note);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
-}
-
-static bool reads_instance(const struct emitter *e)
-{
-	const struct expansion *x = expansion(e);
-	bool instance = x->time;
-	for (int l = 0; l < e->system->loads; l++)
-		instance = instance || (x->load[l] && (e->phase[l] >= 0 || e->growth[l] >= 0 ||
-						       e->system->load[l].powers > 1));
-	return instance;
+				*to++ = x->changing[(j * segments + s) * stride + k];
+	emit_array(e, "What the load states add to each coefficient, in each segment of time", "force", 3,
+		   (const int[]){ segments, x->order, x->slots }, value, note);
 }
 
 void emit_coefficients(const struct emitter *e)
@@ -157,20 +140,22 @@ bool expands_in_step(const struct emitter *e)
 	return !has_offset(e) && !has_choices(e) && !e->ramps && expansion(e)->multiplications <= MOST;
 }
 
-static void emit_expansion_unread(const struct emitter *e)
+/* What of its parameters an expansion, or a part of one, may not read */
+static const char *unread(const struct emitter *e, const struct recurrences *r, bool part)
 {
 	const struct expansion *x = expansion(e);
-	bool tau = false;
-	for (int i = 0; i < e->system->inputs; i++)
-		tau = tau || (x->input[i] && e->system->input[i].hold);
-	if (!reads_instance(e) && !x->params)
-		say(e, "    (void)s;\n");
-	if (has_offset(e) && !reads_instance(e) && !tau)
-		say(e, "    (void)tau;\n");
-	if (changes(e) && !x->slots)
-		say(e, "    (void)segment;\n");
-	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
-		say(e, "    (void)slope;\n");
+	const int inputs = e->system->inputs;
+	const bool slope = any_of(x->slope, inputs) || (any_of(x->input, inputs) && e->ramps);
+	const bool when = has_choices(e) && !part && !tape_reads(tape_of_recurrences(r), TAPE_TIME, -1, 1);
+	return format("s %s%s%s%s%s", has_offset(e) || part ? "tau " : "", changes(e) && !part ? "segment " : "",
+		      slope ? "slope " : "", when ? "when " : "", part ? "interval " : "");
+}
+
+static const char *series_parameters(const struct emitter *e)
+{
+	return format("%s%s%s%s%s", has_offset(e) ? "double tau, " : "", has_choices(e) ? "double when, " : "",
+		      changes(e) ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
+		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
 }
 
 /* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
@@ -194,32 +179,20 @@ static void set_kept_coefficients(const struct emitter *e, struct recurrences *r
 			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
 }
 
-/* A choice by time that nothing reads */
-static void emit_unread_when(const struct emitter *e, const struct recurrences *r)
-{
-	if (has_choices(e) && !tape_reads(tape_of_recurrences(r), TAPE_TIME, -1, 1))
-		say(e, "    (void)when;\n");
-}
-
 void emit_expand_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	struct recurrences *r = series_new(e);
-	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
-	       "static void $n_expand(const $n *s, %s%s%s%s%sconst double y[$N_STATES], double c[%d][$c]%s)\n"
-	       "{\n",
-	    has_offset(e) ? "tau after now" : "now", spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h",
-	    has_offset(e) ? "double tau, " : "",
-	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "",
-	    input_parameters(e, AS_PARAMETERS),
-	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
-	    is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
+	open_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times y's k-th derivative",
+				has_offset(e) ? "tau after now" : "now",
+				spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
+		      "static void $n_expand(const $n *s, %sconst double y[$N_STATES], double c[%d][$c]%s)",
+		      series_parameters(e), x->order + 1,
+		      is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
 	emit_expansion_locals(e);
 	set_kept_coefficients(e, r);
 	emit_series_tape(e, r);
-	emit_expansion_unread(e);
-	emit_unread_when(e, r);
-	say(e, "}\n");
+	close_function(e, unread(e, r, false));
 }
 
 /* ---- some sequences alone: what is left over, or expressions at the ends of a step ---- */
@@ -233,46 +206,28 @@ static const char *part_parameters(const struct emitter *e)
 		      e->upper);
 }
 
-static void emit_part_unread(const struct emitter *e)
-{
-	const struct expansion *x = expansion(e);
-	bool tau = false;
-	for (int i = 0; i < e->system->inputs; i++)
-		tau = tau || (x->input[i] && e->system->input[i].hold);
-	if (!reads_instance(e) && !x->params)
-		say(e, "    (void)s;\n");
-	if (!reads_instance(e) && !tau)
-		say(e, "    (void)tau;\n");
-	if (any_of(x->slope, e->system->inputs) || (any_of(x->input, e->system->inputs) && e->ramps))
-		say(e, "    (void)slope;\n");
-	say(e, "    (void)interval;\n"
-	       "}\n");
-}
-
 void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* What is left over at state y, tau after now, with the formulas of these intervals: a force on\n"
-	       " * each equation that has some */\n"
-	       "static void $n_within(const $n *s, double tau, %s,\n"
-	       "    double left[%d])\n"
-	       "{\n", part_parameters(e), x->columns);
+	open_function(e, "What is left over at state y, tau after now, with the formulas of these intervals: a\n"
+		      " * force on each equation that has some",
+		      "static void $n_within(const $n *s, double tau, %s,\n"
+		      "    double left[%d])", part_parameters(e), x->columns);
 	struct recurrences *r = series_new(e);
 	emit_expansion_locals(e);
 	for (int c = 0; c < x->columns; c++)
 		series_set(r, format("left[%d]", c), x->column[c], 0);
 	emit_series_tape(e, r);
-	emit_part_unread(e);
+	close_function(e, unread(e, r, true));
 }
 
 void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	say(e, "\n/* Of each expression at state y, tau after now, its value and h times its slope; the sizes of the\n"
-	       " * terms of the value */\n"
-	       "static void $n_end(const $n *s, double tau, %s,\n"
-	       "    double e[][%d], double terms[%d])\n"
-	       "{\n", part_parameters(e), x->columns, x->columns);
+	open_function(e, "Of each expression at state y, tau after now, its value and h times its slope; the sizes\n"
+		      " * of the terms of the value",
+		      "static void $n_end(const $n *s, double tau, %s,\n"
+		      "    double e[][%d], double terms[%d])", part_parameters(e), x->columns, x->columns);
 	struct recurrences *r = series_new(e);
 	emit_expansion_locals(e);
 	for (int k = 0; k <= 1; k++)
@@ -281,7 +236,7 @@ void emit_ends_function(const struct emitter *e)
 	for (int c = 0; c < x->columns; c++)
 		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
 	emit_series_tape(e, r);
-	emit_part_unread(e);
+	close_function(e, unread(e, r, true));
 }
 
 /* from: p->, of a part of a step */
@@ -315,29 +270,17 @@ const char *expand_call(const struct emitter *e, const char *tau, const char *wh
 
 /* ---- slopes further on ---- */
 
-static const char *series_parameters(const struct emitter *e)
-{
-	return format("%s%s%s%s%s", has_offset(e) ? "double tau, " : "", has_choices(e) ? "double when, " : "",
-		      changes(e) ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
-		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
-}
-
 void emit_slopes_function(const struct emitter *e)
 {
 	struct recurrences *r = series_new(e);
-	say(e, "\n/* h times the slopes at state y, tau after now */\n"
-	       "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])\n"
-	       "{\n", series_parameters(e));
+	open_function(e, "h times the slopes at state y, tau after now",
+		      "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])",
+		      series_parameters(e));
 	emit_expansion_locals(e);
 	for (int i = 0; i < e->system->states; i++)
 		series_set(r, format("left[%d]", i), i, 1);
 	emit_series_tape(e, r);
-	emit_unread_when(e, r);
-	emit_expansion_unread(e);
-	if (is_divided(e))
-		say(e, "    (void)interval;\n");
-	say(e, "    (void)y;\n"
-	       "}\n");
+	close_function(e, format("%s%sy", unread(e, r, false), is_divided(e) ? "interval " : ""));
 }
 
 /* ---- its sum ---- */

@@ -195,12 +195,11 @@ void emit_passing(const struct emitter *e)
 	const bool forced = e->step->forced != NULL;
 	emit_series_slopes(e);
 	emit_passing_algorithm(e);
-	say(e, "\n/* The state tau after now, from change to change of the loads on the way. */\n"
-	       "static %s $n_pass(const $n *s, %s%s%s%sdouble tau, double y[$N_STATES])\n"
-	       "{\n"
-	       "    double x[%d];\n", forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "",
-	    input_parameter(e), layout->powers ? "const double *left, " : "", forced ? "int whole, " : "",
-	    layout->size);
+	open_function(e, "The state tau after now, from change to change of the loads on the way",
+		      "static %s $n_pass(const $n *s, %s%s%s%sdouble tau, double y[$N_STATES])",
+		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
+		      layout->powers ? "const double *left, " : "", forced ? "int whole, " : "");
+	say(e, "    double x[%d];\n", layout->size);
 	emit_series_vector(e);
 	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
@@ -218,15 +217,12 @@ void emit_changes(const struct emitter *e)
 		finite_number(e, e->system->change[i]);
 		say(e, "    %s,\n", two_text(e->system->change[i]));
 	}
-	say(e, "};\n"
-	       "\n"
-	       "/* Time from now to a change */\n"
-	       "static double $n_until(const $n *s, int change)\n"
-	       "{\n"
-	       "    %sconst pl_two h = %s;\n"
-	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n"
-	       "}\n", e->kind->own_factors ? "" : "static ",
+	say(e, "};\n");
+	open_function(e, "Time from now to a change", "static double $n_until(const $n *s, int change)");
+	say(e, "    %sconst pl_two h = %s;\n"
+	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n", e->kind->own_factors ? "" : "static ",
 	    e->kind->own_factors ? "{s->coeffs.h, s->coeffs.h_low}" : two_text(e->model->h));
+	close_function(e, "");
 }
 
 void emit_held_leftover(const struct emitter *e)
@@ -297,16 +293,13 @@ void emit_at(const struct emitter *e)
 	bool changes = e->system->segments > 1;
 	if (!changes && !has_peaks(e))
 		emit_series_slopes(e);
-	say(e, "\n"
-	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n",
-	    input_parameter(e));
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
 	e->kind->held(e);
 	if (changes)
 		emit_passing_at(e);
 	else
 		emit_series_at(e);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* ---- jump ---- */
@@ -348,19 +341,18 @@ static bool converts(const struct emitter *e)
 
 static void emit_conversion(const struct emitter *e)
 {
-	say(e, "\nstatic void $n_kept_state(const $n *s, double y[$N_STATES])\n"
-	       "{\n");
+	open_function(e, NULL, "static void $n_kept_state(const $n *s, double y[$N_STATES])");
 	if (e->step->forced || e->model->relative) {
 		say(e, "    int i;\n");
 		(e->step->forced ? emit_get_kept_state : emit_get_state)(e, "y");
 	} else {
 		say(e, "    $n_get(s, y);\n");
 	}
-	say(e, "}\n\nstatic void $n_keep_state($n *s, const double y[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n");
+	close_function(e, "");
+	open_function(e, NULL, "static void $n_keep_state($n *s, const double y[$N_STATES])");
+	say(e, "    int i;\n");
 	emit_set_state(e, "y", "    ");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* Of the states that have a low word, in its order; returns how many */
@@ -391,25 +383,23 @@ static void emit_leap_loads(const struct emitter *e, const struct leap *leap, co
 
 static void emit_pass_steps(const struct emitter *e)
 {
-	say(e, "\nstatic void $n_pass_steps($n *s, uint64_t n)\n"
-	       "{\n");
+	open_function(e, NULL, "static void $n_pass_steps($n *s, uint64_t n)");
 	emit_load_advance(e, "n");
 	say(e, "    s->k += n;\n");
 	if (e->step->anchors)
 		say(e, "    $n_drop_anchor(s);\n");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* n steps without a change of the loads, of independent blocks */
 static void emit_leap_by_blocks(const struct emitter *e, const struct leap *leap, int entries)
 {
-	say(e, "\nstatic void $n_leap($n *s, uint64_t n)\n"
-	       "{\n");
+	open_function(e, NULL, "static void $n_leap($n *s, uint64_t n)");
 	declare_blockwise_leap(e, leap);
 	emit_leap_loads(e, leap, "load");
 	emit_blockwise_leap(e, leap, entries);
-	say(e, "    $n_pass_steps(s, n);\n"
-	       "}\n");
+	say(e, "    $n_pass_steps(s, n);\n");
+	close_function(e, "");
 }
 
 static void emit_leap_functions(const struct emitter *e, const struct leap *leap)
@@ -418,11 +408,10 @@ static void emit_leap_functions(const struct emitter *e, const struct leap *leap
 		emit_conversion(e);
 	if (leap->size == e->system->states)
 		return;
-	say(e, "\nstatic void $n_leap_loads(const $n *s, pl_two load[%d])\n"
-	       "{\n", leap->size - e->system->states);
+	open_function(e, NULL, "static void $n_leap_loads(const $n *s, pl_two load[%d])",
+		      leap->size - e->system->states);
 	emit_leap_loads(e, leap, "load");
-	say(e, "    (void)s;\n"
-	       "}\n");
+	close_function(e, "s");
 }
 
 void emit_jump(const struct emitter *e)

@@ -37,21 +37,45 @@ void say(const struct emitter *e, const char *layout, ...)
 	discard(named);
 }
 
-const char *spell(const struct emitter *e, const char *layout, ...)
+static const char *spelled(const struct emitter *e, const char *layout, va_list arguments)
 {
 	char *named = strchr(layout, '$') ? with_names(e, layout) : NULL;
-	va_list arguments, again;
-	va_start(arguments, layout);
+	va_list again;
 	va_copy(again, arguments);
 	size_t size = (size_t)vsnprintf(NULL, 0, named ? named : layout, arguments) + 1;
 	char *text = ARRAY(char, size);
 	vsnprintf(text, size, named ? named : layout, again);
 	va_end(again);
-	va_end(arguments);
 	discard(named);
 	const char *result = format("%s", text);
 	discard(text);
 	return result;
+}
+
+const char *spell(const struct emitter *e, const char *layout, ...)
+{
+	va_list arguments;
+	va_start(arguments, layout);
+	const char *text = spelled(e, layout, arguments);
+	va_end(arguments);
+	return text;
+}
+
+void open_function(const struct emitter *e, const char *note, const char *layout, ...)
+{
+	va_list arguments;
+	va_start(arguments, layout);
+	say(e, "\n%s%s\n{\n", note ? format("/* %s */\n", note) : "", spelled(e, layout, arguments));
+	va_end(arguments);
+}
+
+void close_function(const struct emitter *e, const char *unread)
+{
+	for (size_t length; *unread; unread += length, unread += strspn(unread, " ")) {
+		length = strcspn(unread, " ");
+		say(e, "    (void)%.*s;\n", (int)length, unread);
+	}
+	say(e, "}\n");
 }
 
 void put(FILE *to, const char *text, size_t length)
