@@ -6,82 +6,44 @@
 #include <ctype.h>
 #include <string.h>
 
-/* Of the runtime and of <math.h>, with the name's part before the f; a function of <math.h> counts only where it is
- * called. */
-static const struct name { const char *name, *stem; bool called; } names[] = {
-	{ "double", "", false }, { "pl_turn", "pl_turn", false }, { "pl_turn_add", "pl_turn", false },
-	{ "pl_turn_times", "pl_turn", false }, { "pl_turn_at", "pl_turn", false }, { "pl_rate", "pl_rate", false },
-	{ "pl_rate_of", "pl_rate", false }, { "pl_lead", "pl_lead", false }, { "pl_lead_start", "pl_lead", false },
-	{ "pl_lead_change", "pl_lead", false },
-	{ "pl_cossin", "pl_cossin", false }, { "pl_growth", "pl_growth", false },
-	{ "pl_growth_add", "pl_growth", false }, { "pl_growth_times", "pl_growth", false },
-	{ "pl_growth_at", "pl_growth", false }, { "pl_growth_value", "pl_growth", false },
-	{ "pl_series", "pl_series", false }, { "pl_series_advance", "pl_series", false },
-	{ "pl_two", "pl_two", false }, { "pl_power_apply", "pl_power", false }, { "pl_until", "pl_until", false },
-	{ "pl_accumulate", "pl_accumulate", false }, { "pl_multiply", "pl_multiply", false },
-	{ "pl_multiply_add", "pl_multiply", false }, { "pl_not_finite", "pl_not_finite", false },
-	{ "pl_magnitude", "pl_magnitude", false }, { "pl_root", "pl_root", false },
-	{ "pl_factor", "pl_factor", false }, { "pl_factor_complex", "pl_factor", false },
-	{ "pl_solve", "pl_solve", false }, { "pl_solve_complex", "pl_solve", false },
-	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false },
-	{ "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false },
-	{ "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },
-	{ "pl_entry", "pl_entry", false }, { "pl_block", "pl_block", false },
-	{ "pl_block_increment", "pl_block", false }, { "pl_block_advance", "pl_block", false },
-	{ "pl_region_of", "pl_region", false }, { "pl_region_bounds", "pl_region", false },
-	{ "pl_cut", "pl_cut", false }, { "pl_cut_advance", "pl_cut", false },
-	{ "pl_region_large", "pl_region", false }, { "pl_region_reach", "pl_region", false },
-	{ "pl_impact", "pl_impact", false },
-	{ "pl_guards", "pl_guards", false }, { "pl_guards_start", "pl_guards", false },
-	{ "pl_guards_step", "pl_guards", false }, { "pl_guards_advance", "pl_guards", false },
-	{ "pl_guards_change", "pl_guards", false },
-	{ "pl_guards_kept_start", "pl_guards", false }, { "pl_guards_kept_step", "pl_guards", false },
-	{ "pl_guards_kept_advance", "pl_guards", false }, { "pl_guards_kept_change", "pl_guards", false },
-	{ "pl_switching_kept_start", "pl_switching", false }, { "pl_switching_kept_step", "pl_switching", false },
-	{ "pl_switching_kept_advance", "pl_switching", false }, { "pl_switching_kept_move", "pl_switching", false },
-	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
-	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
-	{ "pl_crossing", "pl_crossing", false }, { "pl_divided", "pl_divided", false },
-	{ "pl_divided_place", "pl_divided", false }, { "pl_divided_left", "pl_divided", false },
-	{ "pl_divided_rises", "pl_divided", false },
-	{ "pl_divided_next", "pl_divided", false }, { "pl_strike", "pl_strike", false },
-	{ "pl_instant", "pl_instant", false }, { "pl_chain", "pl_chain", false }, { "pl_events", "pl_events", false },
-	{ "pl_events_place", "pl_events", false }, { "pl_events_begin", "pl_events", false },
-	{ "pl_events_next", "pl_events", false }, { "pl_events_pass", "pl_events", false },
-	{ "pl_events_end", "pl_events", false }, { "pl_events_places", "pl_events", false },
-	{ "pl_peak", "pl_peak", false }, { "pl_peak_bend", "pl_peak", false },
-	{ "pl_lanes", "pl_lanes", false }, { "pl_lanes_load", "pl_lanes", false },
-	{ "pl_lanes_store", "pl_lanes", false },
-	{ "pl_lanes_above", "pl_lanes", false }, { "pl_lanes_all", "pl_lanes", false },
-	{ "pl_larger_size", "pl_larger_size", false },
-	{ "pl_lanes_peak", "pl_lanes", false }, { "pl_lanes_accumulate", "pl_lanes", false },
-	{ "pl_model", "pl_model", false },
-#define REAL_FUNCTION(NAME, name, argument, value, low, high) { #name, #name, true },
+/* Of the runtime: what is called so, or begins so before a _, has an f behind that. */
+static const char *const stems[] = {
+	"pl_turn", "pl_rate", "pl_lead", "pl_cossin", "pl_growth", "pl_series", "pl_two", "pl_power", "pl_until",
+	"pl_accumulate", "pl_multiply", "pl_not_finite", "pl_magnitude", "pl_root", "pl_factor", "pl_solve", "pl_term",
+	"pl_equations", "pl_increment", "pl_ramp", "pl_entry", "pl_block", "pl_region", "pl_cut", "pl_impact",
+	"pl_guards", "pl_switching", "pl_crossing", "pl_divided", "pl_strike", "pl_instant", "pl_chain", "pl_events",
+	"pl_peak", "pl_lanes", "pl_larger_size", "pl_model"
+};
+/* Of <math.h>, where they are called */
+static const char *const functions[] = {
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) #name,
 #include "read/functions.def"
 #undef REAL_FUNCTION
-	{ "fabs", "fabs", true }, { "atan2", "atan2", true },
-	{ "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
-	{ "copysign", "copysign", true }
+	"fabs", "atan2", "pow", "fmin", "fmax", "copysign"
 };
+
+/* Of a name up to where its f goes; 0: it has none */
+static size_t stem_of(const char *text, size_t length)
+{
+	for (size_t i = 0; i < sizeof stems / sizeof *stems; i++) {
+		size_t stem = strlen(stems[i]);
+		if (length >= stem && memcmp(text, stems[i], stem) == 0 && (length == stem || text[stem] == '_'))
+			return stem;
+	}
+	for (size_t i = 0; i < sizeof functions / sizeof *functions && text[length] == '('; i++)
+		if (is_named(text, length, functions[i]))
+			return length;
+	return 0;
+}
 
 static const char *print_name(FILE *to, const char *text)
 {
-	size_t length = name_length(text);
-	const char *end = text + length;
-	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-		const struct name *n = &names[i];
-		if (n->name[0] != text[0] || !is_named(text, length, n->name) || (n->called && *end != '('))
-			continue;
-		size_t stem = strlen(n->stem);
-		put(to, stem ? n->stem : "float", stem ? stem : strlen("float"));
-		if (stem) {
-			put(to, "f", 1);
-			put(to, text + stem, length - stem);
-		}
-		return end;
-	}
-	put(to, text, length);
-	return end;
+	size_t length = name_length(text), stem = stem_of(text, length);
+	bool type = is_named(text, length, "double");
+	put(to, type ? "float" : text, type ? strlen("float") : stem);
+	put(to, "f", stem > 0);
+	put(to, text + stem, type ? 0 : length - stem);
+	return text + length;
 }
 
 static bool is_exponent_sign(const char *c, const char *number)
@@ -101,14 +63,6 @@ static const char *print_number(FILE *to, const char *text)
 	return end;
 }
 
-static const char *print_until(FILE *to, const char *text, const char *close)
-{
-	const char *end = strstr(text + strlen(close), close);
-	end = end ? end + strlen(close) : text + strlen(text);
-	put(to, text, (size_t)(end - text));
-	return end;
-}
-
 /* At least one character */
 static const char *print_other(FILE *to, const char *text)
 {
@@ -121,15 +75,16 @@ static const char *print_other(FILE *to, const char *text)
 
 void print_single(FILE *to, const char *text)
 {
-	while (*text)
-		if (strncmp(text, "/*", 2) == 0)
-			text = print_until(to, text, "*/");
-		else if (*text == '"')
-			text = print_until(to, text, "\"");     /* names of states, outputs, files: no escapes */
+	while (*text) {
+		const char *quoted = behind_quoted(text, false);
+		put(to, text, quoted ? (size_t)(quoted - text) : 0);
+		if (quoted)
+			text = quoted;
 		else if (isdigit((unsigned char)*text))
 			text = print_number(to, text);
 		else if (in_name(*text))
 			text = print_name(to, text);
 		else
 			text = print_other(to, text);
+	}
 }
