@@ -48,6 +48,7 @@ void emit_int_list(const struct emitter *e, const char *name, int count, const i
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *whole_text(int number);
+void say_include(const struct emitter *e, const char *algorithm);
 /* For an algorithm that the file includes: PL_NAME, as it is called there */
 void say_macro(const struct emitter *e, const char *name, const char *text);
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
@@ -654,7 +655,18 @@ void emit_grips(const struct emitter *e);                         /* what fricti
 void emit_guards(const struct emitter *e, const struct guards *guards);
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
 /* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
-void open_table(const struct emitter *e, const char *name, const char *shape, const char *note);
+void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
+/* whole numbers; own: of an instance */
+void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number);
+void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number);
+void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
+		 const double *value, const char *const *row_name);
+void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
+		   double *const *value, const char *const *row_name);
+double **of_branches(const struct emitter *e, const struct pieces *p, double *(*of)(const struct region_piece *));
+/* A row of each branch */
+void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
+		      double *(*of)(const struct region_piece *));
 void close_table(const struct emitter *e);
 const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
@@ -677,6 +689,7 @@ void emit_region_at(const struct emitter *e);
 void emit_region_vector(const struct emitter *e, bool step);
 void declare_region_room(const struct emitter *e);                /* x, work */
 void declare_region_vector(const struct emitter *e);              /* x, i */
+void begin_macros(const struct emitter *e, const char *own);      /* own: what names of an algorithm begin with */
 /* what search.h asks for; ladder: as ladder_text */
 void emit_search(const struct emitter *e, const char *ladder);
 void emit_region_status(const struct emitter *e);

@@ -13,9 +13,7 @@ static double *turns_of(const struct region_piece *piece) { return piece->turns;
 static void emit_expression(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
-	say(e, "\n"
-	       "static double $o_expression(int i, const double x[%d])\n"
-	       "{\n", size);
+	open_function(e, NULL, "static double $o_expression(int i, const double x[%d])", size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
@@ -32,7 +30,7 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 		}
 		say(e, "    return %s;\n", terms ? tree(terms, term, 11) : "0.0");
 	}
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* `what` of the entries of x that `row` reads, summed */
@@ -46,12 +44,10 @@ static void emit_product(const struct emitter *e, const char *name, const char *
 			term[terms++] = *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j);
 			any = any || *what[j];
 		}
-	say(e, "static double $o_%s(const double row[%d], const double x[%d])\n"
-	       "{\n"
-	       "%s%s"
-	       "    return %s;\n"
-	       "}\n", name, size, size, terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n",
+	open_function(e, NULL, "static double $o_%s(const double row[%d], const double x[%d])", name, size, size);
+	say(e, "%s%s    return %s;\n", terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n",
 	    terms ? tree(terms, term, 11) : "0.0");
+	close_function(e, "");
 }
 
 /* Of tables of slopes; of bounds, in which what is never above 1 stands at the first of that; of other bounds */
@@ -66,9 +62,7 @@ static void emit_products(const struct emitter *e, const struct pieces *p)
 		for (int i = 0; i < slopes.rows; i++)
 			reads[j] = reads[j] || acts_at(&slopes, i, j);
 	}
-	say(e, "\n");
 	emit_product(e, "along", places(e, "x[%d]"), reads);
-	say(e, "\n");
 	emit_product(e, "sizes", most, all);
 	for (int j = 0; j < size; j++) {
 		all[j] = !p->bounded[j] || !bounded;
@@ -76,7 +70,6 @@ static void emit_products(const struct emitter *e, const struct pieces *p)
 		if (p->bounded[j])
 			most[j] = "";
 	}
-	say(e, "\n");
 	emit_product(e, "most", most, all);
 }
 
@@ -85,14 +78,12 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 {
 	int n = expressions_of(e), size = e->step->layout.size;
 	const char **magnitude = entries(e, "pl_magnitude(x[%d])");
-	say(e, "\n"
-	       "static void $o_bounds(int which, const double x[%d], double off[%d])\n"
-	       "{\n", size, n);
+	open_function(e, NULL, "static void $o_bounds(int which, const double x[%d], double off[%d])", size, n);
 	for (int i = 0; i < n; i++)
 		say(e, "    off[%d] = %s;\n", i,
 		    any_pieces(e) ? off_text(e, p, -1, i, magnitude, 13)
 				  : spell(e, "$o_sizes($o_sag[which][%d], x)", i));
-	say(e, any_pieces(e) ? "    (void)which;\n    (void)x;\n}\n" : "}\n");
+	close_function(e, any_pieces(e) ? "which x" : "");
 }
 
 /* ---- x(s) ---- */
@@ -103,17 +94,14 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	int size = e->step->layout.size;
 	struct region_tables whole = steps_of_regions(e, p, "factor");
 	const char **x = entries(e, "x[%d]");
-	say(e, "\n"
-	       "static void $o_advance(int which, const double x[%d], double end[%d])\n"
-	       "{\n"
-	       "    const double (*const factor)[%d] = $o_pieces[which];\n",
-	    size, size, size);
+	open_function(e, NULL, "static void $o_advance(int which, const double x[%d], double end[%d])", size, size);
+	say(e, "    const double (*const factor)[%d] = $o_pieces[which];\n", size);
 	for (int i = 0; i < size; i++)
 		if (keeps_rest(e))
 			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));
 		else
 			say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
-	say(e, is_table(&whole) && !keeps_rest(e) ? "}\n" : "    (void)factor;\n}\n");
+	close_function(e, is_table(&whole) && !keeps_rest(e) ? "" : "factor");
 }
 
 static bool moves(const struct region_tables *t, int row)
@@ -168,13 +156,11 @@ static const char *turned_row(const struct emitter *e, const struct region_table
 static void emit_turn(const struct emitter *e, const struct region_tables *t)
 {
 	int size = e->step->layout.size;
-	say(e, "\n"
-	       "static void $o_turn_once(int which, const double x[%d], double d[%d])\n"
-	       "{\n", size, size);
+	open_function(e, NULL, "static void $o_turn_once(int which, const double x[%d], double d[%d])", size, size);
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
 		say(e, "    d[%d] = %s;\n", i, turned_row(e, t, i, "x[%d]", true));
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 static void emit_weights(const struct emitter *e, const struct pieces *p)
@@ -192,11 +178,10 @@ static void emit_weights(const struct emitter *e, const struct pieces *p)
 static void emit_move(const struct emitter *e, const struct pieces *p, const struct region_tables *t)
 {
 	int size = e->step->layout.size;
-	say(e, "\n"
-	       "static void $o_move(int which, const double x[%d], double s, double gain[%d])\n"
-	       "{\n"
-	       "    double power = s;\n"
-	       "    int k;\n", size, size);
+	open_function(e, NULL, "static void $o_move(int which, const double x[%d], double s, double gain[%d])",
+		      size, size);
+	say(e, "    double power = s;\n"
+	       "    int k;\n");
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
 		if (moves(t, i))
@@ -215,18 +200,16 @@ static void emit_move(const struct emitter *e, const struct pieces *p, const str
 	say(e, "    }\n");
 	for (int i = 0; i < size; i++)
 		say(e, moves(t, i) ? "    gain[%d] = sum%d;\n" : "    gain[%d] = 0.0;\n", i, i);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* ---- what few.h asks beside ---- */
 
 static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 {
-	say(e, "\n"
-	       "static double $o_size_of(const double x[%d])\n"
-	       "{\n"
-	       "    return %s;\n"
-	       "}\n", e->step->layout.size, size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 11));
+	open_function(e, NULL, "static double $o_size_of(const double x[%d])", e->step->layout.size);
+	say(e, "    return %s;\n", size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 11));
+	close_function(e, "");
 }
 
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p)

@@ -21,14 +21,6 @@ int rungs_of_all(const struct emitter *e)
 
 /* ---- tables ---- */
 
-static void emit_places(const struct emitter *e, const char *name, const char *note, int count, const int *number)
-{
-	say(e, "\nstatic const int $o_%s[%d] = {  /* %s */\n    ", name, count, note);
-	for (int i = 0; i < count; i++)
-		say(e, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", number[i]);
-	say(e, "\n};\n");
-}
-
 /* Where the rungs of each matrix begin, which is fixed */
 void emit_ladder_places(const struct emitter *e, const struct guards *g)
 {
@@ -37,19 +29,18 @@ void emit_ladder_places(const struct emitter *e, const struct guards *g)
 		first[k] = next;
 	if (!has_ladder(e->step))
 		return;
-	emit_places(e, "first_rung", "of each matrix", e->step->branches, first);
+	put_wholes(e, false, "first_rung", "of each matrix", e->step->branches, first);
 	if (g)
-		emit_places(e, "gate_rung", "of each row of guards", g->rows, g->reach_at);
+		put_wholes(e, false, "gate_rung", "of each row of guards", g->rows, g->reach_at);
 }
 
 void emit_spacing(const struct emitter *e)
 {
-	if (!has_ladder(e->step))
-		return;
-	say(e, e->model->retuned ? "    {" : "\nstatic const int $o_spacing[] = {");
+	int *spacing = ARRAY(int, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
-		say(e, "%s%d", k ? ", " : "", e->step->branch[k].spacing);
-	say(e, e->model->retuned ? "},  /* spacing */\n" : "};\n");
+		spacing[k] = e->step->branch[k].spacing;
+	if (has_ladder(e->step))
+		put_wholes(e, e->model->retuned, "spacing", "between lengths of pieces", e->step->branches, spacing);
 }
 
 static const char **names_of_rung(const struct emitter *e)
@@ -66,20 +57,15 @@ static const char **names_of_rung(const struct emitter *e)
 
 static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 {
-	int size = e->step->layout.size, rows = rows_of_rung(e);
-	double *none = ARRAY(double, (size_t)rows * (size_t)size);
-	open_table(e, "rungs", format("[%d][%d][%d]", rungs_of_all(e), rows, size),
-		   keeps_rest(e) ? "e^{A d} - I in two words, of pieces that are shorter than h"
-				 : "e^{A d} of pieces that are shorter than h, less I where the last row has 1");
+	int size = e->step->layout.size, rows = rows_of_rung(e), count = 0;
+	double *none = ARRAY(double, (size_t)rows * (size_t)size), **rung = ARRAY(double *, (size_t)rungs_of_all(e));
 	for (int k = 0; k < e->step->branches; k++)
-		for (int r = 0; r < room_of(e, k); r++) {
-			say(e, "  {\n");
-			emit_number_rows(e, rows, size,
-					 r < e->step->branch[k].rungs ? pieces->piece[k].rung[r] : none,
-					 names_of_rung(e));
-			say(e, "  },\n");
-		}
-	close_table(e);
+		for (int r = 0; r < room_of(e, k); r++)
+			rung[count++] = r < e->step->branch[k].rungs ? pieces->piece[k].rung[r] : none;
+	put_matrices(e, "rungs",
+		      keeps_rest(e) ? "e^{A d} - I in two words, of pieces that are shorter than h"
+				    : "e^{A d} of pieces that are shorter than h, less I where the last row has 1",
+		      count, rows, size, rung, names_of_rung(e));
 }
 
 int rows_of_rung(const struct emitter *e)
@@ -111,9 +97,8 @@ static void emit_reach_of(const struct emitter *e, const struct pieces *pieces, 
 	const char **note = ARRAY(const char *, (size_t)rows);
 	for (int i = 0; i < rows; i++)
 		note[i] = "over the next longer one";
-	open_table(e, "bend", format("[%d][%d]", rows, size), "times |x''|: off the chord in such a piece, at most");
-	emit_number_rows(e, rows, size, g ? g->reach : reach_of_all(e, pieces), note);
-	close_table(e);
+	put_matrix(e, "bend", "times |x''|: off the chord in such a piece, at most", rows, size,
+		   g ? g->reach : reach_of_all(e, pieces), note);
 }
 
 void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *g)

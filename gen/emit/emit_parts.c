@@ -63,14 +63,6 @@ static void for_parts(const struct emitter *e, int count, void (*emit)(const str
 
 /* ---- tables ---- */
 
-static void emit_indices(const struct emitter *part, const char *name, int count, const int *index, const char *note)
-{
-	say(part, "static const int $o_%s[%d] = {", name, count);
-	for (int i = 0; i < count; i++)
-		say(part, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", index[i]);
-	say(part, "};  /* %s */\n", note);
-}
-
 /* What each region of the part adds to the number of the model's */
 static void emit_shares(const struct emitter *part, const struct switching *whole)
 {
@@ -78,8 +70,8 @@ static void emit_shares(const struct emitter *part, const struct switching *whol
 	int *share = ARRAY(int, (size_t)s->regions);
 	for (int r = 0; r < s->regions; r++)
 		share[r] = share_of_region(part->part, whole, r);
-	emit_indices(part, "share", s->regions, share, "of each region in the number of the model's region");
-	emit_indices(part, "number", s->expressions, part->part->expression, "of its expressions");
+	put_wholes(part, false, "share", "of each region in the number of the model's region", s->regions, share);
+	put_wholes(part, false, "number", "of its expressions", s->expressions, part->part->expression);
 }
 
 /* Of a state in two words each matrix has second ones behind the first */
@@ -100,31 +92,6 @@ static const char *note_of_pieces(const struct emitter *part)
 	return keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}";
 }
 
-static void emit_matrix(const struct emitter *part, const char *name, const char *note, const double *value)
-{
-	int size = part->step->layout.size, rows = size_of_vector(part);
-	say(part, "\n"
-		  "static const double $o_%s[%d][%d] = {  /* %s */\n", name, rows, size, note);
-	emit_number_rows(part, rows, size, value, names_of_rows(part));
-	say(part, "};\n");
-}
-
-static void emit_matrices_of_linear(const struct emitter *part, const char *name, const char *note,
-				    double *(*of)(const struct region_piece *piece))
-{
-	struct pieces pieces = pieces_of(part->step);
-	int size = part->step->layout.size, rows = size_of_vector(part);
-	say(part, "\n"
-		  "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
-	    name, part->step->branches, rows, size, note);
-	for (int k = 0; k < part->step->branches; k++) {
-		say(part, "  {\n");
-		emit_number_rows(part, rows, size, of(&pieces.piece[k]), names_of_rows(part));
-		say(part, "  },\n");
-	}
-	say(part, "};\n");
-}
-
 static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
 static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
 static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
@@ -134,21 +101,23 @@ static void emit_linear_tables(const struct emitter *part)
 {
 	const struct switching *s = regions_of(part);
 	struct pieces pieces = pieces_of(part->step);
-	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)part->step->branches);
+	int branches = part->step->branches, size = part->step->layout.size, rows = size_of_vector(part);
+	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)branches);
 	for (int k = 0; k < s->segments; k++)
 		matrix[k] = s->region[k].system;
-	for (int k = 0; k < part->step->branches; k++)
+	for (int k = 0; k < branches; k++)
 		halvings[k] = part->step->branch[k].halvings;
-	emit_matrices_of_linear(part, "slopes", note_of_slopes(part), slopes_of_piece);
-	emit_matrices_of_linear(part, "pieces", note_of_pieces(part), keeps_rest(part) ? gain_of_piece : Phi_of_piece);
-	say(part, "\n");
-	emit_indices(part, "matrix", s->segments, matrix, "in each segment of time");
-	emit_indices(part, "halvings", part->step->branches, halvings, "log2 of the pieces of a step");
+	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
+		     of_branches(part, &pieces, slopes_of_piece), names_of_rows(part));
+	put_matrices(part, "pieces", note_of_pieces(part), branches, rows, size,
+		     of_branches(part, &pieces, keeps_rest(part) ? gain_of_piece : Phi_of_piece), names_of_rows(part));
+	put_wholes(part, false, "matrix", "in each segment of time", s->segments, matrix);
+	put_wholes(part, false, "halvings", "log2 of the pieces of a step", branches, halvings);
 	emit_ladder_places(part, NULL);
 	emit_spacing(part);
 	emit_ladder(part, &pieces, NULL);
 	emit_search(part, ladder_text(part, NULL));
-	say(part, "#include \"search.h\"\n");
+	say_include(part, "search.h");
 }
 
 static const char *names_of_part(const struct emitter *part)
@@ -163,7 +132,7 @@ static void emit_tables_of_part(const struct emitter *part)
 {
 	say(part, "\n/* ---- part %d: %s ---- */\n\n", (int)(part->part - part->step->shown->model->switching->part),
 	    names_of_part(part));
-	emit_indices(part, "state", part->system->states, part->part->state, "where its states are in y");
+	put_wholes(part, false, "state", "where its states are in y", part->system->states, part->part->state);
 	if (is_linear_part(part)) {
 		emit_linear_tables(part);
 		return;
@@ -234,14 +203,11 @@ void emit_part_members(const struct emitter *e)
 
 static void emit_place_of_part(const struct emitter *part)
 {
-	say(part, "\n"
-		  "static void $o_place($n *s%s)\n"
-		  "{\n"
-		  "    int i;\n", loads_text(part, true));
+	open_function(part, NULL, "static void $o_place($n *s%s)", loads_text(part, true));
 	declare_region_room(part);
 	emit_region_vector(part, false);
 	emit_region_start_call(part);
-	say(part, "}\n");
+	close_function(part, "");
 }
 
 static void emit_place_call(const struct emitter *part)
@@ -252,74 +218,39 @@ static void emit_place_call(const struct emitter *part)
 void emit_part_start(const struct emitter *e)
 {
 	for_parts(e, divided_parts(e), emit_place_of_part);
-	say(e, "\n"
-	       "/* The regions of a state */\n"
-	       "static void $n_place($n *s)\n"
-	       "{\n");
+	open_function(e, "The regions of a state", "static void $n_place($n *s)");
 	emit_turned_loads(e, needed_loads(e, false), false);
 	for_parts(e, divided_parts(e), emit_place_call);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 /* ---- questions ---- */
 
-static const char *list_of(const struct emitter *e, const char *table)
+static void emit_list_of_parts(const struct emitter *e, const char *name, const char *table)
 {
 	const char *list = "";
 	for (int p = 0; p < divided_parts(e); p++)
-		list = format("%s%s%s_part%d_%s", list, p == 0 ? "" : p % 4 ? ", " : ",\n        ", e->name, p, table);
-	return list;
+		list = format("%s%s%s_part%d_%s", list, p == 0 ? "" : p % 4 ? ", " : ",\n    ", e->name, p, table);
+	say(e, "static const int *const $n_%s[] = {\n    %s\n};\n", name, list);
 }
 
-static void emit_region_number(const struct emitter *e)
+static void emit_questions(const struct emitter *e)
 {
-	int parts = divided_parts(e);
-	say(e, "\n"
-	       "int $n_region(const $n *s)\n"
-	       "{\n"
-	       "    return ");
-	for (int p = 0; p < parts; p++)
-		say(e, "%s$n_part%d_share[s->contact[%d].region]", p ? "\n           + " : "", p, p);
-	say(e, ";\n"
-	       "}\n"
-	       "\n"
-	       "uint64_t $n_crossed(const $n *s)\n"
-	       "{\n"
-	       "    return ");
-	for (int p = 0; p < parts; p++)
-		say(e, "%ss->contact[%d].total", p == 0 ? "" : p % 4 ? " + " : "\n           + ", p);
-	say(e, ";\n"
-	       "}\n");
-}
-
-/* Those of all parts, by time */
-static void emit_crossings(const struct emitter *e)
-{
-	int parts = divided_parts(e);
-	say(e, "\n"
-	       "int $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS])\n"
-	       "{\n"
-	       "    static const int *const number[%d] = {\n"
-	       "        %s\n"
-	       "    };\n"
-	       "    int next[%d] = {0}, count = 0, part, first;\n"
-	       "    for (;;) {\n"
-	       "        for (part = 0, first = -1; part < %d; part++)\n"
-	       "            if (next[part] < s->contact[part].crossings &&\n"
-	       "                (first < 0 || s->crossing[part][next[part]].time < "
-	       "s->crossing[first][next[first]].time))\n"
-	       "                first = part;\n"
-	       "        if (first < 0)\n"
-	       "            return count;\n"
-	       "        crossing[count] = s->crossing[first][next[first]++];\n"
-	       "        crossing[count].expression = number[first][crossing[count].expression];\n"
-	       "        count++;\n"
-	       "    }\n"
-	       "}\n",
-	    parts, list_of(e, "number"), parts, parts);
+	say(e, "\n");
+	emit_list_of_parts(e, "shares", "share");
+	emit_list_of_parts(e, "numbers", "number");
+	begin_macros(e, e->name);
+	say_macro(e, "PARTS", whole_text(divided_parts(e)));
+	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
+	say_include(e, "parts.h");
 }
 
 /* ---- a step ---- */
+
+static void begin_step(const struct emitter *part)
+{
+	open_function(part, NULL, "static void $o_step($n *s%s)", given_text(part, true));
+}
 
 static int acting_entries(const struct emitter *part, const double *whole)
 {
@@ -331,12 +262,10 @@ static int acting_entries(const struct emitter *part, const double *whole)
 
 static void emit_linear_loop(const struct emitter *part, const double *whole)
 {
-	emit_matrix(part, "whole", "e^{A h}", whole);
-	say(part, "\n"
-		  "static void $o_step($n *s%s)\n"
-		  "{\n"
-		  "    double x[%d], end[%d];\n"
-		  "    int i;\n", given_text(part, true), part->step->layout.size, part->system->states);
+	put_matrix(part, "whole", "e^{A h}", size_of_vector(part), part->step->layout.size, whole, names_of_rows(part));
+	begin_step(part);
+	say(part, "    double end[%d];\n", part->system->states);
+	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
 		  "    for (i = 0; i < %d; i++)\n"
@@ -391,9 +320,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	const char **x = linear_operands(part), **term = ARRAY(const char *, (size_t)size);
 	for (int i = 0; i < states; i++)
 		all[i] = true;
-	say(part, "\n"
-		  "static void $o_step($n *s%s)\n"
-		  "{\n", given_text(part, true));
+	begin_step(part);
 	emit_raw_locals(part, all);
 	for (int i = 0; i < part->system->inputs; i++)
 		if (part->system->input[i].hold)
@@ -410,21 +337,22 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	emit_unread(part, whole);
 }
 
-static const char *linear_contact(const struct emitter *part)
+/* That of a step that leaves no trace; of the linear part, which has none: in a segment of time */
+static void declare_contact(const struct emitter *part)
 {
-	return regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0, 0}")
-				    : "{0, 0, 0, 0, 0, 0}";
+	const char *contact = !is_linear_part(part)  ? spell(part, "s->contact$p")
+			      : regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0, 0}")
+						     : "{0, 0, 0, 0, 0, 0}";
+	say(part, "    pl_contact contact = %s;\n"
+		  "    pl_crossing crossing[%d];\n", contact, is_linear_part(part) ? 1 : MAX_EVENTS);
 }
 
 /* By the pieces of the search, which has nothing to look for */
 static void emit_linear_by_pieces(const struct emitter *part, const double *whole)
 {
 	(void)whole;
-	say(part, "\n"
-		  "static void $o_step($n *s%s)\n"
-		  "{\n"
-		  "    pl_contact contact = %s;\n"
-		  "    pl_crossing crossing[1];\n", given_text(part, true), linear_contact(part));
+	begin_step(part);
+	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    $o_search(s, $N_H, x, &contact, crossing);\n");
@@ -443,9 +371,9 @@ static void emit_linear_step(const struct emitter *part)
 	for (int i = 0; i < part->system->states; i++)
 		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
 	say(part, "    if (!(%s < %s))\n"
-		  "        s->status |= pl_not_finite(s->y, $N_STATES);\n"
-		  "}\n",
+		  "        s->status |= pl_not_finite(s->y, $N_STATES);\n",
 	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
+	close_function(part, "");
 }
 
 static void emit_divided_step(const struct emitter *part)
@@ -453,9 +381,7 @@ static void emit_divided_step(const struct emitter *part)
 	bool *all = ARRAY(bool, (size_t)part->system->states);
 	for (int i = 0; i < part->system->states; i++)
 		all[i] = true;
-	say(part, "\n"
-		  "static void $o_step($n *s%s)\n"
-		  "{\n", given_text(part, true));
+	begin_step(part);
 	if (part->step->swift) {
 		emit_raw_locals(part, all);
 		emit_clear_step(part);
@@ -464,7 +390,7 @@ static void emit_divided_step(const struct emitter *part)
 		emit_region_vector(part, true);
 		say(part, "    $o_seek(s, x);\n");
 	}
-	say(part, "}\n");
+	close_function(part, "");
 }
 
 static void emit_step_of_part(const struct emitter *part)
@@ -480,9 +406,7 @@ static void emit_step_call(const struct emitter *part)
 void emit_parts_step(const struct emitter *e)
 {
 	for_parts(e, e->step->parts, emit_step_of_part);
-	say(e, "\n"
-	       "void $n_step(%s)\n"
-	       "{\n", step_parameters(e));
+	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e, true), false);
 	for_parts(e, e->step->parts, emit_step_call);
@@ -491,31 +415,23 @@ void emit_parts_step(const struct emitter *e)
 	emit_segment_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
 		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
-	say(e, "}\n");
-	emit_region_number(e);
-	emit_crossings(e);
+	close_function(e, "");
+	emit_questions(e);
 }
 
 /* ---- between steps ---- */
 
 static void emit_at_of_part(const struct emitter *part)
 {
-	bool linear = is_linear_part(part);
-	say(part, "\n"
-		  "static void $o_at(const $n *s%s, double tau, double y[$N_STATES])\n"
-		  "{\n", given_text(part, true));
-	if (linear)
-		say(part, "    pl_contact contact = %s;\n"
-			  "    pl_crossing crossing[1];\n", linear_contact(part));
-	else
-		say(part, "    pl_contact contact = s->contact$p;\n"
-			  "    pl_crossing crossing[%d];\n", MAX_EVENTS);
+	open_function(part, NULL, "static void $o_at(const $n *s%s, double tau, double y[$N_STATES])",
+		      given_text(part, true));
+	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    $o_search(s, tau, x, &contact, crossing);\n");
 	say(part, "    for (i = 0; i < %d; i++)\n"
-		  "        y[$o_state[i]] = x[i];\n"
-		  "}\n", part->system->states);
+		  "        y[$o_state[i]] = x[i];\n", part->system->states);
+	close_function(part, "");
 }
 
 static void emit_at_call(const struct emitter *part)
@@ -537,12 +453,10 @@ void emit_parts_at(const struct emitter *e)
 {
 	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 	for_parts(e, e->step->parts, emit_at_of_part);
-	say(e, "\n"
-	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n", u);
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
 	emit_load_states(e, needed_loads(e, true), false);
 	for_parts(e, e->step->parts, emit_at_call);
 	if (given_inputs(e) && !any_part_takes_inputs(e))
 		say(e, "    (void)u;\n");
-	say(e, "}\n");
+	close_function(e, "");
 }

@@ -40,112 +40,73 @@ static double *slope_of_piece(const struct region_piece *piece)  { return piece-
 static double *second_of_piece(const struct region_piece *piece) { return piece->second; }
 static double *fourth_of_piece(const struct region_piece *piece) { return piece->fourth; }
 
-static void emit_matrices(const struct emitter *e, const struct pieces *pieces, const struct matrices *m)
-{
-	int size = e->step->layout.size;
-	open_table(e, m->name, format("[%d][%d][%d]", e->step->branches, m->rows, size), m->note);
-	for (int k = 0; k < e->step->branches; k++) {
-		say(e, "  {\n");
-		emit_number_rows(e, m->rows, size, m->of(&pieces->piece[k]), m->row_name);
-		say(e, "  },\n");
-	}
-	close_table(e);
-}
-
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
 	const struct switching *s = regions_of(e);
 	int size = e->step->layout.size;
-	bool several = regions_change(e);
-	const char *shape = format("%s[%d][%d]", several ? format("[%d]", s->segments) : "", s->expressions, size);
-	open_table(e, "row", shape, format("expressions that breakpoints divide%s",
-					   several ? ", in each segment of time" : ""));
-	for (int k = 0; k < s->segments; k++) {
-		say(e, several ? "  {\n" : "");
-		emit_number_rows(e, s->expressions, size, pieces->rows[k], expression_names(e));
-		say(e, several ? "  },\n" : "");
-	}
-	close_table(e);
+	if (regions_change(e))
+		put_matrices(e, "row", "expressions that breakpoints divide, in each segment of time", s->segments,
+			      s->expressions, size, pieces->rows, expression_names(e));
+	else
+		put_matrix(e, "row", "expressions that breakpoints divide", s->expressions, size, pieces->row,
+			    expression_names(e));
 }
 
-static void emit_break_counts(const struct emitter *e)
+static int breaks_of(const struct emitter *e, int *breaks)
 {
 	const struct switching *s = regions_of(e);
-	say(e, "\nstatic const int $o_breaks[] = {");
+	int all = 0;
 	for (int i = 0; i < s->expressions; i++)
-		say(e, "%s%d", i ? ", " : "", s->expression[i].breaks);
-	say(e, "};\n");
+		all += breaks[i] = s->expression[i].breaks;
+	return all;
 }
 
-static void emit_breakpoints(const struct emitter *e, const struct pieces *pieces)
+static void emit_breaks(const struct emitter *e, const struct pieces *pieces, bool own)
 {
-	const struct switching *s = regions_of(e);
-	int shown = 0;
-	say(e, e->model->retuned ? "    {" : "static const double $o_breakpoint[] = {");
-	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].breaks; k++, shown++)
-			say(e, "%s%s", shown ? ", " : "", shortest(pieces->breakpoint[shown]));
-	say(e, e->model->retuned ? "},  /* breakpoint */\n" : "};\n");
+	int *breaks = ARRAY(int, (size_t)expressions_of(e)), all = breaks_of(e, breaks);
+	if (!own)
+		put_wholes(e, false, "breaks", "breakpoints of each expression", expressions_of(e), breaks);
+	if (own || !e->model->retuned)
+		put_numbers(e, "breakpoint", "those of each expression", all, pieces->breakpoint);
 }
 
 static void emit_halvings(const struct emitter *e)
 {
-	say(e, e->model->retuned ? "    {" : "\nstatic const int $o_halvings[] = {");
+	int *halvings = ARRAY(int, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
-		say(e, "%s%d", k ? ", " : "", e->step->branch[k].halvings);
-	say(e, e->model->retuned ? "},  /* halvings */\n" : "};\n");
+		halvings[k] = e->step->branch[k].halvings;
+	put_wholes(e, e->model->retuned, "halvings", "of h, to a piece", e->step->branches, halvings);
 }
 
 static void emit_region_numbers(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
-	say(e, "\n"
-	       "static const int $o_matrix[%d] = {  /* of each region%s; -1: its inequalities cannot hold together */\n"
-	       "    ",
-	    s->regions, regions_change(e) ? ", segment of time by segment" : "");
-	for (int r = 0; r < s->regions; r++) {
-		int matrix = s->region[r].possible ? s->region[r].system : -1;
-		say(e, "%s%d", r == 0 ? "" : r % 20 ? ", " : ",\n    ", matrix);
-	}
-	say(e, "\n"
-	       "};\n");
+	int *matrix = ARRAY(int, (size_t)s->regions);
+	for (int r = 0; r < s->regions; r++)
+		matrix[r] = s->region[r].possible ? s->region[r].system : -1;
+	put_wholes(e, false, "matrix", "of each region; -1: its inequalities cannot hold together", s->regions, matrix);
 }
 
 static double *added_of(const struct region_piece *piece) { return piece->added; }
 static double *still_of(const struct region_piece *piece) { return piece->still; }
 
-static void emit_own_rows(const struct emitter *e, const struct pieces *pieces, const char *note, int columns,
-			  double *(*of)(const struct region_piece *))
-{
-	say(e, "    {  /* %s */\n", note);
-	for (int k = 0; k < e->step->branches; k++)
-		for (int i = 0; i < columns; i++)
-			say(e, "%s%s%s", i ? ", " : "    {", shortest(of(&pieces->piece[k])[i]),
-			    i == columns - 1 ? "},\n" : "");
-	say(e, "    },\n");
-}
-
 /* By which a step sees over the whole of h that it stays clear */
 static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **expression)
 {
-	const struct matrices off = { "chord_off",
-				      "times |x|: how far each expression is off its chord over h, at most",
-				      regions_of(e)->expressions, expression, off_of };
-	emit_matrices(e, pieces, &off);
-	if (any_stays(e->step))
-		emit_own_rows(e, pieces, "added: over h to each state, by what stays of x", e->system->states,
-			      added_of);
-	if (any_still(e->step))
-		emit_own_rows(e, pieces, "still: to chord_off, by that and by what is never above 1",
-			      regions_of(e)->expressions, still_of);
-	say(e, "    {");
-	for (int i = 0; i < edges_of_regions(regions_of(e)); i++)
-		say(e, "%s%s", i ? ", " : "", shortest(pieces->edge[i]));
-	say(e, "},  /* edge: breakpoints of each expression less what stays of x, between open ends */\n"
-	       "    {");
+	int n = expressions_of(e);
+	double *large = ARRAY(double, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
-		say(e, "%s%s", k ? ", " : "", shortest(pieces->large));
-	say(e, "},  /* large: |x| that it has to be below */\n");
+		large[k] = pieces->large;
+	put_matrices(e, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
+		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, off_of), expression);
+	if (any_stays(e->step))
+		emit_of_branches(e, pieces, "added", "over h to each state, by what stays of x", e->system->states,
+				 added_of);
+	if (any_still(e->step))
+		emit_of_branches(e, pieces, "still", "to chord_off, by that and by what is never above 1", n, still_of);
+	put_numbers(e, "edge", "breakpoints of each expression less what stays of x, between open ends",
+		     edges_of_regions(regions_of(e)), pieces->edge);
+	put_numbers(e, "large", "|x| that it has to be below", e->step->branches, large);
 }
 
 /* All that an instance has where params are tunable, in the order of its struct; else each a table */
@@ -171,10 +132,11 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	emit_spacing(e);
 	if (e->model->retuned) {
 		emit_rows(e, pieces);
-		emit_breakpoints(e, pieces);
+		emit_breaks(e, pieces, true);
 	}
 	for (size_t i = 0; i < sizeof all / sizeof *all - (g ? 2 : 0); i++)
-		emit_matrices(e, pieces, &all[i]);
+		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
+			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
 	if (e->model->retuned && e->step->clears)
 		emit_own_look(e, pieces, expression);
@@ -190,9 +152,7 @@ void emit_regions(const struct emitter *e)
 		*g = guards_of(e->step, &pieces);
 	if (!e->model->retuned)
 		emit_rows(e, &pieces);
-	emit_break_counts(e);
-	if (!e->model->retuned)
-		emit_breakpoints(e, &pieces);
+	emit_breaks(e, &pieces, false);
 	emit_region_numbers(e);
 	emit_ladder_places(e, g);
 	if (g && e->model->retuned)
@@ -215,7 +175,7 @@ void emit_regions(const struct emitter *e)
 	emit_search(e, ladder_text(e, g));
 	if (e->step->swift)
 		emit_crossing_macros(e, &pieces);
-	say(e, "#include \"search.h\"\n");
+	say_include(e, "search.h");
 }
 
 /* ---- in the model's own functions ---- */
@@ -306,44 +266,56 @@ static bool any_lost(const struct emitter *e)
 	return any;
 }
 
-/* What search.h and few.h have in common */
-void emit_search(const struct emitter *e, const char *ladder)
+void begin_macros(const struct emitter *e, const char *own)
+{
+	say(e, "\n#define PL(name) %s_##name\n", own);
+	say_macro(e, "TYPE", e->name);
+	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
+}
+
+/* What search.h and few.h have in common, as numbers */
+static void emit_search_sizes(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
-	const char *search = has_guards(e) ? "pl_guards" : "pl_switching", *by = keeps_rest(e) ? "_kept" : "";
-	const bool alone = !e->step->shown->parts;
-	say(e, "\n#define PL(name) $o_##name\n");
-	say_macro(e, "TYPE", spell(e, "$n"));
-	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
-	say_macro(e, "KEPT", whole_text(keeps_rest(e)));
-	say_macro(e, "SIZE", whole_text(e->step->layout.size));
+	const bool divided = s->expressions > 0;
+	const struct size all[] = {
+		{ "KEPT", keeps_rest(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
+		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
+		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
+		{ "GUARDS", has_guards(e) }, { "OWN", e->model->retuned != NULL }, { "SEGMENTS", s->segments },
+		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
+		{ "BOUNCES", has_bounces(e->model) }
+	};
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		say_macro(e, all[i].name, whole_text(all[i].value));
+}
+
+void emit_search(const struct emitter *e, const char *ladder)
+{
+	const char *search = format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", keeps_rest(e) ? "_kept" : "");
+	begin_macros(e, e->own);
+	emit_search_sizes(e);
 	say_macro(e, "STATES", own_states(e));
 	say_macro(e, "ALL", spell(e, "$N_STATES"));
-	say_macro(e, "VECTOR", whole_text(size_of_vector(e)));
 	say_macro(e, "WORK", room_text(e));
 	say_macro(e, "H", spell(e, "$N_H"));
-	say_macro(e, "DEGREE", whole_text(e->step->series.degree));
-	say_macro(e, "EXPRESSIONS", whole_text(s->expressions));
-	say_macro(e, "IMPACTS", whole_text(s->impacts));
-	say_macro(e, "MAX_EVENTS", spell(e, s->expressions ? "$N_MAX_EVENTS" : "0"));
-	say_macro(e, "MAX_SPLITS", whole_text(has_guards(e) ? max_splits(e->model) : s->expressions ? MAX_SPLITS : 0));
+	say_macro(e, "MAX_EVENTS", expressions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
 	say_macro(e, "PLACE(i)", place_in_loop(e));
 	say_macro(e, "PART", e->place);
-	say_macro(e, "SEARCH", search);
-	say_macro(e, "START", format("%s%s_start", search, by));
-	say_macro(e, "ADVANCE", format("%s%s_advance", search, by));
-	say_macro(e, "GUARDS", whole_text(has_guards(e)));
 	say_macro(e, "LADDER", ladder);
-	say_macro(e, "OWN", whole_text(e->model->retuned != NULL));
-	say_macro(e, "SEGMENTS", whole_text(s->segments));
-	say_macro(e, "REGIONS", whole_text(regions_at_once(s)));
-	if (s->segments > 1) {
-		say_macro(e, "LOST", whole_text(any_lost(e)));
-		say_macro(e, "UNTIL(s, k)", spell(e, "$n_until(s, k)"));
-		say_macro(e, "CHANGE", format("%s%s_change", search, by));
-	}
-	say_macro(e, "ALONE", whole_text(alone));
-	say_macro(e, "BOUNCES", whole_text(has_bounces(e->model)));
+	say_macro(e, "SEARCH", has_guards(e) ? "pl_guards" : "pl_switching");
+	say_macro(e, "START", format("%s_start", search));
+	say_macro(e, "ADVANCE", format("%s_advance", search));
+	if (!regions_change(e))
+		return;
+	say_macro(e, "CHANGE", format("%s_change", search));
+	say_macro(e, "UNTIL(s, k)", spell(e, "$n_until(s, k)"));
+}
+
+void declare_region_vector(const struct emitter *e)
+{
+	say(e, "    double x[%d];\n"
+	       "    int i;\n", size_of_vector(e));
 }
 
 /* What friction carries now */
@@ -351,21 +323,21 @@ static void emit_grip(const struct emitter *e)
 {
 	if (!e->model->retuned)
 		emit_grips(e);
-	say(e, "\n"
-	       "static double $n_grip(const $n *s, int which)\n"
-	       "{\n"
-	       "    double x[%d], force;\n"
-	       "    int i;\n", size_of_vector(e));
+	open_function(e, NULL, "static double $n_grip(const $n *s, int which)");
+	say(e, "    double force;\n");
+	declare_region_vector(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"
-	       "    return force;\n"
-	       "}\n", e->step->layout.size, e->model->retuned ? "s->coeffs.grips" : spell(e, "$n_grips"));
+	       "    return force;\n", e->step->layout.size,
+	    e->model->retuned ? "s->coeffs.grips" : spell(e, "$o_grips"));
+	close_function(e, "");
 }
 
 void declare_region_room(const struct emitter *e)
 {
-	say(e, "    double x[%d], work[%s];\n", size_of_vector(e), room_text(e));
+	declare_region_vector(e);
+	say(e, "    double work[%s];\n", room_text(e));
 }
 
 void emit_region_start_call(const struct emitter *e)
@@ -375,16 +347,12 @@ void emit_region_start_call(const struct emitter *e)
 
 void emit_region_start(const struct emitter *e)
 {
-	say(e, "\n"
-	       "/* The region of a state */\n"
-	       "static void $n_place($n *s)\n"
-	       "{\n"
-	       "    int i;\n");
+	open_function(e, "The region of a state", "static void $n_place($n *s)");
 	declare_region_room(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
-	say(e, "}\n");
+	close_function(e, "");
 	if (regions_of(e)->felts > 0)
 		emit_grip(e);
 }
@@ -402,12 +370,6 @@ void emit_segment_end(const struct emitter *e)
 	else if (e->system->segments > 1)
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
 		       "        s->segment++;\n", e->system->segments - 1);
-}
-
-void declare_region_vector(const struct emitter *e)
-{
-	say(e, "    double x[%d];\n"
-	       "    int i;\n", size_of_vector(e));
 }
 
 static void emit_searched_step(const struct emitter *e)
@@ -438,27 +400,22 @@ static void emit_whole_step(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
-	say(e, "\n"
-	       "void $n_step(%s)\n"
-	       "{\n",
-	    step_parameters(e));
+	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
 	if (e->step->clears)
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
 		emit_region_status(e);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 void emit_region_at(const struct emitter *e)
 {
 	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
-	say(e, "\n"
-	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n"
-	       "    pl_contact contact = s->contact;\n"
-	       "    pl_crossing crossing[$N_MAX_EVENTS];\n", u);
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
+	say(e, "    pl_contact contact = s->contact;\n"
+	       "    pl_crossing crossing[$N_MAX_EVENTS];\n");
 	declare_region_vector(e);
 	if (has_guards(e))              /* what is held is put back to its place, off by rounding, in no time too */
 		emit_at_start(e);
@@ -466,5 +423,5 @@ void emit_region_at(const struct emitter *e)
 	emit_region_vector(e, true);
 	say(e, "    $o_search(s, tau, x, &contact, crossing);\n");
 	emit_hand_over(e);
-	say(e, "}\n");
+	close_function(e, "");
 }

@@ -7,6 +7,101 @@ int expressions_of(const struct emitter *e)
 	return e->model->switching->expressions;
 }
 
+/* ---- tables: of the file, or where params are tunable of an instance ---- */
+
+static void open_as(const struct emitter *e, bool own, const char *type, const char *name, const char *shape,
+		    const char *note)
+{
+	if (own)
+		say(e, "    {  /* %s: %s */\n", name, note);
+	else
+		say(e, "\nstatic const %s $o_%s%s = {  /* %s */\n", type, name, shape, note);
+}
+
+static void close_as(const struct emitter *e, bool own)
+{
+	say(e, own ? "    },\n" : "};\n");
+}
+
+void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)
+{
+	open_as(e, e->model->retuned, type, name, shape, note);
+}
+
+void close_table(const struct emitter *e)
+{
+	close_as(e, e->model->retuned);
+}
+
+static void put_items(const struct emitter *e, int count, int in_line, const char *const *item)
+{
+	for (int i = 0; i < count; i++)
+		say(e, "%s%s%s", i == 0 ? "    " : i % in_line ? ", " : ",\n    ", item[i], i == count - 1 ? "\n" : "");
+}
+
+void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number)
+{
+	const char **item = ARRAY(const char *, (size_t)count + 1);
+	item[0] = "0";
+	for (int i = 0; i < count; i++)
+		item[i] = whole_text(number[i]);
+	count = count > 0 ? count : 1;
+	open_as(e, own, "int", name, format("[%d]", count), note);
+	put_items(e, count, 20, item);
+	close_as(e, own);
+}
+
+void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number)
+{
+	const char **item = ARRAY(const char *, (size_t)count + 1);
+	for (int i = 0; i < count; i++)
+		item[i] = shortest(number[i]);
+	open_table(e, "double", name, format("[%d]", count), note);
+	put_items(e, count, 8, item);
+	close_table(e);
+}
+
+void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
+		 const double *value, const char *const *row_name)
+{
+	open_table(e, "double", name, format("[%d][%d]", rows, columns), note);
+	emit_number_rows(e, rows, columns, value, row_name);
+	close_table(e);
+}
+
+void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
+		   double *const *value, const char *const *row_name)
+{
+	open_table(e, "double", name, format("[%d][%d][%d]", count, rows, columns), note);
+	for (int k = 0; k < count; k++) {
+		say(e, "  {\n");
+		emit_number_rows(e, rows, columns, value[k], row_name);
+		say(e, "  },\n");
+	}
+	close_table(e);
+}
+
+double **of_branches(const struct emitter *e, const struct pieces *p, double *(*of)(const struct region_piece *))
+{
+	double **value = ARRAY(double *, (size_t)e->step->branches);
+	for (int k = 0; k < e->step->branches; k++)
+		value[k] = of(&p->piece[k]);
+	return value;
+}
+
+void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
+		      double *(*of)(const struct region_piece *))
+{
+	const char **row = ARRAY(const char *, (size_t)e->step->branches);
+	double **value = of_branches(e, p, of), *all = ARRAY(double, (size_t)(e->step->branches * columns));
+	for (int k = 0; k < e->step->branches; k++) {
+		row[k] = format("system %d", k);
+		for (int i = 0; i < columns; i++)
+			all[k * columns + i] = value[k][i];
+	}
+	put_matrix(e, name, note, e->step->branches, columns, all, row);
+}
+
 /* ---- what stands at an entry of tables that there are one of for each matrix ---- */
 
 bool acts_at(const struct region_tables *t, int row, int column)
@@ -51,11 +146,8 @@ const char *row_text(const struct region_tables *t, int row, const char *const *
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
 				      double *(*of)(const struct region_piece *))
 {
-	struct region_tables t = { text, rows, e->step->layout.size, 0, e->step->branches,
-			    ARRAY(double *, (size_t)e->step->branches), NULL };
-	for (int k = 0; k < e->step->branches; k++)
-		t.value[k] = of(&p->piece[k]);
-	return t;
+	return (struct region_tables){ text, rows, e->step->layout.size, 0, e->step->branches, of_branches(e, p, of),
+				       NULL };
 }
 
 static double *whole_of(const struct region_piece *piece)  { return piece->Phi; }
@@ -108,20 +200,12 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 	return row_text(&off, expression, size, further, indent);
 }
 
-/* ---- tables ---- */
+/* ---- of a step that clears ---- */
 
 static void emit_of_each(const struct emitter *e, const struct region_tables *t, const char *name, const char *note,
 			 const char *const *row_name)
 {
-	say(e, "\n"
-	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
-	    name, e->step->branches, t->rows, t->columns, note);
-	for (int k = 0; k < e->step->branches; k++) {
-		say(e, "  {\n");
-		emit_number_rows(e, t->rows, t->columns, t->value[k], row_name);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
+	put_matrices(e, name, note, e->step->branches, t->rows, t->columns, t->value, row_name);
 }
 
 bool any_pieces(const struct emitter *e)
@@ -132,57 +216,52 @@ bool any_pieces(const struct emitter *e)
 	return any;
 }
 
-static void emit_still(const struct emitter *e, const struct pieces *p)
+/* Of each region and expression */
+typedef const char *entry_text(const struct emitter *e, const struct pieces *p, int region, int expression);
+
+static void emit_of_regions(const struct emitter *e, const char *type, const char *name, const char *note,
+			    const char *inner, entry_text *text, const struct pieces *p)
 {
-	int expressions = expressions_of(e);
-	say(e, "\n"
-	       "static const double $o_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
-	    e->step->branches, expressions);
-	for (int k = 0; k < e->step->branches; k++)
-		for (int i = 0; i < expressions; i++)
-			say(e, "%s%s%s", i == 0 ? "    {" : ", ", shortest(p->piece[k].still[i]),
-			    i == expressions - 1 ? "},\n" : "");
-	say(e, "};\n");
+	int regions = e->model->switching->regions, n = expressions_of(e);
+	open_as(e, false, type, name, format("[%d][%d]%s", regions, n, inner), note);
+	for (int r = 0; r < regions; r++)
+		for (int i = 0; i < n; i++)
+			say(e, "%s%s%s", i == 0 ? "    {" : ", ", text(e, p, r, i), i == n - 1 ? "},\n" : "");
+	close_as(e, false);
+}
+
+static const char *span_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	(void)p;
+	return whole_text(interval_of(e->model->switching, region, expression));
+}
+
+static const char *within_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	int at = region * expressions_of(e) + expression;
+	return format("{%s, %s}", shortest(p->low[at]), shortest(p->high[at]));
+}
+
+static const char *beyond_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	const struct switching *s = e->model->switching;
+	int interval = interval_of(s, region, expression), stride = s->expression[expression].stride;
+	bool below = interval > 0 && s->region[region - stride].possible,
+	     above = interval < s->expression[expression].breaks && s->region[region + stride].possible;
+	(void)p;
+	return format("{%d, %d}", below ? region - stride : -1, above ? region + stride : -1);
 }
 
 void emit_spans(const struct emitter *e)
 {
-	const struct switching *s = e->model->switching;
-	int n = s->expressions;
-	say(e, "\n"
-	       "static const int $o_span[%d][%d] = {  /* of each expression, from the lowest one */\n",
-	    s->regions, n);
-	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < n; i++)
-			say(e, "%s%d%s", i == 0 ? "    {" : ", ", interval_of(s, r, i), i == n - 1 ? "},\n" : "");
-	say(e, "};\n");
+	emit_of_regions(e, "int", "span", "of each expression, from the lowest one", "", span_text, NULL);
 }
 
 /* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
 static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
-	const struct switching *s = e->model->switching;
-	int n = s->expressions;
-	say(e, "\n"
-	       "static const double $o_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
-	    s->regions, n);
-	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < n; i++)
-			say(e, "%s{%s, %s}%s", i == 0 ? "    {" : ", ", shortest(p->low[r * n + i]),
-			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
-	say(e, "};\n"
-	       "\n"
-	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
-	    s->regions, n);
-	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < n; i++) {
-			int interval = interval_of(s, r, i), stride = s->expression[i].stride;
-			bool below = interval > 0 && s->region[r - stride].possible,
-			     above = interval < s->expression[i].breaks && s->region[r + stride].possible;
-			say(e, "%s{%d, %d}%s", i == 0 ? "    {" : ", ", below ? r - stride : -1,
-			    above ? r + stride : -1, i == n - 1 ? "},\n" : "");
-		}
-	say(e, "};\n");
+	emit_of_regions(e, "double", "within", "what each expression is between in each region", "[2]", within_text, p);
+	emit_of_regions(e, "int", "beyond", "regions below and above; -1: none that can occur", "[2]", beyond_text, p);
 	emit_spans(e);
 }
 
@@ -205,7 +284,7 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &off, "chord_off",
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (reads && is_table(&still))
-		emit_still(e, p);
+		emit_of_branches(e, p, "still", "what 1, cos and sin add to that, at most", n, still_of);
 	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
 	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
 	emit_neighbours(e, p);
@@ -279,20 +358,6 @@ const char **listed_twice(int count, const char *const *text)
 	for (int i = 0; i < 2 * count; i++)
 		both[i] = text[i % count];
 	return both;
-}
-
-void open_table(const struct emitter *e, const char *name, const char *shape, const char *note)
-{
-	if (e->model->retuned)
-		say(e, "    {  /* %s: %s */\n", name, note);
-	else
-		say(e, "\n"
-		       "static const double $o_%s%s = {  /* %s */\n", name, shape, note);
-}
-
-void close_table(const struct emitter *e)
-{
-	say(e, e->model->retuned ? "    },\n" : "};\n");
 }
 
 const char *prefix_of_tables(const struct emitter *e)

@@ -208,3 +208,8 @@ void emit_int_list(const struct emitter *e, const char *name, int count, const i
 		say(e, i ? ", %d" : "%d", value[i]);
 	say(e, "};\n");
 }
+
+void say_include(const struct emitter *e, const char *algorithm)
+{
+	say(e, "#include \"%s\"\n", algorithm);
+}
