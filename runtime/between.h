@@ -36,12 +36,7 @@ typedef struct PL(piece) { /* a part of a step */
 /* A time by which conditions on t are decided from there on */
 static inline real PL(when)(const PL(piece) *p)
 {
-#if PL_CHOICES
-    return PL(time)(p->s) + (p->done + p->limit) / 2 * PL_H;
-#else
-    (void)p;
-    return 0;
-#endif
+    return PL(time_between)(p->s, p->done, p->limit);
 }
 
 /* ---- what it meets ---- */
@@ -167,18 +162,9 @@ static PL_APART int PL(gave_up)(const PL(piece) *p)
 /* Up to which part of the step, of which `end` is asked, the loads have one formula */
 static inline void PL(find_limit)(PL(piece) *p, real end)
 {
-    p->limit = end;
-#if PL_SEGMENTS > 1
-    for (; p->segment < PL_SEGMENTS - 1; p->segment++) {
-        const real change = PL(until)(p->s, p->segment) / PL_H;
-        p->limit = change < end ? change : end;
-        if (p->limit > p->done) {
-            return;
-        }
-        p->limit = end;
-        p->fresh = 1;
-    }
-#endif
+    const int segment = p->segment;
+    p->limit = PL(limit_of)(p->s, p->done, end, &p->segment);
+    p->fresh = p->fresh || p->segment != segment;
 }
 
 #if PL_ADAPTIVE
@@ -337,16 +323,5 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
     PL(watch)(&p, contact);
     contact->placed = 1;
     pl_events_place(&PL(events), &p.at);
-}
-#endif
-
-#if PL_EXPRESSIONS > 0
-/* So that its formulas are known; crossings are counted anew. */
-static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *contact)
-{
-    if (!contact->placed) {
-        PL(locate)(s, u, contact);
-    }
-    contact->crossings = 0;
 }
 #endif

@@ -9,7 +9,8 @@
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
  *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
  *     PL(expand_from), PL(inputs_now)   as taylor.h
- *     PL(divided)                a pl_divided, of the series */
+ *     PL(divided)                a pl_divided, of the series
+ *     PL(breaks), PL(breakpoint) of each expression how many breakpoints; these, one expression behind the other */
 #include "numbers.h"
 
 #define PL_LOCATES (PL_ORDER > 0 && PL_EXPRESSIONS > 0 && !PL_CONTACTS)
@@ -36,6 +37,51 @@ static inline real PL(change_after)(const PL_TYPE *s, real most)
 }
 #endif
 
+/* Up to which part of the step, of which `end` is asked, the loads have one formula behind `done`; *segment: its */
+static inline real PL(limit_of)(const PL_TYPE *s, real done, real end, int *segment)
+{
+#if PL_SEGMENTS > 1
+    for (; *segment < PL_SEGMENTS - 1; *segment += 1) {
+        const real change = PL(until)(s, *segment) / PL_H;
+        const real limit = change < end ? change : end;
+        if (limit > done) {
+            return limit;
+        }
+    }
+#endif
+    (void)s;
+    (void)done;
+    (void)segment;
+    return end;
+}
+
+/* Those whose time is over have others; whether some have */
+static inline int PL(change_loads)(PL_TYPE *s)
+{
+    int changed = 0;
+#if PL_SEGMENTS > 1
+    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
+        s->segment++;
+        changed = 1;
+    }
+#endif
+    (void)s;
+    return changed;
+}
+
+/* A time between these two [h], by which conditions on t are decided */
+static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
+{
+#if PL_CHOICES
+    return PL(time)(s) + (from + to) / 2 * PL_H;
+#else
+    (void)s;
+    (void)from;
+    (void)to;
+    return 0;
+#endif
+}
+
 #if PL_ADAPTIVE || PL_LOCATES
 /* A time in the middle of the step, before the loads change: there it is on one side of conditions on t, also when it
  * is late, or float. */
@@ -54,6 +100,30 @@ static inline real PL(middle)(const PL_TYPE *s)
 #endif
 
 /* ---- by the state ---- */
+
+#if PL_EXPRESSIONS > 0
+/* Of a state that was set: its intervals the next step finds, which knows its samples; until then they are the
+ * lowest. */
+static inline void PL(forget)(PL(contact) *contact)
+{
+    int i;
+    contact->placed = contact->crossings = 0;
+    contact->total = 0;
+    for (i = 0; i < PL_EXPRESSIONS; i++) {
+        contact->interval[i] = 0;
+    }
+}
+
+/* Where a crossing is, of the expression */
+static inline real PL(breakpoint_of)(const pl_crossing *crossing)
+{
+    int i, place = crossing->breakpoint;
+    for (i = 0; i < crossing->expression; i++) {
+        place += PL(breaks)[i];
+    }
+    return PL(breakpoint)[place];
+}
+#endif
 
 #if PL_EXPRESSIONS > 0 && !PL_CONTACTS
 /* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */
@@ -87,5 +157,20 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
     do {
         PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c, terms);
     } while (pl_divided_place(&PL(divided), c[0], terms, contact->interval) && again-- > 0);
+}
+#endif
+
+#if PL_LOCATES || PL_CONTACTS
+#if PL_CONTACTS
+static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact);
+#endif
+
+/* So that its formulas are known; crossings are counted anew. */
+static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *contact)
+{
+    if (!contact->placed) {
+        PL(locate)(s, u, contact);
+    }
+    contact->crossings = 0;
 }
 #endif

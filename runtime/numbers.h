@@ -15,6 +15,9 @@
 #define pl_divided_rises pl_dividedf_rises
 #define pl_divided_left pl_dividedf_left
 #define pl_divided_next pl_dividedf_next
+#define pl_cut pl_cutf
+#define pl_cut_begin pl_cutf_begin
+#define pl_cut_flow pl_cutf_flow
 #define pl_instant pl_instantf
 #define pl_chain pl_chainf
 #define pl_events_place pl_eventsf_place

@@ -113,16 +113,6 @@ static void PL(move_end)(PL_TYPE *s, const real start[], const real slope[],
     }
 }
 
-/* The breakpoint of a crossing */
-static inline real PL(breakpoint_of)(const pl_crossing *crossing)
-{
-    int i, first = 0;
-    for (i = 0; i < crossing->expression; i++) {
-        first += PL(breaks)[i];
-    }
-    return PL(breakpoint)[first + crossing->breakpoint];
-}
-
 /* Ends the step that was found at the first crossing in it, where there is one: 0, or what went wrong; PL_NO_MOVE: it
  * is at the start, so that nothing moves.  Near its start a polynomial may leave out more than what has just passed its
  * breakpoint has moved since: that comes back only if it does so along a shorter step too. */

@@ -426,6 +426,9 @@ static inline float pl_magnitudef(float a)
 #define PL_APART
 #endif
 
+/* No array is empty. */
+#define PL_ROOM(n) ((n) > 0 ? (n) : 1)
+
 /* ---- crossings.c: piecewise-linear models ------------------------------------------------------------------- */
 
 /* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t,
@@ -1096,38 +1099,36 @@ void pl_regionf_reach(int size, float h, int halvings, int spacing, const float 
 
 /* ---- cut.c: a part of a step of a scheme with a leftover ------------------------------------------------------ */
 
-/* y' = A y + what acts + forces.  x is y, then what acts (load states, inputs and their slopes), then three entries for
- * each force: its value and its first two derivatives. */
+/* e^{A tau} of x' = A x, of what is set up for one tau */
 typedef struct pl_cut {
-    int states, size; /* entries of y, of x */
-    int forces;
-    double fastest; /* the sizes |A| have no larger pole [1/s] */
-    /* those at y, this long [s] after the start of the step */
-    void (*force)(const void *from, double tau, const double *y, double *r);
+    int size, terms; /* entries of x; of the series, 0: there are tables */
+    double tau;      /* [s] */
+    const double *A, *D;
+    double *room;
 } pl_cut;
 
-/* next <- y, tau [s] later: off by O(tau^5), by e^{A tau} and e^{A tau / 2}, whatever A is: by their series, or where
- * fastest times tau is above 2 by tables that are made here.
- *     A       size x size [1/s]: x' = A x where no force changes but by its derivatives
- *     acting  what acts, at the start of the part
- *     at      that start after the start of the step [s]
- *     work    PL_CUT_WORK(size, forces) entries
- *     room    PL_CUT_ROOM(size) entries
- * 0, or PL_NOT_FINITE and next has no meaning */
-int pl_cut_advance(const pl_cut *m, const double *A, const double *acting, const void *from, double at, double tau,
-                   const double *y, double *next, double *work, pl_two *room);
+/* By the series, or where fastest times tau is above 2 by tables that are made here.
+ *     A        size x size [1/s], kept as long as m is
+ *     fastest  the sizes |A| have no larger pole [1/s]
+ *     work     PL_CUT_WORK(size) entries, kept as long as m is
+ *     room     PL_CUT_ROOM(size) entries
+ * 0, or PL_NOT_FINITE and m has no meaning */
+int pl_cut_begin(pl_cut *m, int size, const double *A, double fastest, double tau, double *work, pl_two *room);
+/* out = e^{A tau} x, or where half is not 0 e^{A tau / 2} x */
+void pl_cut_flow(const pl_cut *m, int half, const double *x, double *out);
 
 #define PL_CUT_ROOM(size) (8 * (size) * (size))
-#define PL_CUT_WORK(size, forces) ((2 * (size) + 5) * (size) + 4 * (forces))
+#define PL_CUT_WORK(size) ((2 * (size) + 2) * (size))
 
 typedef struct pl_cutf {
-    int states, size, forces;
-    float fastest;
-    void (*force)(const void *from, float tau, const float *y, float *r);
+    int size, terms;
+    float tau;
+    const float *A, *D;
+    float *room;
 } pl_cutf;
 
-int pl_cutf_advance(const pl_cutf *m, const float *A, const float *acting, const void *from, float at, float tau,
-                    const float *y, float *next, float *work, pl_twof *room);
+int pl_cutf_begin(pl_cutf *m, int size, const float *A, float fastest, float tau, float *work, pl_twof *room);
+void pl_cutf_flow(const pl_cutf *m, int half, const float *x, float *out);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

@@ -34,7 +34,6 @@
 
 #ifndef PLRT_RADAU_H
 #define PLRT_RADAU_H
-#define PL_ROOM(n) ((n) > 0 ? (n) : 1) /* no array is empty */
 /* The loop that follows is of constant length, and is written out unless code is to be small. */
 #if defined __OPTIMIZE_SIZE__
 #define PL_UNROLL
@@ -125,6 +124,8 @@ static inline int PL(is_moved)(int i)
 #endif
 }
 
+#include "chosen.h"
+
 /* ---- where an internal step stands ---- */
 
 /* An internal step starts at the state now. */
@@ -158,11 +159,7 @@ static void PL(place)(PL_TYPE *s)
     s->patience = 2;
 #endif
 #if PL_EXPRESSIONS > 0
-    s->contact.placed = s->contact.crossings = 0;
-    s->contact.total = 0;
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
-        s->contact.interval[i] = 0;
-    }
+    PL(forget)(&s->contact);
 #endif
 }
 
@@ -448,7 +445,6 @@ static real PL(limit)(PL_TYPE *s)
 }
 
 #if PL_EXPRESSIONS > 0
-#include "chosen.h"
 #include "passage.h"
 #endif
 
@@ -661,11 +657,7 @@ static int PL(collocated)(PL_TYPE *s, const real u[])
 /* At the end of the step */
 static void PL(settle)(PL_TYPE *s, int wrong)
 {
-#if PL_SEGMENTS > 1
-    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
-        s->segment++;
-    }
-#endif
+    (void)PL(change_loads)(s);
     if (wrong) {
         s->status |= wrong;
         PL(anew)(s);

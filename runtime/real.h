@@ -66,7 +66,8 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_region_of pl_regionf_of
 #define pl_region_bounds pl_regionf_bounds
 #define pl_cut pl_cutf
-#define pl_cut_advance pl_cutf_advance
+#define pl_cut_begin pl_cutf_begin
+#define pl_cut_flow pl_cutf_flow
 #define pl_region_large pl_regionf_large
 #define pl_region_reach pl_regionf_reach
 #define pl_ladder pl_ladderf

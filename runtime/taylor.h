@@ -33,19 +33,6 @@
  * Each model has a copy of its own, in which the numbers of states and orders are constants. */
 #include "numbers.h"
 
-#ifndef PL_ROOM
-#define PL_ROOM(n) ((n) > 0 ? (n) : 1) /* no array is empty */
-#endif
-
-/* Once in the code, however many call it */
-#ifndef PL_APART
-#if defined __GNUC__
-#define PL_APART __attribute__((noinline))
-#else
-#define PL_APART
-#endif
-#endif
-
 #if PL_SINGLE
 #define PL_STATE_ROUNDED ((real)1e-6) /* of the largest state: what rounding may do to slopes, times h */
 #else
@@ -274,22 +261,6 @@ static inline int PL(is_accurate)(const PL_TYPE *s, const real c[PL_ORDER + 1][P
 
 #if PL_PARTS
 #include "chosen.h"
-
-/* Those that have no more time have others; whether some have */
-static inline int PL(change_loads)(PL_TYPE *s)
-{
-    int changed = 0;
-#if PL_SEGMENTS > 1
-    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
-        s->segment++;
-        changed = 1;
-    }
-#else
-    (void)s;
-#endif
-    return changed;
-}
-
 #include "between.h"
 #endif
 
@@ -545,10 +516,10 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 /* ---- a state that was set ---- */
 
 #if PL_REMAINDERS > 0 || PL_OVER > 1 || PL_EXPRESSIONS > 0
-/* What follows from it.  Its intervals the next step finds, which knows its samples; until then they are the lowest. */
+/* What follows from it */
 static void PL(place)(PL_TYPE *s)
 {
-#if PL_REMAINDERS > 0 || PL_EXPRESSIONS > 0
+#if PL_REMAINDERS > 0
     int i;
 #endif
 #if PL_ADAPTIVE
@@ -564,11 +535,7 @@ static void PL(place)(PL_TYPE *s)
     PL(measure)(s);
 #endif
 #if PL_EXPRESSIONS > 0
-    s->contact.placed = s->contact.crossings = 0;
-    s->contact.total = 0;
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
-        s->contact.interval[i] = 0;
-    }
+    PL(forget)(&s->contact);
 #endif
 #if PL_CONTACTS
     s->contact.rested = 0;

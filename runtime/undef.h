@@ -2,6 +2,7 @@
 /* undef.h: behind what a model's file includes for its steps: what it defines for them, and what they define, is of
  * this model alone. */
 #undef PL
+#undef PL_ACTING
 #undef PL_ADAPTIVE
 #undef PL_ADVANCE
 #undef PL_AHEAD
@@ -18,6 +19,7 @@
 #undef PL_BOUNCES
 #undef PL_BOUNDS
 #undef PL_CARRIES
+#undef PL_CERTAIN
 #undef PL_CHANGE
 #undef PL_CHANGES
 #undef PL_CHANGING
@@ -36,12 +38,14 @@
 #undef PL_ENTRIES
 #undef PL_EXPRESSIONS
 #undef PL_FACTORS
+#undef PL_FASTEST
 #undef PL_FEW
 #undef PL_FIRST
 #undef PL_FIRST_SWEEPS
 #undef PL_FLAT
 #undef PL_FLOORS
 #undef PL_FORCED
+#undef PL_FORCES
 #undef PL_FUNCTIONS
 #undef PL_GATES
 #undef PL_GO
@@ -58,6 +62,7 @@
 #undef PL_INPUTS
 #undef PL_INSTANCES
 #undef PL_INTERVAL
+#undef PL_KEEPS_LOOK
 #undef PL_KEPT
 #undef PL_KIND
 #undef PL_KINDS
@@ -84,6 +89,7 @@
 #undef PL_MOVES
 #undef PL_NEAR
 #undef PL_NODES
+#undef PL_NOISE
 #undef PL_NOMINAL
 #undef PL_NOTHING
 #undef PL_NOW
@@ -123,6 +129,7 @@
 #undef PL_SETTLES
 #undef PL_SHARED
 #undef PL_SHARE_OF_FIRST
+#undef PL_SHORTER
 #undef PL_SHORTEST
 #undef PL_SINGLE
 #undef PL_SIZE
@@ -140,6 +147,7 @@
 #undef PL_STRAIGHT
 #undef PL_SWAY
 #undef PL_SWEEPS
+#undef PL_SWIFT
 #undef PL_TABLES
 #undef PL_TERMS
 #undef PL_TOLERANCE
@@ -170,6 +178,9 @@
 #undef pl_divided_rises
 #undef pl_divided_left
 #undef pl_divided_next
+#undef pl_cut
+#undef pl_cut_begin
+#undef pl_cut_flow
 #undef pl_instant
 #undef pl_chain
 #undef pl_events_place

@@ -88,7 +88,8 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 	if (e->step->cut) {
 		mpq_srcptr node = e->step->program->node[a->node];
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
-		say(e, "    %s\n", cut_evaluation(e, tau, state, format("left%d", a->target)));
+		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
+		    e->system->segments > 1 ? "s->segment" : "0", state, a->target);
 		return;
 	}
 	say(e, "    %s\n", leftover_call(e, format("%d", a->node), state, format("left%d", a->target), FROM_STEP));

@@ -310,16 +310,17 @@ const struct kind *row_of_kind(enum step_kind kind);
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
-enum input_names { AS_PARAMETERS, AS_SAMPLES, AS_CALLED_HERE };   /* u; u, or start of ramps */
-/* What an expansion reads beside the instance, each with a comma behind it */
-const char *series_arguments(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			     enum input_names names, const char *contact);
-void emit_slopes_function(const struct emitter *e);               /* NAME_slopes: sloping(e) prints it */
+/* Of a scheme with a leftover from crossing to crossing, */
+const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
+const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
+const struct emitter *forcing(const struct emitter *e);           /* what is left over */
+const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
+void emit_expand_from(const struct emitter *e);                   /* all that is kept */
+void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
-void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
 void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
@@ -329,12 +330,6 @@ void emit_series_locals(const struct emitter *e);                 /* all that is
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
 void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
-void emit_expand_function(const struct emitter *e);               /* NAME_expand: all coefficients */
-/* tau, when, segment where it has them: the time after now; one in which conditions on t stand; that of the loads */
-/* contact: "s->contact." or the like, of which intervals, where there are any */
-const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			const char *contact, const char *y, const char *c);
-
 bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
@@ -371,49 +366,32 @@ void emit_pass_time(const struct emitter *e);                    /* NAME_pass_ti
 void emit_expansion_members(const struct emitter *e);
 /* Of steps by collocation too, where there is a series beside it */
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
-void emit_expand_from(const struct emitter *e);                          /* NAME_expand, NAME_expand_from */
 void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
+void emit_pass_time(const struct emitter *e);                            /* NAME_pass_time */
+void emit_serving_step(const struct emitter *e);                         /* NAME_step, by NAME_serve */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
-void emit_frozen_function(const struct emitter *e);               /* NAME_within: what is left over, alone */
-void emit_ends_function(const struct emitter *e);                 /* NAME_end: expressions, alone */
-/* `from`: p->, of a part of a step that has inputs, times and intervals */
-const char *frozen_call(const struct emitter *e, const char *function, const char *s, const char *tau,
-			const char *from, const char *y, const char *result);
+void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: what is left over, alone */
+void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
-
-/* ---- emit_look.c: the series that a step is looked at by, from crossing to crossing ---- */
-
-const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
-const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
-const struct emitter *forcing(const struct emitter *e);           /* what is left over */
-const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
-/* within $n_whole: what is left over at a stage */
-const char *cut_evaluation(const struct emitter *e, const char *tau, const char *y, const char *left);
 
 /* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
 
-void emit_cut_types(const struct emitter *e);                     /* of these nothing where it steps across */
 void emit_cut_members(const struct emitter *e);
-void emit_cut_declarations(const struct emitter *e);
 void emit_cut_place(const struct emitter *e);
 void emit_cut_step(const struct emitter *e);
-void emit_cut_at(const struct emitter *e);
 
 /* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
 
 void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
 void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
-void emit_divided_place(const struct emitter *e);
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
-void emit_divided_functions(const struct emitter *e);             /* tables; NAME_cross, NAME_locate by chosen.h */
-/* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
-void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
+void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each */
 int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
 
 /* ---- emit_events.c: impacts and friction beside a series ---- */

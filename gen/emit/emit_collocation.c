@@ -119,23 +119,6 @@ static void emit_limits(const struct emitter *e)
 }
 
 /* Formulas that the state chooses, for passage.h */
-static int expressions(const struct emitter *e)
-{
-	return e->step->divided->expressions;
-}
-
-static void emit_passing_table(const struct emitter *e)
-{
-	const char *column = "";
-	for (int i = 0; i < expressions(e); i++)
-		column = format("%s%s%d", column, i ? ", " : "", i);
-	say(e, "\n/* Along a step of the collocation */\n"
-	       "static const int $n_each[] = {%s};\n"
-	       "static const pl_divided $n_passing = {\n"
-	       "    %d, %d, %d, $n_each, $n_breaks, $n_breakpoint\n"
-	       "};\n", column, expressions(e), expressions(e), e->step->collocation->stages);
-}
-
 static void emit_passage_limits(const struct emitter *e)
 {
 	say(e, "#define PL_CHANGES %d  /* of intervals, until all of them stand */\n"
@@ -192,7 +175,7 @@ void emit_collocation_step(const struct emitter *e)
 	emit_inputs_now(e);
 	if (is_divided(e)) {
 		emit_divided_tables(e);
-		emit_passing_table(e);
+		emit_passing_table(e, stages(e));
 	}
 	if (switches(e))
 		emit_series_beside(e);

@@ -33,17 +33,6 @@ void emit_divided_members(const struct emitter *e)
 	say(e, "    $n_contact contact;   /* intervals, crossings */\n");
 }
 
-/* Of a state that was set the next step, which knows its samples, finds the intervals; until then they are the lowest.
- * Local i. */
-void emit_divided_place(const struct emitter *e)
-{
-	say(e, "    s->contact.placed = s->contact.crossings = %s0;\n"
-	       "    s->contact.total = 0;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        s->contact.interval[i] = 0;\n", meets_contacts(e) ? "s->contact.rested = " : "",
-	    expansion(e)->expressions);
-}
-
 void emit_divided_declarations(const struct emitter *e)
 {
 	if (!is_divided(e))
@@ -89,8 +78,6 @@ void emit_divided_tables(const struct emitter *e)
 	       "};\n", column, breaks, at, x->expressions, x->order);
 }
 
-/* ---- functions ---- */
-
 int most_changes(const struct expansion *x)
 {
 	int most = 1;
@@ -99,38 +86,19 @@ int most_changes(const struct expansion *x)
 	return most;
 }
 
-/* Of a series that steps are looked at by, with what chosen.h is told of it */
-void emit_divided_functions(const struct emitter *e)
+void emit_passing_table(const struct emitter *e, int order)
 {
-	const struct expansion *x = expansion(e);
-	emit_divided_tables(e);
-	emit_inputs_now(e);
-	say(e, "\n#define PL(name) $n_##name\n"
-	       "#define PL_TYPE $n\n"
-	       "#define PL_H $N_H\n"
-	       "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
-	       "#define PL_COLUMNS ($c)\n"
-	       "#define PL_SINGLE %d\n"
-	       "#define PL_ORDER %d\n"
-	       "#define PL_EXPRESSIONS %d\n"
-	       "#define PL_CHANGES %d\n"
-	       "#define PL_INPUTS %d\n"
-	       "#define PL_SEGMENTS %d\n"
-	       "#define PL_CHOICES %d\n"
-	       "#include \"chosen.h\"\n"
-	       "#include \"undef.h\"\n", e->model->asked.single, x->order, x->expressions, most_changes(x),
-	    e->system->inputs, e->system->segments, has_choices(e));
+	const char *column = "";
+	for (int i = 0; i < expansion(e)->expressions; i++)
+		column = format("%s%s%d", column, i ? ", " : "", i);
+	say(e, "\n/* Of polynomials of each */\n"
+	       "static const int $n_each[] = {%s};\n"
+	       "static const pl_divided $n_passing = {\n"
+	       "    %d, %d, %d, $n_each, $n_breaks, $n_breakpoint\n"
+	       "};\n", column, expansion(e)->expressions, expansion(e)->expressions, order);
 }
 
-void emit_divided_start(const struct emitter *e, const char *contact, const char *indent)
-{
-	if (!is_divided(e))
-		return;
-	say(e, "%sif (!%s.placed)\n"
-	       "%s    $n_locate(s, %s, &%s);\n"
-	       "%s%s.crossings = 0;\n", indent, contact, indent, e->system->inputs ? "u" : "NULL", contact, indent,
-	    contact);
-}
+/* ---- questions ---- */
 
 void emit_divided_questions(const struct emitter *e)
 {

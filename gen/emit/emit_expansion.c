@@ -216,29 +216,6 @@ void emit_expansion_members(const struct emitter *e)
 
 /* ---- what taylor.h is told ---- */
 
-/* Of what it is handed $n_NAME reads only some. */
-static void emit_handed_on(const struct emitter *e, const char *name, const char *call)
-{
-	static const char *const handed[] = { "u", "slope", "tau", "when", "segment", "interval", "terms" };
-	bool terms = strcmp(name, "expand_from") == 0;
-	const char *unread = "";
-	open_function(e, NULL, "static inline void $n_%s(const $n *s, const double u[], const double slope[],\n"
-		      "    double tau, double when, int segment, const int interval[], const double y[$N_STATES],\n"
-		      "    double %s)", name,
-		      terms ? spell(e, "c[%d][$c], double terms[]", expansion(e)->order + 1)
-			    : spell(e, "left[$N_STATES]"));
-	say(e, "    %s\n", call);
-	for (size_t i = 0; i < sizeof handed / sizeof *handed - !terms; i++)
-		if (!mentions(call, handed[i]))
-			unread = format("%s%s ", unread, handed[i]);
-	close_function(e, unread);
-}
-
-static const char *handed_to(const struct emitter *e)
-{
-	return series_arguments(e, "tau", "when", "segment", AS_CALLED_HERE, "");
-}
-
 void emit_pass_time(const struct emitter *e)
 {
 	open_function(e, "What else takes part in a step",
@@ -247,22 +224,12 @@ void emit_pass_time(const struct emitter *e)
 	close_function(e, "u");
 }
 
-void emit_expand_from(const struct emitter *e)
-{
-	emit_expand_function(e);
-	emit_handed_on(e, "expand_from",
-		       spell(e, "$n_expand(s, %sy, c%s);", handed_to(e), is_divided(e) ? ", terms" : ""));
-}
-
 void emit_series_functions(const struct emitter *e)
 {
 	emit_force_table(e);
 	emit_expand_from(e);
-	if (e->step->slopes) {
-		const struct emitter *slopes = sloping(e);
-		emit_slopes_function(slopes);
-		emit_handed_on(e, "slopes_at", spell(e, "$n_slopes(s, %sy, left);", handed_to(slopes)));
-	}
+	if (e->step->slopes)
+		emit_slopes_function(sloping(e));
 }
 
 static void emit_model_functions(const struct emitter *e)
@@ -302,9 +269,13 @@ static void emit_algorithm(const struct emitter *e)
 	say(e, "#include \"taylor.h\"\n");
 }
 
+void emit_serving_step(const struct emitter *e)
+{
+	say(e, "\nvoid $n_step(%s) { $n_serve(s, %s); }\n", step_parameters(e), e->system->inputs ? "u" : "NULL");
+}
+
 void emit_expansion_step(const struct emitter *e)
 {
-	const char *u = e->system->inputs ? "u" : "NULL";
 	if (reads_channels(e->model))
 		emit_leftover_functions(e);
 	emit_model_functions(e);
@@ -321,7 +292,7 @@ void emit_expansion_step(const struct emitter *e)
 	if (is_straight(e))
 		emit_straight_step(e);
 	else
-		say(e, "\nvoid $n_step(%s) { $n_serve(s, %s); }\n", step_parameters(e), u);
+		emit_serving_step(e);
 	if (is_divided(e))
 		emit_divided_questions(e);
 }

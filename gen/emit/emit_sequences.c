@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The function that expands the solution: what it is given, what of loads and inputs it reads, its coefficients. */
+/* Functions of a series: what they are handed, what of loads and inputs they read, its coefficients. */
 #include "emit/emit.h"
 
 #include <string.h>
@@ -8,6 +8,47 @@ static const struct expansion *expansion(const struct emitter *e)
 {
 	return e->step->expansion;
 }
+
+/* ---- one of several series ---- */
+
+struct view {
+	struct step step;
+	struct emitter e;
+};
+
+/* The same emitter, whose series is this one */
+static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
+{
+	struct view *view = NEW(struct view);
+	view->step = *e->step;
+	view->step.expansion = x;
+	view->e = *e;
+	view->e.step = &view->step;
+	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
+	return &view->e;
+}
+
+const struct emitter *looking(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->look);
+}
+
+const struct emitter *ending(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->ends);
+}
+
+const struct emitter *forcing(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->forces);
+}
+
+const struct emitter *sloping(const struct emitter *e)
+{
+	return look_by(e, e->step->slopes);
+}
+
+/* ---- what is asked of it ---- */
 
 static bool changes(const struct emitter *e)
 {
@@ -40,35 +81,9 @@ bool has_choices(const struct emitter *e)
 
 /* ---- the expansion ---- */
 
-static const char *input_parameters(const struct emitter *e, enum input_names names)
-{
-	const struct expansion *x = expansion(e);
-	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
-	bool typed = names == AS_PARAMETERS, started = names == AS_SAMPLES && e->ramps;
-	return format("%s%s", !input ? "" : typed ? "const double u[], " : started ? "start, " : "u, ",
-		      !slope && !(input && e->ramps) ? "" : typed ? "const double slope[], " : "slope, ");
-}
-
 const char *driven_parameter(const struct emitter *e)
 {
 	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
-}
-
-void emit_input_samples(const struct emitter *e)
-{
-	const struct expansion *x = expansion(e);
-	int inputs = e->system->inputs;
-	const char *start = "", *slope = "";
-	bool input = any_of(x->input, inputs), any = any_of(x->slope, inputs) || (input && e->ramps);
-	for (int i = 0; i < inputs; i++) {
-		bool ramp = e->system->input[i].hold;
-		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
-		slope = format("%s%s%s", slope, i ? ", " : "", ramp ? ramp_slope(e, i) : "0.0");
-	}
-	if (input && e->ramps)
-		say(e, "    const double start[$N_INPUTS] = {%s};\n", start);
-	if (any)
-		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
 }
 
 void emit_inputs_now(const struct emitter *e)
@@ -140,24 +155,6 @@ bool expands_in_step(const struct emitter *e)
 	return !has_offset(e) && !has_choices(e) && !e->ramps && expansion(e)->multiplications <= MOST;
 }
 
-/* What of its parameters an expansion, or a part of one, may not read */
-static const char *unread(const struct emitter *e, const struct recurrences *r, bool part)
-{
-	const struct expansion *x = expansion(e);
-	const int inputs = e->system->inputs;
-	const bool slope = any_of(x->slope, inputs) || (any_of(x->input, inputs) && e->ramps);
-	const bool when = has_choices(e) && !part && !tape_reads(tape_of_recurrences(r), TAPE_TIME, -1, 1);
-	return format("s %s%s%s%s%s", has_offset(e) || part ? "tau " : "", changes(e) && !part ? "segment " : "",
-		      slope ? "slope " : "", when ? "when " : "", part ? "interval " : "");
-}
-
-static const char *series_parameters(const struct emitter *e)
-{
-	return format("%s%s%s%s%s", has_offset(e) ? "double tau, " : "", has_choices(e) ? "double when, " : "",
-		      changes(e) ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
-		      is_divided(e) ? format("const int interval[%d], ", expansion(e)->expressions) : "");
-}
-
 /* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
 static void set_kept_coefficients(const struct emitter *e, struct recurrences *r)
 {
@@ -179,108 +176,68 @@ static void set_kept_coefficients(const struct emitter *e, struct recurrences *r
 			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
 }
 
-void emit_expand_function(const struct emitter *e)
+/* ---- functions of them: the series of the solution, or some sequences alone ---- */
+
+/* Whatever they read, they are handed the same: samples at the start of the step, their slopes in h; the time after
+ * now; a time by which conditions on t are decided; the segment of the loads; intervals; the state then. */
+static void begin_function(const struct emitter *e, const char *note, const char *name, const char *result)
 {
-	const struct expansion *x = expansion(e);
-	struct recurrences *r = series_new(e);
-	open_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times y's k-th derivative",
-				has_offset(e) ? "tau after now" : "now",
-				spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
-		      "static void $n_expand(const $n *s, %sconst double y[$N_STATES], double c[%d][$c]%s)",
-		      series_parameters(e), x->order + 1,
-		      is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
+	open_function(e, note, "static void $n_%s(const $n *s, const double u[], const double slope[], double tau,\n"
+			       "    double when, int segment, const int interval[], const double y[$N_STATES],\n"
+			       "    %s)", name, result);
 	emit_expansion_locals(e);
-	set_kept_coefficients(e, r);
-	emit_series_tape(e, r);
-	close_function(e, unread(e, r, false));
 }
 
-/* ---- some sequences alone: what is left over, or expressions at the ends of a step ---- */
-
-/* Of such a function, behind the instance and tau */
-static const char *part_parameters(const struct emitter *e)
+static void end_function(const struct emitter *e, const struct recurrences *r)
 {
-	return format("%s%s%sconst int interval[%d], const double y[%s_STATES]", has_choices(e) ? "double when, " : "",
-		      expansion(e)->slots ? "int segment, " : "", input_parameters(e, AS_PARAMETERS),
-		      expansion(e)->expressions,
-		      e->upper);
+	emit_series_tape(e, r);
+	close_function(e, "s u slope tau when segment interval y");
+}
+
+void emit_expand_from(const struct emitter *e)
+{
+	struct recurrences *r = series_new(e);
+	begin_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y",
+				 has_offset(e) ? "tau after now" : "now",
+				 spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
+		       "expand_from", spell(e, "double c[%d][$c], double terms[]", expansion(e)->order + 1));
+	set_kept_coefficients(e, r);
+	emit_series_tape(e, r);
+	close_function(e, "s u slope tau when segment interval terms");
+}
+
+void emit_slopes_function(const struct emitter *e)
+{
+	struct recurrences *r = series_new(e);
+	begin_function(e, "h times the slopes", "slopes_at", spell(e, "double left[$N_STATES]"));
+	for (int i = 0; i < e->system->states; i++)
+		series_set(r, format("left[%d]", i), i, 1);
+	end_function(e, r);
 }
 
 void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	open_function(e, "What is left over at state y, tau after now, with the formulas of these intervals: a\n"
-		      " * force on each equation that has some",
-		      "static void $n_within(const $n *s, double tau, %s,\n"
-		      "    double left[%d])", part_parameters(e), x->columns);
 	struct recurrences *r = series_new(e);
-	emit_expansion_locals(e);
+	begin_function(e, "What is left over: a force on each equation that has some", "forces_at",
+		       format("double left[%d]", x->columns));
 	for (int c = 0; c < x->columns; c++)
 		series_set(r, format("left[%d]", c), x->column[c], 0);
-	emit_series_tape(e, r);
-	close_function(e, unread(e, r, true));
+	end_function(e, r);
 }
 
 void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	open_function(e, "Of each expression at state y, tau after now, its value and h times its slope; the sizes\n"
-		      " * of the terms of the value",
-		      "static void $n_end(const $n *s, double tau, %s,\n"
-		      "    double e[][%d], double terms[%d])", part_parameters(e), x->columns, x->columns);
 	struct recurrences *r = series_new(e);
-	emit_expansion_locals(e);
+	begin_function(e, "Of each expression its value and h times its slope; the sizes of the terms of the value",
+		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)
 			series_set(r, format("e[%d][%d]", k, c), x->column[c], k);
 	for (int c = 0; c < x->columns; c++)
 		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
-	emit_series_tape(e, r);
-	close_function(e, unread(e, r, true));
-}
-
-/* from: p->, of a part of a step */
-const char *frozen_call(const struct emitter *e, const char *function, const char *s, const char *tau,
-			const char *from, const char *y, const char *result)
-{
-	const struct expansion *x = expansion(e);
-	bool input = any_of(x->input, e->system->inputs), slope = any_of(x->slope, e->system->inputs);
-	const char *u = !input ? "" : format("%su, ", from);
-	const char *rate = !slope && !(input && e->ramps) ? "" : format("%sslope, ", from);
-	return format("%s_%s(%s, %s, %s%s%s%s%sinterval, %s, %s);", e->name, function, s, tau,
-		      has_choices(e) ? format("%swhen, ", from) : "",
-		      x->slots ? format("%ssegment, ", from) : "", u, rate, from, y, result);
-}
-
-const char *series_arguments(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			     enum input_names names, const char *contact)
-{
-	return format("%s%s%s%s%s", has_offset(e) ? format("%s, ", tau) : "",
-		      has_choices(e) ? format("%s, ", when) : "", changes(e) ? format("%s, ", segment) : "",
-		      input_parameters(e, names), is_divided(e) ? format("%sinterval, ", contact) : "");
-}
-
-const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			const char *contact, const char *y, const char *c)
-{
-	const char *arguments = series_arguments(e, tau, when, segment, AS_SAMPLES, contact);
-	return format("%s_expand(s, %s%s, %s%s);", e->name, arguments, y, c,
-		      !is_divided(e) ? "" : strcmp(c, "d") == 0 ? ", spare" : ", terms");
-}
-
-/* ---- slopes further on ---- */
-
-void emit_slopes_function(const struct emitter *e)
-{
-	struct recurrences *r = series_new(e);
-	open_function(e, "h times the slopes at state y, tau after now",
-		      "static void $n_slopes(const $n *s, %sconst double y[$N_STATES], double left[$N_STATES])",
-		      series_parameters(e));
-	emit_expansion_locals(e);
-	for (int i = 0; i < e->system->states; i++)
-		series_set(r, format("left[%d]", i), i, 1);
-	emit_series_tape(e, r);
-	close_function(e, format("%s%sy", unread(e, r, false), is_divided(e) ? "interval " : ""));
+	end_function(e, r);
 }
 
 /* ---- its sum ---- */

@@ -366,10 +366,15 @@ static void emit_cut_tables(const struct emitter *e)
 	emit_cut_place(e);
 }
 
-static void emit_cut_kind_types(const struct emitter *e)
+static void emit_cut_types(const struct emitter *e)
 {
-	emit_cut_types(e);
+	emit_divided_types(looking(e));
 	emit_held_types(e);
+}
+
+static void emit_cut_declarations(const struct emitter *e)
+{
+	emit_divided_declarations(looking(e));
 }
 
 static const struct kind cut = {
@@ -379,7 +384,7 @@ static const struct kind cut = {
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = always,
 	.constants = emit_event_limit,
-	.types = emit_cut_kind_types,
+	.types = emit_cut_types,
 	.coefficients = emit_held_member,
 	.members = emit_cut_members,
 	.keeps_status = true,
@@ -395,7 +400,7 @@ static const struct kind cut = {
 	.pass = emit_held_retune,
 	.step = emit_cut_step,
 	.held = nothing,
-	.at = emit_cut_at,
+	.at = emit_expansion_at,
 	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };

@@ -17,10 +17,10 @@ loads_of() {
 		step 0.02
 	END
 	"$plgen" --scheme etdrk4 -o kink.c kink.spec 2>log
-	# of NAME_end alone
-	found=$(sed -n '/^static void kink_end(/,/^}/p' kink.c | grep -c pl_cossin)
+	# of NAME_ends_at alone
+	found=$(sed -n '/^static void kink_ends_at(/,/^}/p' kink.c | grep -c pl_cossin)
 	echo "$2: $found loads, expected $3" >>log
-	grep -q '^static void kink_end(' kink.c && [ "$found" -eq "$3" ]
+	grep -q '^static void kink_ends_at(' kink.c && [ "$found" -eq "$3" ]
 	result $? "$1"
 }
 

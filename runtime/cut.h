@@ -1,0 +1,477 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* cut.h: steps of a scheme with a leftover whose formulas the state chooses.  A whole step goes by the scheme's own
+ * tables with the formulas of given intervals, and is looked at from both ends; one that crosses a breakpoint is made
+ * again in parts, from crossing to crossing, each with e^{A tau} of its own length.  Included by the file of each
+ * model, which defines before it what chosen.h asks, and
+ *
+ *     PL_STATES, PL_ACTING, PL_FORCES   of x, which is the states, what acts on them (load states, inputs, slopes of
+ *                                inputs), and each force that is left over with two derivatives
+ *     PL_FASTEST                 the sizes |A| have no larger pole [1/s]
+ *     PL_SWIFT, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
+ *     PL_CARRIES                 entries of the member carry, which a step changes
+ *     PL_MAX_SPLITS              halvings in the search of a crossing
+ *
+ *     PL(column)[]               of each expression: where it stands in the series, of order 2
+ *     PL(passing)                a pl_divided of cubics of each
+ *     PL(flow)[][][]             of each segment: A [1/s], x' = A x where no force changes but by its derivatives
+ *     PL(acting)(s, start, slope, tau, acting)       what acts, tau [s] after now
+ *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      what is left over
+ *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of each expression its value and h
+ *                                times its slope; the sizes of the terms of the value
+ *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme
+ *     PL(pass_time)(s, u)        what else takes part in a step moves on
+ *
+ * and members contact, status; and end, terms, ended where there are no inputs and formulas do not change in time. */
+#include "chosen.h"
+
+#define PL_SIZE (PL_STATES + PL_ACTING + 3 * PL_FORCES)
+#define PL_KEEPS_LOOK (PL_INPUTS == 0 && PL_SEGMENTS == 1) /* what a step ends with the next begins with */
+#define PL_SHORTER (-1)                                    /* a part is to be tried again over a shorter time */
+
+#if PL_SINGLE
+#define PL_LEAST_PART ((real)1e-6) /* of a step, above what its end is rounded to: shorter ones are not tried */
+#define PL_NOISE ((real)1e-6)      /* of the sizes that are summed: what rests on its breakpoint does not leave it */
+#else
+#define PL_LEAST_PART 1e-9
+#define PL_NOISE 1e-14
+#endif
+
+typedef struct PL(piece) { /* a part of a step */
+    const PL_TYPE *s;
+    PL(contact) *contact;         /* whose intervals hold */
+    const pl_crossing *first;     /* what a step over all of h meets, at its time in h; NULL: that is not known */
+    real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
+    real done, limit;             /* where it begins; where the loads change, or the step ends [h] */
+    real longest;                 /* that is tried [h] */
+    int segment, splits;
+} PL(piece);
+
+static inline void PL(begin)(PL(piece) *p, const PL_TYPE *s, const real u[], PL(contact) *contact)
+{
+    p->s = s;
+    p->contact = contact;
+    p->first = NULL;
+    PL(inputs_now)(s, u, p->start, p->slope);
+    p->done = 0;
+    p->limit = p->longest = 1;
+    p->segment = PL(segment_of)(s);
+    p->splits = PL_MAX_SPLITS;
+}
+
+static inline real PL(when)(const PL(piece) *p)
+{
+    return PL(time_between)(p->s, p->done, p->limit);
+}
+
+/* ---- a part of any length ---- */
+
+static PL_APART void PL(forces)(const PL(piece) *p, real tau, const real y[], real force[PL_FORCES])
+{
+    PL(forces_at)(p->s, p->start, p->slope, tau, PL(when)(p), p->segment, p->contact->interval, y, force);
+}
+
+/* x <- states, what acts on them, and forces that do not change */
+static PL_APART void PL(gather)(const real states[], const real acting[], const real force[PL_FORCES], real x[PL_SIZE])
+{
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        x[i] = states[i];
+    }
+    for (i = 0; i < PL_ACTING; i++) {
+        x[PL_STATES + i] = acting[i];
+    }
+    for (i = 0; i < PL_FORCES; i++) {
+        real *const of = x + PL_STATES + PL_ACTING + 3 * i;
+        of[0] = force[i];
+        of[1] = of[2] = 0;
+    }
+}
+
+/* The derivatives of forces that are a parabola through r, the mean of ra and rb, and rc */
+static void PL(bend)(const real r[], const real ra[], const real rb[], const real rc[], real tau, real x[PL_SIZE])
+{
+    int i;
+    for (i = 0; i < PL_FORCES; i++) {
+        real *const of = x + PL_STATES + PL_ACTING + 3 * i;
+        const real middle = (ra[i] + rb[i]) / 2;
+        of[1] = (4 * middle - 3 * r[i] - rc[i]) / tau;
+        of[2] = 4 * ((r[i] - middle) + (rc[i] - middle)) / tau / tau;
+    }
+}
+
+/* next: y `size` later [h], by the scheme of Cox and Matthews 2002, (26)-(29): 0, or it is not finite.  Each stage is
+ * e^{A tau} x, and no function is divided by what may be 0. */
+static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_STATES], real next[PL_STATES])
+{
+    const real at = p->done * PL_H, tau = size * PL_H;
+    real acting[PL_ROOM(PL_ACTING)], x[PL_SIZE], a[PL_SIZE], b[PL_SIZE];
+    real r[PL_FORCES], ra[PL_FORCES], rb[PL_FORCES], rc[PL_FORCES], work[PL_CUT_WORK(PL_SIZE)];
+    pl_two room[PL_CUT_ROOM(PL_SIZE)];
+    pl_cut cut;
+    int i, status = pl_cut_begin(&cut, PL_SIZE, PL(flow)[p->segment][0], PL_FASTEST, tau, work, room);
+    if (status != 0) {
+        return status;
+    }
+    PL(acting)(p->s, p->start, p->slope, at, acting);
+    PL(forces)(p, at, y, r);
+    PL(gather)(y, acting, r, x);
+    pl_cut_flow(&cut, 1, x, a); /* a = F y + q1 r */
+    PL(forces)(p, at + tau / 2, a, ra);
+    for (i = 0; i < PL_FORCES; i++) {
+        rc[i] = ra[i] - r[i];
+    }
+    PL(gather)(a, a + PL_STATES, rc, x);
+    for (i = 0; i < PL_STATES + PL_ACTING; i++) {
+        x[i] = 0;
+    }
+    pl_cut_flow(&cut, 1, x, b); /* b = F y + q1 r(a) */
+    for (i = 0; i < PL_STATES; i++) {
+        b[i] += a[i];
+    }
+    PL(forces)(p, at + tau / 2, b, rb);
+    for (i = 0; i < PL_FORCES; i++) {
+        rc[i] = 2 * rb[i] - r[i];
+    }
+    PL(gather)(a, a + PL_STATES, rc, x);
+    pl_cut_flow(&cut, 1, x, b); /* c = F a + q1 (2 r(b) - r) */
+    PL(forces)(p, at + tau, b, rc);
+    PL(gather)(y, acting, r, x);
+    PL(bend)(r, ra, rb, rc, tau, x);
+    pl_cut_flow(&cut, 0, x, b);
+    for (i = 0; i < PL_STATES; i++) {
+        next[i] = b[i];
+    }
+    return pl_not_finite(next, PL_STATES);
+}
+
+/* ---- what it meets ---- */
+
+/* The expressions at y, `at` h after now, by the formulas that hold over the part */
+static PL_APART void PL(look)(const PL(piece) *p, real at, const real y[PL_STATES], real e[][PL_EXPRESSIONS],
+                            real terms[PL_EXPRESSIONS])
+{
+    PL(ends_at)(p->s, p->start, p->slope, at * PL_H, PL(when)(p), p->segment, p->contact->interval, y, e, terms);
+}
+
+/* How far off its breakpoint an expression still is on it */
+static inline real PL(slack)(real noise, real terms)
+{
+#if PL_SWIFT
+    return noise * terms;
+#else
+    (void)noise;
+    (void)terms;
+    return 0;
+#endif
+}
+
+static inline int PL(is_above)(real value, real bound)
+{
+    return PL_SWIFT ? value >= bound : value > bound;
+}
+
+/* Whether no expression comes near the end of its interval, but for `noise` of its terms, in a part of this size.  c:
+ * values and slopes [1/h] at its start, d: at its end: the cubic that has them is as exact as the step, and lies within
+ * its Bezier points. */
+static int PL(stays)(const real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS], const int interval[],
+                     real size, const real terms[PL_EXPRESSIONS], real noise)
+{
+    const real *at = PL(breakpoint);
+    int i;
+    for (i = 0; i < PL_EXPRESSIONS; at += PL(breaks)[i++]) {
+        const real a = c[0][i], b = a + size * c[1][i] / 3, z = d[0][i], y = z - size * d[1][i] / 3;
+        const real slack = PL(slack)(noise, terms[i]);
+        if (interval[i] > 0) {
+            const real low = at[interval[i] - 1] - slack;
+            if (!(PL(is_above)(a, low) && PL(is_above)(b, low) && PL(is_above)(y, low) && PL(is_above)(z, low))) {
+                return 0;
+            }
+        }
+        if (interval[i] < PL(breaks)[i]) {
+            const real high = at[interval[i]] + slack;
+            if (!(PL(is_above)(high, a) && PL(is_above)(high, b) && PL(is_above)(high, y) && PL(is_above)(high, z))) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* When, in a part of this size [h], an expression first leaves its interval; below 0: none does.  c becomes the cubic
+ * of each. */
+static real PL(meets)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
+                      const real terms[PL_EXPRESSIONS], real size, pl_crossing *crossing)
+{
+    real work[PL_DIVIDED_WORK(3)];
+    int i;
+    for (i = 0; i < PL_EXPRESSIONS; i++) {
+        const real rise = (d[0][i] - c[0][i]) / size;
+        c[2][i] = (3 * rise - 2 * c[1][i] - d[1][i]) / size;
+        c[3][i] = (c[1][i] + d[1][i] - 2 * rise) / (size * size);
+    }
+    return pl_divided_next(&PL(passing), c[0], terms, p->contact->interval, size, &p->splits, crossing, work);
+}
+
+/* From `at` onto the breakpoint of `crossing`, back by half of `size` or on by `left` at most; returns by how much,
+ * all in h.  How far a part ends off the breakpoint that it was to meet is of the size of the error: a Taylor
+ * polynomial bridges it. */
+static PL_APART real PL(onto)(const PL(piece) *p, real at, real size, real left, const pl_crossing *crossing,
+                              real y[PL_STATES])
+{
+    const int k = PL(column)[crossing->expression];
+    const real to = PL(breakpoint_of)(crossing);
+    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_EXPRESSIONS], moved = 0;
+    int i, again;
+    for (again = 0; again < 4; again++) {
+        real theta;
+        PL(expand_from)(p->s, p->start, p->slope, (at + moved) * PL_H, PL(when)(p), p->segment, p->contact->interval, y,
+                        c, terms);
+        if (!(crossing->upward ? c[1][k] > 0 : c[1][k] < 0)) {
+            break;
+        }
+        theta = (to - c[0][k]) / c[1][k];
+        theta -= c[2][k] / c[1][k] * theta * theta;
+        if (!(pl_magnitude(theta) <= size / 2) || moved + theta < -size / 2 || moved + theta > left) {
+            break;
+        }
+        for (i = 0; i < PL_STATES; i++) {
+            y[i] += theta * (c[1][i] + theta * c[2][i]);
+        }
+        moved += theta;
+        if (pl_magnitude(theta) <= (real)1e-15) {
+            break;
+        }
+    }
+    return moved;
+}
+
+/* ---- from crossing to crossing ---- */
+
+/* What is not finite is tried again over half of it, if that is not too short. */
+static inline int PL(halve)(PL(piece) *p, real size)
+{
+    p->longest = size / 2;
+    return p->longest < PL_LEAST_PART ? PL_NOT_FINITE : PL_SHORTER;
+}
+
+/* The part up to `to` [h]: next, where it ends; found->time, how long after its start it meets what is found, or below
+ * 0: 0, PL_SHORTER, or what went wrong.  What a cubic says of a part that is too long for it is believed where that
+ * stays within. */
+static int PL(search)(PL(piece) *p, real to, real c[4][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS],
+                      const real y[PL_STATES], real next[PL_STATES], pl_crossing *found)
+{
+    const real size = to - p->done;
+    real d[2][PL_EXPRESSIONS], spare[PL_EXPRESSIONS];
+    if (PL(advance)(p, size, y, next) != 0) {
+        return PL(halve)(p, size);
+    }
+    PL(look)(p, to, next, d, spare);
+    found->time = PL(meets)(p, c, (const real (*)[PL_EXPRESSIONS])d, terms, size, found);
+    if (p->splits < 0) {
+        return PL_TOO_MANY_EVENTS;
+    }
+#if PL_SWIFT
+    if (size > PL_CERTAIN &&
+        (found->time >= 0 || !PL(stays)((const real (*)[PL_EXPRESSIONS])c, (const real (*)[PL_EXPRESSIONS])d,
+                                        p->contact->interval, size, terms, PL_NOISE))) {
+        p->longest = size / 2;
+        return PL_SHORTER;
+    }
+#endif
+    return 0;
+}
+
+static inline int PL(pass_event)(const PL(piece) *p)
+{
+    return PL(cross)(p->contact, p->done * PL_H) ? 0 : PL_TOO_MANY_EVENTS;
+}
+
+/* The next part, y at its start and then at its end: 0, PL_SHORTER, or what went wrong */
+static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
+{
+    real c[4][PL_EXPRESSIONS], terms[PL_EXPRESSIONS], next[PL_STATES], to, size;
+    pl_crossing found;
+    int i;
+    PL(look)(p, p->done, y, c, terms);
+    if (pl_divided_left(&PL(passing), c[0], terms, p->contact->interval, &p->contact->last)) {
+        return PL(pass_event)(p);
+    }
+    to = p->limit - p->done < p->longest ? p->limit : p->done + p->longest;
+    size = to - p->done;
+    if (p->first != NULL) {
+        found = *p->first;
+    } else {
+        int wrong;
+        found = p->contact->last;
+        wrong = PL(search)(p, to, c, terms, y, next, &found);
+        if (wrong != 0) {
+            return wrong;
+        }
+    }
+    p->first = NULL;
+    if (found.time > 0) {
+        if (PL(advance)(p, found.time, y, next) != 0) {
+            return PL(halve)(p, found.time);
+        }
+        found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, &found, next);
+    }
+    p->longest = PL_SWIFT ? 2 * size : 1;
+    for (i = 0; i < PL_STATES && found.time != 0; i++) {
+        y[i] = next[i];
+    }
+    p->contact->last = found;
+    p->done = found.time >= 0 && found.time < size ? p->done + found.time : to;
+    if (found.time < 0) {
+        p->contact->last.expression = -1;
+        return 0;
+    }
+    return PL(pass_event)(p);
+}
+
+/* y, `end` h later: 0, or what went wrong, and y as far as it went */
+static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
+{
+    int wrong = 0;
+    p->splits = PL_MAX_SPLITS;
+    while (p->done < end && wrong <= 0) {
+        p->limit = PL(limit_of)(p->s, p->done, end, &p->segment);
+        wrong = PL(go_on)(p, y);
+    }
+    return wrong > 0 ? wrong : 0;
+}
+
+/* ---- the step ---- */
+
+/* Where a step comes near a breakpoint: whether it meets none; else *crossing, and its time below 0 where that is not
+ * known.  c, d: of both ends of all of h */
+static PL_APART int PL(is_clear)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
+                                 const real terms[PL_EXPRESSIONS], pl_crossing *crossing)
+{
+    *crossing = p->contact->last;
+    if (pl_divided_left(&PL(passing), c[0], terms, p->contact->interval, crossing)) {
+        crossing->time = -1;
+        return 0;
+    }
+    crossing->time = PL(meets)(p, c, d, terms, 1, crossing);
+#if PL_SWIFT
+    if (!PL(stays)((const real (*)[PL_EXPRESSIONS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
+        return 0;
+    }
+#endif
+    return crossing->time < 0 && p->splits >= 0 && pl_not_finite(p->s->y, PL_STATES) == 0;
+}
+
+/* Whether the step that was made stands, as is_clear: the loads have had one formula in it, too */
+static inline int PL(stands)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
+                             const real terms[PL_EXPRESSIONS], pl_crossing *crossing)
+{
+#if PL_SEGMENTS > 1
+    if (p->segment < PL_SEGMENTS - 1 && PL(until)(p->s, p->segment) < PL_H) {
+        crossing->time = -1;
+        return 0;
+    }
+#endif
+    return PL(stays)((const real (*)[PL_EXPRESSIONS])c, d, p->contact->interval, 1, terms, 0) ||
+           PL(is_clear)(p, c, d, terms, crossing);
+}
+
+/* The expressions at the start of the step */
+static inline void PL(look_first)(const PL(piece) *p, real c[4][PL_EXPRESSIONS], real terms[PL_EXPRESSIONS])
+{
+#if PL_KEEPS_LOOK
+    if (p->s->ended) {
+        int i;
+        for (i = 0; i < PL_EXPRESSIONS; i++) {
+            c[0][i] = p->s->end[0][i];
+            c[1][i] = p->s->end[1][i];
+            terms[i] = p->s->terms[i];
+        }
+        return;
+    }
+#endif
+    PL(look)(p, 0, p->s->y, c, terms);
+}
+
+/* They are kept for the step that follows; NULL: they are not. */
+static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS])
+{
+#if PL_KEEPS_LOOK
+    int i;
+    s->ended = d != NULL;
+    for (i = 0; i < PL_EXPRESSIONS && d != NULL; i++) {
+        s->end[0][i] = d[0][i];
+        s->end[1][i] = d[1][i];
+        s->terms[i] = terms[i];
+    }
+#else
+    (void)s;
+    (void)d;
+    (void)terms;
+#endif
+}
+
+/* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where
+ * one is passed. */
+static inline void PL(serve)(PL_TYPE *s, const real u[])
+{
+    real c[4][PL_EXPRESSIONS], d[2][PL_EXPRESSIONS], terms[PL_EXPRESSIONS], spare[PL_EXPRESSIONS], y[PL_STATES];
+    real carry[PL_ROOM(PL_CARRIES)];
+    PL(piece) p;
+    pl_crossing crossing;
+    int i;
+    PL(ready)(s, u, &s->contact);
+    PL(begin)(&p, s, u, &s->contact);
+    PL(look_first)(&p, c, terms);
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] = s->y[i];
+    }
+#if PL_CARRIES > 0
+    for (i = 0; i < PL_CARRIES; i++) {
+        carry[i] = s->carry[i];
+    }
+#endif
+    PL(whole)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
+    PL(look)(&p, 1, s->y, d, spare);
+    if (PL(stands)(&p, c, (const real (*)[PL_EXPRESSIONS])d, terms, &crossing)) {
+        s->contact.last.expression = -1;
+        PL(keep_look)(s, (const real (*)[PL_EXPRESSIONS])d, spare);
+    } else {
+        for (i = 0; i < PL_STATES; i++) {
+            s->y[i] = y[i];
+        }
+#if PL_CARRIES > 0
+        for (i = 0; i < PL_CARRIES; i++) {
+            s->carry[i] = carry[i];
+        }
+#endif
+        PL(keep_look)(s, NULL, NULL);
+        p.first = !PL_SWIFT && crossing.time >= 0 ? &crossing : NULL;
+        s->status |= p.splits < 0 ? PL_TOO_MANY_EVENTS : PL(between)(&p, 1, s->y);
+    }
+    (void)carry;
+    PL(pass_time)(s, u);
+    (void)PL(change_loads)(s);
+}
+
+/* What follows from a state that was set */
+static void PL(place)(PL_TYPE *s)
+{
+    PL(forget)(&s->contact);
+    PL(keep_look)(s, NULL, NULL);
+}
+
+/* y tau after now */
+static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, real y[PL_STATES])
+{
+    PL(contact) here = s->contact;
+    PL(piece) p;
+    int i;
+    PL(ready)(s, u, &here);
+    PL(begin)(&p, s, u, &here);
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] = s->y[i];
+    }
+    (void)PL(between)(&p, tau / PL_H, y);
+}
+
+#include "undef.h"
