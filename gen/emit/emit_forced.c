@@ -2,26 +2,6 @@
 /* The forced part of loads that the step leaves out: NAME_forced, and its tables where they change their formula. */
 #include "emit/emit.h"
 
-/* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
-static const char *forced_term(const struct emitter *e, int state, int column)
-{
-	const struct table *table = e->step->branch->whole;
-	const char *operand = column_operand(e, column);
-	if (e->system->segments == 1)
-		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
-	const char *text = format("%s_forced_part[s->segment][%d][%d]", e->name, state, column);
-	return operand ? format("%s * %s", text, operand) : text;
-}
-
-static bool forces(const struct emitter *e, int state, int column)
-{
-	const struct table *table = e->step->branch->whole;
-	bool any = false;
-	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
-		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
-	return any;
-}
-
 /* [segment][state][column] */
 static void print_forced(const struct emitter *e, const char *name, const char *what, int segments,
 			 const struct coefficient *factor)
@@ -77,22 +57,15 @@ static void emit_forced_tables(const struct emitter *e)
 
 void emit_forced(const struct emitter *e)
 {
-	const struct table *table = e->step->branch->whole;
-	const char **term = ARRAY(const char *, (size_t)table->columns);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
+	tape_of_forced(formulas_tape(f), e->step, "now");
 	emit_forced_tables(e);
 	say(e, "\n"
 	       "/* What the loads that the step leaves out sustain now */\n"
 	       "static void $n_forced(const $n *s, double now[$N_STATES])\n"
 	       "{\n");
 	emit_turned_loads(e, e->step->forced->load, false);
-	for (int i = 0; i < table->states; i++) {
-		int terms = 0;
-		for (int k = 0; k < table->columns; k++)
-			if (forces(e, i, k))
-				term[terms++] = forced_term(e, i, k);
-		say(e, "    now[%d] = %s;  /* %s */\n", i, terms ? tree(terms, term, 13) : "0.0",
-		    e->model->state_name[i]);
-	}
+	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");
 }

@@ -56,12 +56,7 @@ static const char *matrix_name(const struct emitter *e)
 
 static const char *name_of_column(const struct emitter *e, const struct operand *operand)
 {
-	if (operand->kind == OPERAND_INPUT)
-		return "an input";
-	int load = 0, column = operand->index;
-	while (column >= e->system->load[load].columns)
-		column -= e->system->load[load++].columns;
-	return column_text(&e->system->load[load], column);
+	return operand->kind == OPERAND_INPUT ? "an input" : text_of_column(e->system, operand->index);
 }
 
 /* ---- a large block by its columns ---- */

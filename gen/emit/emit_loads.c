@@ -209,10 +209,8 @@ const char *load_operand(const struct emitter *e, int load, int column)
 
 const char *column_operand(const struct emitter *e, int column)
 {
-	int l = 0;
-	for (; column >= e->system->load[l].columns; l++)
-		column -= e->system->load[l].columns;
-	return load_operand(e, l, column);
+	int first, load = load_of_column(e->system, column, &first);
+	return load_operand(e, load, column - first);
 }
 
 /* ... and what it gains up to a time after now */

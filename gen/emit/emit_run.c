@@ -59,10 +59,8 @@ static const char *operand_name(const struct emitter *e, const struct operand *o
 	int column = operand->index, l = 0;
 	if (operand->kind == OPERAND_STATE)
 		return e->model->state_name[column];
-	for (; operand->kind == OPERAND_LOAD && column >= system->load[l].columns; l++)
-		column -= system->load[l].columns;
 	if (operand->kind == OPERAND_LOAD)
-		return column_text(&system->load[l], column);
+		return text_of_column(system, column);
 	for (; !system->input[l].hold || column-- > 0;)
 		l++;
 	return format("%s before the block", system->input[l].name);
@@ -214,13 +212,11 @@ static void emit_start(const struct emitter *e)
 
 static void mark_operand(const struct emitter *e, const struct operand *operand, bool *reads, bool *loads)
 {
-	int column = operand->index, l = 0;
+	int first;
 	if (operand->kind == OPERAND_STATE)
-		reads[column] = true;
-	for (; operand->kind == OPERAND_LOAD && column >= e->system->load[l].columns; l++)
-		column -= e->system->load[l].columns;
-	if (operand->kind == OPERAND_LOAD && load_operand(e, l, column))
-		loads[l] = true;
+		reads[operand->index] = true;
+	else if (operand->kind == OPERAND_LOAD && !is_constant_column(e->system, operand->index))
+		loads[load_of_column(e->system, operand->index, &first)] = true;
 }
 
 /* e: of the block's step; where loads have anchors, one stands at the start of a block. */

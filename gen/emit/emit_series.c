@@ -44,7 +44,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 	const struct emitter *e = context;
 	switch (n->op) {
 	case TAPE_STATE: return format("y[%d]", n->index);
-	case TAPE_LOAD:  return column_operand(e, n->index);
+	case TAPE_LOAD:  return load_operand(e, n->index, n->part);
 	case TAPE_INPUT: return input_name(e, n->index, n->part);
 	case TAPE_PARAM: return param_text(e, n->index);
 	case TAPE_TIME:  return n->part ? "when" : "t";

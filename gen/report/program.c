@@ -165,14 +165,6 @@ static const char *state_text(const struct step *step, int state)
 	return strchr(name, ' ') && name[0] != '(' ? format("(%s)", name) : name;
 }
 
-static const char *load_column_text(const struct linear *system, int column)
-{
-	int load = 0;
-	while (column >= system->load[load].columns)
-		column -= system->load[load++].columns;
-	return column_text(&system->load[load], column);
-}
-
 /* u as it is held; of first order, at the start of the step or at its end */
 static const char *input_column_text(const struct step *step, int column)
 {
@@ -189,7 +181,7 @@ static const char *operand_text(const struct step *step, const struct operand *o
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return state_text(step, operand->index);
-	case OPERAND_LOAD:  return load_column_text(&step->branch->system, operand->index);
+	case OPERAND_LOAD:  return text_of_column(&step->branch->system, operand->index);
 	default:            return input_column_text(step, operand->index);
 	}
 }
@@ -350,7 +342,7 @@ static const char *term_text(const struct step *step, const struct sequence_term
 	const struct linear *system = &step->branch->system;
 	switch (t->kind) {
 	case TERM_TIME:     return t->a ? format("t^%d", t->a) : "1";
-	case TERM_LOAD:     return load_column_text(system, t->a);
+	case TERM_LOAD:     return text_of_column(system, t->a);
 	case TERM_INPUT:    return system->input[t->a].name;
 	case TERM_SLOPE:    return format("%s'", system->input[t->a].name);
 	case TERM_PARAM:    return held_symbol(step->model, t->a)->name;
@@ -474,7 +466,7 @@ static void print_reads(FILE *to, const struct step *step)
 			states = format("%s%s %s", states, *states ? "," : "", state_text(step, i));
 	for (int k = 0; k < step->branch->whole->columns; k++)
 		if (program->uses[k])
-			loads = format("%s%s %s", loads, *loads ? "," : "", load_column_text(&step->branch->system, k));
+			loads = format("%s%s %s", loads, *loads ? "," : "", text_of_column(&step->branch->system, k));
 	if (step->model->switching || has_leftover(step))
 		states = " all states";
 	fprintf(to, "Reads:%s%s%s\n", *states ? states : " no state", *loads ? "; loads" : "", loads);

@@ -513,18 +513,15 @@ static void count_forced(const struct step *step, struct forced *forced)
 {
 	const struct linear *system = &step->branch->system;
 	int columns = step->branch->whole->columns;
-	struct program program = { .uses = ARRAY(bool, (size_t)columns) };
-	for (int i = 0; i < system->states; i++)
-		for (int l = 0, column = 0; l < system->loads; l++)
-			for (int j = 0; j < system->load[l].columns; j++, column++) {
-				const struct coefficient *c = &forced->part[i * columns + column];
-				if (!forced->load[l] || (c->value == 0 && system->segments == 1))
-					continue;
-				program.uses[column] = true;
-				program.additions++;
-				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) &&
-							   c->value != 1 && c->value != -1;
-			}
+	struct tape *t = tape_new();
+	tape_of_forced(t, step, "");
+	const struct tape_cost cost = tape_cost(t);
+	struct program program = { .uses = ARRAY(bool, (size_t)columns), .multiplications = cost.multiplications,
+				   .additions = cost.additions };
+	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
+		program.uses[column] = tape_reads(t, TAPE_LOAD, l, -1);
+	for (int i = 0; i < tape_outs(t); i++)          /* and to what is kept */
+		program.additions += tape_out(t, i)->ref != tape_number(t, 0);
 	(step->anchors ? count_turned_loads : count_loads)(&program, step);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;

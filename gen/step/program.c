@@ -28,13 +28,16 @@ int load_of_column(const struct linear *system, int column, int *first)
 	return l;
 }
 
+const char *text_of_column(const struct linear *system, int column)
+{
+	int first, load = load_of_column(system, column, &first);
+	return column_text(&system->load[load], column - first);
+}
+
 bool is_forced(const struct step *step, int column)
 {
-	const struct linear *system = &step->branch->system;
-	for (int l = 0; l < system->loads; column -= system->load[l++].columns)
-		if (column < system->load[l].columns)
-			return step->forced && step->forced->load[l];
-	return false;
+	int first;
+	return step->forced && step->forced->load[load_of_column(&step->branch->system, column, &first)];
 }
 
 static bool reads_columns(const struct output *row, int load, int columns)

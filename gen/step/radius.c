@@ -18,11 +18,8 @@ struct values {
 
 /* ---- the coefficients ---- */
 
-static double column_at_start(const struct linear *system, int column)
+static double column_at_start(const struct load *load, int column)
 {
-	const struct load *load = system->load;
-	for (; column >= load->columns; load++)
-		column -= load->columns;
 	bool turns = oscillates(load->wave);
 	double phase = mpq_get_d(load->wave->p);
 	if (column / (turns ? 2 : 1) > 0)               /* t^k */
@@ -47,7 +44,7 @@ static void operand_at_start(const void *context, const struct tape_node *n, mpf
 	int place = (n->index * v->system->segments + v->segment) * (v->x->order + 1) + n->part;
 	switch (n->op) {
 	case TAPE_STATE: mpfr_set_q(value, model->initial[n->index], MPFR_RNDN); break;
-	case TAPE_LOAD:  mpfr_set_d(value, column_at_start(v->system, n->index), MPFR_RNDN); break;
+	case TAPE_LOAD:  mpfr_set_d(value, column_at_start(&v->system->load[n->index], n->part), MPFR_RNDN); break;
 	case TAPE_PARAM: set_param(model, n->index, value); break;
 	case TAPE_TIME:  mpfr_set_d(value, n->part ? 1e-9 * mpq_get_d(model->h) : 0, MPFR_RNDN); break;
 	case TAPE_TABLE: mpfr_set_d(value, v->x->changing[place], MPFR_RNDN); break;

@@ -158,20 +158,9 @@ static void add_product(struct recurrences *r, struct list *sum, struct list *la
 		add(last, newest(r, recurrence(r, b, k), factor, a));
 }
 
-/* The constant 1: a load's state that is no operand */
-static bool is_one(const struct recurrences *r, int column)
-{
-	const struct linear *system = &r->step->branch->system;
-	int l = 0;
-	for (; column >= system->load[l].columns; l++)
-		column -= system->load[l].columns;
-	const struct wave *wave = system->load[l].wave;
-	return column == 0 && !oscillates(wave) && mpq_sgn(wave->a) == 0;
-}
-
 static tape_ref column_ref(const struct recurrences *r, int column)
 {
-	return is_one(r, column) ? TAPE_NONE : tape_operand(r->t, TAPE_LOAD, column, 0);
+	return tape_of_column(r->t, &r->step->branch->system, column);
 }
 
 /* What at k follows from time, loads and inputs; true: it is that */

@@ -320,6 +320,7 @@ struct step {                       /* everything that is emitted for one model 
 };
 enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
+const char *text_of_column(const struct linear *system, int column);
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
 /* those that a system or an expression reads */
@@ -340,12 +341,16 @@ enum linear_table {
 	TABLE_OWN_OUT,              /* the same, of outputs: row x column of tuning->x */
 	TABLE_FACTOR,               /* of load states that change their formula: state x column */
 	TABLE_DIRECT,               /* likewise of outputs: place of an output x column */
+	TABLE_FORCED,               /* likewise of what the step leaves out: state x column */
 	TABLE_LEFT,                 /* what is left over: channel */
 	TABLE_SEEN,                 /* what an output sees of the modes */
 	LINEAR_TABLES
 };
 enum { PLACE_REST, PLACE_CARRY };   /* `part` of TAPE_ACCUMULATE */
 const struct linear *system_of_outputs(const struct step *step); /* of regions one with all segments of time */
+/* Column of the loads; TAPE_NONE: the constant 1 */
+tape_ref tape_of_column(struct tape *t, const struct linear *system, int column);
+void tape_of_forced(struct tape *t, const struct step *step, const char *vector); /* what loads sustain by themselves */
 /* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
 bool has_second_word(const struct product *p, const struct step *step);
@@ -1179,7 +1184,7 @@ struct expansion {
 };
 /* ---- recurrences.c: the coefficients as nodes of a tape ---- */
 
-/* Operands: TAPE_STATE, TAPE_LOAD of a column, TAPE_INPUT, TAPE_PARAM, TAPE_TIME, TAPE_TABLE of slot `index` at the k
+/* Operands: TAPE_STATE, TAPE_LOAD, TAPE_INPUT, TAPE_PARAM, TAPE_TIME, TAPE_TABLE of slot `index` at the k
  * `part`; what the state chooses TAPE_ABOVE and TAPE_HELD, where nodes have no names by their numbers. */
 struct series_names {               /* of a sequence's nodes, x of x_3; NULL: they have none */
 	const char *(*name)(const void *context, int sequence);

@@ -8,7 +8,7 @@ static tape_ref entry(struct tape *t, enum linear_table table, int index, tape_r
 	return x == TAPE_NONE ? factor : tape_binary(t, TAPE_MUL, factor, x);
 }
 
-static tape_ref load_ref(struct tape *t, const struct linear *system, int column)
+tape_ref tape_of_column(struct tape *t, const struct linear *system, int column)
 {
 	int first, load = load_of_column(system, column, &first);
 	return is_constant_column(system, column) ? TAPE_NONE : tape_operand(t, TAPE_LOAD, load, column - first);
@@ -93,7 +93,7 @@ int place_of_operand(const struct table *table, const struct operand *o)
 static tape_ref operand_ref(const struct sums *s, const struct operand *o)
 {
 	if (o->kind == OPERAND_LOAD)
-		return load_ref(s->t, &s->step->branch->system, o->index);
+		return tape_of_column(s->t, &s->step->branch->system, o->index);
 	return o->kind == OPERAND_STATE ? s->state[o->index] : tape_operand(s->t, TAPE_SAMPLE, o->index, 0);
 }
 
@@ -202,7 +202,7 @@ static tape_ref own_row_ref(struct tape *t, const struct step *step, int row)
 		if (own_row_reads(step, row, column))
 			term[terms++] = entry(t, TABLE_OWN_OUT, row * x->size + column,
 					      column < states ? tape_operand(t, TAPE_STATE, column, 0)
-							      : load_ref(t, system, column - states));
+							      : tape_of_column(t, system, column - states));
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k <= system->input[i].hold; k++, column++)
 			if (own_row_reads(step, row, column))   /* none reads further than the slope */
@@ -259,7 +259,7 @@ static int load_terms(struct tape *t, const struct step *step, const struct outp
 			const bool differs = differs_in_time(factor, system->segments);
 			if (!differs && mpq_sgn(factor[0]) == 0)
 				continue;
-			tape_ref x = load_ref(t, system, column);
+			tape_ref x = tape_of_column(t, system, column);
 			term[terms++] = differs ? entry(t, TABLE_DIRECT, place * columns + column, x)
 						: number_times(t, round_rational(factor[0]), x);
 		}
@@ -291,4 +291,33 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 			term[terms++] = tape_scaled(t, row_factor(output, output->channel[c]),
 						    entry(t, TABLE_LEFT, c, TAPE_NONE));
 	return tape_sum(t, terms, term);
+}
+
+/* ---- the forced part ---- */
+
+static bool sustains(const struct step *step, int state, int column)
+{
+	const struct table *table = step->branch->whole;
+	bool any = false;
+	for (int s = 0; s < step->branch->system.segments && is_forced(step, column); s++)
+		any = any || step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
+	return any;
+}
+
+void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
+{
+	const struct table *table = step->branch->whole;
+	const struct linear *system = &step->branch->system;
+	tape_ref *term = ARRAY(tape_ref, (size_t)table->columns + 1);
+	for (int i = 0; i < table->states; i++) {
+		int terms = 0, at = i * table->columns;
+		for (int k = 0; k < table->columns; k++) {
+			if (!sustains(step, i, k))
+				continue;
+			tape_ref x = tape_of_column(t, system, k);
+			term[terms++] = system->segments > 1 ? entry(t, TABLE_FORCED, at + k, x)
+						: number_times(t, step->forced->part[at + k].value, x);
+		}
+		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->state_name[i]);
+	}
 }
