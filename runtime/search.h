@@ -22,6 +22,7 @@
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
+ *     PL_CLEARS                  whether most steps are seen to be clear before it is asked
  *     PL_FEW                     crossings by few.h, which is included then; 0: none */
 #include "numbers.h"
 
@@ -186,9 +187,15 @@ static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact
 
 /* ---- a step, and what is asked about it ---- */
 
+#if PL_CLEARS
+#define PL_RARE PL_APART
+#else
+#define PL_RARE
+#endif
+
 #if PL_EXPRESSIONS > 0
 /* By the search, from x */
-static PL_APART void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+static PL_RARE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 {
     int i;
     PL(search)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
@@ -205,7 +212,11 @@ static PL_APART void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 #if PL_ALONE
 int PL(region)(const PL_TYPE *s)
 {
+#if PL_SEGMENTS > 1
     return s->contact.region % PL_REGIONS;
+#else
+    return s->contact.region;
+#endif
 }
 
 uint64_t PL(crossed)(const PL_TYPE *s)

@@ -24,6 +24,7 @@
 #undef PL_CHANGES
 #undef PL_CHANGING
 #undef PL_CHOICES
+#undef PL_CLEARS
 #undef PL_COLUMNS
 #undef PL_CONTACTS
 #undef PL_CONVERTED
@@ -110,6 +111,7 @@
 #undef PL_POINTS
 #undef PL_RAMPS
 #undef PL_REACHES
+#undef PL_RARE
 #undef PL_REGIONS
 #undef PL_REMAINDERS
 #undef PL_RING

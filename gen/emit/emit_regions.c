@@ -284,7 +284,7 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
-		{ "BOUNCES", has_bounces(e->model) }
+		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->clears }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		say_macro(e, all[i].name, whole_text(all[i].value));
