@@ -84,6 +84,150 @@ tests/peaks/peaks.spec
 tests/holds/tuned.spec}
 END
 
+# A model written by hand, x'' + x = 0 with a sixth of a turn a step: peaks.h and batch.h without a generator. After six
+# steps each instance is where it was, and its largest |x| is the amplitude, between steps.
+cat >hand.c <<'END'
+#include "plrt.h"
+
+#include "pllanes.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct m { double y[2], t, peak[1]; } m;
+typedef struct m_instances { size_t count; double *y, *peak; m shared; } m_instances;
+static const double m_h = 1.0471975511965976, m_cos = 0.5, m_sin = 0.8660254037844386;
+static const double m_slope[2][2] = {{0, 1}, {-1, 0}}, m_row[1][2] = {{1, 0}};
+static const double m_bend[1][2] = {{0.1371, 0.1371}};         /* h^2/8, and |x''| <= |x| + |x'| */
+static const int m_peak_output[1] = {1};
+
+static void m_set(m *s, double t, const double y[2]) { *s = (m){{y[0], y[1]}, t, {0}}; }
+static void m_init(m *s) { m_set(s, 0, (const double[]){1, 0}); }
+static void m_get(const m *s, double y[2]) { y[0] = s->y[0]; y[1] = s->y[1]; }
+static double m_time(const m *s) { return s->t; }
+static int m_status(const m *s) { return pl_not_finite(s->y, 2); }
+
+#define PL(name) m_##name
+#define PL_TYPE m
+#define PL_SINGLE 0
+#define PL_STATES 2
+#define PL_INPUTS 0
+#define PL_OUTPUTS 2
+#define PL_SIZE 2
+#define PL_PEAKS 1
+#define PL_H m_h
+#define PL_SLOPE m_slope
+#define PL_BEND m_bend
+#define PL_PEAK_ROW(c, p) m_row[p]
+#define PL_OWN 0
+#include "peaks.h"
+
+static void m_begin_step(const m *s, const double *u, double x[2]) { m_get(s, x); (void)u; }
+static void m_now(const m *s, double out[2]) { out[0] = s->y[1]; out[1] = s->y[0]; }
+static void m_move(m *s)
+{
+    const double x = s->y[0], v = s->y[1];
+    s->y[0] = m_cos * x + m_sin * v;
+    s->y[1] = m_cos * v - m_sin * x;
+    s->t += m_h;
+}
+static void m_share_step(m *s, const double *u, double *now) { s->t += m_h; (void)u; (void)now; }
+static void m_share_out(const m *s, double *now) { (void)s; (void)now; }
+PL_LANES_INLINE void m_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)
+{
+    const pl_lanes x = y[0], v = y[1];
+    y[0] = m_cos * x + m_sin * v;
+    y[1] = m_cos * v - m_sin * x;
+    (void)factor;
+    (void)now;
+}
+PL_LANES_INLINE void m_lanes_out(const pl_lanes *y, const pl_lanes *factor, const double *now, pl_lanes *out)
+{
+    out[0] = y[1];
+    out[1] = y[0];
+    (void)factor;
+    (void)now;
+}
+PL_LANES_INLINE void m_lanes_bend(const pl_lanes *state, const pl_lanes *factor, const double *reach, pl_lanes *bend)
+{
+    bend[0] = 0.1371 * (pl_lanes_peak(pl_lanes_all(0), state[0]) + pl_lanes_peak(pl_lanes_all(0), state[1]));
+    (void)factor;
+    (void)reach;
+}
+
+#define PL(name) m_##name
+#define PL_TYPE m
+#define PL_INSTANCES m_instances
+#define PL_SINGLE 0
+#define PL_STATES 2
+#define PL_INPUTS 0
+#define PL_OUTPUTS 2
+#define PL_ROWS 2
+#define PL_STEPPED 2
+#define PL_GROUPS 4
+#define PL_SHARED 0
+#define PL_FACTORS 0
+#define PL_LANES 0
+#define PL_PEAKS 1
+#define PL_SIZE 2
+#define PL_MOMENTA 0
+#define PL_NOMINAL m_bend
+#define PL_SAMPLED 0
+#include "batch.h"
+
+static double worst;
+static void compare(double value, double truth) { worst = fmax(worst, fabs(value - truth)); }
+
+static void judge(size_t count, int outputs)
+{
+    static double y[2 * 70], peak[2 * 70], out[6 * 2 * 70];
+    m_instances b = {count, y, peak, {{0, 0}, 0, {0}}};
+    size_t j;
+    int i;
+    m_batch_init(&b);
+    for (j = 0; j < count; j++)
+        m_batch_set(&b, j, (const double[]){cos((double)j), 0.01 * (double)j});
+    for (i = 0; i < 50; i++)
+        m_batch(&b, 6, outputs ? out : NULL);
+    for (j = 0; j < count; j++) {
+        const double start[2] = {cos((double)j), 0.01 * (double)j}, amplitude = hypot(start[0], start[1]);
+        double now[2];
+        m alone;
+        m_set(&alone, 0, start);
+        for (i = 0; i < 6; i++)
+            m_step(&alone);
+        m_out(&alone, now);
+        compare(now[1], amplitude);
+        m_batch_get(&b, j, now);
+        compare(now[0], start[0]);
+        compare(now[1], start[1]);
+        compare(peak[count + j], amplitude);
+        if (outputs)
+            compare(out[11 * count + j], amplitude);
+    }
+    compare(m_time(&b.shared), 300 * m_h);
+}
+
+int main(void)
+{
+    size_t count;
+    m first;
+    m_init(&first);
+    for (count = 1; count <= 70; count += 23) {
+        judge(count, 0);
+        judge(count, 1);
+    }
+    printf("# worst %.3g\n", worst);
+    return !(worst < 1e-12 && m_status(&first) == 0);
+}
+END
+for flags in -O0 -O2; do
+    {
+        ${CC:-cc} -std=c99 $flags $warnings -I"$root/runtime" hand.c "$archive" -lm -o hand && ./hand
+    } >log 2>&1
+    result $? "a model written by hand, ${CC:-cc} $flags"
+done
+
 refuses models/two_masses.spec 'where an instance crosses a breakpoint is a matter of its own'
 refuses models/pendulum.spec 'what is left over is not linear in the state'
 refuses tests/tunable/changes.spec 'its loads change their formula inside a step'
