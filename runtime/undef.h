@@ -18,6 +18,7 @@
 #undef PL_BLOCKS
 #undef PL_BOUNCES
 #undef PL_BOUNDS
+#undef PL_BRANCHES
 #undef PL_CARRIES
 #undef PL_CERTAIN
 #undef PL_CHANGE
@@ -45,6 +46,7 @@
 #undef PL_FIRST_SWEEPS
 #undef PL_FLAT
 #undef PL_FLOORS
+#undef PL_FOLDED
 #undef PL_FORCED
 #undef PL_FORCES
 #undef PL_FUNCTIONS
@@ -101,6 +103,7 @@
 #undef PL_OUTPUTS
 #undef PL_OVER
 #undef PL_OWN
+#undef PL_PAIRS
 #undef PL_PART
 #undef PL_PARTS
 #undef PL_PEAKS
@@ -145,7 +148,9 @@
 #undef PL_START
 #undef PL_STATES
 #undef PL_STATE_ROUNDED
+#undef PL_STAYS
 #undef PL_STEPPED
+#undef PL_STILL
 #undef PL_STRAIGHT
 #undef PL_SWAY
 #undef PL_SWEEPS

@@ -43,7 +43,7 @@ void open_function(const struct emitter *e, const char *note, const char *layout
 	__attribute__((format(printf, 3, 4)));
 void close_function(const struct emitter *e, const char *unread);
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
-/* {..., ...} of its own */
+/* static const int NAME_name[]; of none there is a 0 */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
@@ -737,7 +737,6 @@ void emit_slopes_begin(const struct emitter *e);
 void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
 void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
 int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
-void emit_gathering(const struct emitter *e);                     /* emit_gathered.c: $n_gather */
 int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
 
 /* ---- emit_held.c: params that an instance holds; of models without, nothing is printed ---- */

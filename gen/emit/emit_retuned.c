@@ -515,6 +515,38 @@ int retuned_kilobytes(const struct emitter *e)
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }
 
+/* ---- steps that stay clear ---- */
+
+static int pairs_of(const struct emitter *e, int *column)
+{
+	int count = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		if (is_bounded_load(e->step, l) && e->system->load[l].columns == 2)
+			column[count++] = e->step->layout.load[l];
+	return count;
+}
+
+static void emit_gathering(const struct emitter *e)
+{
+	int stays, *column = staying_columns(e->step, &stays), *param = ARRAY(int, (size_t)stays);
+	int *pair = ARRAY(int, (size_t)e->system->loads), pairs = pairs_of(e, pair);
+	for (int k = 0; k < stays; k++)
+		param[k] = param_of_column(e->step, column[k]);
+	emit_int_list(e, "stays", stays, column);
+	emit_int_list(e, "stay_param", stays, param);
+	emit_int_list(e, "pair", pairs, pair);
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "EXPRESSIONS", e->model->switching->expressions },
+		{ "BRANCHES", e->step->branches }, { "STAYS", stays }, { "PAIRS", pairs },
+		{ "STILL", any_still(e->step) }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say_macro(e, "LARGE", shortest(LARGE_ENOUGH));
+	say_macro(e, "FOLDED", shortest(FOLDED));
+	say_macro(e, "OPEN_END", shortest(OPEN_END));
+	say(e, "#include \"gather.h\"\n");
+}
+
 void emit_retuned(const struct emitter *e)
 {
 	emit_equations(e);

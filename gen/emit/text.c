@@ -203,7 +203,7 @@ void say_macro(const struct emitter *e, const char *name, const char *text)
 
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value)
 {
-	say(e, "static const int $n_%s[%d] = {", name, count);
+	say(e, "static const int $n_%s[%d] = {%s", name, count ? count : 1, count ? "" : "0");
 	for (int i = 0; i < count; i++)
 		say(e, i ? ", %d" : "%d", value[i]);
 	say(e, "};\n");
