@@ -18,7 +18,8 @@ enum {
 	PASSED_AT_START = 10,       /* crossings in the first 2^-10 of a step are none that is counted */
 	LISTED_AT_ONCE = 12,        /* of impacts at one instant, as in runtime/chain.h */
 	BESIDE = 36,                /* the second start is off by 2^-36; in float */
-	GROWTH = 8                  /* and grows by no more than that */
+	GROWTH = 8,                 /* and grows by no more than that */
+	MOST_LOST = 20              /* bits that enclosures may lose: each bounce of several loses some */
 };
 
 /* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
@@ -75,18 +76,23 @@ static const char *reach(const struct ways *w, mpq_srcptr time)
 	return NULL;
 }
 
-/* Rounded, what is 0 but for its enclosure to 0; false: not known well enough */
-static bool states_of(const struct ways *w, double *y)
+/* Rounded, what is 0 but for its enclosure to 0; false: not known well enough. *width: of the widest enclosure */
+static bool states_of(const struct ways *w, double *y, mpfr_ptr width)
 {
 	const struct switching *s = regions_of(w->step);
 	bool known = true;
 	mpfi_t x;
+	mpfr_t here;
 	mpfi_init(x);
+	mpfr_init2(here, 53);
+	mpfr_set_zero(width, 1);
 	for (int p = 0; p < w->count; p++) {
 		int count = s->parts ? s->part[p].model->system.states : w->step->branch->system.states;
 		for (int i = 0; i < count; i++) {
 			double *value = &y[s->parts ? s->part[p].state[i] : i];
 			through_state(w->way[p], i, x);
+			mpfi_diam_abs(here, x);
+			mpfr_max(width, width, here, MPFR_RNDU);
 			if (round_enclosure(x, value))
 				continue;
 			known = known && mpfi_has_zero(x) && fabs(mpfr_get_d(&x->left, MPFR_RNDA)) < 0x1p-160;
@@ -94,6 +100,7 @@ static bool states_of(const struct ways *w, double *y)
 		}
 	}
 	mpfi_clear(x);
+	mpfr_clear(here);
 	return known;
 }
 
@@ -111,6 +118,14 @@ static double largest_of(const struct reference *r, int state)
 	double largest = fabs(r->start[state]);
 	for (int k = 0; k < r->rows; k++)
 		largest = fmax(largest, fabs(r->value[k * r->states + state]));
+	return largest;
+}
+
+static double largest_of_all(const struct reference *r, const double *y)
+{
+	double largest = 0;
+	for (int i = 0; i < r->states; i++)
+		largest = fmax(largest, fmax(largest_of(r, i), fabs(y[i])));
 	return largest;
 }
 
@@ -210,22 +225,18 @@ static void start_of(const struct step *step, int number, mpq_t *start)
 	}
 }
 
+/* Each state off by a part of itself: off 0, what lies would bounce. */
 static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 {
 	int states = step->branch->system.states, bits = step->model->asked.single ? 18 : BESIDE;
-	mpq_t *beside = rationals((size_t)states), largest, off;
-	mpq_inits(largest, off, NULL);
+	mpq_t *beside = rationals((size_t)states), off;
+	mpq_init(off);
 	for (int i = 0; i < states; i++) {
-		mpq_abs(off, start[i]);
-		if (mpq_cmp(off, largest) > 0)
-			mpq_set(largest, off);
-	}
-	for (int i = 0; i < states; i++) {              /* no state at 0 is off by more than others */
 		mpq_abs(off, start[i]);
 		mpq_div_2exp(off, off, (mp_bitcnt_t)bits);
 		(i % 3 == 1 ? mpq_sub : mpq_add)(beside[i], start[i], off);
 	}
-	mpq_clears(largest, off, NULL);
+	mpq_clear(off);
 	return beside;
 }
 
@@ -281,31 +292,35 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 static bool try_start(const struct step *step, struct reference *r, const mpq_t *start, int bits)
 {
 	mpq_t *near = start_beside(step, start), time;
+	mpfr_t width, unused;
 	double *other = ARRAY(double, (size_t)r->states);
 	struct ways a = ways_of(step, start, bits), b = ways_of(step, (const mpq_t *)near, bits);
 	bool known = true, goes = true;
 	mpq_init(time);
+	mpfr_inits2(53, width, unused, NULL);
 	mpq_div_2exp(time, step->model->h, 1);
 	r->rows = r->crossings = 0;
 	for (int i = 0; i < r->states; i++)
 		r->start[i] = round_rational(start[i]);
-	known = !reach(&a, time) && states_of(&a, r->between);
+	known = !reach(&a, time) && states_of(&a, r->between, unused);
 	while (known && goes && r->rows < ROWS &&
 	       (r->crossings < ENOUGH || (r->rows < LEAST_ROWS && r->crossings < MANY))) {
 		double *y = r->value + r->rows * r->states;
 		mpq_set_ui(time, steps[r->rows], 1);
 		mpq_mul(time, time, step->model->h);
 		goes = !reach(&a, time);
-		known = goes ? states_of(&a, y) : crossings_of(&a) >= MOST;
+		known = goes ? states_of(&a, y, width) : crossings_of(&a) >= MOST;
 		goes = goes && known && !reach(&b, time);
 		if (goes)
-			(void)states_of(&b, other);
+			(void)states_of(&b, other, unused);
+		goes = goes && mpfr_cmp_d(width, ldexp(largest_of_all(r, y), MOST_LOST - bits)) <= 0;
 		if (goes && (goes = are_close(r, &a, &b, y, other))) {
 			r->rows++;
 			take_crossings(r, &a);
 		}
 	}
 	mpq_clear(time);
+	mpfr_clears(width, unused, NULL);
 	rationals_free(near, (size_t)r->states);
 	free_ways(&a);
 	free_ways(&b);
