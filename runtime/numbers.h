@@ -34,6 +34,7 @@
 #define pl_series pl_seriesf
 #define pl_series_advance pl_seriesf_advance
 #define pl_two pl_twof
+#define pl_lead_change pl_leadf_change
 #define pl_power_apply pl_powerf_apply
 #define pl_peak pl_peakf
 #define pl_peak_bend pl_peakf_bend

@@ -3,7 +3,7 @@
 #include "emit/emit.h"
 
 /* One declaration, its comment at a common column. */
-static void declare(const struct emitter *e, const char *text, const char *comment)
+void announce(const struct emitter *e, const char *text, const char *comment)
 {
 	if (*comment)
 		say(e, "%-76s  /* %s */\n", text, comment);
@@ -54,44 +54,47 @@ static void emit_state_struct(const struct emitter *e)
 	say(e, "};\n\n");
 }
 
+void declare_reading(const struct emitter *e, const char *status_note)
+{
+	announce(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
+	announce(e, spell(e, "double $n_time(const $n *s);"), "[s]");
+	announce(e, spell(e, "int    $n_status(const $n *s);"), status_note);
+}
+
 static void declare_state_functions(const struct emitter *e)
 {
-	declare(e, spell(e, "void   $n_init($n *s);"), e->kind->init_note);
-	declare(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"), "any state at any time [s]");
-	declare(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
-	declare(e, spell(e, "double $n_time(const $n *s);"), "[s]");
+	announce(e, spell(e, "void   $n_init($n *s);"), e->kind->init_note);
+	announce(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"),
+		"any state at any time [s]");
 	const char *note = e->model->switching && has_events(e->model->switching)
 			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED, PL_PENETRATED"
 			: e->kind->status_note;
-	declare(e, spell(e, "int    $n_status(const $n *s);"),
-		has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
+	declare_reading(e, has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
 	e->kind->declare_state(e);
 	if (e->ramps)
-		declare(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
+		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
 			most_taps_before(e) ? "the next sample, no step" : "the previous sample");
 }
 
-static void declare_driven_step(const struct emitter *e)
+void declare_driven_step(const struct emitter *e, const char *note)
 {
-	declare(e, spell(e, "void   $n_step($n *s, const double u[$N_INPUTS]);"),
-		most_taps_before(e) ? "one step of h; u: the next sample" :
-		e->ramps ? "one step of h; a ramp ends at u" : "one step of h with u held");
-	declare(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
-	declare(e, spell(e, "void   $n_run($n *s, size_t n, const double *u, double *out);"),
+	announce(e, spell(e, "void   $n_step($n *s, const double u[$N_INPUTS]);"), note);
+	announce(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
+	announce(e, spell(e, "void   $n_run($n *s, size_t n, const double *u, double *out);"),
 		"n steps, n rows of u; out: n rows, or NULL");
 	if (e->step->series.emitted)
-		declare(e, spell(e, "void   $n_at(const $n *s, const double u[$N_INPUTS], "
+		announce(e, spell(e, "void   $n_at(const $n *s, const double u[$N_INPUTS], "
 				    "double tau, double y[$N_STATES]);"), "tau after now, 0 <= tau <= h");
 }
 
 static void declare_free_step(const struct emitter *e)
 {
-	declare(e, spell(e, "void   $n_step($n *s);"), "one step of h");
-	declare(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
-	declare(e, spell(e, "void   $n_run($n *s, size_t n, double *out);"),
+	announce(e, spell(e, "void   $n_step($n *s);"), "one step of h");
+	announce(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
+	announce(e, spell(e, "void   $n_run($n *s, size_t n, double *out);"),
 		"n steps; out: n rows of outputs, or NULL");
 	if (e->step->series.emitted)
-		declare(e, spell(e, "void   $n_at(const $n *s, double tau, double y[$N_STATES]);"),
+		announce(e, spell(e, "void   $n_at(const $n *s, double tau, double y[$N_STATES]);"),
 			"tau after now, 0 <= tau <= h");
 }
 
@@ -105,41 +108,46 @@ static void declare_checks(const struct emitter *e, bool rhs)
 		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
 		      "--rhs has no formula for friction, whose force is a set where it sticks");
 	if (rhs)
-		declare(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
+		announce(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
 				 given_inputs(e) ? "const double u[], " : ""), note);
 	if (e->model->asked.selftest)
-		declare(e, spell(e, "double $n_selftest(void);"),
+		announce(e, spell(e, "double $n_selftest(void);"),
 			"largest deviation from the closed form, in units in the last place");
 }
 
 static void declare_tables(const struct emitter *e)
 {
 	if (!e->step->shown->no_phi)
-		declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
+		announce(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
 	if (given_inputs(e) && !e->step->shown->no_phi)
-		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
+		announce(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
 	if (e->model->shortened) {
 		const int all = e->model->written->system.states;
-		declare(e, spell(e, "extern const double $n_from_whole[$N_STATES][%d];", all),
+		announce(e, spell(e, "extern const double $n_from_whole[$N_STATES][%d];", all),
 			"y = from_whole x, x: a state of all modes");
-		declare(e, spell(e, "extern const double $n_to_whole[%d][$N_STATES];", all),
+		announce(e, spell(e, "extern const double $n_to_whole[%d][$N_STATES];", all),
 			"x = to_whole y, without what is dropped");
 	}
 	if (!e->model->delays)
-		declare(e, spell(e, "extern const pl_model $n_model;"), "");
+		announce(e, spell(e, "extern const pl_model $n_model;"), "");
 	if (tells_tolerance(e))
-		declare(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
+		announce(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
 			"by how much a step may miss each state; 0: it has an absolute tolerance");
 }
 
 static void emit_functions(const struct emitter *e, bool rhs)
 {
 	declare_state_functions(e);
-	(given_inputs(e) ? declare_driven_step : declare_free_step)(e);
+	if (given_inputs(e))
+		declare_driven_step(e, most_taps_before(e) ? "one step of h; u: the next sample"
+				       : e->ramps	   ? "one step of h; a ramp ends at u"
+							   : "one step of h with u held");
+	else
+		declare_free_step(e);
 	if (has_jump(e))
-		declare(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
+		announce(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	e->kind->declare_more(e);
 	if (e->model->asked.batch)
 		emit_batch_declarations(e);
@@ -147,25 +155,40 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	declare_tables(e);
 }
 
-void emit_declarations(const struct emitter *e, bool rhs)
+void open_declarations(const struct emitter *e, const char *included)
 {
 	say(e, "#ifndef $N_DECLARED\n"
 	       "#define $N_DECLARED\n"
-	       "\n%s#include \"plrt.h\"\n"
-	       "\n#ifdef __cplusplus\n"
+	       "\n%s"
+	       "#ifdef __cplusplus\n"
 	       "extern \"C\" {\n"
+	       "#endif\n\n", included);
+}
+
+void close_declarations(const struct emitter *e)
+{
+	say(e, "\n#ifdef __cplusplus\n"
+	       "}\n"
 	       "#endif\n"
-	       "\n", e->model->asked.single ? "#define PL_FLOAT_ONLY\n" : "");
-	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, given_inputs(e),
-	       e->model->outputs);
+	       "\n#endif\n");
+}
+
+void emit_counts(const struct emitter *e, int inputs)
+{
+	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, inputs,
+	    e->model->outputs);
+}
+
+void emit_declarations(const struct emitter *e, bool rhs)
+{
+	open_declarations(e, e->model->asked.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
+						    : "#include \"plrt.h\"\n\n");
+	emit_counts(e, given_inputs(e));
 	e->kind->constants(e);
 	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
 	e->kind->types(e);
 	emit_state_struct(e);
 	emit_functions(e, rhs);
-	say(e, "\n#ifdef __cplusplus\n"
-	       "}\n"
-	       "#endif\n"
-	       "\n#endif\n");
+	close_declarations(e);
 }

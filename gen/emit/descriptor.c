@@ -78,25 +78,25 @@ static void emit_wrapper(const struct emitter *e, const char *result, const char
 	       function, state, arguments);
 }
 
-static void emit_start_samples(const struct emitter *e)
+static void emit_start_samples(const struct emitter *e, int inputs)
 {
 	say(e, "static const int $n_start_samples[] = {");
-	for (int i = 0; i < given_inputs(e); i++)
+	for (int i = 0; i < inputs; i++)
 		say(e, "%s%d", i ? ", " : "", samples_ahead(e->system->input[i].hold));
 	say(e, "};\n");
 }
 
-static void emit_names(const struct emitter *e)
+static void emit_names(const struct emitter *e, int inputs)
 {
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
-	if (given_inputs(e)) {
-		emit_name_list(e, "input_names", given_inputs(e), names_of_inputs(e));
-		emit_start_samples(e);
+	if (inputs) {
+		emit_name_list(e, "input_names", inputs, names_of_inputs(e));
+		emit_start_samples(e, inputs);
 	}
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
 }
 
-void emit_wrappers(const struct emitter *e)
+static void emit_wrappers(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
 	emit_wrapper(e, "void", "init", "", "", false);
@@ -133,26 +133,35 @@ static void emit_allowed(const struct emitter *e)
 	    shortest(round_rational(e->model->truncation.tolerance)));
 }
 
-void emit_descriptor(const struct emitter *e)
+void emit_model(const struct emitter *e, int inputs, bool core)
 {
-	bool inputs = given_inputs(e) > 0;
-	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
-	emit_names(e);
+	const bool jump = core && has_jump(e);
+	emit_names(e, inputs);
 	say(e, "\n");
 	emit_wrappers(e);
-	if (has_jump(e))
+	if (jump)
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
-	e->kind->wrappers(e);
+	if (core)
+		e->kind->wrappers(e);
 	say(e, "\nconst pl_model $n_model = {\n"
 	       "    PL_MODEL_VERSION, sizeof(double), \"$n\", sizeof(struct $n),\n"
 	       "    $N_STATES, $N_INPUTS, $N_OUTPUTS, $N_H,\n"
 	       "    $n_state_names, %s, $n_output_names,\n"
 	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
 	       "    $n_any_out, $n_any_run, %s, %s, $n_any_status,\n", name_if(e, inputs, "input_names"),
-	       name_if(e, e->step->series.emitted, "any_at"), name_if(e, has_jump(e), "any_jump"));
-	e->kind->params(e);
+	       name_if(e, e->step->series.emitted, "any_at"), name_if(e, jump, "any_jump"));
+	if (core)
+		e->kind->params(e);
+	else
+		say(e, "    0, NULL, NULL, NULL,\n");
 	say(e, "    %s, %s\n"
 	       "};\n", name_if(e, e->ramps, "any_hold"), name_if(e, inputs, "start_samples"));
+}
+
+void emit_descriptor(const struct emitter *e)
+{
+	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
+	emit_model(e, given_inputs(e), true);
 	if (tells_tolerance(e))
 		emit_allowed(e);
 }

@@ -422,15 +422,6 @@ bool trace_reads_known(const struct emitter *e);
 const char *kind_text(const struct emitter *e, const char *i);   /* C: 0 .. 2, which are measured together */
 void emit_state_table(const struct emitter *e);                   /* that it reads, where there is no formula */
 
-/* ---- emit_newton.c: tables of a collocation ---- */
-
-void emit_stage_tables(const struct emitter *e);
-
-/* ---- emit_switches.c: what switches.h is told ---- */
-
-void emit_series_beside(const struct emitter *e);
-void emit_switching_limits(const struct emitter *e);
-
 /* ---- emit_collocation.c: steps by collocation ---- */
 
 bool collocation_places(const struct emitter *e);
@@ -492,6 +483,12 @@ void banner_normal(const struct emitter *e);
 const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
 const char **names_of_inputs(const struct emitter *e);
 void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
+void announce(const struct emitter *e, const char *text, const char *comment);     /* one declaration */
+void open_declarations(const struct emitter *e, const char *included);
+void close_declarations(const struct emitter *e);
+void emit_counts(const struct emitter *e, int inputs);            /* NAME_STATES and the like */
+void declare_reading(const struct emitter *e, const char *status_note);           /* get, time, status */
+void declare_driven_step(const struct emitter *e, const char *note);              /* step, out, run, at */
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */
@@ -509,7 +506,8 @@ void emit_phi(const struct emitter *e);
 void emit_mode_matrices(const struct emitter *e);               /* of a model of some modes: from and to all states */
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
-void emit_wrappers(const struct emitter *e);                       /* NAME_any_init and the like */
+/* names, NAME_any_init and the like, NAME_model; `core`: with what only a whole model has */
+void emit_model(const struct emitter *e, int inputs, bool core);
 
 /* ---- emit_large.c: the step of a large model ---- */
 

@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 static int stages(const struct emitter *e)
 {
@@ -116,6 +117,127 @@ static void emit_limits(const struct emitter *e)
 		       "#define PL_RISE %d.0  /* what an exponent may gain from node to node */\n"
 		       "#define PL_RISE_FACTOR %s\n",
 		    trace_reads_known(e), 2 * stages(e), shortest(exp(2 * stages(e))));
+}
+
+/* ---- tables: nodes, the integrals up to them, the modes of these, the places in the Jacobian ---- */
+
+static void emit_entry_table(const struct emitter *e)
+{
+	const struct motion *m = e->step->motion;
+	say(e, "\n/* Of each entry of the Jacobian: row, coordinate, whether it is by the coordinate and not by what\n"
+	       " * is one below its highest derivative */\n"
+	       "static const short $n_entry[%d][3] = {\n    ", m->entries ? m->entries : 1);
+	for (int k = 0; k < m->entries; k++)
+		say(e, "%s{%d, %d, %d}", k == 0 ? "" : k % 8 ? ", " : ",\n    ", m->entry[k].coord, m->entry[k].of,
+		    m->entry[k].twice);
+	say(e, "%s\n};\n", m->entries ? "" : "{0, 0, 0}");
+}
+
+static void emit_mode_tables(const struct emitter *e)
+{
+	const struct collocation *x = e->step->collocation;
+	const size_t row = 2 * (size_t)x->stages;
+	double *mode = ARRAY(double, 2 * (size_t)x->modes), *left = ARRAY(double, (size_t)x->modes * row);
+	double *right = ARRAY(double, (size_t)x->modes * row);
+	for (int k = 0; k < x->modes; k++) {
+		mode[2 * k] = x->mode[k].re;
+		mode[2 * k + 1] = x->mode[k].im;
+		memcpy(left + (size_t)k * row, x->mode[k].left, row * sizeof *left);
+		memcpy(right + (size_t)k * row, x->mode[k].right, row * sizeof *right);
+	}
+	const int sizes[] = { x->modes, x->stages, 2 };
+	emit_array(e, "Modes of the integrals: A v = z v, u A = z u; real and imaginary parts; the first is real",
+		   "mode", 2, (const int[]){ x->modes, 2 }, mode, NULL);
+	emit_array(e, "u, with u v = 1", "to_mode", 3, sizes, left, NULL);
+	emit_array(e, "v, of a pair twice, since its conjugate adds the same", "from_mode", 3, sizes, right, NULL);
+}
+
+static void emit_stage_tables(const struct emitter *e)
+{
+	const struct collocation *x = e->step->collocation;
+	const int sizes[] = { x->stages, x->stages };
+	emit_array(e, "Of a step, as parts of it", "node", 1, sizes, x->node, NULL);
+	emit_array(e, "Integrals from 0 to each node of what is 1 at one node and 0 at the others", "once", 2, sizes,
+		   x->once, NULL);
+	emit_array(e, "... integrated twice", "twice", 2, sizes, x->twice, NULL);
+	emit_array(e, "The same in powers of time, from the constant on", "monomial", 2, sizes, x->monomial, NULL);
+	emit_entry_table(e);
+	if (splits(e))
+		emit_mode_tables(e);
+}
+
+/* ---- where the series is bounded by stability ---- */
+
+/* -J_ii + sum over j of |J_ij| of one kind of the entries of row i; NULL: it has none */
+static const char *row_bound(const struct emitter *e, int coord, bool twice)
+{
+	const struct motion *m = e->step->motion;
+	const char **term = ARRAY(const char *, (size_t)m->entries + 1);
+	int terms = 0;
+	for (int k = 0; k < m->entries; k++) {
+		const struct motion_entry *entry = &m->entry[k];
+		if (entry->coord != coord || entry->twice != twice)
+			continue;
+		term[terms++] = !twice && entry->of == coord ? format("-slope_of[%d]", k)
+							     : format("pl_magnitude(slope_of[%d])", k);
+	}
+	return terms ? tree(terms, term, 12) : NULL;
+}
+
+/* Of Gershgorin's circles how far they reach to the left; of the derivatives by coordinates, which are squared rates,
+ * their size */
+static void emit_bound_rates(const struct emitter *e)
+{
+	int n = e->system->n;
+	say(e, "\n/* Bounds on how fast the motion may decay [1/s], and on the square of how fast it may turn: "
+	       "Gershgorin's */\n"
+	       "static void $n_bound_rates(const double slope_of[], double rates[2])\n"
+	       "{\n"
+	       "    double size;\n");
+	for (int i = 0; i < 2 * n; i++) {
+		const char *bound = row_bound(e, i / 2, i % 2);
+		if (bound)
+			say(e, "    size = %s;\n"
+			       "    rates[%d] = size > rates[%d] ? size : rates[%d];\n", bound, i % 2, i % 2, i % 2);
+	}
+	say(e, "    (void)size;\n"
+	       "    (void)slope_of;\n"
+	       "    (void)rates;\n"
+	       "}\n");
+}
+
+/* ---- what it is told ---- */
+
+static void emit_series_beside(const struct emitter *e)
+{
+	emit_series_functions(e);
+	emit_series_ahead(e);
+	emit_hidden_table(e);
+	emit_bound_rates(e);
+}
+
+/* ---- which is next ---- */
+
+/* How many series a step of the collocation is worth, by what they cost; some less, so that they do not take turns */
+static double worth(const struct emitter *e)
+{
+	const struct collocation *x = e->step->collocation;
+	double iterations = 2.2 + splits(e) * 3, series = e->step->program->multiplications;
+	double step = iterations * e->step->iteration.multiplications + 4.0 * x->stages * x->stages * e->system->n;
+	double ratio = floor(step / series * 12) / 16;
+	return ratio < 1 ? 1 : ratio > 8 ? 8 : ratio;
+}
+
+static void emit_switching_limits(const struct emitter *e)
+{
+	say(e, "#define PL_MEASURED %d  /* columns behind the states whose last terms count too */\n"
+	       "#define PL_WORTH %s  /* so many series a step of the collocation costs */\n"
+	       "#define PL_CHOICES %d\n"
+	       "#define PL_UNSEEN %d\n"
+	       "#define PL_SLOPES %d\n", e->step->expansion->measured, shortest(worth(e)), has_choices(e),
+	    has_unseen(e), e->step->slopes != NULL);
+	if (has_unseen(e))
+		emit_unseen_sizes(e);
 }
 
 /* Formulas that the state chooses, for passage.h */

@@ -58,26 +58,17 @@ void emit_held_declarations(const struct emitter *e)
 {
 	if (!held(e))
 		return;
+	const char *more = !e->model->retuned ? "" :
+		format("; PL_SINGULAR: a divisor is 0, as a mass is;\n"
+		       " * PL_OUT_OF_RANGE: a restitution is not within 0 and 1, a gap or a force of friction below\n"
+		       " * 0, breakpoints change their order, or a pole times h is above 2^%d", LIMIT_PIECES);
 	say(e, "\n/* Sets c to params (%s), for steps of the spec's h alone [s]. 0, or c is as it was and\n"
-	       " *     PL_NO_STEP     h is not $N_H\n", param_list(e));
-	if (e->model->retuned)
-		say(e, " *     PL_SINGULAR    a divisor is 0, as a mass is\n"
-		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is\n"
-		       " *                    below 0; "
-		       "breakpoints change their order; or a pole times h is above 2^%d\n"
-		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n",
-		       LIMIT_PIECES);
-	else
-		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
+	       " * PL_NO_STEP: h is not $N_H; PL_NOT_FINITE: a param%s is not a number, or infinite%s */\n",
+	    param_list(e), e->model->retuned ? ", or a number of it," : "", more);
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
-	       "\n"
-	       "/* From now on with c. State and time stay%s%s. */\n"
-	       "void   $n_use($n *s, const $n_coeffs *c);\n"
-	       "\n"
-	       "/* Of the spec's values: what $n_init starts with */\n"
-	       "extern const $n_coeffs $n_nominal;\n"
-	       "\n", leads(e) ? ", and phases of sines in t" : "",
-	    starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
+	       "void   $n_use($n *s, const $n_coeffs *c);  /* from now on; state and time stay%s%s */\n"
+	       "extern const $n_coeffs $n_nominal;         /* of the spec's values: what $n_init starts with */\n\n",
+	    leads(e) ? ", and phases of sines in t" : "", starts_anew(e) ? "; the scheme starts anew" : "");
 }
 
 void banner_held(const struct emitter *e)
@@ -108,22 +99,6 @@ void emit_held_nominal(const struct emitter *e)
 	say(e, "};\n");
 }
 
-static void emit_plain_retune(const struct emitter *e)
-{
-	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
-	       "{\n"
-	       "    int i;\n"
-	       "    if (h != $N_H)\n"
-	       "        return PL_NO_STEP;\n"
-	       "    for (i = 0; i < $N_PARAMS; i++)\n"
-	       "        if (params[i] - params[i] != 0.0)\n"
-	       "            return PL_NOT_FINITE;\n"
-	       "    for (i = 0; i < $N_PARAMS; i++)\n"
-	       "        c->params[i] = params[i];\n"
-	       "    return 0;\n"
-	       "}\n");
-}
-
 /* Angular frequencies of the sines that have a lead */
 static void emit_frequencies(const struct emitter *e)
 {
@@ -131,9 +106,8 @@ static void emit_frequencies(const struct emitter *e)
 	for (int k = 0; k < leads(e); k++)
 		rate[k] = e->model->leads.lead[k].rate;
 	const struct reads reads = reads_of(e->model, leads(e), rate);
-	say(e, "\n/* Of sines, as params have them [rad/s] */\n"
-	       "static void $n_frequencies(const $n *s, double slope[%d])\n"
-	       "{\n", leads(e));
+	open_function(e, "Of sines, as params have them [rad/s]",
+		      "static void $n_frequencies(const $n *s, double slope[%d])", leads(e));
 	emit_param_locals(e, reads.param);
 	for (int i = 0; i < e->system->inputs; i++)
 		if (reads.input[i])
@@ -142,32 +116,7 @@ static void emit_frequencies(const struct emitter *e)
 	for (int k = 0; k < leads(e); k++)
 		tape_set(formulas_tape(f), format("slope[%d]", k), formula(f, rate[k]), 15, NULL);
 	emit_formulas(f, 4);
-	say(e, "}\n");
-}
-
-static void emit_use(const struct emitter *e)
-{
-	if (leads(e))
-		emit_frequencies(e);
-	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
-	       "{\n");
-	if (leads(e))
-		say(e, "    const double t = $n_time(s);\n"
-		       "    double before[%d], after[%d];\n"
-		       "    int i;\n"
-		       "    $n_frequencies(s, before);\n"
-		       "    s->coeffs = *c;\n"
-		       "    $n_frequencies(s, after);\n"
-		       "    for (i = 0; i < %d; i++)\n"
-		       "        pl_lead_change(&s->lead[i], before[i], after[i], t);\n", leads(e), leads(e), leads(e));
-	else
-		say(e, "    s->coeffs = *c;\n");
-	if (e->step->normal)                    /* s->y is the state that was set */
-		say(e, "    if (s->k) {\n"
-		       "        $n_of_modes(s->which, s->eta, s->y);\n"
-		       "        $n_of_modes(s->which, s->rate, s->y + %d);\n"
-		       "    }\n", e->step->normal->modes);
-	say(e, "%s}\n", starts_anew(e) ? spell(e, "    $n_place(s);\n") : "");
+	close_function(e, "");
 }
 
 void emit_held_retune(const struct emitter *e)
@@ -176,9 +125,14 @@ void emit_held_retune(const struct emitter *e)
 		return;
 	if (e->model->retuned)
 		emit_retuned(e);
-	else
-		emit_plain_retune(e);
-	emit_use(e);
+	if (leads(e))
+		emit_frequencies(e);
+	const struct size sizes[] = {
+		{ "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL }, { "LEADS", leads(e) },
+		{ "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", starts_anew(e) }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#include \"held.h\"\n");
 }
 
 void emit_held_wrapper(const struct emitter *e)

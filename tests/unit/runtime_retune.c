@@ -928,6 +928,54 @@ static void ramps_that_cancel(void **state)
     }
 }
 
+/* sin(w t) of params w and c: held.h without the generator */
+typedef struct swung_coeffs {
+    real params[2];
+} swung_coeffs;
+typedef struct swung {
+    swung_coeffs coeffs;
+    pl_lead lead[1];
+    real now;
+    int placed;
+} swung;
+static real swung_time(const swung *s) { return s->now; }
+static void swung_place(swung *s) { s->placed++; }
+static void swung_frequencies(const swung *s, real w[]) { w[0] = s->coeffs.params[0]; }
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) swung_##name
+#define PL_TYPE swung
+#define PL_PARAMS 2
+#define PL_H ((real)0.25)
+#define PL_RETUNED 0
+#define PL_LEADS 1
+#define PL_MODES 0
+#define PL_PLACES 1
+int swung_retune(swung_coeffs *c, const real params[2], real h);
+void swung_use(swung *s, const swung_coeffs *c);
+#include "held.h"
+
+static void held_by_an_instance(void **state)
+{
+    const real params[2] = {3, 5}, infinite[2] = {3, (real)INFINITY};
+    swung s = {.coeffs = {{2, 5}}, .now = 4};
+    swung_coeffs c = s.coeffs;
+    (void)state;
+    assert_int_equal(swung_retune(&c, params, (real)0.5), PL_NO_STEP);
+    assert_int_equal(swung_retune(&c, infinite, (real)0.25), PL_NOT_FINITE);
+    assert_memory_equal(&c, &s.coeffs, sizeof c);
+    assert_int_equal(swung_retune(&c, params, (real)0.25), 0);
+    swung_use(&s, &c);
+    assert_memory_equal(s.coeffs.params, params, sizeof params);
+    assert_int_equal(s.placed, 1);
+    if (fabs(sin(2 * 4.0) - sin(3 * 4.0 + (double)s.lead[0].angle)) > 16 * (double)REAL_EPSILON)
+        fail_msg("the phase jumps: a lead of %.17g", (double)s.lead[0].angle);
+}
+
 ROOM_WITH(retune, start, end,
     cmocka_unit_test(damped),
     cmocka_unit_test(undamped),
@@ -943,4 +991,5 @@ ROOM_WITH(retune, start, end,
     cmocka_unit_test(nearly_singular),
     cmocka_unit_test(singular),
     cmocka_unit_test(ramps_that_cancel),
-    cmocka_unit_test(not_finite))
+    cmocka_unit_test(not_finite),
+    cmocka_unit_test(held_by_an_instance))
