@@ -83,16 +83,18 @@ static bool search(mpfr_t *given, mpfr_srcptr from, mpfr_srcptr width, mpfr_srcp
 	for (int k = 0; k <= DEGREE; k++)
 		mpfr_set(p[k], given[k], MPFR_RNDN);
 	shift(p, from);
-	value_at(p, width, end);
-	int sign = sign_over(p, 0, width), slope = sign_over(p, 1, width);
-	if (sign == 0 && slope > 0 && mpfr_sgn(end) > 0 && mpfr_cmp(p[0], tiny) <= 0) {
+	const bool may = sign_over(p, 0, width) == 0;   /* be 0 */
+	const int slope = may ? sign_over(p, 1, width) : 0;
+	if (may && slope > 0)
+		value_at(p, width, end);
+	if (may && slope > 0 && mpfr_sgn(end) > 0 && mpfr_cmp(p[0], tiny) <= 0) {
 		if (mpfr_sgn(p[0]) >= 0)
 			mpfr_set_zero(at, 1);
 		else
 			halve_in(p, width, at);
 		mpfr_add(at, at, from, MPFR_RNDN);
 		found = true;
-	} else if (sign == 0 && slope == 0 && depth < DEEPEST) {
+	} else if (may && slope == 0 && depth < DEEPEST) {
 		mpfr_div_2ui(half, width, 1, MPFR_RNDN);
 		mpfr_add(middle, from, half, MPFR_RNDN);
 		found = search(given, from, half, tiny, depth + 1, at) ||

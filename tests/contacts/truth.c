@@ -16,15 +16,18 @@ struct moving {
 	const struct scene *s;
 	int size, one, left, segment;   /* entries of x; where 1 is, and what is left */
 	enum mode mode[MOST_CONTACTS];
-	bool hidden[MOST_CONTACTS];     /* its bounces are listed no more */
 	mpfr_t A[MOST][MOST];
 	row force[MOST_CONTACTS];       /* what holds a contact that sticks or rests, along its direction */
 	row x;
 	mpfr_t series[DEGREE + 1][MOST];
 	mpfr_t square[MOST_MASSES][DEGREE + 1], cosine[MOST_MASSES][DEGREE + 1];        /* of q */
 	mpfr_t time, tiny;
-	double brief;
-	struct truth *found;
+	int views;
+	struct view {
+		double brief;
+		bool hidden[MOST_CONTACTS];     /* its bounces are listed no more */
+		struct truth *found;
+	} view[MOST_VIEWS];
 };
 
 static void row_start(mpfr_t *r, int count)
@@ -55,8 +58,11 @@ static void thousandths(mpfr_ptr to, long value)
 
 static void dot(int n, mpfr_t *a, mpfr_t *b, mpfr_ptr sum)
 {
-	mpfr_t total, part;
-	mpfr_inits2(BITS, total, part, (mpfr_ptr)0);
+	static mpfr_t total, part;              /* kept: to make them takes as long as a product */
+	static bool made;
+	if (!made)
+		mpfr_inits2(BITS, total, part, (mpfr_ptr)0);
+	made = true;
 	mpfr_set_zero(total, 1);
 	for (int i = 0; i < n; i++)
 		if (!mpfr_zero_p(a[i]) && !mpfr_zero_p(b[i])) {         /* most are */
@@ -64,14 +70,27 @@ static void dot(int n, mpfr_t *a, mpfr_t *b, mpfr_ptr sum)
 			mpfr_add(total, total, part, MPFR_RNDN);
 		}
 	mpfr_set(sum, total, MPFR_RNDN);
-	mpfr_clears(total, part, (mpfr_ptr)0);
+}
+
+static void doubt_view(struct truth *found, const char *why)
+{
+	if (!found->doubtful)
+		found->doubt = why;
+	found->doubtful = true;
 }
 
 static void doubt(struct moving *m, const char *why)
 {
-	if (!m->found->doubtful)
-		m->found->doubt = why;
-	m->found->doubtful = true;
+	for (int k = 0; k < m->views; k++)
+		doubt_view(m->view[k].found, why);
+}
+
+static bool decides(const struct moving *m)
+{
+	bool any = false;
+	for (int k = 0; k < m->views; k++)
+		any = any || !m->view[k].found->doubtful;
+	return any;
 }
 
 /* ---- laws ---- */
@@ -405,16 +424,17 @@ static void check_limits(struct moving *m)
 
 /* ---- which modes hold behind an event ---- */
 
-static void log_event(struct moving *m, double time, int contact, enum mode from, enum mode to)
+static void log_event(const struct moving *m, struct truth *found, double time, int contact, enum mode from,
+	enum mode to)
 {
 	const struct contact *c = &m->s->contact[contact];
 	if (c->kind == FRICTION && c->force.at[m->segment] == 0 && c->force.slope[m->segment] == 0 && c->more == 0)
 		return;                         /* it is not there */
-	if (m->found->events == MOST_FOUND) {
-		doubt(m, "too many events");
+	if (found->events == MOST_FOUND) {
+		doubt_view(found, "too many events");
 		return;
 	}
-	m->found->event[m->found->events++] = (struct event){ time, contact, from, to };
+	found->event[found->events++] = (struct event){ time, contact, from, to };
 }
 
 /* v -> v - (1 + e) M^-1 G^T (G v)/(G M^-1 G^T), e in thousandths */
@@ -601,11 +621,41 @@ static void note_speeds(struct moving *m)
 		measure_now(m, i, 0, off);
 		measure_now(m, i, 1, speed);
 		const double size = fabs(mpfr_get_d(speed, MPFR_RNDN));
-		if (m->s->contact[i].kind != FRICTION && !m->hidden[i] && mpfr_cmpabs(off, m->tiny) <= 0 &&
-		    size > 1e-6 && size < m->found->slowest)
-			m->found->slowest = size;
+		if (m->s->contact[i].kind == FRICTION || mpfr_cmpabs(off, m->tiny) > 0 || size <= 1e-6)
+			continue;
+		for (int k = 0; k < m->views; k++)
+			if (!m->view[k].hidden[i])
+				m->view[k].found->slowest = fmin(size, m->view[k].found->slowest);
 	}
 	mpfr_clears(off, speed, (mpfr_ptr)0);
+}
+
+/* left: how long its bounces go on, or -1 */
+static void log_bounce(struct moving *m, double time, int contact, double left)
+{
+	for (int k = 0; k < m->views; k++) {
+		struct view *view = &m->view[k];
+		if (view->hidden[contact])
+			continue;
+		log_event(m, view->found, time, contact, OPEN, OPEN);
+		if (left >= 0 && left < view->brief) {
+			view->hidden[contact] = true;
+			log_event(m, view->found, time + left, contact, OPEN, RESTING);
+		}
+	}
+}
+
+/* From `before` to the modes that hold now */
+static void log_modes(struct moving *m, double time, const enum mode *before)
+{
+	for (int k = 0; k < m->views; k++)
+		for (int i = 0; i < m->s->contacts; i++) {
+			bool *hidden = &m->view[k].hidden[i];
+			if (m->mode[i] != before[i] && !*hidden)
+				log_event(m, m->view[k].found, time, i, before[i], m->mode[i]);
+			if (m->mode[i] == RESTING)
+				*hidden = false;
+		}
 }
 
 static void settle(struct moving *m)
@@ -635,12 +685,7 @@ static void settle(struct moving *m)
 			if (!struck[i] || m->mode[i] != OPEN)
 				continue;
 			const double left = bounces_left(m, i);
-			if (!m->hidden[i])
-				log_event(m, time, i, OPEN, OPEN);
-			if (left >= 0 && left < m->brief && !m->hidden[i]) {
-				m->hidden[i] = true;
-				log_event(m, time + left, i, OPEN, RESTING);
-			}
+			log_bounce(m, time, i, left);
 			struck[i] = false;
 			if (left >= 0 && left < nothing && others_near(m, i))
 				doubt(m, "several come to rest together");
@@ -650,13 +695,7 @@ static void settle(struct moving *m)
 			}
 		}
 	}
-	for (int i = 0; i < n; i++) {
-		const bool impact = m->s->contact[i].kind == IMPACT;
-		if (m->mode[i] != before[i] && !(impact && m->hidden[i]))
-			log_event(m, time, i, before[i], m->mode[i]);
-		if (impact && m->mode[i] == RESTING)
-			m->hidden[i] = false;
-	}
+	log_modes(m, time, before);
 }
 
 /* ---- in time ---- */
@@ -741,15 +780,17 @@ static void start(struct moving *m, double nudge)
 	for (int i = 0; i < s->contacts; i++)
 		m->mode[i] = s->contact[i].kind == FRICTION ? STICKING : OPEN;
 	settle(m);
-	m->found->events = 0;           /* where it starts is no event */
+	for (int k = 0; k < m->views; k++)
+		m->view[k].found->events = 0;   /* where it starts is no event */
 }
 
 static void finish(struct moving *m)
 {
-	for (int i = 0; i < m->s->n; i++) {
-		m->found->q[i] = mpfr_get_d(m->x[i], MPFR_RNDN);
-		m->found->v[i] = mpfr_get_d(m->x[m->s->n + i], MPFR_RNDN);
-	}
+	for (int k = 0; k < m->views; k++)
+		for (int i = 0; i < m->s->n; i++) {
+			m->view[k].found->q[i] = mpfr_get_d(m->x[i], MPFR_RNDN);
+			m->view[k].found->v[i] = mpfr_get_d(m->x[m->s->n + i], MPFR_RNDN);
+		}
 	for (int i = 0; i < MOST; i++)
 		row_stop(m->A[i], MOST);
 	for (int i = 0; i < MOST_CONTACTS; i++)
@@ -773,14 +814,16 @@ static void pass_change(struct moving *m, mpfr_srcptr change)
 	settle(m);
 }
 
-void truth_run(const struct scene *s, double until, double brief, double nudge, struct truth *found)
+void truth_run(const struct scene *s, double until, int views, const double *brief, double nudge, struct truth *found)
 {
 	struct moving *m = calloc(1, sizeof *m);
 	mpfr_t width, left, end, change;
-	*found = (struct truth){ .slowest = 1 };
 	m->s = s;
-	m->found = found;
-	m->brief = brief;
+	m->views = views;
+	for (int k = 0; k < views; k++) {
+		found[k] = (struct truth){ .slowest = 1 };
+		m->view[k] = (struct view){ .brief = brief[k], .found = &found[k] };
+	}
 	start(m, nudge);
 	bool any = false;
 	for (int i = 0; i < s->contacts; i++)
@@ -792,7 +835,7 @@ void truth_run(const struct scene *s, double until, double brief, double nudge, 
 	mpfr_set_d(end, until * 1000, MPFR_RNDN);       /* a whole number of thousandths */
 	mpfr_rint(end, end, MPFR_RNDN);
 	mpfr_div_ui(end, end, 1000, MPFR_RNDN);
-	while (!found->doubtful) {
+	while (decides(m)) {
 		const bool last = m->segment + 1 == s->segments;
 		thousandths(change, last ? 0 : s->change[m->segment]);
 		mpfr_sub(left, end, m->time, MPFR_RNDN);

@@ -15,7 +15,7 @@ struct event {
 	int contact;
 	enum mode from, to;     /* of a bounce: OPEN and OPEN */
 };
-enum { MOST_FOUND = 4000 };
+enum { MOST_FOUND = 4000, MOST_VIEWS = 8 };
 struct truth {
 	int events;
 	struct event event[MOST_FOUND];
@@ -28,9 +28,10 @@ struct truth {
 	const char *doubt;
 };
 
-/* until: a whole number of thousandths [s]. brief: bounces that would all be over within this time [s] are not listed;
- * their contact rests, at the time when the last of them would be over. The state does not know of it. nudge: what is
- * added to all positions at the start, and to velocities that are not 0. */
-void truth_run(const struct scene *s, double until, double brief, double nudge, struct truth *found);
+/* until: a whole number of thousandths [s]. brief: for each of the views, bounces that would all be over within this
+ * time [s] are not listed; their contact rests, at the time when the last of them would be over. The state does not
+ * know of it, so that all views are of one run. nudge: what is added to all positions at the start, and to velocities
+ * that are not 0. */
+void truth_run(const struct scene *s, double until, int views, const double *brief, double nudge, struct truth *found);
 
 #endif
