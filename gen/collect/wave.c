@@ -37,6 +37,7 @@ struct wave *wave_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_srcptr
 	mpq_set(wave->w, w);
 	mpq_set(wave->p, p);
 	wave->index = c->waves->count++;
+	wave->kept = NEW(struct kept_response *);
 	return wave;
 }
 

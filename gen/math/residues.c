@@ -313,7 +313,7 @@ static struct rectangle *residue_series(const struct response *response, int f, 
 static void find_residues(struct response *response, int precision)
 {
 	const struct spectrum *spectrum = response->spectrum;
-	if (response->precision == precision)
+	if (response->precision >= precision)
 		return;
 	response->residue = ARRAY(struct rectangle **, (size_t)spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++) {

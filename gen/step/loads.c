@@ -68,6 +68,9 @@ static const mpq_t *unit(int count, int index)
 /* A held term is a constant force -heldK q_j(0) or -heldC v_j(0). */
 struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j)
 {
+	struct response **kept = response_kept(r, system, i * system->states + j);
+	if (*kept)
+		return *kept;
 	const mpq_t *held = j < system->n ? system->heldK : system->heldC;
 	int n = system->n, c = system->coord[j];
 	struct excitation constant = excitation_new(n, NULL, NULL, 1);
@@ -76,20 +79,27 @@ struct response *response_of_state(struct resolvent *r, const struct linear *sys
 		mpq_neg(constant.force[k], held[k * n + c]);
 		any = any || mpq_sgn(constant.force[k]) != 0;
 	}
-	return image_of(r, &(struct question){ unit(system->states, j), any, &constant, unit(system->states, i) });
+	return *kept = image_of(r, &(struct question){ unit(system->states, j), any, &constant,
+						       unit(system->states, i) });
 }
 
 struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l,
 				  int column)
 {
 	const struct load *load = &system->load[l];
+	int place = system->states + segment * load_columns(system) + column;
+	for (int before = 0; before < l; before++)
+		place += system->load[before].columns;
+	struct response **kept = response_kept(r, system, place * system->states + i);
+	if (*kept)
+		return *kept;
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
 	mpq_t one;
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
 	add_load(&e, system, segment, load, NULL, column, one);
 	mpq_clear(one);
-	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
+	return *kept = image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
 /* The factor of s^power in the polynomial of a tap */
@@ -162,6 +172,10 @@ struct response *response_of_kernel(struct resolvent *r, const struct linear *sy
 
 struct response *response_of_load_state(const struct load *load, int to, int from)
 {
+	struct kept_response **kept = load->wave->kept;
+	for (struct kept_response *k = *kept; k; k = k->next)
+		if (k->to == to && k->from == from)
+			return k->response;
 	struct linear scalar = first_order_system(1, (const mpq_t *)rationals(1));
 	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
 	struct transition t = transition_of(load, to, from);
@@ -173,7 +187,12 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
 	}
 	mpq_clear(one);
-	return image_of(resolvent_of(&scalar), &(struct question){ NULL, 1, &e, (const mpq_t *)rationals(1) });
+	struct question question = { NULL, 1, &e, (const mpq_t *)rationals(1) };
+	struct response *response = image_of(resolvent_of(&scalar), &question);
+	struct kept_response *first = NEW(struct kept_response);
+	*first = (struct kept_response){ to, from, response, *kept };
+	*kept = first;
+	return response;
 }
 
 /* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256

@@ -137,21 +137,32 @@ static bool exact_number(const struct number *n, mpq_ptr sum)
 
 /* ---- rounded ---- */
 
-/* number - subtract, rounded; false: not decided, *isolated says whether the poles were */
-static bool round_difference(const struct number *n, double subtract, int limit, double *value, bool *isolated)
+struct enclosed {                   /* a number, to this precision; 0: not yet */
+	int precision;
+	mpfi_t at;
+};
+
+/* number - subtract, rounded, from what is known of the number on; false: not decided, *isolated says whether the
+ * poles were */
+static bool round_difference(const struct number *n, struct enclosed *known, double subtract, int limit, double *value,
+			     bool *isolated)
 {
-	mpfi_t enclosure;
-	mpfi_init2(enclosure, FIRST_PRECISION);
+	mpfi_t difference;
+	mpfi_init2(difference, FIRST_PRECISION);
 	bool decided = false;
 	*isolated = true;
-	for (int precision = FIRST_PRECISION; precision <= limit && !decided && *isolated; precision *= 2) {
-		*isolated = enclose_number(n, precision, enclosure);
+	int precision = known->precision > 0 ? known->precision : FIRST_PRECISION;
+	for (; precision <= limit && !decided; precision *= 2) {
+		if (precision > known->precision)
+			*isolated = enclose_number(n, precision, known->at);
+		known->precision = precision;
 		if (!*isolated)
 			break;
-		mpfi_sub_d(enclosure, enclosure, subtract);
-		decided = round_enclosure(enclosure, value);
+		mpfi_set_prec(difference, mpfi_get_prec(known->at));
+		mpfi_sub_d(difference, known->at, subtract);
+		decided = round_enclosure(difference, value);
 	}
-	mpfi_clear(enclosure);
+	mpfi_clear(difference);
 	return decided;
 }
 
@@ -171,9 +182,12 @@ bool round_number(const struct number *n, bool two_words, int limit, struct coef
 			c->low = round_rational(low);
 		}
 	} else {
-		decided = round_difference(n, 0, limit, &c->value, isolated);
+		struct enclosed known = { .precision = 0 };
+		mpfi_init2(known.at, FIRST_PRECISION);
+		decided = round_difference(n, &known, 0, limit, &c->value, isolated);
 		if (decided && two_words && isfinite(c->value))
-			decided = round_difference(n, c->value, limit, &c->low, isolated);
+			decided = round_difference(n, &known, c->value, limit, &c->low, isolated);
+		mpfi_clear(known.at);
 	}
 	mpq_clears(exact, low, NULL);
 	return decided;

@@ -12,6 +12,8 @@ struct resolvent {
 	int parts;
 	struct poly *part;
 	mpz_t *row;                 /* scale of each row */
+	struct linear asked;        /* whose responses are kept */
+	struct response **kept, *none;
 };
 
 /* ---- scaling ---- */
@@ -77,6 +79,21 @@ static void need_adjugate(struct resolvent *r)
 		return;
 	r->adj = (struct polymat){ n, ARRAY(struct poly, (size_t)(n * n)) };
 	polymat_adjugate(r->P, &r->B, &r->adj);
+}
+
+struct response **response_kept(struct resolvent *r, const struct linear *system, int number)
+{
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		r->none = NULL;
+		return &r->none;
+	}
+	if (!r->kept || r->asked.load != system->load || r->asked.heldK != system->heldK ||
+			r->asked.heldC != system->heldC) {
+		const int columns = system->states + system->segments * load_columns(system);
+		r->asked = *system;
+		r->kept = ARRAY(struct response *, (size_t)(system->states * columns));
+	}
+	return &r->kept[number];
 }
 
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient)

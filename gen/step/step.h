@@ -24,6 +24,9 @@ struct question {                   /* row . y(tau) */
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
 struct response *image_of(struct resolvent *r, const struct question *question);
+/* Where the response of this number to a state or load of `system` is kept for who asks again: NULL at first, and for
+ * another system than before. Of many states none is. */
+struct response **response_kept(struct resolvent *r, const struct linear *system, int number);
 /* B(s) = det P, as many as its degree + 1 */
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
 struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
