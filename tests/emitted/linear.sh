@@ -67,7 +67,7 @@ same_columns() {
 
 runtime_archive "$root/runtime"
 
-driver() {          # driver FILE.c NAME PROGRAM [LIBRARIES]
+driver() {          # driver FILE NAME PROGRAM [LIBRARIES]
     main_of "$2" >>log 2>&1
     # shellcheck disable=SC2086
     ${CC:-cc} -I"$root/runtime" $main "$1" "$archive" ${4-} -o "$3" >>log 2>&1
@@ -110,14 +110,15 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
                 -c "$kind/$m.std.c" -o nm.o >>log 2>&1 && only_runtime nm.o || status=1
         done <some
         result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
+        long && object=$kind/$m.std.c || object=nm.o    # with LONG=1 that is of C++
         if [ -z "$inputs_of" ]; then
             : >log
             [ -s "$m.csv" ] || "$plgen" --solution 10 "$spec" >"$m.csv" 2>>log
-            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log && same_columns found.csv "$m.csv"
+            driver "$object" "$m" one && ./one 10 >found.csv 2>>log && same_columns found.csv "$m.csv"
             result $? "$m, $kind: the driver's 10 s agree with --solution of the whole model"
         else
             : >log
-            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 501 >samples.csv &&
+            driver "$object" "$m" one && "$inputs" samples 501 >samples.csv &&
                 ./one 10 <samples.csv >found.csv 2>>log &&
                 "$inputs" expected "$m" 500 >expected.csv
             status=$?
