@@ -40,10 +40,11 @@ awk -F ' *; *' -v all="$(merging && echo yes)" '
 		}
 	}' "$root/tests/same/runs.list" >chosen
 
-# effort COMPILER: what it makes of a file
+# effort COMPILER: what it makes of a file; what is unused gcc says of the same text
 effort() {
 	case $1 in
 		gcc) long && echo '-O1 -c -o object.o' || without_code "$1" ;;
+		g++) merging && without_code "$1" || echo '-fsyntax-only' ;;
 		*) without_code "$1" ;;
 	esac
 }
