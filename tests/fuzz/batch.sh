@@ -13,7 +13,8 @@
 # With every=N, and without LONG=1 in the environment, only every Nth model is compiled with sanitizers; by gcc, with
 # MERGE=1 or LONG=1 by gcc and clang by turns.
 # where memory was asked for is not kept, which takes a sixth of a run: ASAN_OPTIONS=malloc_context_size=30 tells it
-ASAN_OPTIONS=exitcode=99:detect_leaks=0:malloc_context_size=0:hard_rss_limit_mb=2048:${ASAN_OPTIONS:-}
+ASAN_OPTIONS=exitcode=99:hard_rss_limit_mb=2048:quarantine_size_mb=16:${ASAN_OPTIONS:-}
+ASAN_OPTIONS=detect_leaks=0:malloc_context_size=0:$ASAN_OPTIONS
 UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
 export ASAN_OPTIONS UBSAN_OPTIONS
 . "$source/tests/run_cc.sh"

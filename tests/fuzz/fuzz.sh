@@ -15,7 +15,8 @@ good=$5
 cases=$6
 block=100
 LC_ALL=C
-ASAN_OPTIONS=exitcode=99:hard_rss_limit_mb=2048:allocator_may_return_null=1:${ASAN_OPTIONS:-}
+ASAN_OPTIONS=malloc_context_size=0:quarantine_size_mb=16:${ASAN_OPTIONS:-}
+ASAN_OPTIONS=exitcode=99:hard_rss_limit_mb=2048:allocator_may_return_null=1:$ASAN_OPTIONS
 UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
 export LC_ALL ASAN_OPTIONS UBSAN_OPTIONS
 work=$(mktemp -d) || exit 1
