@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* contacts NAME: times of a step of a model with friction or impacts, by what happens in it, beside a step of the same
  * model without, in short samples that take turns so that all meet the same machine: the least of each, and ratios. Of
- * each kind of step there are up to STEPS, from where a run meets them; those without an event some way apart. */
+ * each kind of step there are up to STEPS, from where a run meets them; those without an event some way apart, and
+ * CHAIN of them wait for each other, as those of the other model do. */
 #include "contacts_pl.h"
 #include "timing.h"
 
@@ -12,7 +13,7 @@
 
 extern const pl_model plain_model, contacts_model;
 
-enum { SAMPLES = 501, STEPS = 20, LOOKED_AT = 1000000, APART = 101 };
+enum { SAMPLES = 501, STEPS = 20, CHAIN = 5, LOOKED_AT = 1000000, APART = 101 };
 enum kind { FREE, STICKS, TO_STICK, EVENT, CHANGE, KINDS };
 static const char *const what[2][KINDS] = {
     {"clear", "", "", "one impact", "a change of the load"},
@@ -37,6 +38,19 @@ static enum kind kind_of(const contacts *before, const contacts *after, int rubs
 	return sticks ? TO_STICK : EVENT;
 }
 
+/* Whether CHAIN steps from there are of one kind */
+static int goes_on(const contacts *from, enum kind kind, int rubs)
+{
+	contacts s = *from;
+	for (int k = 0; k < CHAIN; k++) {
+		const contacts before = s;
+		contacts_model.step(&s, NULL);
+		if (kind_of(&before, &s, rubs) != kind)
+			return 0;
+	}
+	return 1;
+}
+
 static void look(struct kept *kept, int rubs)
 {
 	contacts s;
@@ -46,22 +60,23 @@ static void look(struct kept *kept, int rubs)
 		contacts_model.step(&s, NULL);
 		if (contacts_crossed(&s) > contacts_crossed(&before) + 1)
 			continue;
-		struct kept *of = &kept[kind_of(&before, &s, rubs)];
-		const int eventful = of != &kept[FREE] && of != &kept[STICKS];
-		if (of->count < STEPS && (eventful || k % APART == 0))
+		const enum kind kind = kind_of(&before, &s, rubs);
+		struct kept *of = &kept[kind];
+		const int eventful = kind != FREE && kind != STICKS;
+		if (of->count < STEPS && (eventful || (k % APART == 0 && goes_on(&before, kind, rubs))))
 			of->from[of->count++] = before;
 	}
 }
 
-/* One step from each; without one: what putting the state there costs */
-static double sample_each(const struct kept *kept, int step)
+/* So many steps from each; none: what putting the state there costs */
+static double sample_each(const struct kept *kept, int steps)
 {
 	contacts s;
 	const double start = nanoseconds();
 	for (int k = 0; k < STEPS; k++) {
 		memcpy(&s, &kept->from[k % kept->count], sizeof s);
 		__asm__ volatile("" : : "r"(&s) : "memory");
-		if (step)
+		for (int i = 0; i < steps; i++)
 			contacts_model.step(&s, NULL);
 		__asm__ volatile("" : : "r"(&s) : "memory");
 	}
@@ -81,6 +96,7 @@ static double sample_plain(void *state, const void *begun)
 int main(int argc, char **argv)
 {
 	static struct kept kept[KINDS];
+	const int chain[KINDS] = {CHAIN, CHAIN, 1, 1, 1};
 	double least[KINDS][2], plain = INFINITY;
 	char *state = calloc(2, plain_model.size);
 	if (argc != 3 || !state)
@@ -91,11 +107,11 @@ int main(int argc, char **argv)
 	plain_model.step(state + plain_model.size, NULL);
 	for (int i = 0; i < KINDS; i++)
 		least[i][0] = least[i][1] = INFINITY;
-	for (int k = 0; k < SAMPLES; k++) {
+	for (int sample = 0; sample < SAMPLES; sample++) {
 		plain = fmin(plain, sample_plain(state, state + plain_model.size));
 		for (int i = 0; i < KINDS; i++)
-			for (int step = 0; step < 2 && kept[i].count > 0; step++)
-				least[i][step] = fmin(least[i][step], sample_each(&kept[i], step));
+			for (int k = 0; k < 2 && kept[i].count > 0; k++)
+				least[i][k] = fmin(least[i][k], sample_each(&kept[i], k * chain[i]) / chain[i]);
 	}
 	printf("%s\n    %-20s %8.1f ns\n", argv[1], "without contacts", plain);
 	for (int i = 0; i < KINDS; i++)
