@@ -154,6 +154,9 @@ static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
 	const struct tape_target to = { .real = "double", .number = number, .operand = operand_over_lanes,
 					.accumulate = "pl_lanes_accumulate", .context = &over, .indent = 4,
 					.lanes = &lanes };
+	const char *broken = tape_check(t);
+	if (broken)
+		internal_error(b->e->step, broken);
 	tape_print(t, &to, b->e->to);
 	say(b->e, "    (void)now;\n"
 		  "    (void)factor;\n"

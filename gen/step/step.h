@@ -340,7 +340,7 @@ tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct
 /* What TAPE_TABLE is an entry of: */
 enum linear_table {
 	TABLE_TURNED,               /* factors of load states at an anchor, second words behind them */
-	TABLE_OWN,                  /* the instance's, of a step: state x place of an operand */
+	TABLE_OWN,                  /* the instance's, of a step: state x states, then loads, then inputs */
 	TABLE_OWN_OUT,              /* the same, of outputs: row x column of tuning->x */
 	TABLE_FACTOR,               /* of load states that change their formula: state x column */
 	TABLE_DIRECT,               /* likewise of outputs: place of an output x column */
@@ -357,7 +357,6 @@ void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 /* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
 bool has_second_word(const struct product *p, const struct step *step);
-int place_of_operand(const struct table *table, const struct operand *o); /* states, then loads, then inputs */
 tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not what is left over */
 int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */
 int place_of_output(const struct model *model, const struct output *output); /* highest derivatives stand behind */

@@ -83,7 +83,7 @@ bool has_second_word(const struct product *p, const struct step *step)
 	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
 }
 
-int place_of_operand(const struct table *table, const struct operand *o)
+static int place_of_operand(const struct table *table, const struct operand *o)
 {
 	return o->index + (o->kind == OPERAND_STATE  ? 0
 			   : o->kind == OPERAND_LOAD ? table->states
