@@ -16,9 +16,8 @@ static void emit_init(const struct emitter *e)
 {
 	const struct model *model = e->model;
 	bool relative = model->relative;
-	say(e, "\nvoid $n_init($n *s)\n"
-	       "{\n"
-	       "    static const double start[$N_STATES] = {");
+	open_function(e, NULL, "void $n_init($n *s)");
+	say(e, "    static const double start[$N_STATES] = {");
 	emit_initial_values(e, model);
 	if (relative) {
 		say(e, "  /* %s */\n"
@@ -36,8 +35,8 @@ static void emit_init(const struct emitter *e)
 		for (int c = 0; c < e->system->input[i].hold && e->system->input[i].hold > 1; c++)
 			say(e, "    s->past[%d][%d] = 0.0;\n", i, c);
 	}
-	say(e, "    $n_%s, from);\n"
-	       "}\n", relative ? "begin(s, 0.0, whole" : "set(s, 0.0");
+	say(e, "    $n_%s, from);\n", relative ? "begin(s, 0.0, whole" : "set(s, 0.0");
+	close_function(e, "");
 }
 
 /* ---- set ---- */
@@ -62,7 +61,7 @@ static void emit_rest_of_state(const struct emitter *e)
 	emit_peak_set(e);
 	if (e->kind->places && e->kind->places(e))
 		say(e, "    $n_place(s);\n");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 static void emit_set_as_written(const struct emitter *e)
@@ -70,9 +69,8 @@ static void emit_set_as_written(const struct emitter *e)
 	emit_init(e);
 	if (e->step->forced)
 		emit_forced(e);
-	say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n");
+	open_function(e, NULL, "void $n_set($n *s, double t, const double y[$N_STATES])");
+	say(e, "    int i;\n");
 	if (e->step->forced)
 		say(e, "    double now[$N_STATES];\n");
 	else
@@ -93,10 +91,9 @@ static void emit_set_over_relative(const struct emitter *e)
 	emit_conversions(e);
 	if (e->step->forced)
 		emit_forced(e);
-	say(e, "\n/* From the states as written, and as they are kept */\n"
-	       "static void $n_begin($n *s, double t, const double y[$N_STATES], const double x[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n");
+	open_function(e, "From the states as written, and as they are kept",
+		      "static void $n_begin($n *s, double t, const double y[$N_STATES], const double x[$N_STATES])");
+	say(e, "    int i;\n");
 	if (e->step->forced)
 		say(e, "    double now[$N_STATES];\n");
 	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
@@ -109,51 +106,39 @@ static void emit_set_over_relative(const struct emitter *e)
 	}
 	emit_rest_of_state(e);
 	emit_init(e);
-	say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
-	       "{\n"
-	       "    double x[$N_STATES];\n"
+	open_function(e, NULL, "void $n_set($n *s, double t, const double y[$N_STATES])");
+	say(e, "    double x[$N_STATES];\n"
 	       "    $n_keep(y, x);\n"
-	       "    $n_begin(s, t, y, x);\n"
-	       "}\n");
+	       "    $n_begin(s, t, y, x);\n");
+	close_function(e, "");
 }
 
 /* ---- get ---- */
 
-static void emit_get_as_written(const struct emitter *e)
+static void emit_get_itself(const struct emitter *e)
 {
-	say(e, "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n");
-	emit_get_state(e, "y");
-	say(e, "}\n");
-}
-
-static void emit_get_over_relative(const struct emitter *e)
-{
-	say(e, "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n"
-	       "    double x[$N_STATES];\n");
-	emit_get_state(e, "x");
-	say(e, "    $n_written(s, x, y);\n"
-	       "}\n");
+	bool relative = e->model->relative != NULL;
+	open_function(e, NULL, "void $n_get(const $n *s, double y[$N_STATES])");
+	say(e, "    int i;\n%s", relative ? spell(e, "    double x[$N_STATES];\n") : "");
+	emit_get_state(e, relative ? "x" : "y");
+	if (relative)
+		say(e, "    $n_written(s, x, y);\n");
+	close_function(e, "");
 }
 
 /* Outputs read what is kept, its forced part added, too: a function of its own */
 static void emit_get_over_forced(const struct emitter *e)
 {
-	say(e, "\n/* The states as they are kept, their forced part added */\n"
-	       "static void $n_kept(const $n *s, double x[$N_STATES])\n"
-	       "{\n"
-	       "    int i;\n");
+	open_function(e, "The states as they are kept, their forced part added",
+		      "static void $n_kept(const $n *s, double x[$N_STATES])");
+	say(e, "    int i;\n");
 	emit_get_state(e, "x");
-	say(e, "}\n"
-	       "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
-	       "{\n"
-	       "    double x[$N_STATES];\n"
+	close_function(e, "");
+	open_function(e, NULL, "void $n_get(const $n *s, double y[$N_STATES])");
+	say(e, "    double x[$N_STATES];\n"
 	       "    $n_kept(s, x);\n"
-	       "    $n_written(s, x, y);\n"
-	       "}\n");
+	       "    $n_written(s, x, y);\n");
+	close_function(e, "");
 }
 
 /* ---- time, status, hold ---- */
@@ -174,10 +159,9 @@ static const char *elapsed_text(const struct emitter *e)
 
 static void emit_time(const struct emitter *e)
 {
-	say(e, "\ndouble $n_time(const $n *s)\n"
-	       "{\n"
-	       "    return s->t0 + %s;\n"
-	       "}\n", elapsed_text(e));
+	open_function(e, NULL, "double $n_time(const $n *s)");
+	say(e, "    return s->t0 + %s;\n", elapsed_text(e));
+	close_function(e, "");
 }
 
 /* What is not finite is seen in the state now, in both words where it has two: a step has nothing to do for it, and
@@ -185,14 +169,14 @@ static void emit_time(const struct emitter *e)
 static void emit_status(const struct emitter *e)
 {
 	bool written = e->step->momenta || e->model->relative;  /* s->y is not the state */
-	say(e, "\nint $n_status(const $n *s)\n"
-	       "{\n");
+	open_function(e, NULL, "int $n_status(const $n *s)");
 	if (written)
 		say(e, "    double y[$N_STATES];\n"
 		       "    $n_get(s, y);\n");
-	say(e, "    return %spl_not_finite(%s, $N_STATES)%s;\n"
-	       "}\n", keeps_status(e) ? "s->status | " : "", written ? "y" : "s->y",
-	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
+	say(e, "    return %spl_not_finite(%s, $N_STATES)%s;\n", keeps_status(e) ? "s->status | " : "",
+	    written ? "y" : "s->y",
+	    e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
+	close_function(e, "");
 }
 
 /* ---- ranges that the spec gives ---- */
@@ -203,10 +187,8 @@ static void emit_ranges(const struct emitter *e)
 	const struct model *written = e->model->written;
 	if (!has_ranges(e))
 		return;
-	say(e, "\n/* Whether the states are in their ranges: the end of a step */\n"
-	       "static void $n_stay($n *s)\n"
-	       "{\n"
-	       "    double y[$N_STATES];\n"
+	open_function(e, "Whether the states are in their ranges: the end of a step", "static void $n_stay($n *s)");
+	say(e, "    double y[$N_STATES];\n"
 	       "    $n_get(s, y);\n"
 	       "    if (");
 	for (int i = 0; i < written->ranges; i++) {
@@ -215,21 +197,20 @@ static void emit_ranges(const struct emitter *e)
 		    shortest(round_rational(range->low)), range->state, shortest(round_rational(range->high)));
 	}
 	say(e, ")\n"
-	       "        s->status |= PL_LEFT_RANGE;\n"
-	       "}\n");
+	       "        s->status |= PL_LEFT_RANGE;\n");
+	close_function(e, "");
 }
 
 /* Where an input has several samples before the next */
 static void emit_hold_taps(const struct emitter *e)
 {
-	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
-	       "{\n");
+	open_function(e, NULL, "void $n_hold($n *s, const double u[$N_INPUTS])");
 	for (int i = 0; i < given_inputs(e); i++)
 		if (e->system->input[i].hold > 1)
 			emit_next_tap(e, i);
 		else
 			say(e, "    s->u[%d] = u[%d];\n", i, i);
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 static void emit_hold(const struct emitter *e)
@@ -238,22 +219,21 @@ static void emit_hold(const struct emitter *e)
 		emit_hold_taps(e);
 		return;
 	}
-	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
-	       "{\n"
-	       "    int i;\n"
+	open_function(e, NULL, "void $n_hold($n *s, const double u[$N_INPUTS])");
+	say(e, "    int i;\n"
 	       "    for (i = 0; i < $N_INPUTS; i++)\n"
 	       "        s->u[i] = u[i];\n");
 	if (e->kind->places && e->kind->places(e))
 		say(e, "    if (s->k == 0u)\n"
 		       "        $n_place(s);\n");
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 void emit_access(const struct emitter *e)
 {
 	bool relative = e->model->relative != NULL;
 	(relative ? emit_set_over_relative : emit_set_as_written)(e);
-	(relative ? (e->step->forced ? emit_get_over_forced : emit_get_over_relative) : emit_get_as_written)(e);
+	(relative && e->step->forced ? emit_get_over_forced : emit_get_itself)(e);
 	emit_time(e);
 	emit_status(e);
 	emit_ranges(e);

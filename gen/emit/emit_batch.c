@@ -100,27 +100,20 @@ static bool *loads_of_outputs(const struct batch *b)
 static void emit_shared(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\n/* What instances share in a step, which is taken: before it, */\n"
-	       "static void $n_share_step($n *s, const double *u, double *now)\n"
-	       "{\n");
+	open_function(e, "What instances share in a step, which is taken: before it,",
+		      "static void $n_share_step($n *s, const double *u, double *now)");
 	emit_load_states(e, loads_of_step(e), false);
 	for (int i = 0; i < b->after; i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	emit_step_end(e);
-	say(e, "    (void)u;\n"
-	       "    (void)now;\n"
-	       "}\n"
-	       "\n/* and in the outputs behind it */\n"
-	       "static void $n_share_out(const $n *s, double *now)\n"
-	       "{\n");
+	close_function(e, "u now");
+	open_function(e, "and in the outputs behind it", "static void $n_share_out(const $n *s, double *now)");
 	emit_load_states(e, loads_of_outputs(b), false);
 	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	if (b->forced >= 0)
 		say(e, "    $n_forced(s, now + %d);\n", b->forced);
-	say(e, "    (void)s;\n"
-	       "    (void)now;\n"
-	       "}\n");
+	close_function(e, "s now");
 }
 
 /* ---- what batch.h asks ---- */
@@ -162,12 +155,11 @@ static bool any_momentum(const struct emitter *e)
 
 static void emit_velocities(const struct emitter *e)
 {
-	say(e, "\nstatic void $n_velocities(double *x)\n"
-	       "{\n");
+	open_function(e, NULL, "static void $n_velocities(double *x)");
 	for (int i = 0; i < e->system->states; i++)
 		if (factor_of_momentum(e, i))
 			say(e, "    x[%d] = x[%d] / %s;\n", i, i, factor_of_momentum(e, i));
-	say(e, "}\n");
+	close_function(e, "");
 }
 
 static void emit_peaks_of_batch(struct batch *b)

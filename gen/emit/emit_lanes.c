@@ -158,9 +158,7 @@ static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
 	if (broken)
 		internal_error(b->e->step, broken);
 	tape_print(t, &to, b->e->to);
-	say(b->e, "    (void)now;\n"
-		  "    (void)factor;\n"
-		  "}\n");
+	close_function(b->e, "now factor");
 }
 
 static void number_entries(struct batch *b, const struct tape *t)
@@ -193,9 +191,8 @@ static void number_factors(struct batch *b)
 void emit_lanes_step(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\n/* One step of as many instances as there are lanes; now: what they share */\n"
-	       "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)\n"
-	       "{\n");
+	open_function(e, "One step of as many instances as there are lanes; now: what they share",
+		      "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)");
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->step, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
@@ -214,10 +211,9 @@ static const char *state_over_lanes(const struct batch *b, int i)
 void emit_lanes_out(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\n"
-	       "PL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, const pl_lanes *factor, const double *now, "
-	       "pl_lanes *out)\n"
-	       "{\n");
+	open_function(e, NULL,
+		      "PL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, const pl_lanes *factor, "
+		      "const double *now, pl_lanes *out)");
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->out, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
@@ -250,13 +246,10 @@ static const char *bend_over_lanes(struct batch *b, int p)
 void emit_lanes_bend(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\n/* How far outputs are off their chords at most, by |states| and what else acts on them */\n"
-	       "PL_LANES_INLINE void $n_lanes_bend(const pl_lanes *state, const pl_lanes *factor, "
-	       "const double *reach, pl_lanes *bend)\n"
-	       "{\n");
+	open_function(e, "How far outputs are off their chords at most, by |states| and what else acts on them",
+		      "PL_LANES_INLINE void $n_lanes_bend(const pl_lanes *state, const pl_lanes *factor, "
+		      "const double *reach, pl_lanes *bend)");
 	for (int p = 0; p < peak_outputs(e->model); p++)
 		say(e, "    bend[%d] = %s;\n", p, bend_over_lanes(b, p));
-	say(e, "    (void)factor;\n"
-	       "    (void)reach;\n"
-	       "}\n");
+	close_function(e, "factor reach");
 }

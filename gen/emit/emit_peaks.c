@@ -141,10 +141,8 @@ void emit_peak_step(const struct emitter *e)
 {
 	if (!has_peaks(e))
 		return;
-	say(e, "\n/* x at the start of a step */\n"
-	       "static void $n_begin_step(const $n *s, const double *u, double x[%d])\n"
-	       "{\n", e->step->layout.size);
+	open_function(e, "x at the start of a step",
+		      "static void $n_begin_step(const $n *s, const double *u, double x[%d])", e->step->layout.size);
 	emit_series_vector(e);
-	say(e, "    (void)u;\n"
-	       "}\n");
+	close_function(e, "u");
 }

@@ -129,7 +129,7 @@ static void emit_rows(const struct emitter *e)
 		say(e, "        out[cell%s] = %s;\n", first ? format(" + %d", first * rows->outputs) : "",
 		    group_text(e, first));
 	}
-	say(e, "%s}\n", rows->columns ? "" : "    (void)start;\n");
+	close_function(e, rows->columns ? "" : "start");
 }
 
 /* ---- a block ---- */
@@ -337,9 +337,8 @@ static void emit_block(const struct emitter *e)
 	emit_rows(e);
 	if (steps_by_table(&block))
 		emit_leap_table(&block);
-	say(e, "\n/* $N_ROWS steps as one, and the outputs after each unless out is NULL */\n"
-	       "static void $n_block($n *s%s, double *out)\n"
-	       "{\n", inputs ? ", const double *samples" : "");
+	open_function(e, spell(e, "$N_ROWS steps as one, and the outputs after each unless out is NULL"),
+		      "static void $n_block($n *s%s, double *out)", inputs ? ", const double *samples" : "");
 	if (steps_by_table(&block))
 		say(e, "    int cell;\n");
 	emit_block_locals(&block, e);
@@ -353,8 +352,8 @@ static void emit_block(const struct emitter *e)
 		say(e, "    s->since = $N_ROWS;\n"
 		       "    $n_drop_anchor(s);\n");
 	say(e, "    if (out != NULL)\n"
-	       "        $n_rows(start, %sout);\n"
-	       "}\n", inputs ? "u, " : "");
+	       "        $n_rows(start, %sout);\n", inputs ? "u, " : "");
+	close_function(e, "");
 }
 
 /* The state is a local over all blocks. */
@@ -388,11 +387,11 @@ void emit_run(const struct emitter *e)
 		emit_block(e);
 	}
 	emit_over_block(e);
-	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
-	       "{\n", given_inputs(e) ? "const double *u, " : "");
+	open_function(e, NULL, "void $n_run($n *s, size_t n, %sdouble *out)",
+		      given_inputs(e) ? "const double *u, " : "");
 	if (e->step->rows)
 		emit_blocks(e);
 	emit_over_run(e);
 	emit_steps(e);
-	say(e, "}\n");
+	close_function(e, "");
 }
