@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { MOST_IDLE = 6, MOST_STRUCK = 200, MOST_SOLVED = 1000 };
+enum { MOST_IDLE = 6, MOST_STRUCK = 200, MOST_SOLVED = 4000 };
 
 struct idle {                       /* an expression on a breakpoint that stands twice */
 	int expression, stick;      /* stick: the interval between */

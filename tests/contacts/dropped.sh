@@ -42,4 +42,28 @@ for mass in 0.3 0.5 1 2 3 5; do
 		result $? "a mass of $mass below, restitution $e: --solution"
 	done
 done
+
+# Three that lie on each other are dropped: --solution follows more than a thousand impacts at one instant
+cat >three.spec <<-END
+	model balls
+	coord a, b, c
+	init a = 0.618, b = 0.618, c = 0.618
+	3.072*a'' = -30.13
+	1.562*b'' = -15.32
+	2.466*c'' = -24.19
+	stop between ground, a at 0 restitution 0.3
+	stop between a, b at 0 restitution 0.021
+	stop between b, c at 0 restitution 0
+	output a, b, c
+	step 0.001
+END
+"$plgen" -o balls.c three.spec >log 2>&1 &&
+	$run_cc -I"$root/runtime" -DMODEL=balls "$root/runtime/host/plmain.c" balls.c "$archive" -lm \
+		-o balls >>log 2>&1 &&
+	./balls 1 >rows.csv 2>>log && "$plgen" --solution 1 three.spec >solution.csv 2>>log
+grep -v '^#' solution.csv | paste -d, rows.csv - | awk -F, 'NR > 1 { for (i = 2; i <= 4; i++) {
+			off = $i - $(i + 4); off = off < 0 ? -off : off; worst = off > worst ? off : worst } }
+		END { printf "# off by %g, rows %d, at the end %s, %s, %s\n", worst, NR, $6, $7, $8
+			exit !(NR == 1002 && worst <= 1e-12 && $6 == 0 && $7 == 0 && $8 == 0) }' >>log
+result $? 'three that are dropped together: --solution'
 tap_end
