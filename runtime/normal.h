@@ -20,6 +20,7 @@
  *     PL_BANKS                   operators; of several PL_SELECTOR is the function of time that says which one serves
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
+ *     PL_AT                      whether there are states inside a step, by within.h
  *     PL_H                       step [s]
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
@@ -376,5 +377,9 @@ void PL(step)(PL_TYPE *s)
 #endif
     s->status |= pl_not_finite(s->eta, PL_WIDTH) | pl_not_finite(s->rate, PL_WIDTH);
 }
+
+#if PL_AT
+#include "within.h"
+#endif
 
 #include "undef.h"

@@ -34,6 +34,7 @@
 #undef PL_CORE_H
 #undef PL_CORRECTION
 #undef PL_CROWDED
+#undef PL_DAMPED
 #undef PL_DEGREE
 #undef PL_DIVIDED
 #undef PL_ENDED
@@ -165,6 +166,7 @@
 #undef PL_TRACE
 #undef PL_TRACE_READS
 #undef PL_TRIES
+#undef PL_TURNS
 #undef PL_TWICE
 #undef PL_TYPE
 #undef PL_UNIT

@@ -455,19 +455,12 @@ void emit_forces(const struct emitter *e);                        /* NAME_forces
 /* ---- emit_normal.c: known loads, to which modes respond exactly ---- */
 
 int  wave_values(const struct emitter *e);                        /* cos and sin of each */
-const char *wave_array(const struct emitter *e);                  /* double wave[...] of a function, or "" */
-void emit_waves_now(const struct emitter *e);                     /* wave <- them */
-void emit_wave_force(const struct emitter *e, const char *table); /* in NAME_inside: of a term of its series */
 
 /* ---- emit_normal.c: steps in normal modes ---- */
 
 void emit_normal_members(const struct emitter *e);
 void emit_normal_tables(const struct emitter *e);
 void emit_normal_step(const struct emitter *e);
-
-/* ---- emit_within.c: states inside such a step ---- */
-
-void emit_normal_at(const struct emitter *e);
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Steps in normal modes: what the runtime's normal.h, which the model's file includes, is told of them: tables, sums
- * over them, sizes. */
+/* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are told of
+ * them: tables, sums over them, sizes. */
 #include "emit/emit.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- known loads, to which modes respond exactly ---- */
@@ -12,7 +13,6 @@ int wave_values(const struct emitter *e)
 	return 2 * e->model->split->waves;
 }
 
-/* Of e^{a t} alone there is no sin. */
 static bool is_there(const struct emitter *e, int value)
 {
 	return value % 2 == 0 || oscillates(e->model->split->wave[value / 2].wave);
@@ -36,18 +36,6 @@ static void emit_waves(const struct emitter *e)
 	close_function(e, "");
 }
 
-/* Where a step has them */
-const char *wave_array(const struct emitter *e)
-{
-	return wave_values(e) ? format("    double wave[%d];\n", wave_values(e)) : "";
-}
-
-void emit_waves_now(const struct emitter *e)
-{
-	if (wave_values(e) > 0)
-		say(e, "    $n_waves(s, wave);\n");
-}
-
 static void add_waves(const struct emitter *e, struct row_sum *s, const char *table, int row)
 {
 	for (int k = 0; k < wave_values(e); k++)
@@ -61,38 +49,6 @@ static void add_waves_of_columns(const struct emitter *e, struct row_sum *s, int
 	for (int k = 0; k < wave_values(e); k++)
 		if (is_there(e, k))
 			add_summand(s, spell(e, "$n_settled[%d][i] * wave[%d]", first + k, k));
-}
-
-/* Inside a step: the force of a term of the series, and the waves' next terms */
-void emit_wave_force(const struct emitter *e, const char *table)
-{
-	struct row_sum s = { 0 };
-	for (int k = 0; k < wave_values(e); k++)
-		if (is_there(e, k))
-			add_summand(&s, format("%s[%d][i] * swing[%d]", table, k, k));
-	if (s.terms == 0)
-		return;
-	say(e, "            for (i = 0; i < %d; i++)\n"
-	       "                force[i] += %s;\n", normal_of_step(e)->width, tree(s.terms, s.term, 28));
-	for (int k = 0; k < e->model->split->waves; k++) {
-		const struct wave *wave = e->model->split->wave[k].wave;
-		const char *a = shortest(equation_number(e->model, wave->a).value);
-		const char *w = shortest(equation_number(e->model, wave->w).value);
-		if (!is_there(e, 2 * k + 1)) {
-			say(e, "            swing[%d] *= by * %s;\n"
-			       "            wave[%d] += swing[%d];\n", 2 * k, a, 2 * k, 2 * k);
-			continue;
-		}
-		bool grows = mpq_sgn(wave->a) != 0;
-		say(e, "            {\n"
-		       "                const double c = swing[%d];\n"
-		       "                swing[%d] = by * (%s%s * swing[%d]);\n"
-		       "                swing[%d] = by * (%s%s * c);\n"
-		       "                wave[%d] += swing[%d];\n"
-		       "                wave[%d] += swing[%d];\n"
-		       "            }\n", 2 * k, 2 * k, grows ? format("%s * c - ", a) : "-", w, 2 * k + 1, 2 * k + 1,
-		    grows ? format("%s * swing[%d] + ", a, 2 * k + 1) : "", w, 2 * k, 2 * k, 2 * k + 1, 2 * k + 1);
-	}
 }
 
 /* ---- a stage: modes at a node, or after a step ---- */
@@ -254,6 +210,72 @@ static void emit_still(const struct emitter *e)
 	close_function(e, "wave");
 }
 
+/* ---- states inside a step ---- */
+
+/* The next term of known load k, by `by`; `alone`: it has no sin */
+static void emit_next_term(const struct emitter *e, int k, bool alone)
+{
+	const struct wave *wave = e->model->split->wave[k].wave;
+	const char *a = shortest(equation_number(e->model, wave->a).value);
+	const char *w = shortest(equation_number(e->model, wave->w).value);
+	const int c = 2 * k, s = c + 1;
+	if (alone) {
+		say(e, "    swing[%d] *= by * %s;\n"
+		       "    wave[%d] += swing[%d];\n", c, a, c, c);
+		return;
+	}
+	const bool grows = mpq_sgn(wave->a) != 0;
+	say(e, "    before = swing[%d];\n"
+	       "    swing[%d] = by * (%s%s * swing[%d]);\n"
+	       "    swing[%d] = by * (%s%s * before);\n"
+	       "    wave[%d] += swing[%d];\n"
+	       "    wave[%d] += swing[%d];\n", c, c, grows ? format("%s * before - ", a) : "-", w, s, s,
+	    grows ? format("%s * swing[%d] + ", a, s) : "", w, c, c, s, s);
+}
+
+static void emit_swing(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int count = wave_values(e);
+	struct row_sum sum = { 0 };
+	if (count == 0)
+		return;
+	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->banks, count, m->width }, m->wave,
+		   NULL);
+	open_function(e, NULL, "static inline void $n_swing_on(int which, double by, double wave[], double swing[],\n"
+		      "    double force[])");
+	say(e, "    double before = 0.0;\n"
+	       "    int i;\n");
+	for (int k = 0; k < count; k++)
+		if (is_there(e, k))
+			add_summand(&sum, spell(e, "$n_swing[which][%d][i] * swing[%d]", k, k));
+	say(e, "    for (i = 0; i < %d; i++)\n"
+	       "        force[i] += %s;\n", m->width, tree(sum.terms, sum.term, 20));
+	for (int k = 0; k < count; k += 2)
+		emit_next_term(e, k / 2, !is_there(e, k + 1));
+	close_function(e, "before");
+}
+
+static void emit_within(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int nodes = m->stages * m->stages, past = m->points * m->points, size[] = { m->banks, m->width };
+	emit_array(e, "Of polynomials through forces at nodes: powers from what they exceed that at the start by",
+		   "of_nodes", 1, &nodes, m->within.nodes, NULL);
+	if (past)
+		emit_array(e, "... and through past ones and the new one", "of_past", 1, &past, m->within.past, NULL);
+	emit_array(e, "lambda of each mode [1/s^2]", "stiffness", 2, size, m->within.stiffness, NULL);
+	if (m->within.damping)
+		emit_array(e, "2 delta of each mode [1/s]", "damping", 2, size, m->within.damping, NULL);
+	emit_swing(e);
+}
+
+static int turns_within(const struct emitter *e)
+{
+	const double angle = normal_of_step(e)->within.angle;
+	return angle > 1 ? (int)ceil(angle) : 1;
+}
+
 /* ---- the whole ---- */
 
 static void emit_algorithm(const struct emitter *e)
@@ -265,7 +287,8 @@ static void emit_algorithm(const struct emitter *e)
 		{ "FIRST_SWEEPS", m->first_sweeps }, { "FUNCTIONS", functions_of_time(e) },
 		{ "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
 		{ "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
-		{ "SETTLED_IN", m->settled_bank }
+		{ "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
+		{ "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	say(e, "#include \"normal.h\"\n");
@@ -289,6 +312,8 @@ void emit_normal_tables(const struct emitter *e)
 	if (m->settled)
 		emit_still(e);
 	emit_pass_time(e);
+	if (e->step->series.emitted)
+		emit_within(e);
 	emit_algorithm(e);
 }
 

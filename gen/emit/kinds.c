@@ -547,7 +547,7 @@ static const struct kind normal_modes = {
 	.pass = emit_held_retune,
 	.step = emit_normal_step,
 	.held = nothing,
-	.at = emit_normal_at,
+	.at = nothing,
 	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };

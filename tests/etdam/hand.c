@@ -36,6 +36,7 @@ typedef struct bent {
 } bent;
 
 static void bent_modes_of(int which, const real q[], real mode[]) { (void)which, mode[0] = q[0]; }
+static void bent_of_modes(int which, const real mode[], real q[]) { (void)which, q[0] = mode[0]; }
 static void bent_pass_time(bent *s, const real u[]) { (void)u, s->k++; }
 
 static void bent_forces(const bent *s, int which, const real f[], const real eta[], const real rate[],
@@ -67,6 +68,12 @@ static void bent_predict(const bent *s, int which, const real wave[], real eta[]
 
 static const real bent_correct[1][2][1] = {{{bent_H * bent_H * 19 / 180}, {bent_H * 3 / 8}}};
 
+/* Parabolas through 0, 1/2, 1; cubics through 0, -1, -2, 1 */
+static const real bent_of_nodes[] = {4, -1, -4, 2};
+static const real bent_of_past[] = {-1, (real)1 / 6, (real)1 / 3, (real)0.5, 0, (real)0.5, (real)0.5, (real)-1 / 6,
+                                    (real)1 / 6};
+static const real bent_stiffness[1][1] = {{0}};
+
 #define PL(name) bent_##name
 #define PL_TYPE bent
 #define PL_SINGLE IN_FLOAT
@@ -82,23 +89,33 @@ static const real bent_correct[1][2][1] = {{{bent_H * bent_H * 19 / 180}, {bent_
 #define PL_BANKS 1
 #define PL_SEGMENTS 1
 #define PL_SETTLES 0
+#define PL_AT 1
+#define PL_TERMS 6
+#define PL_TURNS 1
+#define PL_DAMPED 0
 void bent_step(bent *s);
+void bent_at(const bent *s, real tau, real y[2]);
 #include "normal.h"
 
 static void check_bent(void)
 {
     bent s = {.y = {0, 1}};
-    double worst = 0;
+    double worst = 0, within = 0;
     int k;
     bent_place(&s);
     ok(s.known == 0 && s.newest == 2, "bent: nothing is known at first");
     for (k = 1; k <= 128; k++) {
-        const double t = k * (double)bent_H;
+        const double t = k * (double)bent_H, inside = t - 0.375 * (double)bent_H;
+        real y[2];
+        bent_at(&s, (real)0.625 * bent_H, y);
+        within = fmax(within, fabs((double)y[0] - atan(inside)));
+        within = fmax(within, fabs((double)y[1] - 1 / (1 + inside * inside)));
         bent_step(&s);
         worst = fmax(worst, fabs((double)s.eta[0] - atan(t)));
         worst = fmax(worst, fabs((double)s.rate[0] - 1 / (1 + t * t)));
     }
     is_close(worst, 0, fmax(1.5e-7, EXACT), "bent: 128 steps, beside atan t");
+    is_close(within, 0, fmax(1.5e-7, EXACT), "bent: inside them");
     ok(s.known == 3 && s.k == 128 && s.status == 0, "bent: three forces are known");
     s.eta[0] = (real)NAN;
     bent_step(&s);
