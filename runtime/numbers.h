@@ -45,6 +45,16 @@
 #define pl_lanes_all pl_lanesf_all
 #define pl_lanes_peak pl_lanesf_peak
 #define pl_lanes_above pl_lanesf_above
+#define pl_rate pl_ratef
+#define pl_rate_of pl_ratef_of
+#define pl_turn_at pl_turnf_at
+#define pl_growth_at pl_growthf_at
+#define pl_equations_at pl_equationsf_at
+#define pl_increment pl_incrementf
+#define pl_ramp_before pl_rampf_before
+#define pl_ramp_cancels pl_rampf_cancels
+#define pl_block pl_blockf
+#define pl_group pl_groupf
 #else
 #define real double
 #endif

@@ -34,13 +34,13 @@ static void PL(look)(const PL_TYPE *s, const real x[PL_SIZE], const real end[PL_
 
 #if PL_OWN
 /* Of the slopes A, bends over a step h [s] */
-static void PL(retune_peaks)(PL(coeffs) *c, pl_two A[PL_SIZE][PL_SIZE], real h)
+static void PL(retune_peaks)(PL(coeffs) *c, const pl_two *A, real h)
 {
     real work[PL_PEAK_WORK(PL_SIZE)];
     int i, j, p;
     for (i = 0; i < PL_SIZE; i++) {
         for (j = 0; j < PL_SIZE; j++) {
-            c->slope[i][j] = A[i][j].hi;
+            c->slope[i][j] = A[i * PL_SIZE + j].hi;
         }
     }
     for (p = 0; p < PL_PEAKS; p++) {

@@ -16,7 +16,6 @@
  *     crossings_kept.c, guards_kept.c
  *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
- *     blocks.c    the same of one independent block of a large model
  *     cut.c       a part of a step: schemes with a leftover, from crossing to crossing
  *     rate.c      the rate of a load's phase from another frequency; phases that go on where one changes
  *     root.c      rough roots: the length of a step by its error
@@ -910,26 +909,25 @@ void pl_guardsf_kept_change(const pl_guardsf *m, float time, float *x, pl_contac
 
 /* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list makes 1, 2, ... */
 typedef struct pl_monomial {
-    int from;    /* an earlier product */
-    int param;
-    int divides; /* 1: divided by it */
+    unsigned short from;    /* an earlier product */
+    unsigned char param;
+    unsigned char divides;  /* 1: divided by it */
 } pl_monomial;
 
 /* factor times a product of params, added to one entry of [R | W] */
 typedef struct pl_term {
-    int row, column;
-    int monomial;
+    unsigned short row, column, monomial;
     pl_two factor;
 } pl_term;
 
 /* W a = R x: equations of highest derivatives a over the states and what acts on them, x.  Where every mass is fixed
  * the generator has multiplied by the inverse of W, and there is no W. */
 typedef struct pl_equations {
-    int rows;    /* entries of a */
-    int columns; /* entries of x */
-    int solves;  /* 1: there is a W, rows x rows, its columns behind those of R; 0: it is the unit matrix */
-    int params;
-    int monomials, terms;
+    unsigned short rows;    /* entries of a */
+    unsigned short columns; /* entries of x */
+    unsigned short solves;  /* 1: there is a W, rows x rows, its columns behind those of R; 0: it is the unit matrix */
+    unsigned short params, monomials;
+    int terms;
     const pl_monomial *monomial;
     const pl_term *term; /* the same entry's one after the other */
 } pl_equations;
@@ -985,13 +983,13 @@ enum {
 
 /* The same in floats. */
 typedef struct pl_termf {
-    int row, column;
-    int monomial;
+    unsigned short row, column, monomial;
     pl_twof factor;
 } pl_termf;
 
 typedef struct pl_equationsf {
-    int rows, columns, solves, params, monomials, terms;
+    unsigned short rows, columns, solves, params, monomials;
+    int terms;
     const pl_monomial *monomial;
     const pl_termf *term;
 } pl_equationsf;
@@ -1001,64 +999,68 @@ int pl_incrementf(int size, int states, const pl_twof *A, float tau, int words, 
 int pl_rampf_cancels(int size, int states, const pl_twof *D, int column, float h);
 float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
 
-/* ---- blocks.c: coefficients of a large model, block by block -------------------------------------------------- */
+/* ---- retune.h: coefficients of a step, independent block by independent block --------------------------------- */
 
 /* An entry of A in x' = A x */
 typedef struct pl_entry {
-    int row, column;
+    unsigned short row, column;
     pl_two value;
 } pl_entry;
 
 /* A block that no state outside acts on: x is its states, the load states that act on it, the inputs that do. */
 typedef struct pl_block {
-    /* of its highest derivatives, then (in column 0) of frequencies of its loads; over its states, the load states in
-     * each segment of time, the inputs */
+    /* of its highest derivatives, and in further rows frequencies of its loads, in column 0; over its states, the load
+     * states in each segment of time, the inputs */
     pl_equations equations;
-    int states, loads, inputs;    /* entries of x */
-    int segments;                 /* of time, in which loads have formulas of their own */
-    int derivatives;              /* the first rows of the equations, */
-    const unsigned short *row;    /* and which rows of A they are */
-    int entries;                  /* of A that no param changes */
+    unsigned short states, loads, inputs; /* entries of x */
+    unsigned short segments;      /* of time, in which loads have formulas of their own */
+    unsigned short derivatives;   /* the first rows of the equations, */
+    unsigned short entries;       /* of A that no param changes */
+    unsigned short turns;         /* pairs of load states, cosine and sine, whose frequency params change */
+    const unsigned short *row;    /* of A that the derivatives are */
     const pl_entry *entry;
-    int turns;                    /* pairs of load states, cosine and sine, whose frequency params change: */
-    const unsigned short *turn;   /* its row of the equations, the place of the cosine in x */
-    int ramps;
-    const unsigned short *ramp;   /* columns of D of inputs that are ramps, u; the next is u' */
+    const unsigned short *turn;   /* a row of the equations, the place of the cosine in x */
+    const unsigned short *place;  /* of each entry of x in that of the whole model */
 } pl_block;
 
-/* D <- e^{A tau} - I, its first `states` rows, in each segment of time: pl_equations_at, pl_increment, and again in two
- * words where a ramp's value before the step would else be lost; errors and results as theirs.
- *     D     segments x states x size, size = states + loads + inputs
- *     work  PL_BLOCK_WORK(rows, width, size) entries, rows and width those of the equations; monomials + 1 behind the
- *           first rows x width + size x size, if that is more */
-int pl_block_increment(const pl_block *b, const double *params, double tau, pl_two *D, pl_two *work);
-
-#define PL_BLOCK_WORK(rows, width, size) ((rows) * (width) + (size) * (size) + PL_INCREMENT_WORK(size))
-
-/* x <- e^{A tau} x in a segment of time: its states; where there are several segments, all of it.  Infinite where the
- * other would not return 0.  work: size x size entries more */
-void pl_block_advance(const pl_block *b, const double *params, int segment, double tau, double *x, pl_two *work);
+/* Blocks of one shape, whose factors of a step an instance has in one table */
+typedef struct pl_group {
+    int blocks;
+    const pl_block *block;
+    const unsigned short *reads;  /* of each block the params that it reads, a bit each */
+    int samples;                  /* inputs that go from sample to sample: */
+    const unsigned short *sample; /* the place of each in x, and how many of its derivatives follow there */
+    const double *tap;            /* of those with more than one: parts of h^m times derivative m in each sample */
+    int down, across;             /* of one block, in the table: from row to row, from column to column; of several 0 */
+    int entries, changing;        /* of several, of each; and beside them in each segment of time; of one, columns */
+    const unsigned char *entry, *load; /* row and column of each entry */
+} pl_group;
 
 /* The same in floats. */
 typedef struct pl_entryf {
-    int row, column;
+    unsigned short row, column;
     pl_twof value;
 } pl_entryf;
 
 typedef struct pl_blockf {
     pl_equationsf equations;
-    int states, loads, inputs, segments, derivatives;
+    unsigned short states, loads, inputs, segments, derivatives, entries, turns;
     const unsigned short *row;
-    int entries;
     const pl_entryf *entry;
-    int turns;
-    const unsigned short *turn;
-    int ramps;
-    const unsigned short *ramp;
+    const unsigned short *turn, *place;
 } pl_blockf;
 
-int  pl_blockf_increment(const pl_blockf *b, const float *params, float tau, pl_twof *D, pl_twof *work);
-void pl_blockf_advance(const pl_blockf *b, const float *params, int segment, float tau, float *x, pl_twof *work);
+typedef struct pl_groupf {
+    int blocks;
+    const pl_blockf *block;
+    const unsigned short *reads;
+    int samples;
+    const unsigned short *sample;
+    const float *tap;
+    int down, across, entries, changing;
+    const unsigned char *entry, *load;
+} pl_groupf;
+
 /* ---- region.c: a region of a piecewise-linear model from other params ------------------------------------------ */
 
 /* Of x' = A x, A size x size in two words: *halvings, so that no pole times h 2^-halvings is above 1; slopes and

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c,
- * crossings.c, retune.c and blocks.c are written over `real`, a double with the names of plrt.h; seriesf.c and so on
+ * crossings.c and retune.c are written over `real`, a double with the names of plrt.h; seriesf.c and so on
  * define REAL_IS_FLOAT and include them, and then the same names stand for those that end in f.  Constants are
  * integers there, which are of either type: no float is promoted. */
 #ifndef PLRT_REAL_H
@@ -73,10 +73,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_ladder pl_ladderf
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels
-#define pl_entry pl_entryf
-#define pl_block pl_blockf
-#define pl_block_increment pl_blockf_increment
-#define pl_block_advance pl_blockf_advance
 #define pl_root pl_rootf
 #define pl_factor pl_factorf
 #define pl_solve pl_solvef

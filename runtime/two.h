@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Two-word arithmetic, for the runtime's own use: power.c, until.c, retune.c, blocks.c and rate.c. */
+/* Two-word arithmetic, for the runtime's own use: power.c, until.c, retune.c and rate.c. */
 #ifndef PL_TWO_H
 #define PL_TWO_H
 

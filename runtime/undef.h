@@ -8,6 +8,7 @@
 #undef PL_AHEAD
 #undef PL_ALL
 #undef PL_ALONE
+#undef PL_ANY_STEP
 #undef PL_ARGUMENTS
 #undef PL_AT
 #undef PL_AT_ONCE
@@ -36,9 +37,11 @@
 #undef PL_CROWDED
 #undef PL_DAMPED
 #undef PL_DEGREE
+#undef PL_DIRECT
 #undef PL_DIVIDED
 #undef PL_ENDED
 #undef PL_ENTRIES
+#undef PL_EQUATIONS
 #undef PL_EXPRESSIONS
 #undef PL_FACTORS
 #undef PL_FASTEST
@@ -55,6 +58,7 @@
 #undef PL_GO
 #undef PL_GONE
 #undef PL_GROUPS
+#undef PL_GROWTHS
 #undef PL_GUARDS
 #undef PL_H
 #undef PL_HALVINGS
@@ -66,6 +70,7 @@
 #undef PL_INPUTS
 #undef PL_INSTANCES
 #undef PL_INTERVAL
+#undef PL_KEEPS
 #undef PL_KEEPS_LOOK
 #undef PL_KEPT
 #undef PL_KIND
@@ -77,6 +82,7 @@
 #undef PL_LEADS
 #undef PL_LEAN
 #undef PL_LEAST_PART
+#undef PL_LISTED
 #undef PL_LOAD_STATES
 #undef PL_LOCATES
 #undef PL_LOOKS
@@ -102,15 +108,20 @@
 #undef PL_OF
 #undef PL_OPEN_END
 #undef PL_ORDER
+#undef PL_OUT
 #undef PL_OUTPUTS
+#undef PL_OUT_COLUMNS
+#undef PL_OUT_FIRST
 #undef PL_OVER
 #undef PL_OWN
 #undef PL_PAIRS
 #undef PL_PARAMS
 #undef PL_PART
 #undef PL_PARTS
+#undef PL_PASS_WORK
 #undef PL_PEAKS
 #undef PL_PEAK_ROW
+#undef PL_PHASES
 #undef PL_PHI
 #undef PL_PLACE
 #undef PL_PLACES
@@ -118,6 +129,8 @@
 #undef PL_POINTS
 #undef PL_RAMPS
 #undef PL_RARE
+#undef PL_RATES
+#undef PL_REACH
 #undef PL_REACHES
 #undef PL_REGIONS
 #undef PL_REMAINDERS
@@ -129,6 +142,7 @@
 #undef PL_RISE_FACTOR
 #undef PL_ROWS
 #undef PL_SAMPLED
+#undef PL_SAMPLES
 #undef PL_SEARCH
 #undef PL_SEGMENTS
 #undef PL_SELECTOR
@@ -177,6 +191,7 @@
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WAVES
+#undef PL_WHOLE
 #undef PL_WIDTH
 #undef PL_WORK
 #undef PL_WORTH
@@ -221,3 +236,13 @@
 #undef pl_lanes_all
 #undef pl_lanes_peak
 #undef pl_lanes_above
+#undef pl_rate
+#undef pl_rate_of
+#undef pl_turn_at
+#undef pl_growth_at
+#undef pl_equations_at
+#undef pl_increment
+#undef pl_ramp_before
+#undef pl_ramp_cancels
+#undef pl_block
+#undef pl_group

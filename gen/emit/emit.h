@@ -240,7 +240,6 @@ void emit_peak_step(const struct emitter *e);
 /* Of tunable models, in NAME_coeffs: members, the spec's, retuned */
 void emit_peak_coefficients(const struct emitter *e);
 void emit_nominal_peaks(const struct emitter *e);
-void emit_retune_peaks(const struct emitter *e);
 
 /* ---- emit_lanes.c, emit_batch.c: many instances in one call ---- */
 
@@ -696,32 +695,18 @@ void banner_tuning(const struct emitter *e);
 void coefficient_member(const struct emitter *e, const char *text, const char *comment); /* of struct NAME_coeffs */
 const char *two_words(struct coefficient number);                 /* {1.0, 0.0} */
 const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term); /* what it is, for a comment */
-const char *tap_factor(const struct emitter *e, int input, int tap, const char *row, int at); /* row: of D, a local */
-void emit_powers_of_h(const struct emitter *e);                   /* local power, where an input has further taps */
-/* below 0 it has no rate; `value`, `status`. frequency: per load its row of `value`, or -1: no param changes it */
-void emit_frequency_check(const struct emitter *e, const int *frequency);
-/* phases and growths of a step to c */
-void emit_take_loads(const struct emitter *e, const int *frequency);
-void emit_use_function(const struct emitter *e);                           /* NAME_use */
-/* Each with what prints the factors of a step */
-void emit_coefficients_with(const struct emitter *e, void (*factors)(const struct emitter *e));
-void emit_nominal_with(const struct emitter *e, void (*factors)(const struct emitter *e));
-void emit_tuning_functions(const struct emitter *e, bool one);    /* for one h alone */
+/* Of a group's factors in NAME_coeffs: "rows0" */
+const char *tuned_table(const struct emitter *e, const struct tuned_block *first);
+/* Calls print(e, the first of its blocks) for each group whose factors the instance has */
+void each_tuned_group(const struct emitter *e, void (*print)(const struct emitter *e, const struct tuned_block *first));
 
-/* ---- emit_tuned_blocks.c: tunable params of a large step, which the instance has by independent blocks ---- */
+/* ---- emit_tuned_blocks.c: what retune.h is told of a linear step ---- */
 
-void banner_tuned_blocks(const struct emitter *e);
-void emit_block_coefficients(const struct emitter *e);            /* struct NAME_coeffs */
-void emit_block_declarations(const struct emitter *e);
-void emit_block_nominal(const struct emitter *e);
-void emit_blocks_tuning(const struct emitter *e);                 /* the equations, retune, use, pass */
-
+void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value);
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 const char *two_words(struct coefficient number);
 void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
 void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix);
-/* Of a function that fills A: locals i, j and row[], of the highest derivatives; what no param changes is there */
-void emit_slopes_begin(const struct emitter *e);
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 

@@ -55,12 +55,6 @@ void emit_nominal_peaks(const struct emitter *e)
 		say(e, "},\n");
 }
 
-void emit_retune_peaks(const struct emitter *e)
-{
-	if (has_peaks(e))
-		say(e, "    $n_retune_peaks(c, A, h);\n");
-}
-
 /* Is there one whose row no param changes? */
 static bool any_fixed(const struct emitter *e)
 {

@@ -211,6 +211,40 @@ static int most_products(const struct emitter *e)
 	return most + 1;
 }
 
+static void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed)
+{
+	if (count == 0)
+		return;
+	say(e, "    static const struct {\n"
+	       "        int row, column;\n"
+	       "        pl_two value;\n"
+	       "    } fixed[] = {");
+	for (int k = 0; k < count; k++)
+		say(e, "%s{%d, %d, %s}", k ? ", " : "", fixed[k].row, fixed[k].column, two_words(fixed[k].value));
+	say(e, "};\n");
+}
+
+static void emit_slopes_begin(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	struct fixed_slope *list;
+	int size = e->step->layout.size, fixed = fixed_slopes(e->step, &list);
+	emit_fixed_slopes(e, fixed, list);
+	say(e, "    static const int row[%d] = {", system->n);
+	for (int i = 0; i < system->n; i++)
+		say(e, "%s%d", i ? ", " : "", system->velocity[i] >= 0 ? system->velocity[i] : i);
+	say(e, "};  /* of the highest derivatives */\n"
+	       "    int i, j;\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        for (j = 0; j < %d; j++) {\n"
+	       "            A[i][j].hi = 0.0;\n"
+	       "            A[i][j].lo = 0.0;\n"
+	       "        }\n", size, size);
+	if (fixed)
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        A[fixed[i].row][fixed[i].column] = fixed[i].value;\n", fixed);
+}
+
 static void emit_own_slopes(const struct emitter *e)
 {
 	int size = e->step->layout.size;

@@ -189,7 +189,7 @@ const char *step_parameters(const struct emitter *e)
 /* Into y: the state after a step in which the loads change their formula, from pass() */
 static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
 {
-	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : "";
+	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->kind->own_factors ? "NULL, " : "";
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
 	       "        double y[$N_STATES];\n"
 	       "        int i;\n"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tunable params of a large step: an instance holds the factors of the independent blocks that params touch, and
- * NAME_retune computes these anew on the target; the other blocks keep their tables. */
+/* What retune.h is told of a linear model with tunable params: its equations, its independent blocks, which it takes
+ * together in groups, sizes. */
 #include "emit/emit.h"
 
 static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
@@ -8,90 +8,79 @@ static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
 	return e->step->blocks;
 }
 
-static const struct group *group_at(const struct emitter *e, int index)
-{
-	return &e->step->program->group[index];
-}
-
-/* ---- the header ---- */
-
-static int count_touched(const struct emitter *e)
-{
-	int touched = 0;
-	for (int b = 0; b < blocks_of_step(e)->blocks; b++)
-		touched += blocks_of_step(e)->block[b].group->tuned;
-	return touched;
-}
-
-void banner_tuned_blocks(const struct emitter *e)
-{
-	const int blocks = blocks_of_step(e)->blocks, touched = count_touched(e);
-	const char *of = touched == blocks ? format("all %d", touched) : format("%d of %d", touched, blocks);
-	say(e, " * Tunable: %s.\n"
-	       " * They touch %s independent blocks; $n_retune computes the factors of these from other values%s,\n"
-	       " * of a block whose params are the spec's these, correctly rounded. It needs some %d KB of stack.\n",
-	    param_list(e), of, blocks_of_step(e)->whole ? " and another h" : "",
-	    blocks_of_step(e)->kilobytes);
-}
-
-static const char *first_state(const struct emitter *e, const struct group *g)
-{
-	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
-}
-
-static void emit_block_members(const struct emitter *e)
-{
-	for (int k = 0; k < e->step->program->groups; k++) {
-		const struct group *g = group_at(e, k);
-		if (!g->tuned)
-			continue;
-		const struct group_shape shape = shape_of_group(e, g);
-		if (shape.rows)
-			coefficient_member(e, format("double %s%d[%d][%d];", shape.name, k, shape.rows, shape.columns),
-					   first_state(e, g));
-		if (shape.changing)
-			coefficient_member(e, format("double loads%d[%d][%d][%d];", k, e->system->segments,
-						     shape.changing, shape.columns),
-					   "in each segment of time");
-	}
-}
-
-static void emit_nominal_blocks(const struct emitter *e)
-{
-	for (int k = 0; k < e->step->program->groups; k++) {
-		const struct group *g = group_at(e, k);
-		if (!g->tuned)
-			continue;
-		const struct group_shape shape = shape_of_group(e, g);
-		if (shape.rows) {
-			say(e, "    {  /* %s */\n", group_note(e, g));
-			emit_group_numbers(e, g, false);
-			say(e, "    },\n");
-		}
-		if (shape.changing) {
-			say(e, "    {\n");
-			emit_group_numbers(e, g, true);
-			say(e, "    },\n");
-		}
-	}
-}
-
-void emit_block_coefficients(const struct emitter *e)
-{
-	emit_coefficients_with(e, emit_block_members);
-}
-
-void emit_block_declarations(const struct emitter *e)
-{
-	emit_tuning_functions(e, !blocks_of_step(e)->whole);
-}
-
-void emit_block_nominal(const struct emitter *e)
-{
-	emit_nominal_with(e, emit_nominal_blocks);
-}
-
 /* ---- the equations on the target ---- */
+
+static const char *monomial_text(const struct tuning *t, int number)
+{
+	if (number == 0)
+		return "1";
+	const struct tuned_monomial *m = &t->monomial[number - 1];
+	const char *param = t->param[m->param].symbol->name, *from = monomial_text(t, m->from);
+	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
+}
+
+void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix)
+{
+	if (t->monomials == 0)
+		return;
+	say(e, "\nstatic const pl_monomial $n_monomial%s[%d] = {\n", suffix, t->monomials);
+	for (int m = 0; m < t->monomials; m++) {
+		const struct tuned_monomial *made = &t->monomial[m];
+		const char *text = monomial_text(t, m + 1);
+		say(e, "    {%d, %d, %d},  /* %s */\n", made->from, made->param, made->divides, text);
+	}
+	say(e, "};\n");
+}
+
+/* What a row of the equations gives, and what a column of them multiplies */
+static const char *row_name(const struct emitter *e, int row)
+{
+	for (int o = 0; o < e->model->outputs; o++)
+		if (e->model->tuning->output[o] == row)
+			return e->model->output[o].name;
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->model->tuning->frequency[l] == row)
+			return format("frequency of %s", column_text(&e->system->load[l], 0));
+	return format("%s%.*s", e->model->coord_name[row], e->system->velocity[row] >= 0 ? 2 : 1, "''");
+}
+
+const char *tuned_product(const struct tuning *t, const struct tuned_term *term)
+{
+	const char *product = monomial_text(t, term->monomial), *factor = readable_text(term->factor);
+	if (term->monomial == 0)
+		return factor;
+	if (mpq_cmp_si(term->factor, 1, 1) == 0)
+		return product;
+	bool minus = mpq_cmp_si(term->factor, -1, 1) == 0;
+	return minus ? format("-%s", product) : format("%s*%s", factor, product);
+}
+
+const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term)
+{
+	const struct tuning *t = e->model->tuning;
+	bool left = term->column >= t->x.size;
+	if (term->row >= t->rows - t->frequencies)
+		return format("%s: %s", row_name(e, term->row), tuned_product(t, term));
+	const char *of = left ? row_name(e, term->column - t->x.size)
+			      : layout_names(&e->model->tuning->x, e->system, e->model)[term->column];
+	const char *equation = format("equation %d, %s", term->row + 1, left ? "left" : "right");
+	const char *where = t->solves ? equation : row_name(e, term->row);
+	return format("%s: %s %s", where, tuned_product(t, term), of);
+}
+
+const char *two_words(struct coefficient number)
+{
+	return format("{%s, %s}", shortest(number.value), shortest(number.low));
+}
+
+/* An array has one element at least. */
+void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix)
+{
+	say(e, "\nstatic const pl_term $n_term%s[%d] = {  /* row, column, product of params, factor */\n", suffix,
+	    t->terms > 0 ? t->terms : 1);
+	if (t->terms == 0)
+		say(e, "    {0, 0, 0, {0.0, 0.0}},\n");
+}
 
 /* Blocks in tables: all where NAME_at is there, else those that params touch */
 static bool is_listed(const struct emitter *e, int block)
@@ -107,17 +96,16 @@ static int number_of_block(const struct emitter *e, int block)
 	return number;
 }
 
-static int emit_part_terms(const struct emitter *e, const struct tuned_part *part)
+static void emit_part_terms(const struct emitter *e, const struct tuned_part *part)
 {
 	for (const struct part_term *term = part->term; term < part->term + part->terms; term++)
 		say(e, "    {%d, %d, %d, %s},  /* %s */\n", term->row, term->column, term->of->monomial,
 		    two_words(equation_number(e->model, term->of->factor)), tuned_term_note(e, term->of));
-	return part->terms;
 }
 
 static int count_terms(const struct emitter *e)
 {
-	int terms = blocks_of_step(e)->others.terms;
+	int terms = blocks_of_step(e)->solved ? 0 : blocks_of_step(e)->others.terms;
 	for (int b = 0; b < blocks_of_step(e)->blocks; b++)
 		terms += is_listed(e, b) ? blocks_of_step(e)->block[b].part.terms : 0;
 	return terms;
@@ -134,7 +122,8 @@ static void emit_terms(const struct emitter *e)
 	for (int b = 0; b < p->blocks; b++)
 		if (is_listed(e, b))
 			emit_part_terms(e, &p->block[b].part);
-	emit_part_terms(e, &p->others);
+	if (!p->solved)
+		emit_part_terms(e, &p->others);
 	say(e, "};\n");
 }
 
@@ -146,9 +135,15 @@ static const char *equations_text(const struct emitter *e, const struct tuned_pa
 		      part->terms ? format("%s_term + %d", e->name, first) : "NULL");
 }
 
-/* What a block says by lists of places: rows of A, turning loads, ramps, its x in that of the whole */
+/* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
+ * further samples; factors of blocks alike; parts of derivatives in samples */
 struct lists {
 	int count, *place;
+};
+struct listed {
+	struct lists place, entry;
+	int taps;
+	const char *tap;
 };
 
 static int add_place(struct lists *l, int place)
@@ -186,18 +181,6 @@ static const char *list_text(const struct emitter *e, int count, int first)
 	return count ? format("%s_places + %d", e->name, first) : "NULL";
 }
 
-static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l, int term,
-			      int entry)
-{
-	const struct group *g = b->group;
-	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
-	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
-	const char *ramps = list_text(e, b->ramps, add_places(l, b->ramps, b->ramp));
-	return format("{%s,\n     %d, %d, %d, %d, %d, %s, %d, %s, %d, %s, %d, %s}", equations_text(e, &b->part, term),
-		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, rows, b->slopes,
-		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", b->turns, turns, b->ramps, ramps);
-}
-
 static void emit_entries(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
@@ -221,37 +204,40 @@ static void emit_entries(const struct emitter *e)
 	say(e, "};\n");
 }
 
-static void emit_shorts(const struct emitter *e, const char *name, int count, const int *value)
+void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
 {
-	say(e, "\nstatic const unsigned short $n_%s[%d] = {", name, count);
+	say(e, "\nstatic const %s $n_%s[%d] = {", type, name, count);
 	for (int i = 0; i < count; i++)
 		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
 	say(e, "};\n");
 }
 
-/* The blocks themselves. places: of each x, where NAME_at asks for it */
-static void emit_block_tables(const struct emitter *e)
+static void emit_lists(const struct emitter *e, const struct listed *l)
+{
+	if (l->place.count)
+		emit_integers(e, "unsigned short", "places", l->place.count, l->place.place);
+	if (l->entry.count)
+		emit_integers(e, "unsigned char", "alike_entry", l->entry.count, l->entry.place);
+	if (l->taps)
+		say(e, "\nstatic const double $n_tap[%d] = {%s};\n", l->taps, l->tap);
+}
+
+static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l, int term,
+			      int entry)
+{
+	const struct group *g = b->group;
+	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
+	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
+	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
+	const char *places = placed ? list_text(e, 1, add_columns(l, e, b)) : "NULL";
+	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations_text(e, &b->part, term),
+		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
+		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
+}
+
+static void emit_blocks(const struct emitter *e, int listed, const char *const *text)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	struct lists lists = { 0, NULL }, first = { 0, NULL };
-	const char **text = ARRAY(const char *, (size_t)p->blocks);
-	const int listed = number_of_block(e, p->blocks);
-	int term = 0, entry = 0;
-	if (listed == 0)
-		return;
-	for (int b = 0; b < p->blocks; b++) {
-		if (!is_listed(e, b))
-			continue;
-		text[b] = block_text(e, &p->block[b], &lists, term, entry);
-		term += p->block[b].part.terms;
-		entry += p->block[b].slopes;
-		if (e->step->series.emitted)
-			add_place(&first, add_columns(&lists, e, &p->block[b]));
-	}
-	emit_entries(e);
-	emit_shorts(e, "places", lists.count, lists.place);
-	if (first.count)
-		emit_shorts(e, "first_place", first.count, first.place);
 	say(e, "\n/* Independent blocks%s */\n"
 	       "static const pl_block $n_block[%d] = {\n", listed < p->blocks ? " that params touch" : "", listed);
 	for (int b = 0; b < p->blocks; b++)
@@ -261,364 +247,236 @@ static void emit_block_tables(const struct emitter *e)
 	say(e, "};\n");
 }
 
-/* ---- retune ---- */
+/* ---- groups of blocks ---- */
 
-static void emit_unchanged(const struct emitter *e)
+/* What each of its samples gets of an input's derivatives, in units of the step */
+static void add_taps(struct listed *l, int hold)
+{
+	mpq_t weight, one;
+	mpq_inits(weight, one, NULL);
+	mpq_set_ui(one, 1, 1);
+	for (int i = 0; i < (hold + 1) * (hold + 1); i++) {
+		tap_derivative(hold, i % (hold + 1), i / (hold + 1), one, weight);
+		l->tap = format("%s%s%s", l->taps ? l->tap : "", l->taps ? ", " : "", shortest(round_rational(weight)));
+		l->taps++;
+	}
+	mpq_clears(weight, one, NULL);
+}
+
+/* Inputs with further samples: places in x, derivatives; how many there are */
+static int add_samples(struct listed *l, const struct emitter *e, const struct group *g)
+{
+	int samples = 0;
+	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1) {
+		const int hold = e->system->input[i].hold, place = place_in(g->inputs, g->input, column);
+		if (hold == 0 || place == g->inputs)
+			continue;
+		add_place(&l->place, g->states + g->loads + place);
+		add_place(&l->place, hold);
+		if (hold > 1)
+			add_taps(l, hold);
+		samples++;
+	}
+	return samples;
+}
+
+static const char *add_alike(struct listed *l, const struct emitter *e, const struct group *g, bool changing, int count)
+{
+	const int first = l->entry.count;
+	for (int k = 0; k < count; k++) {
+		int column, row = alike_entry(e, g, changing, k, &column);
+		add_place(&l->entry, row);
+		add_place(&l->entry, column);
+	}
+	return count ? format("%s_alike_entry + %d", e->name, first) : "NULL";
+}
+
+static const char *group_text(const struct emitter *e, const struct tuned_block *first, struct listed *l)
+{
+	const struct group *g = first->group;
+	const struct group_shape shape = shape_of_group(e, g);
+	const bool alike = g->kind == GROUP_ALIKE, by_columns = g->kind == GROUP_COLUMNS;
+	const int number = number_of_block(e, (int)(first - blocks_of_step(e)->block)), taps = l->taps;
+	const int from = l->place.count, samples = add_samples(l, e, g);
+	const char *entry = alike ? add_alike(l, e, g, false, shape.rows) : "NULL";
+	const char *load = alike ? add_alike(l, e, g, true, shape.changing) : "NULL";
+	return format("{%d, %s_block + %d, %s, %d, %s, %s, %d, %d, %d, %d, %s, %s}", g->blocks, e->name, number,
+		      blocks_of_step(e)->solved ? "NULL" : format("%s_reads + %d", e->name, number), samples,
+		      list_text(e, samples, from), l->taps > taps ? format("%s_tap + %d", e->name, taps) : "NULL",
+		      alike ? 0 : by_columns ? 1 : shape.columns, alike ? 0 : by_columns ? shape.columns : 1,
+		      alike ? shape.rows : 0, shape.changing, entry, load);
+}
+
+static void emit_groups_of(const struct emitter *e, int groups, const char *const *text)
+{
+	say(e, "\n/* Those of one shape together */\n"
+	       "static const pl_group $n_group[%d] = {\n", groups);
+	for (int k = 0; k < groups; k++)
+		say(e, "    %s%s", text[k], k < groups - 1 ? ",\n" : "\n};\n");
+}
+
+static void emit_reads(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	int *reads = ARRAY(int, (size_t)p->blocks), listed = 0;
-	if (count_touched(e) == 0)
-		return;
 	for (int b = 0; b < p->blocks; b++)
 		if (is_listed(e, b))
 			reads[listed++] = (int)p->block[b].part.params;
-	emit_shorts(e, "reads", listed, reads);
-	say(e, "\n/* Are the params that a block reads, and h, those of the spec? */\n"
-	       "static int $n_unchanged(const double *params, double h, int block)\n"
-	       "{\n"
-	       "    int i, same = h == $N_H;\n"
-	       "    for (i = 0; i < $N_PARAMS; i++)\n"
-	       "        if (($n_reads[block] >> i & 1) != 0 && params[i] != $n_nominal.params[i])\n"
-	       "            same = 0;\n"
-	       "    return same;\n"
-	       "}\n");
+	emit_integers(e, "unsigned short", "reads", listed, reads);
 }
 
-/* In the place of columns of an input's derivatives those of its samples, in row d of e^{A h} - I */
-static void emit_samples_of_row(const struct emitter *e, const struct group *g, const char *indent)
-{
-	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1) {
-		const int hold = e->system->input[i].hold;
-		const int at = g->states + g->loads + place_in(g->inputs, g->input, column);
-		if (hold == 0 || at == g->states + g->loads + g->inputs)
-			continue;
-		say(e, "%s    {\n", indent);
-		for (int c = 0; c <= hold; c++) {
-			const char *ramp = c ? format("d[%d].hi / h", at + 1)
-					     : format("pl_ramp_before(d[%d], d[%d], h)", at, at + 1);
-			say(e, "%s        const double tap%d = %s;\n", indent, c,
-			    hold == 1 ? ramp : tap_factor(e, i, c, "d", at));
-		}
-		for (int c = 0; c <= hold; c++)
-			say(e, "%s        d[%d].hi = tap%d;\n", indent, at + c, c);
-		say(e, "%s    }\n", indent);
-	}
-}
-
-static bool reads_samples(const struct emitter *e, const struct group *g)
-{
-	bool any = false;
-	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1)
-		any = any || (e->system->input[i].hold && place_in(g->inputs, g->input, column) < g->inputs);
-	return any;
-}
-
-static void emit_finish_rows(const struct emitter *e, const struct group *g, const char *indent)
-{
-	const bool direct = e->step->form == FORM_DIRECT;
-	if (!direct && !reads_samples(e, g))
-		return;
-	say(e, "%sfor (i = 0; i < %d; i++) {\n"
-	       "%s    pl_two *const d = D[0][i];\n", indent, g->states, indent);
-	if (direct)
-		say(e, "%s    d[i].hi = (1.0 + d[i].hi) + d[i].lo;\n", indent);
-	emit_samples_of_row(e, g, indent);
-	say(e, "%s}\n", indent);
-}
-
-/* From D to the instance's rows: states, load states in each segment, inputs */
-static void emit_take_rows(const struct emitter *e, const struct group *g, int index)
-{
-	const int segments = e->system->segments, states = g->states, loads = g->loads;
-	const int head = segments > 1 ? states : states + loads + g->inputs;
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            c->rows%d[i][j] = D[0][i][j].hi;\n", states, head, index);
-	if (segments > 1 && loads)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        for (j = 0; j < %d; j++)\n"
-		       "            c->rows%d[i][%d + j] = D[j / %d][i][%d + j %% %d].hi;\n",
-		    states, segments * loads, index, states, loads, states, loads);
-	if (segments > 1 && g->inputs)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        for (j = 0; j < %d; j++)\n"
-		       "            c->rows%d[i][%d + j] = D[0][i][%d + j].hi;\n",
-		    states, g->inputs, index, states + segments * loads, states + loads);
-}
-
-static void emit_take_columns(const struct emitter *e, const struct group *g, int index)
-{
-	const bool changing = shape_of_group(e, g).changing > 0;
-	const int skipped = changing ? g->loads : 0, columns = g->states + g->loads + g->inputs - skipped;
-	const char *from = skipped && g->inputs ? format("j < %d ? j : j + %d", g->states, skipped) : "j";
-	say(e, "    for (j = 0; j < %d; j++)\n"
-	       "        for (i = 0; i < %d; i++)\n"
-	       "            c->columns%d[j][i] = D[0][i][%s].hi;\n", columns, g->states, index, from);
-	if (changing)
-		say(e, "    for (j = 0; j < %d; j++)\n"
-		       "        for (i = 0; i < %d; i++)\n"
-		       "            c->loads%d[j / %d][j %% %d][i] = D[j / %d][i][%d + j %% %d].hi;\n",
-		    e->system->segments * g->loads, g->states, index, g->loads, g->loads, g->loads, g->states,
-		    g->loads);
-}
-
-static void emit_alike_list(const struct emitter *e, const struct group *g, const char *name, bool changing)
-{
-	const struct group_shape shape = shape_of_group(e, g);
-	const int terms = changing ? shape.changing : shape.rows;
-	if (terms == 0)
-		return;
-	say(e, "    static const unsigned char %s[%d][2] = {", name, terms);
-	for (int k = 0; k < terms; k++) {
-		int column, row = alike_entry(e, g, changing, k, &column);
-		say(e, "%s{%d, %d}", !k ? "" : k % 12 ? ", " : ",\n        ", row, column);
-	}
-	say(e, "};  /* row, column */\n");
-}
-
-static void emit_take_alike(const struct emitter *e, const struct group *g, int index)
-{
-	const struct group_shape shape = shape_of_group(e, g);
-	if (shape.rows)
-		say(e, "        for (i = 0; i < %d; i++)\n"
-		       "            c->alike%d[i][b] = D[0][entry[i][0]][entry[i][1]].hi;\n", shape.rows, index);
-	if (shape.changing)
-		say(e, "        for (j = 0; j < %d; j++)\n"
-		       "            for (i = 0; i < %d; i++)\n"
-		       "                c->loads%d[j][i][b] = D[j][load[i][0]][load[i][1]].hi;\n",
-		    e->system->segments, shape.changing, index);
-}
-
-static bool has_taps(const struct emitter *e, const struct group *g)
-{
-	bool any = false;
-	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1)
-		any = any || (e->system->input[i].hold > 1 && place_in(g->inputs, g->input, column) < g->inputs);
-	return any;
-}
-
-static int work_of_group(const struct emitter *e, const struct group *g, int first)
-{
-	const struct tuned_block *block = &blocks_of_step(e)->block[first];
-	int most = 0;
-	for (int b = 0; b < g->blocks; b++, block++) {
-		const int further = PL_INCREMENT_WORK(block->size), products = e->model->tuning->monomials + 1;
-		const int work = block->part.rows * block->part.width + block->size * block->size +
-				 (products > further ? products : further);
-		most = work > most ? work : most;
-	}
-	return most;
-}
-
-static void emit_increment_of(const struct emitter *e, const char *number, const char *indent, const char *same)
-{
-	say(e, "%sif ($n_unchanged(params, h, %s))\n"
-	       "%s    %s;\n", indent, number, indent, same);
-	say(e, "%sstatus = pl_block_increment(&$n_block[%s], params, h, D[0][0], work);\n"
-	       "%sif (status != 0)\n"
-	       "%s    return status;\n", indent, number, indent, indent);
-}
-
-/* One block after the other: `number` is that of the first in the table */
-static void emit_alike_retune(const struct emitter *e, const struct group *g, int index, int number)
-{
-	say(e, "    for (b = 0; b < %d; b++) {\n", g->blocks);
-	emit_increment_of(e, number ? format("%d + b", number) : "b", "        ", "continue");
-	emit_finish_rows(e, g, "        ");
-	emit_take_alike(e, g, index);
-	say(e, "    }\n");
-}
-
-/* The blocks of a group. first: in struct tuned_blocks */
-static void emit_group_retune(const struct emitter *e, const struct group *g, int index, int first)
-{
-	const bool alike = g->kind == GROUP_ALIKE;
-	const int size = blocks_of_step(e)->block[first].size, number = number_of_block(e, first);
-	say(e, "\n"
-	       "/* %s; c is as the spec's values have it */\n"
-	       "static int $n_retune%d($n_coeffs *c, const double *params, double h)\n"
-	       "{\n", first_state(e, g), index);
-	if (alike) {
-		emit_alike_list(e, g, "entry", false);
-		emit_alike_list(e, g, "load", true);
-	}
-	say(e, "    pl_two D[%d][%d][%d], work[%d];\n"
-	       "    int i, %sstatus;\n", e->system->segments, g->states, size, work_of_group(e, g, first),
-	    !alike ? "j, " : shape_of_group(e, g).changing ? "j, b, " : "b, ");
-	if (has_taps(e, g))
-		emit_powers_of_h(e);
-	if (alike) {
-		emit_alike_retune(e, g, index, number);
-	} else {
-		emit_increment_of(e, format("%d", number), "    ", "return 0");
-		emit_finish_rows(e, g, "    ");
-		(g->kind == GROUP_ROWS ? emit_take_rows : emit_take_columns)(e, g, index);
-	}
-	say(e, "    return 0;\n"
-	       "}\n");
-}
-
-/* Is there something beside the blocks? Where h may change, loads' steps do. */
-static bool has_others(const struct emitter *e)
-{
-	return blocks_of_step(e)->others.rows > 0 || (blocks_of_step(e)->whole && e->phases + e->growths > 0);
-}
-
-static void emit_tuned_loads(const struct emitter *e)
+static void emit_block_tables(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	if (p->whole) {
-		emit_take_loads(e, p->frequency);
-		return;
+	const char **block = ARRAY(const char *, (size_t)p->blocks), **group = ARRAY(const char *, (size_t)p->blocks);
+	const int listed = number_of_block(e, p->blocks);
+	struct listed lists = { 0 };
+	int term = 0, entry = 0, groups = 0;
+	for (int b = 0; b < p->blocks; b++) {
+		if (!is_listed(e, b))
+			continue;
+		block[b] = block_text(e, &p->block[b], &lists.place, term, entry);
+		term += p->block[b].part.terms;
+		entry += p->block[b].slopes;
 	}
-	for (int l = 0; l < e->system->loads; l++)
-		if (p->frequency[l] >= 0 && e->phase[l] >= 0)
-			say(e, "    c->phase_rate[%d] = pl_rate_of(value[%d][0]);\n"
-			       "    c->phase_step[%d] = pl_turn_at(&c->phase_rate[%d], h);\n",
-			    e->phase[l], p->frequency[l], e->phase[l], e->phase[l]);
+	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
+		if (p->block[b].group->tuned)
+			group[groups++] = group_text(e, &p->block[b], &lists);
+	emit_entries(e);
+	emit_lists(e, &lists);
+	if (listed)
+		emit_blocks(e, listed, block);
+	if (groups && !p->solved)
+		emit_reads(e);
+	if (groups)
+		emit_groups_of(e, groups, group);
 }
 
-static int first_term_of_others(const struct emitter *e)
-{
-	return count_terms(e) - blocks_of_step(e)->others.terms;
-}
-
-static void emit_value_of_others(const struct emitter *e)
-{
-	const struct tuned_part *part = &blocks_of_step(e)->others;
-	say(e, "    pl_two value[%d][%d], work[%d];\n"
-	       "    int status = pl_equations_at(&$n_equations, params, value[0], work);\n",
-	    part->rows, part->width, e->model->tuning->monomials + 1);
-	emit_frequency_check(e, blocks_of_step(e)->frequency);
-	say(e, "    if (status != 0)\n"
-	       "        return status;\n");
-}
+/* ---- beside the blocks ---- */
 
 static void emit_others(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	const bool steps = t->frequencies > 0 || p->whole;
-	if (!has_others(e))
+	if (p->solved || p->others.rows == 0)
 		return;
-	if (p->others.rows)
-		say(e, "\n/* %s%s */\n"
-		       "static const pl_equations $n_equations = %s;\n",
-		    !t->outputs         ? "Frequencies of loads"
-		    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
-					: "Outputs, over x",
-		    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
-		    equations_text(e, &p->others, first_term_of_others(e)));
-	say(e, "\nstatic int $n_retune_others($n_coeffs *c, const double *params, double h)\n"
-	       "{\n");
-	if (t->outputs || (p->whole && e->phases))
-		say(e, "    int i%s;\n", t->outputs ? ", j" : "");
-	if (p->others.rows)
-		emit_value_of_others(e);
-	if (t->outputs)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        for (j = 0; j < %d; j++)\n"
-		       "            c->out[i][j] = value[%s][j].hi;\n", t->outputs, t->x.size,
-		    p->first_output ? format("%d + i", p->first_output) : "i");
-	emit_tuned_loads(e);
-	if (!p->others.rows)
-		say(e, "    (void)params;\n");
-	if (!steps || e->phases + e->growths == 0)
-		say(e, "    (void)h;\n");
-	say(e, "    return 0;\n"
-	       "}\n");
+	say(e, "\n/* %s%s */\n"
+	       "static const pl_equations $n_equations = %s;\n",
+	    !t->outputs         ? "Frequencies of loads"
+	    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
+				: "Outputs, over x",
+	    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
+	    equations_text(e, &p->others, count_terms(e) - p->others.terms));
 }
 
-static void emit_retune_all(const struct emitter *e)
+/* By phases: which row of the equations its frequency is; by growths: whether a load decays */
+static void emit_rows_of_loads(const struct emitter *e)
 {
-	const bool whole = blocks_of_step(e)->whole;
-	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
-	       "{\n"
-	       "    $n_coeffs fresh = $n_nominal;\n"
-	       "    int i, status = 0;\n"
-	       "    if (%s)\n"
-	       "        return PL_NO_STEP;\n"
-	       "    for (i = 0; i < $N_PARAMS; i++) {\n"
-	       "        if (params[i] - params[i] != 0.0)\n"
-	       "            return PL_NOT_FINITE;\n"
-	       "        fresh.params[i] = params[i];\n"
-	       "    }\n", whole ? "!(h > 0.0)" : spell(e, "h != $N_H"));
-	if (whole)
-		say(e, "    fresh.h = h;\n");
-	if (whole && e->system->segments > 1)
-		say(e, "    fresh.h_low = 0.0;\n");
-	if (has_others(e))
-		say(e, "    status = $n_retune_others(&fresh, params, h);\n");
-	for (int k = 0; k < e->step->program->groups; k++)
-		if (group_at(e, k)->tuned)
-			say(e, "    if (status == 0)\n"
-			       "        status = $n_retune%d(&fresh, params, h);\n", k);
-	say(e, "    if (status == 0)\n"
-	       "        *c = fresh;\n"
-	       "    return status;\n"
-	       "}\n");
+	const int loads = e->system->loads;
+	int *row = ARRAY(int, (size_t)loads + 1), *decays = ARRAY(int, (size_t)loads + 1);
+	for (int l = 0; l < loads; l++) {
+		if (e->phase[l] >= 0)
+			row[e->phase[l]] = blocks_of_step(e)->frequency[l];
+		if (e->growth[l] >= 0)
+			decays[e->growth[l]] = mpq_sgn(e->system->load[l].wave->a) < 0;
+	}
+	if (e->model->tuning->frequencies)
+		emit_integers(e, "short", "rate_row", e->phases, row);
+	if (e->growths && blocks_of_step(e)->whole)
+		emit_integers(e, "unsigned char", "decays", e->growths, decays);
 }
 
-static void emit_blocks_retune(const struct emitter *e)
+/* ---- what retune.h is told ---- */
+
+static int most_derivatives(const struct emitter *e)
+{
+	int most = 0;
+	for (int i = 0; i < e->system->inputs; i++)
+		most = e->system->input[i].hold > most ? e->system->input[i].hold : most;
+	return most;
+}
+
+static bool has_kind(const struct emitter *e, bool alike)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
+	bool any = false;
+	for (int b = 0; b < p->blocks; b++)
+		any = any || (p->block[b].group->tuned && (p->block[b].group->kind == GROUP_ALIKE) == alike);
+	return any;
+}
+
+static void emit_sizes_of_tuning(const struct emitter *e)
+{
+	const struct tuning *t = e->model->tuning;
+	const struct tuned_blocks *p = blocks_of_step(e);
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "PARAMS", t->params },
+		{ "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
+		{ "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
+		{ "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
+		{ "ROWS", p->others.rows }, { "WIDTH", p->others.width }, { "SOLVED", p->solved },
+		{ "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
+		{ "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
+		{ "PEAKS", has_peaks(e) ? peak_outputs(e->model) : 0 },
+		{ "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
+		{ "BLOCKS", e->step->series.emitted ? p->blocks : 0 }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+}
+
+static void emit_vector_now(const struct emitter *e)
+{
+	say(e, "\n/* x now */\n"
+	       "static void $n_vector_now(const $n *s, const double u[], double x[%d])\n"
+	       "{\n", e->step->layout.size);
+	emit_series_vector(e);
+	say(e, "    (void)u;\n"
+	       "}\n");
+}
+
+static void emit_group_call(const struct emitter *e, const struct tuned_block *first)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	const struct group_shape shape = shape_of_group(e, first->group);
+	int number = 0;
+	for (int b = 0; &p->block[b] != first; b += p->block[b].group->blocks)
+		number += p->block[b].group->tuned;
+	const char *to = shape.rows ? format("c->%s[0]", tuned_table(e, first)) : "NULL";
+	const char *apart = shape.changing ? format("c->loads%d[0][0]", first->index) : "NULL";
+	say(e, "    if (status == 0)\n"
+	       "        status = $n_retune_group(&$n_group[%d], params, h, value, %s, %s, work);\n", number, to, apart);
+}
+
+void emit_retune(const struct emitter *e)
+{
 	emit_terms(e);
 	emit_block_tables(e);
-	emit_unchanged(e);
-	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
-		if (p->block[b].group->tuned)
-			emit_group_retune(e, p->block[b].group, p->block[b].index, b);
 	emit_others(e);
-	emit_retune_all(e);
-}
-
-/* ---- any time ---- */
-
-/* To each change of the loads on the way */
-static void emit_block_changes(const struct emitter *e, int changes)
-{
-	say(e, "        for (segment = s->segment; segment < %d && $n_until(s, segment) < tau; segment++) {\n"
-	       "            const double ahead = $n_until(s, segment);\n"
-	       "            if (ahead > done) {\n"
-	       "                pl_block_advance(block, s->coeffs.params, segment, ahead - done, part, work);\n"
-	       "                done = ahead;\n"
-	       "            }\n"
-	       "        }\n", changes);
-}
-
-static void emit_blocks_pass(const struct emitter *e)
-{
-	const struct tuned_blocks *p = blocks_of_step(e);
-	const int changes = e->system->segments - 1;
-	say(e, "\n/* The state tau after now, block by block%s */\n"
-	       "static void $n_pass(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n"
-	       "    pl_two work[%d];\n"
-	       "    double x[%d], part[%d];\n"
-	       "    int b%s;\n", changes ? ", from change to change of the loads on the way" : "",
-	    given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "", p->more, e->step->layout.size,
-	    p->size, changes ? ", segment" : "");
-	emit_series_vector(e);
-	say(e, "    for (b = 0; b < %d; b++) {\n"
-	       "        const pl_block *const block = &$n_block[b];\n"
-	       "        const unsigned short *const at = $n_places + $n_first_place[b];\n", p->blocks);
-	if (changes)
-		say(e, "        double done = 0.0;\n");
-	say(e, "        for (i = 0; i < block->states + block->loads + block->inputs; i++)\n"
-	       "            part[i] = x[at[i]];\n");
-	if (changes)
-		emit_block_changes(e, changes);
-	say(e, "        pl_block_advance(block, s->coeffs.params, %s, part, work);\n"
-	       "        for (i = 0; i < block->states; i++)\n"
-	       "            y[at[i]] = part[i];\n"
-	       "    }\n"
-	       "}\n", changes ? "segment, tau - done" : "0, tau");
-}
-
-void emit_blocks_tuning(const struct emitter *e)
-{
-	emit_blocks_retune(e);
-	emit_use_function(e);
+	emit_rows_of_loads(e);
 	if (e->step->series.emitted)
-		emit_blocks_pass(e);
+		emit_vector_now(e);
+	say(e, blocks_of_step(e)->solved ? "\n#define PL_EQUATIONS $n_block[0].equations\n"
+					 : "\n#define PL_EQUATIONS $n_equations\n");
+	emit_sizes_of_tuning(e);
+	say(e, "#include \"retune.h\"\n"
+	       "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *value, "
+	       "pl_two *work)\n"
+	       "{\n"
+	       "    int status = 0;\n");
+	each_tuned_group(e, emit_group_call);
+	say(e, "    return status;\n"
+	       "}\n");
+}
+
+void emit_tuned_at(const struct emitter *e)
+{
+	const bool inputs = e->system->inputs > 0, relative = e->model->relative != NULL;
+	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
+	       "{\n", driven_parameter(e));
+	if (relative)
+		say(e, "    double x[$N_STATES];\n");
+	say(e, "    $n_pass(s, %s, tau, %s);\n", inputs ? "u" : "NULL", relative ? "x" : "y");
+	if (relative)
+		say(e, "    $n_written(s, x, y);\n");
+	say(e, "}\n");
 }

@@ -77,7 +77,14 @@ static const struct kind linear = {
 	.params = emit_params_line
 };
 
-/* ---- tuned: a linear step whose factors the instance has ---- */
+/* ---- tuned: a linear step whose factors the instance has, of a large model those of blocks that params touch ---- */
+
+static const char *far_block(const struct step *step)
+{
+	return step->series.emitted ? NULL
+			: format("an independent block has more than %d states, load states and inputs",
+						     LIMIT_TUNED_BLOCK);
+}
 
 static bool any_load(const struct emitter *e, int load)
 {
@@ -107,7 +114,7 @@ static const struct kind tuned = {
 	.step_note = "",
 	.banner_more = banner_tuning,
 	.no_jump = "retuned coefficients have one word",
-	.no_at = far_pole,
+	.no_at = far_block,
 	.constants = nothing,
 	.types = emit_coefficient_struct,
 	.coefficients = emit_own_coefficients,
@@ -122,48 +129,6 @@ static const struct kind tuned = {
 	.reads_phi = never,
 	.tables = emit_tuned_tables,
 	.pass = emit_retune,
-	.step = emit_step,
-	.held = nothing,
-	.at = emit_tuned_at,
-	.wrappers = emit_tuning_wrapper,
-	.params = emit_params_line
-};
-
-/* ---- tuned_blocks: a large one, with the factors of the blocks that params touch ---- */
-
-static const char *far_block(const struct step *step)
-{
-	return step->series.emitted ? NULL
-			: format("an independent block has more than %d states, load states and inputs",
-						     LIMIT_TUNED_BLOCK);
-}
-
-static void emit_block_tables_of_kind(const struct emitter *e)
-{
-	emit_block_nominal(e);
-	emit_times_of_changes(e);
-}
-
-static const struct kind tuned_blocks = {
-	.banner = banner_linear,
-	.step_note = "",
-	.banner_more = banner_tuned_blocks,
-	.no_jump = "retuned coefficients have one word",
-	.no_at = far_block,
-	.constants = nothing,
-	.types = emit_block_coefficients,
-	.coefficients = emit_own_coefficients,
-	.members = nothing,
-	.init_note = "first: t = 0, the spec's initial values and coefficients",
-	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
-	.declare_state = nothing,
-	.declare_more = emit_block_declarations,
-	.own_factors = true,
-	.start = emit_nominal_start,
-	.reads_load = any_load,
-	.reads_phi = never,
-	.tables = emit_block_tables_of_kind,
-	.pass = emit_blocks_tuning,
 	.step = emit_step,
 	.held = nothing,
 	.at = emit_tuned_at,
@@ -556,7 +521,7 @@ const struct kind *row_of_kind(enum step_kind kind)
 {
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned,
-		[KIND_TUNED_BLOCKS] = &tuned_blocks, [KIND_REGIONS] = &regions,
+		[KIND_REGIONS] = &regions,
 		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_CUT] = &cut, [KIND_EXPANDED] = &expanded,
 		[KIND_COLLOCATED] = &collocated,
 		[KIND_NORMAL] = &normal_modes

@@ -406,6 +406,8 @@ void emit_tuning_wrapper(const struct emitter *e)
 		name[k] = t->param[k].symbol->name;
 	say(e, "\n");
 	emit_name_list(e, "param_names", t->params, name);
+	if (e->kind->own_factors)
+		return;                         /* in retune.h */
 	say(e, "\n"
 	       "static int $n_any_retune(void *s, const double *params, double h)\n"
 	       "{\n"

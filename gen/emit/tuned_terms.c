@@ -59,7 +59,8 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 	case TABLE_OWN_OUT: return tuned_entry(e, "out", i / tuning->x.size - e->model->n, i % tuning->x.size);
 	default: break;
 	}
-	return e->step->blocks ? block_factor(e, i / width, i % width) : tuned_entry(e, "step", i / width, i % width);
+	return e->step->blocks->solved ? tuned_entry(e, "step", i / width, i % width)
+				       : block_factor(e, i / width, i % width);
 }
 
 bool is_tuned_output(const struct emitter *e, const struct output *output)

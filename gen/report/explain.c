@@ -109,7 +109,7 @@ static void person_tuning(FILE *to, const struct step *step)
 	else
 		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
 			t->solves ? ", and are solved for the highest derivatives" : "");
-	if (step->blocks)
+	if (step->blocks && !step->blocks->solved)
 		person_blocks(to, step->blocks);
 }
 

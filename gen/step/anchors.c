@@ -27,7 +27,6 @@ static const char *objection(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_TUNED] = "tunable params: the target would have to make the tables",
-		[KIND_TUNED_BLOCKS] = "tunable params: the target would have to make the tables",
 		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps",
 		[KIND_CUT] = "a leftover: the scheme needs the loads between steps",
 		[KIND_EXPANDED] = "a series: its steps are no steps of h",

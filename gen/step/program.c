@@ -7,7 +7,7 @@ enum step_kind kind_of_step(const struct model *model)
 	if (model->switching)
 		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
-		return model->system.states > LIMIT_UNROLLED_STATES ? KIND_TUNED_BLOCKS : KIND_TUNED;
+		return KIND_TUNED;
 	if (model->channels == 0 && !has_contacts(model))
 		return KIND_LINEAR;
 	const struct scheme_row *row = scheme_row(model->scheme);

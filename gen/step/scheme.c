@@ -127,11 +127,6 @@ static void build_tuned_step(struct step *step)
 {
 	place_all_loads(step);
 	build_exact(step);
-}
-
-static void build_tuned_blocks(struct step *step)
-{
-	build_tuned_step(step);
 	plan_tuned_blocks(step);
 }
 
@@ -323,7 +318,6 @@ static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
-		[KIND_TUNED_BLOCKS] = build_tuned_blocks,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
 		[KIND_LEFTOVER] = build_leftover_step, [KIND_CUT] = build_cut_step,
 		[KIND_EXPANDED] = build_expanded_step,

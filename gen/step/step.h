@@ -245,8 +245,7 @@ struct series {                     /* of e^{A tau} x: the Taylor series behind 
 };
 enum step_kind {                    /* what a step is made of */
 	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
-	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
-	KIND_TUNED_BLOCKS,          /* a large one, by its independent blocks: factors of those that params touch */
+	KIND_TUNED,                 /* the same, with factors that the instance has; of a large one, of some blocks */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
@@ -296,7 +295,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
 	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
-	struct tuned_blocks *blocks; /* NULL: no large step with tunable params */
+	struct tuned_blocks *blocks; /* NULL: no linear step with tunable params */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
@@ -945,20 +944,14 @@ struct reference reference_through(const struct step *step); /* leaves the state
 
 /* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
 
-double *nominal_step(const struct step *step);              /* states x columns, of the spec's values */
 double *nominal_outputs(const struct step *step);           /* of outputs that depend on params: outputs x columns */
 struct fixed_slope {                /* an entry of A, x' = A x, that no param changes: velocities, how loads go on */
 	int row, column;
 	struct coefficient value;
 };
 int fixed_slopes(const struct step *step, struct fixed_slope **list);
-struct workspace {                  /* that the target computes coefficients in, in numbers of two words */
-	int width, work;            /* columns of the equations, W's among them; for products and exponentials */
-	int kilobytes;              /* of stack; frames of the calls not counted */
-};
-struct workspace workspace_of(const struct step *step);
 
-/* ---- tuned_blocks.c: a large step with tunable params, block by block ---- */
+/* ---- tuned_blocks.c: a linear step with tunable params, a large one block by block ---- */
 
 struct part_term {
 	int row, column;            /* of the part; W's columns stand behind those of x */
@@ -982,18 +975,16 @@ struct tuned_block {                /* an independent block; x: its states, load
 	int slopes;
 	struct fixed_slope *slope;  /* entries of A that no param changes */
 	int turns, *turn;           /* pairs of load states whose frequency changes: row of the part, place in x */
-	int ramps, *ramp;           /* places in x of inputs that are ramps */
 };
 struct tuned_blocks {
 	int blocks;
 	struct tuned_block *block;  /* in the order of groups */
+	bool solved;                /* there is one, the whole model, whose equations have what others would */
 	/* outputs and frequencies that depend on params, and what accelerations these read */
 	struct tuned_part others;
 	int first_output;           /* row there of the first output that does; the others follow */
 	int *frequency;             /* per load: its row there, or -1 */
-	int increment, work;        /* numbers of two words: for e^{A h} - I of a block, and for computing it */
-	int more;                   /* the same for a state tau later */
-	int size;                   /* of the largest x */
+	int work, more;             /* numbers of two words: for NAME_retune, beside those rows; for NAME_at */
 	bool whole;                 /* params touch every block: any h will do */
 	int kilobytes;              /* of stack */
 };

@@ -67,7 +67,7 @@ const struct group *group_of_state(const struct step *step, int state, int *inde
 static bool has_own_factors(const struct step *step, int state)
 {
 	int index, row;
-	return step->program->tuned && (!step->blocks || group_of_state(step, state, &index, &row)->tuned);
+	return step->program->tuned && (!step->program->loops || group_of_state(step, state, &index, &row)->tuned);
 }
 
 static bool is_turned(const struct product *p, const struct step *step)
@@ -171,7 +171,7 @@ const struct linear *system_of_outputs(const struct step *step)
 int own_row(const struct step *step, const struct output *output)
 {
 	const struct model *model = step->model;
-	const bool own = step->kind == KIND_TUNED || step->kind == KIND_TUNED_BLOCKS;
+	const bool own = step->kind == KIND_TUNED;
 	return own ? model->tuning->output[output - model->output] : -1;
 }
 

@@ -1,27 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a model with tunable params keeps: the coefficients of the spec's own values, what no param changes of x' = A x,
- * and what the target computes coefficients in. */
+/* What a model with tunable params keeps: the coefficients of outputs at the spec's own values, and what no param
+ * changes of x' = A x. */
 #include "step/step.h"
-
-/* Columns: states, load states in each segment of time, inputs */
-double *nominal_step(const struct step *step)
-{
-	const struct table *table = step->branch->whole;
-	const struct coefficient *square = step->form == FORM_DELTA ? table->increment : table->Phi;
-	int n = table->states, width = step->model->tuning->x.size, segments = step->branch->system.segments;
-	double *value = ARRAY(double, (size_t)(n * width));
-	for (int i = 0; i < n; i++) {
-		double *row = value + i * width;
-		for (int j = 0; j < n; j++)
-			row[j] = square[i * n + j].value;
-		for (int s = 0; s < segments; s++)
-			for (int k = 0; k < table->columns; k++)
-				row[n + s * table->columns + k] = table->load[(s * n + i) * table->columns + k].value;
-		for (int k = 0; k < table->inputs; k++)
-			row[n + segments * table->columns + k] = table->input[i * table->inputs + k].value;
-	}
-	return value;
-}
 
 /* A row of an output over the columns */
 static void fill_output(const struct step *step, const struct output *output, double *row)
@@ -82,17 +62,4 @@ int fixed_slopes(const struct step *step, struct fixed_slope **list)
 		}
 	rationals_free(A, (size_t)size * (size_t)size);
 	return count;
-}
-
-struct workspace workspace_of(const struct step *step)
-{
-	const struct tuning *t = step->model->tuning;
-	int size = step->layout.size, products = t->monomials + 1, real = step->model->asked.single ? 4 : 8;
-	struct workspace space = { .width = t->x.size + (t->solves ? t->rows : 0), .work = PL_INCREMENT_WORK(size) };
-	if (space.work < products)
-		space.work = products;
-	int increments = step->branch->system.segments * step->branch->system.states * size;
-	int twos = t->rows * space.width + size * size + space.work + increments;
-	space.kilobytes = 1 + 2 * real * twos / 1024;
-	return space;
 }

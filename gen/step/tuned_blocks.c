@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A large step with tunable params, independent block by independent block: what params touch is the instance's, and
- * the target computes e^{A h} of these blocks alone; the others keep their tables. */
+/* A linear step with tunable params. Of a large one what params touch is the instance's, and the target computes
+ * e^{A h} of these independent blocks alone; the others keep their tables. Any other is one block. */
 #include "step/step.h"
 
 /* ---- what hangs together ---- */
@@ -198,25 +198,21 @@ static void take_turns(struct tuned_block *b, const struct step *step, const int
 	}
 }
 
-static void take_ramps(struct tuned_block *b, const struct step *step, const int *place)
-{
-	const struct linear *system = &step->branch->system;
-	b->ramp = ARRAY(int, (size_t)system->inputs);
-	for (int i = 0; i < system->inputs; i++)
-		if (system->input[i].hold == 1 && place[step->layout.input[i]] >= 0)
-			b->ramp[b->ramps++] = place[step->layout.input[i]];
-}
-
-static struct tuned_block block_of(const struct step *step, int group, int block, int count,
+/* Of the whole also its outputs, between the equations and the frequencies of its loads */
+static struct tuned_block block_of(const struct step *step, const struct group *group, int index, int block, int count,
 				   const struct fixed_slope *fixed)
 {
 	const struct linear *system = &step->branch->system;
-	struct tuned_block b = { .group = &step->program->group[group], .index = group, .block = block };
+	struct tuned_block b = { .group = group, .index = index, .block = block };
 	int *parent = components(step), *column = columns_of(&b, step), *place = places_of(&b, step);
-	add_component(&b.part, step, parent,
-		      root_of_node(parent, system->n + system->coord[b.group->state[block]]));
-	b.derivatives = b.part.rows;
-	b.size = b.group->states + b.group->loads + b.group->inputs;
+	const bool whole = !step->program->loops;
+	if (!whole)
+		add_component(&b.part, step, parent,
+			      root_of_node(parent, system->n + system->coord[group->state[block]]));
+	b.derivatives = whole ? system->n : b.part.rows;
+	for (int row = 0; whole && row < system->n + step->model->tuning->outputs; row++)
+		add_row(&b.part, row, row);
+	b.size = group->states + group->loads + group->inputs;
 	b.place = ARRAY(int, (size_t)b.derivatives);
 	for (int i = 0; i < b.derivatives; i++) {
 		const int coord = b.part.unknown[i];
@@ -224,7 +220,6 @@ static struct tuned_block block_of(const struct step *step, int group, int block
 	}
 	take_slopes(&b, place, count, fixed);
 	take_turns(&b, step, place);
-	take_ramps(&b, step, place);
 	take_terms(&b.part, step, column);
 	return b;
 }
@@ -251,6 +246,7 @@ static void plan_others(struct tuned_blocks *p, const struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
 	const int loads = step->branch->system.loads;
+	p->others = (struct tuned_part){ 0 };
 	int *column = ARRAY(int, (size_t)t->x.size);
 	for (int k = 0; k < t->x.size; k++)
 		column[k] = k;
@@ -277,15 +273,14 @@ static void larger_of(int *most, int count)
 
 static void measure_block(struct tuned_blocks *p, const struct step *step, const struct tuned_block *b)
 {
-	const int entries = b->part.rows * b->part.width + b->size * b->size;
-	int further = PL_INCREMENT_WORK(b->size);
+	const int rows = b->part.rows * b->part.width, square = b->size * b->size;
+	const int increments = step->branch->system.segments * b->group->states * b->size;
+	int further = square + PL_INCREMENT_WORK(b->size), advance = square + further;
 	larger_of(&further, step->model->tuning->monomials + 1);
-	larger_of(&p->size, b->size);
-	larger_of(&p->more, entries + further + b->size * b->size);
-	if (!b->group->tuned)
-		return;
-	larger_of(&p->work, entries + further);
-	larger_of(&p->increment, step->branch->system.segments * b->group->states * b->size);
+	larger_of(&advance, further);
+	larger_of(&p->more, rows + advance);
+	if (b->group->tuned)
+		larger_of(&p->work, increments + (p->solved ? 0 : rows) + further);
 }
 
 static void check_size(const struct step *step, const struct tuned_block *b)
@@ -313,31 +308,54 @@ static int numbers_of(const struct step *step, const struct group *g)
 	return g->tuned ? g->blocks * g->states * columns : 0;
 }
 
+static int *counted(int count)
+{
+	int *list = ARRAY(int, (size_t)count);
+	for (int i = 0; i < count; i++)
+		list[i] = i;
+	return list;
+}
+
+static struct group *group_of_whole(const struct step *step)
+{
+	const struct table *table = step->branch->whole;
+	struct group *g = NEW(struct group);
+	*g = (struct group){ GROUP_ROWS, table->states, 1, counted(table->states), table->columns,
+			     counted(table->columns), table->inputs, counted(table->inputs), true };
+	return g;
+}
+
 void plan_tuned_blocks(struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
 	const struct program *program = step->program;
 	struct tuned_blocks *p = NEW(struct tuned_blocks);
-	int stack = 0;
 	struct fixed_slope *fixed;
 	const int count = fixed_slopes(step, &fixed), real = step->model->asked.single ? 4 : 8;
-	int numbers = 0;
+	const struct group *group = program->loops ? program->group : group_of_whole(step);
+	int numbers = 0, most = 0, stack;
 	p->whole = true;
-	for (int k = 0; k < program->groups; k++) {
-		p->whole = p->whole && program->group[k].tuned;
-		numbers += numbers_of(step, &program->group[k]);
-		for (int b = 0; b < program->group[k].blocks; b++) {
+	p->solved = !program->loops;
+	for (int k = 0; k < (p->solved ? 1 : program->groups); k++) {
+		p->whole = p->whole && group[k].tuned;
+		numbers += numbers_of(step, &group[k]);
+		for (int b = 0; b < group[k].blocks; b++) {
 			ENLARGE(p->block, (size_t)p->blocks + 1);
-			p->block[p->blocks] = block_of(step, k, b, count, fixed);
+			p->block[p->blocks] = block_of(step, &group[k], k, b, count, fixed);
 			check_size(step, &p->block[p->blocks]);
+			larger_of(&most, p->block[p->blocks].size);
 			measure_block(p, step, &p->block[p->blocks++]);
 		}
 	}
-	plan_others(p, step);
-	larger_of(&p->work, p->others.rows * p->others.width + t->monomials + 1);
+	p->others = p->block[0].part;
+	p->first_output = step->branch->system.n;
+	p->frequency = t->frequency;
+	if (!p->solved)
+		plan_others(p, step);
+	larger_of(&p->work, t->monomials + 1);
+	stack = p->others.rows * p->others.width + p->work;
 	larger_of(&stack, p->more);
-	larger_of(&stack, p->work + p->increment);
 	p->kilobytes = 1 + real * (numbers + 2 * stack) / 1024;
-	step->series.emitted = p->size <= LIMIT_TUNED_BLOCK;
+	step->series.emitted = most <= LIMIT_TUNED_BLOCK;
 	step->blocks = p;
 }
