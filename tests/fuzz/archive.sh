@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# archive.sh SOURCE COMPILER OUT: drive.c, CVODE's wrapper and the runtime, with sanitizers, as one archive.
+# archive.sh SOURCE COMPILER OUT [RUNTIME.a]: drive.c, CVODE's wrapper and the runtime, with sanitizers, as one archive;
+# RUNTIME.a: the runtime so, as the build folder has it.
 set -eu
 source=$1
 cc=$2
@@ -8,13 +9,21 @@ case $3 in
 	/*) out=$3 ;;
 	*) out=$PWD/$3 ;;
 esac
+runtime=${4:-}
+case $runtime in
+	/* | '') ;;
+	*) runtime=$PWD/$runtime ;;
+esac
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+set -- "$source/tests/fuzz/drive.c"
+[ -n "$runtime" ] || set -- "$source"/runtime/*.c "$@"
 # without what stops anyway at the address where it goes, as in batch.sh
 "$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize=null,alignment,object-size,pointer-overflow \
-	-fno-sanitize-recover=all -I"$source/runtime" -I"$source/tests/leftover" \
-	-c "$source"/runtime/*.c "$source/tests/fuzz/drive.c"
+	-fno-sanitize-recover=all -I"$source/runtime" -I"$source/tests/leftover" -c "$@"
 "$cc" -std=gnu11 -O0 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
 rm -f "$out"
+# the archive of the build folder only names its objects
+[ -z "$runtime" ] || ar t "$runtime" | while IFS= read -r object; do cp "$object" .; done
 ar rcsD "$out" ./*.o
