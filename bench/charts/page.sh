@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # page.sh FOLDER: FOLDER/index.html, a page for each model and one for each topic, from the pictures and tables there.
-# Run at the top of the source tree. A picture stands beside its caption (captions/NAME.txt, or that of the longest
-# beginning of NAME that has one). What is not there is left out; what lies in FOLDER and is named nowhere here comes on
-# the page more.html, so that nothing is lost.
+# Run at the top of the source tree. A picture stands beside its caption (=== NAME in captions.txt, or that of the
+# longest beginning of NAME that has one). What is not there is left out; what lies in FOLDER and is named nowhere here
+# comes on the page more.html, so that nothing is lost.
 set -e
 folder=$1
 charts=bench/charts
@@ -23,8 +23,8 @@ there() {
 text_of() {
 	name=$1
 	while [ -n "$name" ]; do
-		if [ -f "$charts/captions/$name.txt" ]; then
-			escaped <"$charts/captions/$name.txt"
+		if grep -qx "=== $name" $charts/captions.txt; then
+			awk -v name="$name" '/^=== / { here = $2 == name; next } here' $charts/captions.txt | escaped
 			return
 		fi
 		case $name in
