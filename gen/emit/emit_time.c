@@ -196,7 +196,7 @@ void emit_passing(const struct emitter *e)
 	emit_series_slopes(e);
 	emit_passing_algorithm(e);
 	open_function(e, "The state tau after now, from change to change of the loads on the way",
-		      "static %s $n_pass(const $n *s, %s%s%s%sdouble tau, double y[$N_STATES])",
+		      "static %s $n_pass(const $n *s, %s%s%sdouble tau, %sdouble y[$N_STATES])",
 		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
 		      layout->powers ? "const double *left, " : "", forced ? "int whole, " : "");
 	say(e, "    double x[%d];\n", layout->size);
