@@ -292,7 +292,7 @@ static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 
 static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
 {
-	make_room(f, a->index + 1);     /* of a let that nothing reads */
+	make_room(f, a->index + 1);
 	if (f->made[a->index] == TAPE_NONE)
 		f->made[a->index] = new_atom_ref(f, a);
 	return f->made[a->index];
@@ -327,6 +327,7 @@ tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
 	const struct basis *basis = &term->basis;
 	const struct atom *atom = basis->atom;
 	bool plus = mpq_cmp_si(term->factor, 1, 1) == 0, minus = mpq_cmp_si(term->factor, -1, 1) == 0;
+	make_room(f, atom ? atom->index + 1 : 0);       /* a let that nothing reads may have atoms of its own */
 	if (basis->kind == BASIS_ONE)
 		return tape_constant(t, term->factor);
 	if (atom && atom->kind == ATOM_PRODUCT && f->uses[atom->index] <= 1 && !plus && !minus)
