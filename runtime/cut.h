@@ -257,7 +257,7 @@ static inline int PL(halve)(PL(piece) *p, real size)
 /* The part up to `to` [h]: next, where it ends; found->time, how long after its start it meets what is found, or below
  * 0: 0, PL_SHORTER, or what went wrong.  What a cubic says of a part that is too long for it is believed where that
  * stays within. */
-static int PL(search)(PL(piece) *p, real to, real c[4][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS],
+static int PL(search_step)(PL(piece) *p, real to, real c[4][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS],
                       const real y[PL_STATES], real next[PL_STATES], pl_crossing *found)
 {
     const real size = to - p->done;
@@ -303,7 +303,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
     } else {
         int wrong;
         found = p->contact->last;
-        wrong = PL(search)(p, to, c, terms, y, next, &found);
+        wrong = PL(search_step)(p, to, c, terms, y, next, &found);
         if (wrong != 0) {
             return wrong;
         }

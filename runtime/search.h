@@ -83,7 +83,8 @@ static const PL_SEARCH PL(switching) = {PL_TABLES};
 
 #if PL_EXPRESSIONS > 0
 /* The region of x in a segment of time */
-static void PL(start)(const PL_TYPE *s, int segment, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
+static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VECTOR], pl_contact *contact,
+                              real work[PL_WORK])
 {
 #if PL_SEGMENTS > 1
     PL_SEARCH here = PL(switching)(s, segment);
@@ -114,7 +115,7 @@ static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_conta
 #if PL_LOST
     if (PL(matrix)[contact->region] < 0) {
         pl_contact now;
-        PL(start)(s, contact->region / PL_REGIONS, x, &now, work);
+        PL(begin_contact)(s, contact->region / PL_REGIONS, x, &now, work);
         contact->matrix = now.matrix;
         return;
     }
@@ -138,7 +139,7 @@ static int PL(counted)(const pl_contact *contact, real done, int count, pl_cross
 
 /* x on by tau, from change to change of the loads.  Of what sticks and bounces a change at the end, too, is decided at
  * once: outputs read it. */
-static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
 {
     const real never = PL_GUARDS ? 2 * PL_H : tau;
     real done = 0, work[PL_WORK];
@@ -171,7 +172,7 @@ static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact
 #else
 
 /* x on by tau */
-static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
 {
     real work[PL_WORK];
 #if PL_OWN
@@ -198,7 +199,7 @@ static void PL(search)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact
 static PL_RARE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 {
     int i;
-    PL(search)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
+    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
 #if PL_KEPT

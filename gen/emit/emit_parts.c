@@ -355,7 +355,7 @@ static void emit_linear_by_pieces(const struct emitter *part, const double *whol
 	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
-	say(part, "    $o_search(s, $N_H, x, &contact, crossing);\n");
+	say(part, "    $o_search_step(s, $N_H, x, &contact, crossing);\n");
 	emit_state_of_x(part);
 }
 
@@ -428,7 +428,7 @@ static void emit_at_of_part(const struct emitter *part)
 	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
-	say(part, "    $o_search(s, tau, x, &contact, crossing);\n");
+	say(part, "    $o_search_step(s, tau, x, &contact, crossing);\n");
 	say(part, "    for (i = 0; i < %d; i++)\n"
 		  "        y[$o_state[i]] = x[i];\n", part->system->states);
 	close_function(part, "");

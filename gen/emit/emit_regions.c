@@ -342,7 +342,7 @@ void declare_region_room(const struct emitter *e)
 
 void emit_region_start_call(const struct emitter *e)
 {
-	say(e, "    $o_start(s, %s, x, &s->contact$p, work);\n", regions_change(e) ? "s->segment" : "0");
+	say(e, "    $o_begin_contact(s, %s, x, &s->contact$p, work);\n", regions_change(e) ? "s->segment" : "0");
 }
 
 void emit_region_start(const struct emitter *e)
@@ -421,7 +421,7 @@ void emit_region_at(const struct emitter *e)
 		emit_at_start(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	say(e, "    $o_search(s, tau, x, &contact, crossing);\n");
+	say(e, "    $o_search_step(s, tau, x, &contact, crossing);\n");
 	emit_hand_over(e);
 	close_function(e, "");
 }

@@ -310,7 +310,7 @@ static const char *group_text(const struct emitter *e, const struct tuned_block 
 static void emit_groups_of(const struct emitter *e, int groups, const char *const *text)
 {
 	say(e, "\n/* Those of one shape together */\n"
-	       "static const pl_group $n_group[%d] = {\n", groups);
+	       "static const pl_group $n_block_group[%d] = {\n", groups);
 	for (int k = 0; k < groups; k++)
 		say(e, "    %s%s", text[k], k < groups - 1 ? ",\n" : "\n};\n");
 }
@@ -444,7 +444,7 @@ static void emit_group_call(const struct emitter *e, const struct tuned_block *f
 	const char *to = shape.rows ? format("c->%s[0]", tuned_table(e, first)) : "NULL";
 	const char *apart = shape.changing ? format("c->loads%d[0][0]", first->index) : "NULL";
 	say(e, "    if (status == 0)\n"
-	       "        status = $n_retune_group(&$n_group[%d], params, h, value, %s, %s, work);\n", number, to, apart);
+	       "        status = $n_retune_group(&$n_block_group[%d], params, h, value, %s, %s, work);\n", number, to, apart);
 }
 
 void emit_retune(const struct emitter *e)
