@@ -114,6 +114,7 @@ static inline void PL(forget)(PL(contact) *contact)
     }
 }
 
+#if PL_AT_BREAKPOINTS
 /* Where a crossing is, of the expression */
 static inline real PL(breakpoint_of)(const pl_crossing *crossing)
 {
@@ -123,6 +124,7 @@ static inline real PL(breakpoint_of)(const pl_crossing *crossing)
     }
     return PL(breakpoint)[place];
 }
+#endif
 #endif
 
 #if PL_EXPRESSIONS > 0 && !PL_CONTACTS

@@ -124,6 +124,7 @@ static inline int PL(is_moved)(int i)
 #endif
 }
 
+#define PL_AT_BREAKPOINTS 1 /* whether states are put onto them */
 #include "chosen.h"
 
 /* ---- where an internal step stands ---- */

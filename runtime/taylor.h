@@ -260,6 +260,7 @@ static inline int PL(is_accurate)(const PL_TYPE *s, const real c[PL_ORDER + 1][P
 /* ---- parts of a step ---- */
 
 #if PL_PARTS
+#define PL_AT_BREAKPOINTS 0 /* whether states are put onto them */
 #include "chosen.h"
 #include "between.h"
 #endif

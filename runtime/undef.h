@@ -84,6 +84,7 @@
 #undef PL_LEAST_PART
 #undef PL_LISTED
 #undef PL_LOAD_STATES
+#undef PL_AT_BREAKPOINTS
 #undef PL_LOCATES
 #undef PL_LOOKS
 #undef PL_LOSES

@@ -25,6 +25,7 @@ struct identifiers {
 static const char *const own_names[] = {
 	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope",
 	"interval", "excess", "now", "first", "turn", "turned", "samples", "cell", "clear", "real",
+	"tau", "when", "segment", "terms", "c", "e",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 
@@ -46,6 +47,13 @@ static bool is_load_local(const char *name)
 			return true;
 	}
 	return false;
+}
+
+/* x_3, x_by_y: coefficients and products of series */
+static bool is_series_local(const char *name)
+{
+	const char *last = strrchr(name, '_');
+	return strstr(name, "_by_") || (last && last[1] && strspn(last + 1, "0123456789") == strlen(last + 1));
 }
 
 static bool is_taken(const struct identifiers *c, const char *name)
@@ -117,20 +125,26 @@ static const char *identifier(const char *name)
 	return text;
 }
 
+/* An input is a local beside series; a coordinate is one of them. */
+static const char *claim_of(struct identifiers *c, const struct symbol *s, const char *wish)
+{
+	return claim(c, s->kind == SYMBOL_INPUT && is_series_local(wish) ? format("%s_in", wish) : wish);
+}
+
 static void name_symbols(struct identifiers *c, const struct spec *spec)
 {
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT && s->kind < SYMBOL_PART_OUTPUT)
-			c->symbol[s->number].name[0] = claim(c, s->name);
+			c->symbol[s->number].name[0] = claim_of(c, s, s->name);
 	for (const struct symbol *s = spec->first; s; s = s->next) {
 		struct identifier *own = &c->symbol[s->number];
 		if (s->kind == SYMBOL_COORD || s->kind == SYMBOL_INPUT)
-			own->name[1] = claim(c, format("%s_dot", s->name));
+			own->name[1] = claim_of(c, s, format("%s_dot", s->name));
 		for (int order = 0; order < 2; order++)
 			own->component[order] = ARRAY(const char *, (size_t)s->length);
 		for (int i = 0; i < s->length; i++) {
-			own->component[0][i] = claim(c, format("%s%d", s->name, i + 1));
-			own->component[1][i] = claim(c, format("%s%d_dot", s->name, i + 1));
+			own->component[0][i] = claim_of(c, s, format("%s%d", s->name, i + 1));
+			own->component[1][i] = claim_of(c, s, format("%s%d_dot", s->name, i + 1));
 		}
 	}
 }

@@ -123,7 +123,7 @@ static const char *accumulated_text(struct printing *p, const struct tape_node *
 	const char *a = widened(p, n->a, text_of(p, n->a, CHOICE, indent));
 	const char *b = widened(p, n->b, text_of(p, n->b, CHOICE, indent));
 	const char *c = widened(p, n->c, text_of(p, n->c, CHOICE, indent));
-	const char *between = strlen(b) > WIDTH / 2 ? format(",\n%*s", indent, "") : ", ";
+	const char *between = strlen(b) + strlen(c) > WIDTH / 2 ? format(",\n%*s", indent, "") : ", ";
 	return format("%s(%s%s%s%s%s, &%s)", p->to->accumulate, a, between, b, between, c,
 		      p->to->operand(p->to->context, n));
 }

@@ -158,29 +158,30 @@ static void want_rows(struct wanting *w)
     }
 }
 
-static void want_kicks(struct wanting *w)
+static void want_kick(struct wanting *w, int i)
 {
     const struct linear *system = w->judge->system;
-    for (int i = 0; i < system->n; i++) {
-        want_places(w, &w->judge->kick[i * system->n], "kick", state_name(w, system->velocity[i]));
-        want_second_words(w);
-    }
+    want_places(w, &w->judge->kick[i * system->n], "kick", state_name(w, system->velocity[i]));
+    want_second_words(w);
 }
 
 static void want_kick_drift_kick(struct wanting *w)
 {
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
-    want_kicks(w);
+    for (int i = 0; i < system->n; i++)
+        want_kick(w, i);
     for (int i = 0; i < system->n; i++) {
         for (int k = 0; k < system->n; k++)
             want(w, &j->drift[i * system->n + k], false, w->variant->compensated,
                  format("drift of %s in %s", state_name(w, system->velocity[k]), state_name(w, i)));
         want_second_words(w);
-    }
-    want_kicks(w);
-    for (int i = 0; i < j->states; i++)
         want_loads_and_inputs(w, i);
+    }
+    for (int i = 0; i < system->n; i++) {
+        want_kick(w, i);
+        want_loads_and_inputs(w, system->velocity[i]);
+    }
 }
 
 /* ---- what stands there ---- */
@@ -222,7 +223,8 @@ static bool starts_with(const char *text, const char *start)
 /* Is this statement one of the step's sums?  The others compute loads and time, or store. */
 static bool is_sum(const char *text, const char *end)
 {
-    if (starts_with(text, "s->y["))
+    if (starts_with(text, "s->y[") || starts_with(text, "const double part") ||
+        starts_with(text, "const float part"))
         return true;
     while (isalnum((unsigned char)*text) || *text == '_')
         text++;

@@ -64,6 +64,7 @@ fi
 
 {
 	sed -n '/^} statements\[\]/,/^};/p' "$root/gen/read/parse.c" | grep -o '{ "[a-z]*"' | tr -d '{ "'
+	sed -n 's/^REAL_FUNCTION([A-Z]*, \([a-z]*\),.*/\1/p' "$root/gen/read/functions.def"
 	sed -n '/function_names\[\]/,/^};/p' "$root/gen/read/names.c" | grep -o '"[a-z0-9]\{1,\}"' | tr -d '"'
 	plgen --help | sed -n 's/^  --scheme.*: //p' | tr ' ' '\n'
 } | sort -u >words

@@ -30,7 +30,7 @@ if ! "$plgen" --rhs --prefix subject ${every:+--step "$every"} "$spec" >"$work/s
 	echo "own.sh: plgen refuses the spec, so there is nothing to chart" >&2
 	exit 1
 fi
-if grep -q 'const pl_guards' "$work/subject_pl.c"; then
+if grep -q 'const pl_guard ' "$work/subject_pl.c"; then
 	echo "own.sh: $spec: what bounces is not charted: NAME_rhs has no jumps of velocity," \
 		"so no peer follows it and nothing says what is true" >&2
 	exit 1
