@@ -829,7 +829,7 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 		for (int i = 0; i < params; i++)
 			if (param[i].tunable)
 				fprintf(file, " %s=%.4f", param[i].name, 0.6 + (double)below(3000) / 1000);
-		if (class == LINEAR)
+		if (class == LINEAR && !strstr(given, "--scheme"))      /* other schemes have the spec's step */
 			fprintf(file, " step=%s", (const char *const[]){ "0.01", "0.03", "0.0625" }[below(3)]);
 		fputc('\n', file);
 	}
