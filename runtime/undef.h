@@ -28,6 +28,7 @@
 #undef PL_CHOICES
 #undef PL_CLEARS
 #undef PL_COLUMNS
+#undef PL_CROSSED
 #undef PL_CONTACTS
 #undef PL_CONVERTED
 #undef PL_COORDS
@@ -55,6 +56,7 @@
 #undef PL_FORCES
 #undef PL_FUNCTIONS
 #undef PL_GATES
+#undef PL_GIVEN
 #undef PL_GO
 #undef PL_GONE
 #undef PL_GROUPS
@@ -70,6 +72,7 @@
 #undef PL_INPUTS
 #undef PL_INSTANCES
 #undef PL_INTERVAL
+#undef PL_JUMPS
 #undef PL_KEEPS
 #undef PL_KEEPS_LOOK
 #undef PL_KEPT

@@ -27,7 +27,7 @@ static void emit_init(const struct emitter *e)
 	say(e, "\n"
 	       "    const double *volatile from = start%s;  /* not known: gcc 12 errs as it copies a known table */\n",
 	    relative ? ", *volatile whole = set" : "");
-	e->kind->start(e, "s->");
+	emit_nominal_factors(e);
 	for (int i = 0; i < given_inputs(e); i++) {
 		say(e, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)

@@ -291,7 +291,6 @@ struct kind {
 	void (*declare_more)(const struct emitter *e);
 	/* The state */
 	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
-	void (*start)(const struct emitter *e, const char *s); /* before the first set; s: "s->" or "s." */
 	bool (*places)(const struct emitter *e);        /* NAME_place(s) finds what follows from a state that was set */
 	/* Tables and functions */
 	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
@@ -720,7 +719,7 @@ int  retuned_kilobytes(const struct emitter *e);                  /* of stack, b
 void emit_held_types(const struct emitter *e);
 void emit_held_member(const struct emitter *e);
 void emit_held_set(const struct emitter *e);
-void emit_held_start(const struct emitter *e, const char *s);
+void emit_nominal_factors(const struct emitter *e);              /* those that an instance begins with */
 void emit_held_declarations(const struct emitter *e);
 void banner_held(const struct emitter *e);
 void emit_held_nominal(const struct emitter *e);

@@ -43,10 +43,10 @@ void emit_held_set(const struct emitter *e)
 		       "        pl_lead_start(&s->lead[i]);\n", leads(e));
 }
 
-void emit_held_start(const struct emitter *e, const char *s)
+void emit_nominal_factors(const struct emitter *e)
 {
-	if (held(e))
-		say(e, "    %scoeffs = $n_nominal;\n", s);
+	if (held(e) || e->kind->own_factors)
+		say(e, "    s->coeffs = $n_nominal;\n");
 }
 
 static bool starts_anew(const struct emitter *e)

@@ -65,7 +65,6 @@ static const struct kind linear = {
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.declare_state = nothing,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.reads_load = no_further_load,
 	.reads_phi = never,
 	.tables = emit_linear_tables,
@@ -98,11 +97,6 @@ static void emit_own_coefficients(const struct emitter *e)
 	say(e, "    $n_coeffs coeffs;    /* its own */\n");
 }
 
-static void emit_nominal_start(const struct emitter *e, const char *s)
-{
-	say(e, "    %scoeffs = $n_nominal;\n", s);
-}
-
 static void emit_tuned_tables(const struct emitter *e)
 {
 	emit_nominal(e);
@@ -124,7 +118,6 @@ static const struct kind tuned = {
 	.declare_state = nothing,
 	.declare_more = emit_tuning_declarations,
 	.own_factors = true,
-	.start = emit_nominal_start,
 	.reads_load = any_load,
 	.reads_phi = never,
 	.tables = emit_tuned_tables,
@@ -184,7 +177,6 @@ static const struct kind regions = {
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_region_declarations,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
@@ -243,7 +235,6 @@ static const struct kind parts = {
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_part_declarations,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = parts_read_load,
 	.reads_phi = never,
@@ -299,7 +290,6 @@ static const struct kind leftover = {
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.declare_state = nothing,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
 	.tables = emit_leftover_tables,
@@ -357,7 +347,6 @@ static const struct kind cut = {
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_cut_declarations,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = look_reads_load,
 	.reads_phi = flows_whole,
@@ -411,7 +400,6 @@ static const struct kind expanded = {
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = expansion_places,
 	.reads_load = expansion_reads_load,
 	.reads_phi = never,
@@ -453,7 +441,6 @@ static const struct kind collocated = {
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = collocation_places,
 	.reads_load = collocation_reads_load,
 	.reads_phi = never,
@@ -504,7 +491,6 @@ static const struct kind normal_modes = {
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.declare_state = nothing,
 	.declare_more = emit_held_declarations,
-	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = reads_wave,
 	.reads_phi = never,

@@ -103,7 +103,7 @@ result $? 'a block beyond the limit that no param touches: no NAME_at, with the 
 "$plgen" -o oscillators.c "$here/oscillators.spec" >log 2>&1
 "$plgen" --explain "$here/oscillators.spec" >explained 2>>log
 grep -q 'They touch 7 of 8 independent blocks' oscillators.c && grep -q '7 of 8 independent blocks' explained &&
-	[ "$(grep -c 'oscillators_retune_group(&oscillators_group' oscillators.c)" = 2 ] &&
+	[ "$(grep -c 'oscillators_retune_group(&oscillators_block_group' oscillators.c)" = 2 ] &&
 	grep -q 's->y\[8\] = q0 + (*-0.0049947' oscillators.c
 result $? 'blocks that no param touches keep their constants'
 
