@@ -117,9 +117,11 @@ CALL(switchingf_kept_start, NOTHING, pl_switchingf_kept_start(P(0), P(1), P(2), 
 CALL(switchingf_kept_step, NOTHING, pl_switchingf_kept_step(P(0), P(1), P(2), P(3), P(4)))
 CALL(switchingf_kept_advance, NOTHING, pl_switchingf_kept_advance(P(0), F(1), P(2), P(3), P(4), P(5)))
 CALL(divided_place, WHOLE, pl_divided_place(P(0), P(1), P(2), P(3)))
+CALL(divided_rises, WHOLE, pl_divided_rises(P(0), P(1), P(2), P(3)))
 CALL(divided_left, WHOLE, pl_divided_left(P(0), P(1), P(2), P(3), P(4)))
 CALL(divided_next, REAL, pl_divided_next(P(0), P(1), P(2), P(3), R(4), P(5), P(6), P(7)))
 CALL(dividedf_place, WHOLE, pl_dividedf_place(P(0), P(1), P(2), P(3)))
+CALL(dividedf_rises, WHOLE, pl_dividedf_rises(P(0), P(1), P(2), P(3)))
 CALL(dividedf_left, WHOLE, pl_dividedf_left(P(0), P(1), P(2), P(3), P(4)))
 CALL(dividedf_next, REAL, pl_dividedf_next(P(0), P(1), P(2), P(3), F(4), P(5), P(6), P(7)))
 CALL(atan2, REAL, atan2(R(0), R(1)))
@@ -182,8 +184,10 @@ static const struct library_function functions[] = {
 	RUNTIME_OF(switching_kept_advance, "vpdpppp", 0, 0, TAKES_PIECES), RUNTIME(switching_kept_move, "vpiidpp"),
 	RUNTIME(switchingf_kept_start, "vpppp"), RUNTIME_OF(switchingf_kept_step, "vppppp", 0, 0, TAKES_PIECES),
 	RUNTIME_OF(switchingf_kept_advance, "vpdpppp", 0, 0, TAKES_PIECES),
-	RUNTIME(divided_place, "ipppp"), RUNTIME(divided_left, "ippppp"), RUNTIME(divided_next, "dppppdppp"),
-	RUNTIME(dividedf_place, "ipppp"), RUNTIME(dividedf_left, "ippppp"), RUNTIME(dividedf_next, "fppppdppp"),
+	RUNTIME(divided_place, "ipppp"), RUNTIME(divided_rises, "ipppp"),
+	RUNTIME(divided_left, "ippppp"), RUNTIME(divided_next, "dppppdppp"),
+	RUNTIME(dividedf_place, "ipppp"), RUNTIME(dividedf_rises, "ipppp"),
+	RUNTIME(dividedf_left, "ippppp"), RUNTIME(dividedf_next, "fppppdppp"),
 	{ "PL_DIVIDED_WORK", "ii", NULL, call_divided_work, NULL, 0, 0, TAKES_NO_MORE },
 	{ "PL_SWITCHING_KEPT_WORK", "iiii", NULL, call_kept_work, NULL, 0, 0, TAKES_NO_MORE },
 	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE },
