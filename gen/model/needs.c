@@ -106,6 +106,15 @@ static void find_output(const struct finding *f)
 		      "'%s' is a peak: needs are of outputs that follow the state", need->output);
 }
 
+static bool is_read(const struct spec *spec, const char *input)
+{
+	const struct symbol *s = spec->first;
+	while (s && strcmp(s->name, input) != 0)
+		s = s->next;
+	return !s || s->used;
+}
+
+/* Of one that nothing reads it does not matter how large it is. */
 static void find_inputs(const struct finding *f)
 {
 	const struct linear *system = &f->model->system;
@@ -126,7 +135,7 @@ static void find_inputs(const struct finding *f)
 		bounded[i] = true;
 	}
 	for (int i = 0; i < system->inputs; i++)
-		if (!bounded[i])
+		if (!bounded[i] && is_read(f->model->spec, system->input[i].name))
 			error(f->need->at, format("need %s within ... until ... for |%s| <= ...", f->need->output,
 						  system->input[i].name),
 			      "nothing says how large the input '%s' may be", system->input[i].name);
