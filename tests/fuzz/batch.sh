@@ -25,7 +25,7 @@ level=-O0
 # without what stops anyway at the address where it goes: null, misaligned, out of an object; they double what is
 # compiled
 sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
-[ -n "${LONG:-}" ] || sanitizers="$sanitizers -fno-sanitize=null,alignment,object-size,pointer-overflow"
+merging || sanitizers="$sanitizers -fno-sanitize=null,alignment,object-size,pointer-overflow"
 every=1
 
 batch_new() {
