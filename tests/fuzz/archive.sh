@@ -19,7 +19,8 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 set -- "$source/tests/fuzz/drive.c"
 [ -n "$runtime" ] || set -- "$source"/runtime/*.c "$@"
-"$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" -I"$source/tests/leftover" -c "$@"
+"$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
+	-I"$source/tests/leftover" -c "$@"
 "$cc" -std=gnu11 -O0 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
 rm -f "$out"
 # the archive of the build folder only names its objects
