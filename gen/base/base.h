@@ -94,7 +94,6 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
-bool mentions(const char *text, const char *name);           /* as a whole word */
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 mpq_t *rationals_copied(size_t count, const mpq_t *q);
 void  rationals_free(mpq_t *q, size_t count);

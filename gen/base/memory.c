@@ -294,12 +294,3 @@ mpq_t *rationals_copied(size_t count, const mpq_t *q)
 	return copy;
 }
 
-bool mentions(const char *text, const char *name)
-{
-	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-	size_t length = strlen(name);
-	bool found = false;
-	for (const char *at = text; !found && (at = strstr(at, name)); at += length)
-		found = (at == text || !strchr(letters, at[-1])) && (!at[length] || !strchr(letters, at[length]));
-	return found;
-}

@@ -2,7 +2,7 @@
 /* init, set, get, time, status, hold. */
 #include "emit/emit.h"
 
-void emit_initial_values(const struct emitter *e, const struct model *model)
+static void emit_initial_values(const struct emitter *e, const struct model *model)
 {
 	mpq_t *value = model->initial;
 	for (int i = 0; i < e->system->states; i++)

@@ -55,7 +55,6 @@ const char *scaled(double factor, const char *operand);           /* operand NUL
 /* rounded; an error at the step where it overflows */
 double finite_number(const struct emitter *e, mpq_srcptr q);
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
-void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
 /* static const double NAME_name[size[0]]...[size[dimensions - 1]]; `row`: of those of the last dimension, NULL: nothing
  * is said of them */
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
@@ -256,11 +255,8 @@ struct batch {
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
 struct batch plan_batch(const struct emitter *e);
-bool acts_beside_states(const struct emitter *e);                 /* more is in x than the states */
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */
-/* The name of a factor of the instance's own, in a function over lanes */
-const char *batch_factor(struct batch *b, const char *text);
 void emit_lanes_step(struct batch *b);
 void emit_lanes_out(struct batch *b);
 void emit_lanes_bend(struct batch *b);                            /* how far outputs may be off their chords */
@@ -433,11 +429,6 @@ void emit_collocation_at(const struct emitter *e);
 const struct normal *normal_of_step(const struct emitter *e);
 int  functions_of_time(const struct emitter *e);                  /* beside the constant one */
 bool has_bank(const struct emitter *e);                           /* of several operators */
-bool has_changes(const struct emitter *e);                        /* of formula in time */
-/* static const double NAME_name[operators][outer][row], without `outer` where it is 0, one of all operators where they
- * are alike; what a step calls its own */
-const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
-			    const double *value);
 struct row_sum {                    /* of what is written out in a loop over i */
 	int terms, room;
 	const char **term;
@@ -449,10 +440,6 @@ void emit_to_modes(const struct emitter *e);                      /* NAME_modes_
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
-
-/* ---- emit_normal.c: known loads, to which modes respond exactly ---- */
-
-int  wave_values(const struct emitter *e);                        /* cos and sin of each */
 
 /* ---- emit_normal.c: steps in normal modes ---- */
 
@@ -489,7 +476,6 @@ void emit_conversions(const struct emitter *e);
 /* ---- access.c: init, set, get, time, status ---- */
 
 void emit_access(const struct emitter *e);
-void emit_initial_values(const struct emitter *e, const struct model *model);  /* of its states, up to the }; */
 
 /* ---- descriptor.c: tables for all to read, and the descriptor ---- */
 
@@ -635,7 +621,6 @@ double **of_branches(const struct emitter *e, const struct pieces *p, double *(*
 void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
 		      double *(*of)(const struct region_piece *));
 void close_table(const struct emitter *e);
-const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 /* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
  * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
@@ -659,7 +644,6 @@ void declare_region_vector(const struct emitter *e);              /* x, i */
 void begin_macros(const struct emitter *e, const char *own);      /* own: what names of an algorithm begin with */
 /* what search.h asks for; ladder: as ladder_text */
 void emit_search(const struct emitter *e, const char *ladder);
-void emit_region_status(const struct emitter *e);
 void emit_region_start_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
@@ -691,9 +675,7 @@ void emit_unmet_cases(const struct emitter *e, const struct pieces *p, const cha
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void banner_tuning(const struct emitter *e);
-void coefficient_member(const struct emitter *e, const char *text, const char *comment); /* of struct NAME_coeffs */
 const char *two_words(struct coefficient number);                 /* {1.0, 0.0} */
-const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term); /* what it is, for a comment */
 /* Of a group's factors in NAME_coeffs: "rows0" */
 const char *tuned_table(const struct emitter *e, const struct tuned_block *first);
 /* Calls print(e, the first of its blocks) for each group whose factors the instance has */
@@ -701,9 +683,7 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 
 /* ---- emit_tuned_blocks.c: what retune.h is told of a linear step ---- */
 
-void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value);
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
-const char *two_words(struct coefficient number);
 void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
 void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix);
 

@@ -21,7 +21,7 @@ bool has_bank(const struct emitter *e)
 	return normal_of_step(e)->banks > 1;
 }
 
-bool has_changes(const struct emitter *e)
+static bool has_changes(const struct emitter *e)
 {
 	return e->system->segments > 1;
 }
@@ -44,7 +44,7 @@ static struct bank_table table_of_banks(const struct emitter *e, int size, const
 }
 
 /* static const double NAME_name[banks][outer][row]; its name with the bank's index */
-const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
+static const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
 				   const double *value)
 {
 	const struct bank_table t = table_of_banks(e, (outer ? outer : 1) * row, value);

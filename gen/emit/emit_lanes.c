@@ -48,7 +48,7 @@ static void share_operands(struct batch *b, const struct tape *t, int from)
 }
 
 /* The name of a factor of the instance's own, in a function over lanes */
-const char *batch_factor(struct batch *b, const char *text)
+static const char *batch_factor(struct batch *b, const char *text)
 {
 	int k = find_text(b->factors, b->factor_text, 0, text);
 	if (k == b->factors) {
@@ -61,7 +61,7 @@ const char *batch_factor(struct batch *b, const char *text)
 static void number_factors(struct batch *b);
 
 /* Is there more in x than the states? */
-bool acts_beside_states(const struct emitter *e)
+static bool acts_beside_states(const struct emitter *e)
 {
 	return e->step->layout.size > e->system->states;
 }

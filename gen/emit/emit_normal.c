@@ -8,7 +8,7 @@
 
 /* ---- known loads, to which modes respond exactly ---- */
 
-int wave_values(const struct emitter *e)
+static int wave_values(const struct emitter *e)
 {
 	return 2 * e->model->split->waves;
 }

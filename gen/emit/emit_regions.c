@@ -357,7 +357,7 @@ void emit_region_start(const struct emitter *e)
 		emit_grip(e);
 }
 
-void emit_region_status(const struct emitter *e)
+static void emit_region_status(const struct emitter *e)
 {
 	say(e, "    s->status |= s->contact$p.status | pl_not_finite(s->y, $N_STATES);\n");
 }

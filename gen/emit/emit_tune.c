@@ -69,8 +69,8 @@ void banner_tuning(const struct emitter *e)
 		    p->whole ? " and another h" : "", p->kilobytes);
 }
 
-/* A member, its comment at a common column */
-void coefficient_member(const struct emitter *e, const char *text, const char *comment)
+/* A member of struct NAME_coeffs, its comment at a common column */
+static void coefficient_member(const struct emitter *e, const char *text, const char *comment)
 {
 	if (*comment)
 		say(e, "    %-38s /* %s */\n", text, comment);

@@ -55,7 +55,7 @@ const char *tuned_product(const struct tuning *t, const struct tuned_term *term)
 	return minus ? format("-%s", product) : format("%s*%s", factor, product);
 }
 
-const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term)
+static const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term)
 {
 	const struct tuning *t = e->model->tuning;
 	bool left = term->column >= t->x.size;
@@ -204,7 +204,7 @@ static void emit_entries(const struct emitter *e)
 	say(e, "};\n");
 }
 
-void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
+static void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
 {
 	say(e, "\nstatic const %s $n_%s[%d] = {", type, name, count);
 	for (int i = 0; i < count; i++)

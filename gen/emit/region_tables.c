@@ -360,11 +360,6 @@ const char **listed_twice(int count, const char *const *text)
 	return both;
 }
 
-const char *prefix_of_tables(const struct emitter *e)
-{
-	return e->model->retuned ? "c->" : spell(e, "$o_");
-}
-
 bool regions_change(const struct emitter *e)
 {
 	return e->model->switching->segments > 1;

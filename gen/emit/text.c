@@ -131,11 +131,6 @@ static void say_row(const struct emitter *e, int count, const double *value, con
 	}
 }
 
-void say_numbers(const struct emitter *e, int count, const double *value)
-{
-	say_row(e, count, value, NULL);
-}
-
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
 {
 	for (int i = 0; i < rows; i++) {

@@ -11,14 +11,6 @@ void archive_add(struct archive *a, const char *name, const char *bytes, size_t 
 	a->member[a->members++] = (struct member){ name, bytes, length };
 }
 
-const struct member *archive_find(const struct archive *a, const char *name)
-{
-	for (int i = 0; i < a->members; i++)
-		if (strcmp(a->member[i].name, name) == 0)
-			return &a->member[i];
-	return NULL;
-}
-
 /* Little-endian, whatever the machine */
 static void put_number(FILE *to, unsigned long value, int bytes)
 {

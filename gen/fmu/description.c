@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *attribute_text(const char *text)
+/* As the value of an XML attribute */
+static const char *attribute_text(const char *text)
 {
 	const char *made = "";
 	for (; *text; text++)

@@ -17,7 +17,6 @@ struct archive {
 	struct member *member;
 };
 void archive_add(struct archive *a, const char *name, const char *bytes, size_t length);
-const struct member *archive_find(const struct archive *a, const char *name); /* NULL: it is not there */
 /* zip, stored as it is: the same members, the same bytes */
 void archive_write(FILE *to, const struct archive *a);
 
@@ -52,7 +51,6 @@ struct fmu {
 	const char *source[FMU_SOURCES]; /* of sources/: those that are compiled */
 	struct archive archive;
 };
-const char *attribute_text(const char *text);              /* as the value of an XML attribute */
 const char *model_description(const struct fmu *f);
 const char *build_description(const struct fmu *f);
 

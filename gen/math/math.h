@@ -140,7 +140,6 @@ void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectang
 #define NO_SIZE (-(1L << 60))                               /* of what is exactly 0 */
 struct rectangle *rectangles(int count, int precision);     /* 0 */
 void rectangles_free(struct rectangle *z, int count);
-bool rectangle_is_zero(const struct rectangle *z);          /* exactly */
 long interval_size(mpfi_srcptr x);                          /* about log2 of it */
 long rectangle_size(const struct rectangle *z);
 void rectangle_add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b); /* z + a b */

@@ -17,7 +17,7 @@ void rectangles_free(struct rectangle *z, int count)
 	discard(z);
 }
 
-bool rectangle_is_zero(const struct rectangle *z)
+static bool rectangle_is_zero(const struct rectangle *z)
 {
 	return mpfi_is_zero(z->re) && mpfi_is_zero(z->im);
 }

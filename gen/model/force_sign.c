@@ -60,7 +60,7 @@ bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to)
 	return stays_positive(force, false, from, to);
 }
 
-bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to)
+static bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to)
 {
 	return force->terms > 0 && stays_positive(force, true, from, to);
 }

@@ -540,8 +540,6 @@ struct reads {                    /* what forms read */
 	bool time, math;            /* t itself; <math.h> */
 };
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
-/* not of the piecewise-linear functions: they are comparisons in C */
-bool calls_libm(const struct atom *a);
 struct reads reads_of(const struct model *model, int count, const struct form *const *form);
 
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
@@ -651,7 +649,6 @@ bool has_events(const struct switching *s);                 /* each region has i
 /* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone
  * moves */
 bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
-bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
 bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen */
 /* that it is above 0 at some time between; `node`: where it stands */
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to);

@@ -3,7 +3,7 @@
 #include "model/model.h"
 
 /* The piecewise-linear functions are comparisons in C. */
-bool calls_libm(const struct atom *a)
+static bool calls_libm(const struct atom *a)
 {
 	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && a->function < FN_ABS);
 }

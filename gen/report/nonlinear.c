@@ -10,7 +10,8 @@ bool is_nonlinear(const struct step *step)
 	return step->shown->model->nonlinears > 0;
 }
 
-const char *nonlinear_text(const struct step *step)
+/* sin(x); x'^3 */
+static const char *nonlinear_text(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const char *text = "";

@@ -18,7 +18,6 @@ const char *json_text(const char *name);                    /* a file's name, as
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
 bool is_nonlinear(const struct step *step);
-const char *nonlinear_text(const struct step *step);        /* sin(x); x'^3 */
 void person_nonlinear(FILE *to, const struct step *step);   /* what is not told of it, and why */
 void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
 void need_linear(const struct step *step, const char *what); /* "poles"; leaves the statement where it is not linear */
@@ -88,7 +87,6 @@ bool is_told(const struct output *output);                  /* it is linear in s
 int  drives_of(const struct model *model, struct drive **drives); /* inputs, then loads; returns how many */
 /* by drives, then by outputs; `r`: of the model's system */
 int  transfers_of(struct resolvent *r, const struct model *model, struct transfer **list);
-struct transfer transfer_of(struct resolvent *r, const struct model *model, int output, const struct drive *drive);
 bool static_gain(const struct transfer *t, mpq_ptr gain);   /* H(0); false: there is a pole at 0 */
 int  zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list);
 /* |H(2 pi i f)| and its angle [deg], -180 <= angle < 180, each rounded once; of a pole: infinite */

@@ -70,7 +70,8 @@ static void multiply_by_s(struct transfer *t, const struct response *image, int 
 	t->D = poly_shift(D, -shared);
 }
 
-struct transfer transfer_of(struct resolvent *r, const struct model *model, int output, const struct drive *drive)
+static struct transfer transfer_of(struct resolvent *r, const struct model *model, int output,
+				   const struct drive *drive)
 {
 	const struct output *read = &model->output[output];
 	struct transfer t = { .output = read->name, .drive = drive->name };

@@ -13,7 +13,8 @@ static void read_text(struct code *c, const char *text)
 	c->outside = c->newest;
 }
 
-struct code *code_of_text(struct place at, const char *text)
+/* The text has to be one that the emitters wrote. */
+static struct code *code_of_text(struct place at, const char *text)
 {
 	struct code *c = NEW(struct code);
 	*c = (struct code){ .at = at, .constant = read_constant, .body = read_body };

@@ -53,7 +53,8 @@ const char *take_name(struct code *c)
 	return c->lexemes.list[c->here++].text;
 }
 
-void skip_to_end(struct code *c, unsigned open, unsigned close)
+/* A bracket that is next, with all in it */
+static void skip_to_end(struct code *c, unsigned open, unsigned close)
 {
 	int depth = 0;
 	do {

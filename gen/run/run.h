@@ -156,7 +156,6 @@ bool take_mark(struct code *c, unsigned mark);                    /* true: it wa
 bool take_keyword(struct code *c, const char *word);
 void need(struct code *c, unsigned mark);
 const char *take_name(struct code *c);
-void skip_to_end(struct code *c, unsigned open, unsigned close); /* a bracket that is next, with all in it */
 struct entity *entity_find(const struct code *c, const char *name); /* NULL: there is none */
 struct entity *entity_new(struct code *c, enum entity_kind kind, const char *name, const struct ctype *type);
 bool is_type_next(const struct code *c);
@@ -189,9 +188,8 @@ const struct operation *read_body(struct code *c, struct entity *function);
 
 /* ---- code.c: the C of a step, and calls of its functions ---- */
 
-/* The text has to be one that the emitters wrote. `at`: the place of whoever wants it run */
-struct code *code_of_text(struct place at, const char *text);
-struct code *code_of_step(struct place at, const struct step *step, bool rhs); /* rhs: with NAME_rhs */
+/* `at`: the place of whoever wants it run; rhs: with NAME_rhs */
+struct code *code_of_step(struct place at, const struct step *step, bool rhs);
 struct running;                     /* an instance */
 /* one of a model; what its functions need is compiled now, and may leave the statement; then the text goes */
 struct running *running_new(struct code *code, const struct step *step);
