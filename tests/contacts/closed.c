@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Impacts against closed forms: a ball until it rests, an oscillator that strikes once a period, a ball on a shaken
- * table, balls that touch; and that no impact adds energy. */
+ * table, balls that touch, a stop that is touched within a step; and that no impact adds energy. */
 #include "bouncing_ball.h"
 #include "clatter.h"
 #include "cradle.h"
@@ -8,6 +8,7 @@
 #include "impact_oscillator.h"
 #include "shaken_table.h"
 #include "tap.h"
+#include "touched.h"
 
 #include <math.h>
 
@@ -182,8 +183,57 @@ static void energy(void)
 	is_close(clatter_status(&s), 0, 0, "clatter: status");
 }
 
+/* ---- x'' + x = cos(2 t) between stops at 1 and -1: what is farthest in the middle of a step is nowhere near the line
+ * between its ends. There spring and load bend its way by as much each. ---- */
+
+struct motion { long double x, v; };
+
+static struct motion swung(struct motion from, long double t, long double d)
+{
+	const long double a = from.x + cosl(2 * t) / 3, b = from.v - 2 * sinl(2 * t) / 3, then = 2 * (t + d);
+	return (struct motion){ a * cosl(d) + b * sinl(d) - cosl(then) / 3, b * cosl(d) - a * sinl(d) +
+				2 * sinl(then) / 3 };
+}
+
+/* A step from `from`, from 0.5 of its speed on where it strikes before the middle of it */
+static struct motion struck(struct motion from, long double t, int side, bool strikes)
+{
+	const long double h = (long double)TOUCHED_H;
+	long double low = 0, high = h / 2;
+	for (int i = 0; i < 80 && strikes; i++) {
+		const long double middle = (low + high) / 2;
+		*(side * swung(from, t, middle).x > 1 ? &high : &low) = middle;
+	}
+	struct motion at = swung(from, t, low);
+	return strikes ? swung((struct motion){ at.x, -at.v / 2 }, t + low, h - low) : swung(from, t, h);
+}
+
+static void touches(void)
+{
+	const long double h = (long double)TOUCHED_H, quarter = 3.14159265358979323846264338L / 2;
+	double worst = 0, y[2];
+	pl_crossing crossing[TOUCHED_MAX_EVENTS];
+	int strikes = 0, wrong = 0;
+	for (int k = 0; k < 80; k++) {
+		const int side = k % 2 ? 1 : -1;
+		const long double over = (k / 2 - 19.5L) / 20 * h * h / 4, top = side > 0 ? quarter : 2 * quarter;
+		touched s;
+		struct motion from = swung((struct motion){ side * (1 + over), 0 }, top, -h / 2), to;
+		touched_set(&s, (double)(top - h / 2), (double[]){ (double)from.x, (double)from.v });
+		touched_step(&s);
+		touched_get(&s, y);
+		to = struck(from, top - h / 2, side, over > 0);
+		worst = worse(worst, fmax(fabs(y[0] - (double)to.x), fabs(y[1] - (double)to.v)));
+		strikes += over > 0;
+		wrong += touched_crossings(&s, crossing) != (over > 0);
+	}
+	ok(worst <= 1e-13 && wrong == 0, "touched: struck in %d steps, off by %.3g at most, wrong %d times", strikes, worst,
+	   wrong);
+}
+
 int main(void)
 {
+	touches();
 	bounces();
 	oscillator();
 	pressed();
