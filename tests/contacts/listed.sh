@@ -55,6 +55,8 @@ done
 dropped 1 0.3 0.1
 dropped 1 0.9 0.5
 dropped 1 1 0.9
+dropped 0.5 0.3 0.3
+dropped 1 0.5 0.1
 for jumps in thrown counted; do
 	compared "$jumps" "$root/tests/contacts/$jumps.spec"
 done
