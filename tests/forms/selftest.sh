@@ -75,6 +75,30 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 	done
 done
 
+# seen MODEL WHAT FUNCTION CODE: with told_FUNCTION, of CODE, in the place of subject_FUNCTION
+seen() {
+	"$plgen" --prefix subject --selftest "$root/models/$1.spec" >good.c 2>log
+	code=$4 awk -v name="$3" '/^#include "selftest.h"/ { print ENVIRON["code"]
+		print "#define subject_" name " subject_told"; print; print "#undef subject_" name; next } { print }' good.c >bad.c
+	subjects
+	subject good.c
+	subject bad.c
+	values >returned
+	awk '{ v[NR] = $1 } END { print "returns", v[1], v[2] ", expected: below 60, above 300"
+		exit !(NR == 2 && v[1] < 60 && (v[2] > 300 || v[2] == "inf")) }' returned >>log
+	result $? "$1: $2"
+}
+seen stop 'crossings by a part of a step late are seen' crossings 'static int subject_told(const subject *s,
+	pl_crossing *c) { int i, n = subject_crossings(s, c); for (i = 0; i < n; i++) c[i].time += 1e-9; return n; }'
+seen stop 'that no crossing is told is seen' crossings 'static int subject_told(const subject *s, pl_crossing *c)
+	{ (void)s; (void)c; return 0; }'
+seen stop 'a crossing that is told twice is seen' crossings 'static int subject_told(const subject *s, pl_crossing *c)
+	{ int n = subject_crossings(s, c); if (n == 1 && s->k > 376) c[n++] = c[0]; return n; }'
+seen scs 'a jump of a step less is seen' jump 'static void subject_told(subject *s, uint64_t n)
+	{ subject_jump(s, n - 1); }'
+seen scs 'NAME_at at another time is seen' at 'static void subject_told(const subject *s, double tau, double *y)
+	{ subject_at(s, 0.99 * tau, y); }'
+
 # What --reduce leaves, of fewer states than coordinates and of more than 16 states
 mkdir cases && "$cases" --write cases reduce_highest_good reduce_loops_good || exit 99
 for spec in reduce_highest_good reduce_loops_good; do
