@@ -81,7 +81,7 @@ pair driven 'u + t^3*cos(700*t)' 'input u'
 add driven
 pair ramped 'u + t^3*cos(700*t)' 'input u hold first'
 add ramped
-pair changing '(t < 3.003 ? t^4*cos(968*t) : t < 5 ? 0 : t^2*sin(400*t))'
+pair changing '(t < 3.003 ? t^4*cos(968*t) : t < 5.0071 ? 0 : t^2*sin(400*t))'
 add changing
 pair passing 't^4*cos(968*t) + (t < 3.003 ? 0 : 1e-9*(t - 3.003))'
 add passing
