@@ -227,8 +227,8 @@ static void touches(void)
 		strikes += over > 0;
 		wrong += touched_crossings(&s, crossing) != (over > 0);
 	}
-	ok(worst <= 1e-13 && wrong == 0, "touched: struck in %d steps, off by %.3g at most, wrong %d times", strikes, worst,
-	   wrong);
+	ok(worst <= 1e-13 && wrong == 0, "touched: struck in %d steps of 80, off by %.3g, wrong %d times", strikes,
+	   worst, wrong);
 }
 
 int main(void)

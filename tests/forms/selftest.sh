@@ -75,11 +75,12 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 	done
 done
 
-# seen MODEL WHAT FUNCTION CODE: with told_FUNCTION, of CODE, in the place of subject_FUNCTION
+# seen MODEL WHAT FUNCTION CODE: with subject_told, of CODE, in the place of subject_FUNCTION
 seen() {
 	"$plgen" --prefix subject --selftest "$root/models/$1.spec" >good.c 2>log
 	code=$4 awk -v name="$3" '/^#include "selftest.h"/ { print ENVIRON["code"]
-		print "#define subject_" name " subject_told"; print; print "#undef subject_" name; next } { print }' good.c >bad.c
+		print "#define subject_" name " subject_told"; print; print "#undef subject_" name; next }
+		{ print }' good.c >bad.c
 	subjects
 	subject good.c
 	subject bad.c
