@@ -9,6 +9,8 @@
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
  *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
  *     PL(expand_from), PL(inputs_now)   as taylor.h
+ *     PL_AT_BREAKPOINTS          1: states are put onto them
+ *     PL_IN_PARTS                1: a step goes from part to part, each within one segment; else as it likes
  *     PL(divided)                a pl_divided, of the series
  *     PL(breaks), PL(breakpoint) of each expression how many breakpoints; these, one expression behind the other */
 #include "numbers.h"
@@ -37,6 +39,7 @@ static inline real PL(change_after)(const PL_TYPE *s, real most)
 }
 #endif
 
+#if PL_IN_PARTS
 /* Up to which part of the step, of which `end` is asked, the loads have one formula behind `done`; *segment: its */
 static inline real PL(limit_of)(const PL_TYPE *s, real done, real end, int *segment)
 {
@@ -54,6 +57,7 @@ static inline real PL(limit_of)(const PL_TYPE *s, real done, real end, int *segm
     (void)segment;
     return end;
 }
+#endif
 
 /* Those whose time is over have others; whether some have */
 static inline int PL(change_loads)(PL_TYPE *s)
@@ -69,6 +73,7 @@ static inline int PL(change_loads)(PL_TYPE *s)
     return changed;
 }
 
+#if PL_IN_PARTS
 /* A time between these two [h], by which conditions on t are decided */
 static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
 {
@@ -81,6 +86,7 @@ static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
     return 0;
 #endif
 }
+#endif
 
 #if PL_ADAPTIVE || PL_LOCATES
 /* A time in the middle of the step, before the loads change: there it is on one side of conditions on t, also when it
@@ -162,7 +168,7 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
 }
 #endif
 
-#if PL_LOCATES || PL_CONTACTS
+#if PL_IN_PARTS && (PL_LOCATES || PL_CONTACTS)
 #if PL_CONTACTS
 static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact);
 #endif

@@ -22,7 +22,8 @@
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
  *
  * and members contact, status; and end, terms, ended where there are no inputs and formulas do not change in time. */
-#define PL_AT_BREAKPOINTS 1 /* whether states are put onto them */
+#define PL_AT_BREAKPOINTS 1
+#define PL_IN_PARTS 1
 #include "chosen.h"
 
 #define PL_SIZE (PL_STATES + PL_ACTING + 3 * PL_FORCES)

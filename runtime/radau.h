@@ -124,7 +124,8 @@ static inline int PL(is_moved)(int i)
 #endif
 }
 
-#define PL_AT_BREAKPOINTS 1 /* whether states are put onto them */
+#define PL_AT_BREAKPOINTS 1
+#define PL_IN_PARTS 0
 #include "chosen.h"
 
 /* ---- where an internal step stands ---- */

@@ -206,8 +206,8 @@ void pl_region_bounds(int size, real d, const real *A, int rows, const real *row
     real *E = work, *most = E + n * n, *gone = most + n * n, *sizes = gone + n, *at = sizes + n, *lost = at + n;
     real *more = lost + n;
     int i, j, order;
-    exponential(n, A, d / PARTS, 0, E, gone);
-    exponential(n, A, d / PARTS, 1, most, gone);
+    exponential(n, A, d / (real)PARTS, 0, E, gone);
+    exponential(n, A, d / (real)PARTS, 1, most, gone);
     add_one(n, E);
     add_one(n, most);
     for (i = 0; i < rows; i++, row += n, slope += n) {
@@ -331,7 +331,7 @@ void pl_region_reach(int size, real h, int halvings, int spacing, const real *A,
 {
     const int n = size, cells = n * n, rungs = halvings > 0 ? (halvings - 1) / spacing + 1 : 0;
     real *const state = work + 3 * cells, *const room = state + 3 * n * rows;
-    real d = h / (real)((uint32_t)1 << halvings) / PARTS;
+    real d = h / (real)((uint32_t)1 << halvings) / (real)PARTS;
     stride s;
     int i, j, k;
     s.n = n;
@@ -351,7 +351,7 @@ void pl_region_reach(int size, real h, int halvings, int spacing, const real *A,
                 r.row[j] = row[i * n + j];
                 r.most[j] = r.moment[j] = 0;
             }
-            reach_on(&s, k > 0 ? d * PARTS : 0, d, &r, room);
+            reach_on(&s, k > 0 ? d * (real)PARTS : 0, d, &r, room);
             if (k > 0 && (k % spacing == 0 || k == halvings)) {
                 write_reach(n, 2 * PARTS * d, &r, reach + (i * rungs + (k - 1) / spacing) * n);
             }

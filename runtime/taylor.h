@@ -260,7 +260,8 @@ static inline int PL(is_accurate)(const PL_TYPE *s, const real c[PL_ORDER + 1][P
 /* ---- parts of a step ---- */
 
 #if PL_PARTS
-#define PL_AT_BREAKPOINTS 0 /* whether states are put onto them */
+#define PL_AT_BREAKPOINTS 0
+#define PL_IN_PARTS 1
 #include "chosen.h"
 #include "between.h"
 #endif

@@ -11,6 +11,7 @@
 #undef PL_ANY_STEP
 #undef PL_ARGUMENTS
 #undef PL_AT
+#undef PL_AT_BREAKPOINTS
 #undef PL_AT_ONCE
 #undef PL_BANKS
 #undef PL_BASE
@@ -72,6 +73,7 @@
 #undef PL_INPUTS
 #undef PL_INSTANCES
 #undef PL_INTERVAL
+#undef PL_IN_PARTS
 #undef PL_JUMPS
 #undef PL_KEEPS
 #undef PL_KEEPS_LOOK
@@ -87,7 +89,6 @@
 #undef PL_LEAST_PART
 #undef PL_LISTED
 #undef PL_LOAD_STATES
-#undef PL_AT_BREAKPOINTS
 #undef PL_LOCATES
 #undef PL_LOOKS
 #undef PL_LOSES

@@ -128,7 +128,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 static void emit_all_tables(const struct emitter *e)
 {
 	emit_phi(e);
-	if (e->system->inputs)
+	if (given_inputs(e))
 		emit_gamma(e);
 	emit_mode_matrices(e);
 	emit_load_tables(e);
