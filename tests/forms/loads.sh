@@ -83,6 +83,8 @@ pair ramped 'u + t^3*cos(700*t)' 'input u hold first'
 add ramped
 pair changing '(t < 3.003 ? t^4*cos(968*t) : t < 5.0071 ? 0 : t^2*sin(400*t))'
 add changing
+pair doubled '(t < 4.0031 ? t^4*cos(968*t) : t < 5.0071 ? 2*t^4*cos(968*t) : t^4*cos(968*t))'
+add doubled
 pair passing 't^4*cos(968*t) + (t < 3.003 ? 0 : 1e-9*(t - 3.003))'
 add passing
 pair passing_driven 'u + (t < 4 ? t^4*cos(968*t) : (1 + 1e-9)*t^4*cos(968*t))' 'input u'
