@@ -897,9 +897,6 @@ struct tuning {
 bool find_tuning(struct model *model, const struct request *request);
 bool find_all_tuning(struct model *model, const struct request *request);     /* of regions too; in retuned.c */
 
-void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column);
-void add_tuned_unit(struct tuning *t, int row, int column);
-
 /* ---- retuned.c: how the regions follow from tunable params that are no inputs of them ---- */
 
 enum retuned_kind {                 /* of rows: */
@@ -934,6 +931,46 @@ struct retuned {
 	int rows;
 	struct retuned_row *row;
 };
+/* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
+
+enum { WHOLE_POINTS = FIT_POINTS + 1 };         /* of which all entries are kept: what is equal at them stays */
+struct difference {                 /* two models may not have it; with another value of a param ... */
+	bool (*same)(const struct model *, const struct model *);
+	const char *text, *note;
+};
+struct elsewhere {
+	const struct model *model;
+	const struct request *request;
+	struct tuning *tuning;      /* params, the spec's values */
+	const bool *factor;         /* as in struct request */
+	const mpq_t *near;          /* as in struct fit */
+	int differences;
+	const struct difference *difference;
+	mpq_t *(*read)(struct elsewhere *s, const struct model *model);     /* its entries */
+	ptrdiff_t entries, changing;
+	const struct model *other;  /* the first of them */
+	struct model *found;
+	mpq_t *values, **point;     /* params at points looked at so far */
+	int points;
+	mpq_ptr **seen;             /* entries there, NULL: 0; of the first points all, of others those that change */
+	ptrdiff_t *place;           /* per entry: which of those that change; -1: it does not. NULL: not known yet */
+	mpq_t zero;
+	struct fit fit;             /* of the last entry */
+};
+/* Waves, their order, times at which they change; any_rate: frequencies may differ */
+bool same_loads(const struct linear *a, const struct linear *b, bool any_rate);
+_Noreturn void tell_difference(struct elsewhere *s, const struct difference *difference);
+void look_elsewhere(struct elsewhere *s);
+mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
+bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
+bool fits_entry(struct elsewhere *s, ptrdiff_t index);
+/* its terms, times the sign; false: it is no such sum, as refuse_fit says */
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column, int sign);
+_Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
+void add_tuned_unit(struct tuning *t, int row, int column);
+void warn_of_idle(const struct elsewhere *s, int blocks, const struct retuned_block *block);
+void check_tuned(const struct model *model, bool regions);      /* what is no such sum, by the text */
+
 struct listing {                    /* retuned_rows.c: the numbers of one model's regions, in columns of x */
 	const struct model *model;
 	const struct layout *x;

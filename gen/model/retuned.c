@@ -1,53 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tunable params that change the matrices of regions: stiffness, damping, mass, restitution. What a held input can be,
- * a gap or a force, stays one (params.c); the others are factors, numbers of the model. Like tune.c this builds the
- * model anew at exact values, close to the spec's, where breakpoints keep their order and factors their sign, and finds
- * every number of the regions as a sum of products of powers. What decided on the way which region is which has to keep
- * its sign on the target. */
+ * a gap or a force, stays one (params.c); the others are factors, numbers of the model. It is looked at close to the
+ * spec's values (elsewhere.c), where breakpoints keep their order and factors their sign. What decided on the way which
+ * region is which has to keep its sign on the target. */
 #include "model/model.h"
 
 /* ---- the model at other values ---- */
 
 struct search {
+	struct elsewhere at;        /* entries: rows over x */
 	struct model *model;
-	const struct request *request;
 	struct retuned *r;
 	struct tuning *t;
 	struct listing own;         /* of the spec's values, without signs */
-	struct model *found;
-	mpq_t *values;
-	int points;
-	mpq_t **point;
-	struct listing *seen;
 	int *merged;                /* per system: the first that is equal for all values */
 };
 
-static void build_there(void *context)
+static bool same_loads_there(const struct model *model, const struct model *other)
 {
-	struct search *s = context;
-	struct request request = *s->request;
-	request.tunable = (const mpq_t *)s->values;
-	request.factor = s->r->factor;
-	s->found = model_build(parse_spec(s->model->spec->source), &request);
-	if (!s->found)
-		abandon();
-}
-
-static bool same_load(const struct load *a, const struct load *b)
-{
-	return a->columns == b->columns && mpq_equal(a->wave->a, b->wave->a) && mpq_equal(a->wave->w, b->wave->w) &&
-	       mpq_equal(a->wave->p, b->wave->p);
-}
-
-static bool same_loads(const struct model *model, const struct model *other)
-{
-	const struct linear *a = &model->system, *b = &other->system;
-	bool same = a->loads == b->loads && a->segments == b->segments;
-	for (int l = 0; l < a->loads && same; l++)
-		same = same_load(&a->load[l], &b->load[l]);
-	for (int s = 0; s < a->segments - 1 && same; s++)
-		same = mpq_equal(a->change[s], b->change[s]);
-	return same;
+	return same_loads(&model->system, &other->system, false);
 }
 
 static bool same_region(const struct region *a, const struct region *b)
@@ -88,106 +59,58 @@ static bool same_regions(const struct model *model, const struct model *other)
 	return same;
 }
 
-static bool same_shape(const struct model *model, const struct model *other)
-{
-	return same_loads(model, other) && same_regions(model, other);
-}
+static const struct difference difference[] = {
+	{ same_loads_there, "the model has other loads",
+	  "a load is there only where its factor is not 0; its frequency, phase and growth are fixed" },
+	{ same_regions, "the model has other regions",
+	  "what is equal at the spec's values has to stay equal: breakpoints, factors, forces" }
+};
 
-/* With no system merged yet */
-static const struct model *pattern(const struct search *s)
+/* Their rows are those of the first. */
+static mpq_t *read_rows(struct elsewhere *at, const struct model *model)
 {
-	return s->points > 0 ? s->seen[0].model : s->model;
-}
-
-/* The param that alone makes the model another one; else the first factor */
-static const struct tunable *suspect(struct search *s)
-{
-	int first = -1;
-	for (int k = 0; k < s->t->params; k++) {
-		if (!s->r->factor[k])
-			continue;
-		first = first < 0 ? k : first;
-		s->values = rationals((size_t)s->t->params);
-		for (int i = 0; i < s->t->params; i++)
-			mpq_set(s->values[i], s->t->nominal[i]);
-		mpq_set(s->values[k], scattered_near(s->t->params, 0, (const mpq_t *)s->t->nominal)[k]);
-		if (silent_guard(build_there, s) && !same_shape(pattern(s), s->found))
-			return &s->t->param[k];
+	struct search *s = (struct search *)at;
+	struct listing l = list_rows(model, &s->t->x, true);
+	if (at->points == 0) {
+		s->r->rows = l.rows;
+		s->r->row = l.row;
+		at->entries = (ptrdiff_t)l.rows * s->t->x.size;
 	}
-	return &s->t->param[first];
-}
-
-static _Noreturn void tell_shape(struct search *s)
-{
-	bool loads = !same_loads(pattern(s), s->found);
-	const struct tunable *why = suspect(s);
-	if (loads)
-		error(why->at,
-		      "a load is there only where its factor is not 0; its frequency, phase and growth are fixed",
-		      "with another value of '%s' the model has other loads", why->symbol->name);
-	error(why->at, "what is equal at the spec's values has to stay equal: breakpoints, factors, forces",
-	      "with another value of '%s' the model has other regions", why->symbol->name);
-}
-
-static const struct listing *look(struct search *s, const mpq_t *values)
-{
-	struct tuning *t = s->t;
-	for (int i = 0; i < s->points; i++) {
-		bool same = true;
-		for (int k = 0; k < t->params; k++)
-			same = same && mpq_equal(s->point[i][k], values[k]);
-		if (same)
-			return &s->seen[i];
-	}
-	s->values = rationals((size_t)t->params);
-	for (int k = 0; k < t->params; k++)
-		mpq_set(s->values[k], values[k]);
-	if (!silent_guard(build_there, s))
-		error(t->param[0].at, NULL, "with other values of the tunable params this is no model");
-	if (!same_shape(pattern(s), s->found))
-		tell_shape(s);
-	struct listing new = list_rows(s->found, &t->x, true);
-	if (s->points > 0 && new.rows != s->seen[0].rows)
-		tell_shape(s);
-	ENLARGE(s->point, (size_t)s->points + 1);
-	ENLARGE(s->seen, (size_t)s->points + 1);
-	s->point[s->points] = s->values;
-	s->seen[s->points] = new;
-	return &s->seen[s->points++];
+	if (l.rows != s->r->rows)
+		tell_difference(at, &difference[1]);
+	return l.entry;
 }
 
 /* ---- which rows change, which systems are equal ---- */
 
-static const mpq_t *entries_at(const struct search *s, int point, int row)
+static ptrdiff_t index_of(const struct search *s, int row, int column)
 {
-	return (const mpq_t *)s->seen[point].entry + row * s->t->x.size;
-}
-
-static bool same_entries(const mpq_t *a, const mpq_t *b, int count)
-{
-	bool same = true;
-	for (int j = 0; j < count && same; j++)
-		same = mpq_equal(a[j], b[j]);
-	return same;
+	return (ptrdiff_t)row * s->t->x.size + column;
 }
 
 static bool row_changes(const struct search *s, int row)
 {
-	bool same = true;
-	for (int i = 1; i < s->points && same; i++)
-		same = same_entries(entries_at(s, i, row), entries_at(s, 0, row), s->t->x.size);
-	return !same;
+	bool changes = false;
+	for (int j = 0; j < s->t->x.size && !changes; j++)
+		changes = !entry_stays(&s->at, index_of(s, row, j));
+	return changes;
+}
+
+static bool entries_agree(const struct search *s, ptrdiff_t a, ptrdiff_t b)
+{
+	bool same = mpq_equal(s->own.entry[a], s->own.entry[b]);
+	for (int i = 0; i < s->at.points && same; i++)
+		same = mpq_equal(entry_seen(&s->at, i, a), entry_seen(&s->at, i, b));
+	return same;
 }
 
 static bool systems_agree(const struct search *s, int a, int b)
 {
 	const struct switching *w = s->model->switching;
-	int n = s->model->n, size = s->t->x.size;
-	bool same = w->system_segment[a] == w->system_segment[b] &&
-		    same_entries((const mpq_t *)s->own.entry + a * n * size,
-				 (const mpq_t *)s->own.entry + b * n * size, n * size);
-	for (int i = 0; i < s->points && same; i++)
-		same = same_entries(entries_at(s, i, a * n), entries_at(s, i, b * n), n * size);
+	const int n = s->model->n, size = s->t->x.size;
+	bool same = w->system_segment[a] == w->system_segment[b];
+	for (int j = 0; j < n * size && same; j++)
+		same = entries_agree(s, index_of(s, a * n, j), index_of(s, b * n, j));
 	return same;
 }
 
@@ -221,54 +144,19 @@ static void merge_systems(struct search *s)
 
 /* ---- terms ---- */
 
-struct entry {
-	struct search *search;
-	int row, column;
-};
-
-static mpq_srcptr entry_at(void *context, const mpq_t *values)
-{
-	const struct entry *e = context;
-	const struct listing *l = look(e->search, values);
-	return l->entry[e->row * e->search->t->x.size + e->column];
-}
-
-static bool fit_entry(struct search *s, int row, int column, struct fit *f)
-{
-	*f = (struct fit){ .params = s->t->params, .near = (const mpq_t *)s->t->nominal, .value = entry_at,
-			   .context = &(struct entry){ s, row, column } };
-	return fit_value(f);
-}
-
 /* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them, `sign` times */
 static void fit_row(struct search *s, struct tuning *t, int row, int to, int from, int columns, int sign)
 {
-	struct fit *f = NEW(struct fit);
-	for (int j = 0; j < columns; j++) {
-		if (fit_entry(s, row, j, f)) {
-			int first = t->terms;
-			add_tuned_terms(t, f, to, from + j);
-			for (int i = first; i < t->terms && sign < 0; i++)
-				mpq_neg(t->term[i].factor, t->term[i].factor);
-			continue;
-		}
-		const struct tunable *why = &s->t->param[f->culprit < 0 ? 0 : f->culprit];
-		error(why->at,
-		      format("sums and products, and quotients by single terms, up to the power %d of each and %d of "
-			     "them in an entry, are recomputed on the target; only masses in equations may be sums",
-			     FIT_DEGREE, LIMIT_MONOMIALS),
-		      "the regions depend on '%s' in a way that cannot be recomputed on the target",
-		      why->symbol->name);
-	}
+	for (int j = 0; j < columns; j++)
+		if (!fit_entry(&s->at, index_of(s, row, j), t, to, from + j, sign))
+			refuse_fit(&s->at, "regions", "only masses in equations may be sums");
 }
 
 static bool fits(struct search *s, int row)
 {
-	struct fit *f = NEW(struct fit);
 	bool fit = true;
 	for (int j = 0; j < s->t->x.size && fit; j++)
-		fit = fit_entry(s, row, j, f);
-	discard(f);
+		fit = fits_entry(&s->at, index_of(s, row, j));
 	return fit;
 }
 
@@ -352,7 +240,7 @@ static void place_row(struct search *s, int row)
 		return;
 	struct retuned_row *r = &s->r->row[row];
 	r->place = s->t->rows++;
-	r->positive = mpq_sgn(entries_at(s, 0, row)[0]) > 0;
+	r->positive = mpq_sgn(entry_seen(&s->at, 0, index_of(s, row, 0))) > 0;
 	fit_row(s, s->t, row, r->place, 0, s->t->x.size, 1);
 }
 
@@ -390,53 +278,6 @@ static void fit_rows(struct search *s)
 
 /* ---- what is refused ---- */
 
-static bool reads_moving(const struct node *node)
-{
-	if (node->kind == NODE_TIME)
-		return true;
-	if (node->kind == NODE_NAME &&
-	    (node->symbol->kind == SYMBOL_COORD || node->symbol->kind == SYMBOL_INPUT ||
-	     (node->symbol->kind == SYMBOL_LET && node->symbol->value && reads_moving(node->symbol->value))))
-		return true;
-	for (int i = 0; i < node->children; i++)
-		if (reads_moving(node->child[i]))
-			return true;
-	return false;
-}
-
-static const struct node *first_factor(const struct node *node)
-{
-	if (node->kind == NODE_NAME) {
-		const struct symbol *s = node->symbol;
-		return s->factor || (s->tuned && s->value && first_factor(s->value)) ? node : NULL;
-	}
-	for (int i = 0; i < node->children; i++) {
-		const struct node *found = first_factor(node->child[i]);
-		if (found)
-			return found;
-	}
-	return NULL;
-}
-
-/* A function of params alone is decided, or rounded, when plgen runs; of what moves its sign is one of the signs. */
-static void check_node(const struct node *node)
-{
-	if (node->kind == NODE_NAME && node->symbol->tuned && node->symbol->value && !node->symbol->tuning_checked) {
-		node->symbol->tuning_checked = true;
-		check_node(node->symbol->value);
-	}
-	bool decides = node->kind == NODE_CALL || node->kind == NODE_COMPARE;
-	for (int i = 0; i < node->children; i++) {
-		const struct node *name = decides ? first_factor(node->child[i]) : NULL;
-		if (name && !reads_moving(node))
-			error(name->at, "sums, products and quotients of tunables are recomputed on the target",
-			      "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name,
-			      node->kind == NODE_CALL ? format("%s()", function_name(node->function))
-						      : "a comparison");
-		check_node(node->child[i]);
-	}
-}
-
 static void check_outputs(const struct model *model)
 {
 	for (int i = 0; i < model->outputs; i++) {
@@ -454,12 +295,7 @@ static void check_outputs(const struct model *model)
 static void check_model(const struct model *model)
 {
 	const struct spec *spec = model->spec;
-	for (int i = 0; i < spec->equations; i++) {
-		check_node(spec->equation[i].left);
-		check_node(spec->equation[i].right);
-	}
-	for (int i = 0; i < spec->elements; i++)
-		check_node(spec->element[i].value);
+	check_tuned(model, true);
 	check_outputs(model);
 	if (model->switching->sliders > 0)
 		error(spec->tunable[0].at, "a small mass slides with its own inertia",
@@ -481,40 +317,22 @@ static void check_size(const struct search *s)
 		      LIMIT_TUNED_NUMBERS, s->model->switching->systems, s->t->x.size, numbers);
 }
 
-static void warn_of_idle(const struct search *s)
-{
-	for (int k = 0; k < s->t->params; k++) {
-		bool used = !s->r->factor[k];
-		for (int b = -1; b < s->r->blocks; b++) {
-			const struct tuning *t = b < 0 ? s->t : s->r->block[b].tuning;
-			for (int m = 0; m < t->monomials; m++)
-				used = used || t->monomial[m].param == k;
-		}
-		if (!used && !s->model->relative)
-			say_warning(s->t->param[k].at, NULL, "tunable '%s' changes nothing that the target recomputes",
-				    s->t->param[k].symbol->name);
-	}
-}
-
 static void find(void *context)
 {
 	struct search *s = context;
-	struct tuning *t = s->t;
 	check_model(s->model);
 	bool *all = ARRAY(bool, (size_t)s->model->system.loads + 1);
 	for (int l = 0; l < s->model->system.loads; l++)
 		all[l] = true;
-	t->x = layout_with(&s->model->system, 0, all);
-	s->own = list_rows(s->model, &t->x, false);
-	for (int i = 0; i < FIT_POINTS; i++)
-		look(s, (const mpq_t *)scattered_near(t->params, i, (const mpq_t *)t->nominal));
-	s->r->other = s->found;
-	s->r->rows = s->seen[0].rows;
-	s->r->row = s->seen[0].row;
+	s->t->x = layout_with(&s->model->system, 0, all);
+	s->own = list_rows(s->model, &s->t->x, false);
+	look_elsewhere(&s->at);
+	s->r->other = s->at.other;
 	merge_systems(s);
 	check_size(s);
 	fit_rows(s);
-	warn_of_idle(s);
+	if (!s->model->relative)
+		warn_of_idle(&s->at, s->r->blocks, s->r->block);
 }
 
 /* model->retuned; false: it was said why not */
@@ -522,8 +340,11 @@ static bool find_retuning(struct model *model, const struct request *request)
 {
 	struct retuned *r = NEW(struct retuned);
 	struct tuning *t = NEW(struct tuning);
-	struct search s = { .model = model, .request = request, .r = r, .t = t };
+	struct search s = { .model = model, .r = r, .t = t };
 	*t = *model->held;
+	s.at = (struct elsewhere){ .model = model, .request = request, .tuning = t, .factor = model->factor,
+				   .near = (const mpq_t *)t->nominal, .difference = difference,
+				   .differences = sizeof difference / sizeof *difference, .read = read_rows };
 	r->factor = model->factor;
 	r->tuning = t;
 	model->retuned = r;
