@@ -7,6 +7,8 @@
  *     PL(contact)                with members crossings, crossing, total, interval, last, placed
  *     PL_EXPRESSIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
+ *     PL_REGIONS                 1: the regions are numbered
+ *     PL_BOUNCES                 1: contacts may come to rest by bouncing: member rested of PL(contact)
  *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
  *     PL(expand_from), PL(inputs_now)   as taylor.h
  *     PL_AT_BREAKPOINTS          1: states are put onto them
@@ -181,4 +183,40 @@ static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *cont
     }
     contact->crossings = 0;
 }
+#endif
+
+/* ---- what is asked about it ---- */
+
+#if PL_EXPRESSIONS > 0
+#if PL_REGIONS
+int PL(region)(const PL_TYPE *s)
+{
+    int i, region = 0;
+    for (i = PL_EXPRESSIONS - 1; i >= 0; i--) {
+        region = s->contact.interval[i] + (PL(breaks)[i] + 1) * region;
+    }
+    return region;
+}
+#endif
+
+uint64_t PL(crossed)(const PL_TYPE *s)
+{
+    return s->contact.total;
+}
+
+int PL(crossings)(const PL_TYPE *s, pl_crossing crossing[PL_MAX_EVENTS])
+{
+    int i;
+    for (i = 0; i < s->contact.crossings; i++) {
+        crossing[i] = s->contact.crossing[i];
+    }
+    return s->contact.crossings;
+}
+
+#if PL_BOUNCES
+int PL(rested)(const PL_TYPE *s)
+{
+    return s->contact.rested;
+}
+#endif
 #endif

@@ -383,10 +383,10 @@ void emit_cut_step(const struct emitter *e);
 void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
 void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
-void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
+void emit_crossing_declarations(const struct emitter *e);         /* NAME_region, NAME_crossed, NAME_crossings */
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
 void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each */
-int  most_changes(const struct expansion *x);                    /* of intervals, where they are found */
+void emit_divided_macros(const struct emitter *e);               /* what chosen.h asks of them */
 
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 
@@ -631,7 +631,6 @@ const char *ladder_text(const struct emitter *e, const struct guards *guards);
 int rungs_of_all(const struct emitter *e);
 int rows_of_rung(const struct emitter *e);
 int rows_of_reach(const struct emitter *e, const struct guards *guards);
-void emit_region_declarations(const struct emitter *e);
 void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
@@ -660,7 +659,6 @@ void emit_delays(const struct emitter *core);
 
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);
-void emit_part_declarations(const struct emitter *e);
 void emit_part_members(const struct emitter *e);
 void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);

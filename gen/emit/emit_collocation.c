@@ -243,11 +243,9 @@ static void emit_switching_limits(const struct emitter *e)
 /* Formulas that the state chooses, for passage.h */
 static void emit_passage_limits(const struct emitter *e)
 {
-	say(e, "#define PL_CHANGES %d  /* of intervals, until all of them stand */\n"
-	       "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
-	       "#define PL_MAX_SPLITS %d\n"
-	       "#define PL_WATCH_READS %d  /* known numbers */\n",
-	    most_changes(e->step->divided), MAX_SPLITS, watch_reads_known(e));
+	emit_divided_macros(e);
+	say_macro(e, "MAX_SPLITS", whole_text(MAX_SPLITS));
+	say_macro(e, "WATCH_READS", whole_text(watch_reads_known(e)));
 }
 
 static void emit_include(const struct emitter *e)
@@ -304,8 +302,6 @@ void emit_collocation_step(const struct emitter *e)
 	emit_arguments(e);
 	emit_include(e);
 	emit_step_function(e);
-	if (is_divided(e))
-		emit_divided_questions(e);
 }
 
 /* ---- between steps ---- */

@@ -105,13 +105,13 @@ static void emit_algorithm(const struct emitter *e)
 	const struct size sizes[] = {
 		{ "STATES", e->system->states }, { "ACTING", acting_entries(e) }, { "FORCES", e->model->channels },
 		{ "CARRIES", e->step->carries }, { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
-		{ "EXPRESSIONS", x->expressions }, { "CHANGES", most_changes(x) }, { "INPUTS", e->system->inputs },
+		{ "EXPRESSIONS", x->expressions }, { "INPUTS", e->system->inputs },
 		{ "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
 		{ "MAX_SPLITS", MAX_SPLITS }, { "SWIFT", cut_of(e)->certain < 1 }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
-	say(e, "#define PL_MAX_EVENTS $N_MAX_EVENTS\n"
-	       "#define PL_FASTEST %s\n"
+	emit_divided_macros(looking(e));
+	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
 	       "#include \"cut.h\"\n", shortest(cut_of(e)->fastest), shortest(cut_of(e)->certain));
 }
@@ -137,5 +137,4 @@ void emit_cut_step(const struct emitter *e)
 	emit_pass_time(e);
 	emit_algorithm(e);
 	emit_serving_step(e);
-	emit_divided_questions(l);
 }

@@ -33,19 +33,23 @@ void emit_divided_members(const struct emitter *e)
 	say(e, "    $n_contact contact;   /* intervals, crossings */\n");
 }
 
-void emit_divided_declarations(const struct emitter *e)
+void emit_crossing_declarations(const struct emitter *e)
 {
-	if (!is_divided(e))
-		return;
-	if (regions_of_series(expansion(e)))
+	if (!is_divided(e) || regions_of_series(expansion(e)))
 		say(e, "int    $n_region(const $n *s);           "
 		       "/* its number: an interval of each expression, see the source */\n");
 	say(e, "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
 	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
-	       "/* those of the last step; how many */\n");
+	       "/* those of the last step, by time; how many */\n");
 	if (has_bounces(e->model))
 		say(e, "int    $n_rested(const $n *s);           "
-		       "/* contacts that came to rest by bouncing, since init or set */\n");
+		       "/* contacts that came to rest since then, after infinitely many bounces */\n");
+}
+
+void emit_divided_declarations(const struct emitter *e)
+{
+	if (is_divided(e))
+		emit_crossing_declarations(e);
 }
 
 /* ---- tables ---- */
@@ -78,12 +82,21 @@ void emit_divided_tables(const struct emitter *e)
 	       "};\n", column, breaks, at, x->expressions, x->order);
 }
 
-int most_changes(const struct expansion *x)
+static int most_changes(const struct expansion *x)
 {
 	int most = 1;
 	for (int i = 0; i < x->expressions; i++)
 		most += x->expression[i].breaks + 1;
 	return most;
+}
+
+void emit_divided_macros(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	say_macro(e, "CHANGES", whole_text(most_changes(x)));
+	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
+	say_macro(e, "REGIONS", whole_text(regions_of_series(x) > 0));
+	say_macro(e, "BOUNCES", whole_text(has_bounces(e->model)));
 }
 
 void emit_passing_table(const struct emitter *e, int order)
@@ -96,36 +109,4 @@ void emit_passing_table(const struct emitter *e, int order)
 	       "static const pl_divided $n_passing = {\n"
 	       "    %d, %d, %d, $n_each, $n_breaks, $n_breakpoint\n"
 	       "};\n", column, expansion(e)->expressions, expansion(e)->expressions, order);
-}
-
-/* ---- questions ---- */
-
-void emit_divided_questions(const struct emitter *e)
-{
-	const struct expansion *x = expansion(e);
-	if (regions_of_series(x)) {
-		const char *number = format("s->contact.interval[%d]", x->expressions - 1);
-		for (int i = x->expressions - 2; i >= 0; i--)
-			number = format("s->contact.interval[%d] + %d * (%s)", i, x->expression[i].breaks + 1, number);
-		say(e, "\nint $n_region(const $n *s)\n"
-		       "{\n"
-		       "    return %s;\n"
-		       "}\n", number);
-	}
-	say(e, "\nuint64_t $n_crossed(const $n *s)\n"
-	       "{\n"
-	       "    return s->contact.total;\n"
-	       "}\n"
-	       "\nint $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS])\n"
-	       "{\n"
-	       "    int i;\n"
-	       "    for (i = 0; i < s->contact.crossings; i++)\n"
-	       "        crossing[i] = s->contact.crossing[i];\n"
-	       "    return s->contact.crossings;\n"
-	       "}\n");
-	if (has_bounces(e->model))
-		say(e, "\nint $n_rested(const $n *s)\n"
-		       "{\n"
-		       "    return s->contact.rested;\n"
-		       "}\n");
 }

@@ -251,7 +251,6 @@ static void emit_algorithm(const struct emitter *e)
 		{ "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
 		{ "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
 		{ "TERMS", is_divided(e) ? terms_of_events(e) : 0 },
-		{ "CHANGES", is_divided(e) ? most_changes(x) : 0 },
 		{ "CONTACTS", meets_contacts(e) }, { "CHOICES", has_choices(e) }, { "ADAPTIVE", t->adaptive },
 		{ "WATCHED", watches(e) }, { "REMAINDERS", t->adaptive ? 3 : watches(e) },
 		{ "KINDS", shares_kinds(e) }, { "FLOORS", has_floors(e) }, { "OVER", spans_steps(e) ? t->over : 1 },
@@ -263,7 +262,7 @@ static void emit_algorithm(const struct emitter *e)
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	if (is_divided(e))
-		say(e, "#define PL_MAX_EVENTS $N_MAX_EVENTS\n");
+		emit_divided_macros(e);
 	if (looks_at_tolerance(e))
 		emit_reach_sizes(e);
 	say(e, "#include \"taylor.h\"\n");
@@ -293,8 +292,6 @@ void emit_expansion_step(const struct emitter *e)
 		emit_straight_step(e);
 	else
 		emit_serving_step(e);
-	if (is_divided(e))
-		emit_divided_questions(e);
 }
 
 void emit_expansion_at(const struct emitter *e)

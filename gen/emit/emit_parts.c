@@ -185,15 +185,6 @@ static bool *needed_loads(const struct emitter *e, bool linear_too)
 
 /* ---- in the model's own functions ---- */
 
-void emit_part_declarations(const struct emitter *e)
-{
-	say(e, "int    $n_region(const $n *s);           "
-	       "/* its number: an interval of each expression, see the source */\n"
-	       "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
-	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
-	       "/* those of the last step, by time; how many */\n");
-}
-
 void emit_part_members(const struct emitter *e)
 {
 	say(e, "    pl_contact contact[%d];   /* of each part: region, crossings */\n"

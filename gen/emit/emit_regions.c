@@ -180,18 +180,6 @@ void emit_regions(const struct emitter *e)
 
 /* ---- in the model's own functions ---- */
 
-void emit_region_declarations(const struct emitter *e)
-{
-	say(e, "int    $n_region(const $n *s);           "
-	       "/* its number: an interval of each expression, see the source */\n"
-	       "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
-	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
-	       "/* those of the last step; how many */\n");
-	if (has_bounces(e->model))
-		say(e, "int    $n_rested(const $n *s);           "
-		       "/* contacts that came to rest since then, after infinitely many bounces */\n");
-}
-
 void emit_region_members(const struct emitter *e)
 {
 	say(e, "    pl_contact contact;   /* region, crossings */\n"
