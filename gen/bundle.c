@@ -226,9 +226,7 @@ static void print_with(FILE *to, const struct runtime *r, const char *text, bool
 		}
 		if (is_line(line, "#define PL_FLOAT_ONLY"))
 			continue;
-		if (is_line(line, "#include \"pllanes.h\""))
-			fputs(runtime_text("pllanes.h"), to);
-		else if (!is_line(line, "#include \"plrt.h\""))
+		if (!is_line(line, "#include \"plrt.h\""))
 			fprintf(to, "%.*s", (int)(end - line), line);
 		else if (header)
 			print_types(to, r);

@@ -2,7 +2,7 @@
 /* batch.h: NAME_batch, the step of a linear model over lanes, each an instance.  What instances share of a step (load
  * states, samples) is computed once, for some steps ahead; then groups of lanes go through these, their states in
  * locals.  The sums are those of NAME_step, in its order, so that an instance gets the bits of one that steps alone.
- * Included by the file of the model, behind pllanes.h and where it defines
+ * Included by the file of the model, behind lanes.h and where it defines
  *
  *     PL(name), PL_TYPE, PL_SINGLE   the model's prefix before a name; its type; 1: in float
  *     PL_STATES, PL_INPUTS, PL_OUTPUTS

@@ -45,6 +45,9 @@
 #define pl_lanes_all pl_lanesf_all
 #define pl_lanes_peak pl_lanesf_peak
 #define pl_lanes_above pl_lanesf_above
+#define pl_lanes_accumulate pl_lanesf_accumulate
+#define pl_lanes_bits pl_lanesf_bits
+#define pl_lanes_size pl_lanesf_size
 #define pl_rate pl_ratef
 #define pl_rate_of pl_ratef_of
 #define pl_turn_at pl_turnf_at

@@ -241,6 +241,9 @@
 #undef pl_lanes_all
 #undef pl_lanes_peak
 #undef pl_lanes_above
+#undef pl_lanes_accumulate
+#undef pl_lanes_bits
+#undef pl_lanes_size
 #undef pl_rate
 #undef pl_rate_of
 #undef pl_turn_at

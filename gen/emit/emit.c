@@ -115,8 +115,6 @@ static void emit_includes(const struct emitter *e, bool rhs)
 {
 	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
 		say(e, "\n#include <math.h>\n");
-	if (e->model->asked.batch)
-		say(e, "\n#include \"pllanes.h\"\n");
 	if (e->step->program->compensated || e->step->carries)
 		say(e, "\n#if PL_EXCESS_PRECISION%s\n"
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "

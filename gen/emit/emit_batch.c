@@ -192,7 +192,8 @@ static void emit_include(const struct batch *b)
 void emit_batch(const struct emitter *e)
 {
 	struct batch b = plan_batch(e);
-	say(e, "\n/* ---- $n_batch ---- */\n");
+	emit_sizes(e, 0, NULL);
+	say(e, "#include \"lanes.h\"\n");
 	emit_shared(&b);
 	emit_lanes_step(&b);
 	emit_lanes_out(&b);

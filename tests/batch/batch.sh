@@ -89,7 +89,9 @@ END
 cat >hand.c <<'END'
 #include "plrt.h"
 
-#include "pllanes.h"
+#define PL(name) m_##name
+#define PL_SINGLE 0
+#include "lanes.h"
 
 #include <math.h>
 #include <stdio.h>

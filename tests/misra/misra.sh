@@ -41,7 +41,7 @@ look() {
 look ./*.c | grep -v '/plrt\.h:' >in_models
 # cppcheck writes beside what it reads
 cp -r "$root/runtime" runtime_copy
-look runtime_copy/*.c | sed "s,^$root/runtime/,runtime_copy/," | sort -u | grep -v '/pllanes\.h:' >in_runtime
+look runtime_copy/*.c | sed "s,^$root/runtime/,runtime_copy/," | sort -u | grep -v '/lanes\.h:' >in_runtime
 
 # rules PLACES: rule and count
 rules() {
