@@ -1,42 +1,74 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "polynomial.h"
 
-enum { DEEPEST = 80, HALVINGS = 190 };
+#include <math.h>
 
-static void start(mpfr_t *p)
-{
-	for (int k = 0; k <= DEGREE; k++)
-		mpfr_init2(p[k], BITS);
-}
+/* Halvings at most, of these in doubles; the derivative from which on there are bounds alone; bits to which a root is closed in on */
+enum { DEEPEST = 80, BEYOND = 7, DOUBLES = 12, ALIKE = 180, MOST_TRIES = 400 };
 
-static void stop(mpfr_t *p)
+static void value_and_slope(mpfr_t *p, mpfr_srcptr s, mpfr_ptr value, mpfr_ptr slope)
 {
-	for (int k = 0; k <= DEGREE; k++)
-		mpfr_clear(p[k]);
-}
-
-void value_at(mpfr_t *coefficient, mpfr_srcptr s, mpfr_ptr value)
-{
-	mpfr_set(value, coefficient[DEGREE], MPFR_RNDN);
+	mpfr_set(value, p[DEGREE], MPFR_RNDN);
+	mpfr_set_zero(slope, 1);
 	for (int k = DEGREE - 1; k >= 0; k--) {         /* a third of the time of mpfr_fma */
+		mpfr_mul(slope, slope, s, MPFR_RNDN);
+		mpfr_add(slope, slope, value, MPFR_RNDN);
 		mpfr_mul(value, value, s, MPFR_RNDN);
-		mpfr_add(value, value, coefficient[k], MPFR_RNDN);
+		mpfr_add(value, value, p[k], MPFR_RNDN);
 	}
 }
 
-/* p(s) -> p(s + by), by Horner's scheme repeated */
-static void shift(mpfr_t *p, mpfr_srcptr by)
+/* The root of a p that rises from below 0 at `from` to above it at `to`: by Newton's method, and halving where that
+ * leaves what is known to hold the root */
+static void close_in(mpfr_t *p, mpfr_srcptr from, mpfr_srcptr to, mpfr_ptr at)
 {
-	mpfr_t part;
-	if (mpfr_zero_p(by))
-		return;
-	mpfr_init2(part, BITS);
-	for (int i = 0; i < DEGREE; i++)
+	mpfr_t low, high, value, slope;
+	mpfr_inits2(BITS, low, high, value, slope, (mpfr_ptr)0);
+	mpfr_set(low, from, MPFR_RNDN);
+	mpfr_set(high, to, MPFR_RNDN);
+	mpfr_set(at, from, MPFR_RNDN);
+	for (int i = 0; i < MOST_TRIES; i++) {
+		value_and_slope(p, at, value, slope);
+		mpfr_set(mpfr_sgn(value) > 0 ? high : low, at, MPFR_RNDN);
+		mpfr_div(value, value, slope, MPFR_RNDN);
+		const bool near = mpfr_zero_p(value) || mpfr_get_exp(value) < mpfr_get_exp(to) - ALIKE;
+		mpfr_sub(at, at, value, MPFR_RNDN);
+		if (near)
+			break;
+		if (mpfr_cmp(at, low) <= 0 || mpfr_cmp(at, high) >= 0) {
+			mpfr_add(at, low, high, MPFR_RNDN);
+			mpfr_div_2ui(at, at, 1, MPFR_RNDN);
+		}
+	}
+	mpfr_clears(low, high, value, slope, (mpfr_ptr)0);
+}
+
+/* What is searched: p over the whole width, what counts as 0, and how large p^(k)/k! is at most for k = BEYOND */
+struct sought {
+	mpfr_t *p;
+	mpfr_srcptr width, tiny;
+	double beyond;
+};
+
+/* p(s + by) up to BEYOND, where it is a bound, by Horner's scheme repeated */
+static mpfr_t *shifted(const struct sought *f, mpfr_srcptr by)
+{
+	static mpfr_t p[DEGREE + 1], part;      /* kept: to make them takes as long as a product */
+	static bool made;
+	for (int k = 0; k <= DEGREE && !made; k++)
+		mpfr_init2(p[k], BITS);
+	if (!made)
+		mpfr_init2(part, BITS);
+	made = true;
+	for (int k = 0; k <= DEGREE; k++)
+		mpfr_set(p[k], f->p[k], MPFR_RNDN);
+	for (int i = 0; i < BEYOND && !mpfr_zero_p(by); i++)
 		for (int k = DEGREE - 1; k >= i; k--) {
 			mpfr_mul(part, p[k + 1], by, MPFR_RNDN);
 			mpfr_add(p[k], p[k], part, MPFR_RNDN);
 		}
-	mpfr_clear(part);
+	mpfr_set_d(p[BEYOND], f->beyond, MPFR_RNDU);
+	return p;
 }
 
 /* 1, -1: the sign of sum_{k >= from} k^(from) p_k s^(k - from) for all 0 <= s <= width; 0: it is not known */
@@ -46,7 +78,7 @@ static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 	mpfr_inits2(BITS, rest, term, power, (mpfr_ptr)0);
 	mpfr_set_zero(rest, 1);
 	mpfr_set(power, width, MPFR_RNDN);
-	for (int k = from + 1; k <= DEGREE; k++) {
+	for (int k = from + 1; k <= BEYOND; k++) {
 		mpfr_mul(term, p[k], power, MPFR_RNDN);
 		mpfr_abs(term, term, MPFR_RNDN);
 		mpfr_mul_ui(term, term, from ? (unsigned long)k : 1, MPFR_RNDN);
@@ -58,59 +90,76 @@ static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 	return sign;
 }
 
-static void halve_in(mpfr_t *p, mpfr_srcptr width, mpfr_ptr at)
+static bool search(const struct sought *f, mpfr_srcptr from, mpfr_srcptr width, int depth, mpfr_ptr at)
 {
-	mpfr_t low, high, value;
-	mpfr_inits2(BITS, low, high, value, (mpfr_ptr)0);
-	mpfr_set_zero(low, 1);
-	mpfr_set(high, width, MPFR_RNDN);
-	for (int i = 0; i < HALVINGS; i++) {
-		mpfr_add(at, low, high, MPFR_RNDN);
-		mpfr_div_2ui(at, at, 1, MPFR_RNDN);
-		value_at(p, at, value);
-		mpfr_set(mpfr_sgn(value) > 0 ? high : low, at, MPFR_RNDN);
+	mpfr_t *p = shifted(f, from), to, half, value, slope;
+	const bool may = sign_over(p, 0, width) == 0;   /* be 0 */
+	const int turn = may ? sign_over(p, 1, width) : 0;
+	bool found = false;
+	mpfr_inits2(BITS, to, half, value, slope, (mpfr_ptr)0);
+	if (may && turn > 0 && mpfr_cmp(p[0], f->tiny) <= 0) {
+		mpfr_add(to, from, width, MPFR_RNDN);
+		value_and_slope(f->p, to, value, slope);
+		found = mpfr_sgn(value) > 0;
+		mpfr_set(at, from, MPFR_RNDN);
+		if (found && mpfr_sgn(p[0]) < 0)
+			close_in(f->p, from, to, at);
+	} else if (may && turn == 0 && depth < DEEPEST) {
+		mpfr_div_2ui(half, width, 1, MPFR_RNDN);
+		mpfr_add(to, from, half, MPFR_RNDN);
+		found = search(f, from, half, depth + 1, at) || search(f, to, half, depth + 1, at);
 	}
-	mpfr_set(at, high, MPFR_RNDN);
-	mpfr_clears(low, high, value, (mpfr_ptr)0);
+	mpfr_clears(to, half, value, slope, (mpfr_ptr)0);
+	return found;
 }
 
-static bool search(mpfr_t *given, mpfr_srcptr from, mpfr_srcptr width, mpfr_srcptr tiny, int depth, mpfr_ptr at)
+/* Whether sum_k c_k s^k is certain not to rise through 0 at 0 <= s <= 1, where `off` is more than doubles round: it, or
+ * how much it falls, is larger at 0 than what that changes by */
+static bool never_rises(const double *c, double off)
 {
-	mpfr_t p[DEGREE + 1], end, half, middle;
-	bool found = false;
-	start(p);
-	mpfr_inits2(BITS, end, half, middle, (mpfr_ptr)0);
-	for (int k = 0; k <= DEGREE; k++)
-		mpfr_set(p[k], given[k], MPFR_RNDN);
-	shift(p, from);
-	const bool may = sign_over(p, 0, width) == 0;   /* be 0 */
-	const int slope = may ? sign_over(p, 1, width) : 0;
-	if (may && slope > 0)
-		value_at(p, width, end);
-	if (may && slope > 0 && mpfr_sgn(end) > 0 && mpfr_cmp(p[0], tiny) <= 0) {
-		if (mpfr_sgn(p[0]) >= 0)
-			mpfr_set_zero(at, 1);
-		else
-			halve_in(p, width, at);
-		mpfr_add(at, at, from, MPFR_RNDN);
-		found = true;
-	} else if (may && slope == 0 && depth < DEEPEST) {
-		mpfr_div_2ui(half, width, 1, MPFR_RNDN);
-		mpfr_add(middle, from, half, MPFR_RNDN);
-		found = search(given, from, half, tiny, depth + 1, at) ||
-			search(given, middle, half, tiny, depth + 1, at);
+	double rest = off, bend = off;
+	for (int k = 1; k <= DEGREE; k++) {
+		rest += fabs(c[k]);
+		bend += k > 1 ? k * fabs(c[k]) : 0;
 	}
-	stop(p);
-	mpfr_clears(end, half, middle, (mpfr_ptr)0);
-	return found;
+	return fabs(c[0]) > rest || -c[1] > bend;
+}
+
+/* The same in the place-th of the 2^depth parts of the width, where c is the polynomial over this part: halved in
+ * doubles, as most pieces of a motion are done with so */
+static bool seek(const struct sought *f, const double *c, double off, unsigned long place, int depth, mpfr_ptr at)
+{
+	double half[2][DEGREE + 1], scale = 1;
+	if (never_rises(c, off))
+		return false;
+	if (depth == DOUBLES) {
+		mpfr_t part, from;
+		mpfr_inits2(BITS, part, from, (mpfr_ptr)0);
+		mpfr_div_2ui(part, f->width, DOUBLES, MPFR_RNDN);
+		mpfr_mul_ui(from, part, place, MPFR_RNDN);
+		const bool found = search(f, from, part, depth, at);
+		mpfr_clears(part, from, (mpfr_ptr)0);
+		return found;
+	}
+	for (int k = 0; k <= DEGREE; k++, scale /= 2)
+		half[0][k] = half[1][k] = c[k] * scale;
+	for (int i = 0; i < DEGREE; i++)
+		for (int k = DEGREE - 1; k >= i; k--)
+			half[1][k] += half[1][k + 1];
+	return seek(f, half[0], off, 2 * place, depth + 1, at) || seek(f, half[1], off, 2 * place + 1, depth + 1, at);
 }
 
 bool first_rise(mpfr_t *coefficient, mpfr_srcptr width, mpfr_srcptr tiny, mpfr_ptr at)
 {
-	mpfr_t zero;
-	mpfr_init2(zero, BITS);
-	mpfr_set_zero(zero, 1);
-	bool found = search(coefficient, zero, width, tiny, 0, at);
-	mpfr_clear(zero);
-	return found;
+	struct sought f = { coefficient, width, tiny, 0 };
+	const double whole = mpfr_get_d(width, MPFR_RNDN);
+	double c[DEGREE + 1], power = 1, off = 1e-39;   /* above `tiny` */
+	double choices = 1.0001;                /* of BEYOND from k */
+	for (int k = 0; k <= DEGREE; k++, power *= whole) {
+		c[k] = mpfr_get_d(coefficient[k], MPFR_RNDN) * power;
+		off += 1e-10 * fabs(c[k]);
+		choices *= k > BEYOND ? k / (double)(k - BEYOND) : 1;
+		f.beyond += k < BEYOND ? 0 : choices * fabs(c[k]) / pow(whole, BEYOND);
+	}
+	return seek(&f, c, off, 0, 0, at);
 }

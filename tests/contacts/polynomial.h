@@ -6,13 +6,11 @@
 #include <mpfr.h>
 #include <stdbool.h>
 
-enum { BITS = 192, DEGREE = 30 };
+enum { BITS = 192, DEGREE = 44 };
 
 /* coefficient: DEGREE + 1 of p(s). `at` receives the first s in 0 <= s <= width where p rises through 0; false: there
  * is none. At s = 0 a p that falls, or is 0 to `tiny` and then falls, does not rise. Intervals are halved until the
- * polynomial, or its slope, has one sign in them by the sizes of its coefficients; then the root is halved in. */
+ * polynomial, or its slope, has one sign in them by how much they change at most; then the root is closed in on. */
 bool first_rise(mpfr_t *coefficient, mpfr_srcptr width, mpfr_srcptr tiny, mpfr_ptr at);
-
-void value_at(mpfr_t *coefficient, mpfr_srcptr s, mpfr_ptr value);
 
 #endif

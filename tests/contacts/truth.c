@@ -15,12 +15,14 @@ typedef mpfr_t row[MOST];
 struct moving {
 	const struct scene *s;
 	int size, one, left, segment;   /* entries of x; where 1 is, and what is left */
+	int degree;                     /* of its series; those of what is left take products of all */
 	enum mode mode[MOST_CONTACTS];
 	mpfr_t A[MOST][MOST];
 	row force[MOST_CONTACTS];       /* what holds a contact that sticks or rests, along its direction */
 	row x;
 	mpfr_t series[DEGREE + 1][MOST];
 	mpfr_t square[MOST_MASSES][DEGREE + 1], cosine[MOST_MASSES][DEGREE + 1];        /* of q */
+	mpfr_t rate[MOST_MASSES][DEGREE + 1];   /* the k-th of q, times k */
 	mpfr_t time, tiny;
 	int views;
 	struct view {
@@ -330,21 +332,33 @@ static bool guard(const struct moving *m, int index, int which, mpfr_t *r)
 
 /* ---- series ---- */
 
-/* sum over j <= k of a_j b_{k-j}; of columns of the series, or other numbers: `stride` apart */
-static void convolve(mpfr_ptr sum, int k, mpfr_t *a, int a_stride, mpfr_t *b, int b_stride, bool weighted)
+/* sum over from <= j <= to of a_j b_{k-j}; of columns of the series, or other numbers: `stride` apart */
+static void convolve(mpfr_ptr sum, int k, int from, int to, mpfr_t *a, int a_stride, mpfr_t *b, int b_stride)
 {
-	mpfr_t part;
-	mpfr_init2(part, BITS);
+	static mpfr_t part;                     /* kept, as in dot() */
+	static bool made;
+	if (!made)
+		mpfr_init2(part, BITS);
+	made = true;
 	mpfr_set_zero(sum, 1);
-	for (int j = weighted; j <= k; j++) {
+	for (int j = from; j <= to; j++) {
 		mpfr_mul(part, a[j * a_stride], b[(k - j) * b_stride], MPFR_RNDN);
-		if (weighted)
-			mpfr_mul_si(part, part, j, MPFR_RNDN);
 		mpfr_add(sum, sum, part, MPFR_RNDN);
 	}
-	if (weighted)
-		mpfr_div_si(sum, sum, k, MPFR_RNDN);
-	mpfr_clear(part);
+}
+
+/* The k-th of q^2: each product of two coefficients once */
+static void expand_square(mpfr_t *square, int k, mpfr_t *q)
+{
+	mpfr_t middle;
+	convolve(square[k], k, 0, (k + 1) / 2 - 1, q, MOST, q, MOST);
+	mpfr_mul_2ui(square[k], square[k], 1, MPFR_RNDN);
+	if (k % 2 != 0)
+		return;
+	mpfr_init2(middle, BITS);
+	mpfr_sqr(middle, q[k / 2 * MOST], MPFR_RNDN);
+	mpfr_add(square[k], square[k], middle, MPFR_RNDN);
+	mpfr_clear(middle);
 }
 
 /* The k-th of what is left, from those of q and v up to there */
@@ -353,17 +367,19 @@ static void expand_left(struct moving *m, int k)
 	const int n = m->s->n;
 	for (int i = 0; i < n && m->s->left; i++) {
 		mpfr_t *q = &m->series[0][i], *v = q + n, *cube = &m->series[0][m->left + i];
-		mpfr_t *sine = cube + 2 * n, *square = m->square[i], *cosine = m->cosine[i];
-		convolve(square[k], k, q, MOST, q, MOST, false);
-		convolve(cube[k * MOST], k, square, 1, q, MOST, false);
-		convolve(cube[n + k * MOST], k, square, 1, v, MOST, false);
+		mpfr_t *sine = cube + 2 * n, *square = m->square[i], *cosine = m->cosine[i], *rate = m->rate[i];
+		expand_square(square, k, q);
+		convolve(cube[k * MOST], k, 0, k, square, 1, q, MOST);
+		convolve(cube[n + k * MOST], k, 0, k, square, 1, v, MOST);
 		if (k == 0) {
 			mpfr_sin_cos(sine[0], cosine[0], q[0], MPFR_RNDN);
 			continue;
 		}
-		convolve(sine[k * MOST], k, q, MOST, cosine, 1, true);
-		convolve(cosine[k], k, q, MOST, sine, MOST, true);
-		mpfr_neg(cosine[k], cosine[k], MPFR_RNDN);
+		mpfr_mul_si(rate[k], q[k * MOST], k, MPFR_RNDN);
+		convolve(sine[k * MOST], k, 1, k, rate, 1, cosine, 1);
+		mpfr_div_si(sine[k * MOST], sine[k * MOST], k, MPFR_RNDN);
+		convolve(cosine[k], k, 1, k, rate, 1, sine, MOST);
+		mpfr_div_si(cosine[k], cosine[k], -k, MPFR_RNDN);
 	}
 }
 
@@ -703,15 +719,18 @@ static void settle(struct moving *m)
 static void go(struct moving *m, mpfr_srcptr by)
 {
 	for (int i = 0; i < m->size; i++) {
-		mpfr_set(m->x[i], m->series[DEGREE][i], MPFR_RNDN);
-		for (int k = DEGREE - 1; k >= 0; k--)
-			mpfr_fma(m->x[i], m->x[i], by, m->series[k][i], MPFR_RNDN);
+		mpfr_set(m->x[i], m->series[m->degree][i], MPFR_RNDN);
+		for (int k = m->degree - 1; k >= 0; k--) {
+			mpfr_mul(m->x[i], m->x[i], by, MPFR_RNDN);
+			mpfr_add(m->x[i], m->x[i], m->series[k][i], MPFR_RNDN);
+		}
 	}
 	mpfr_add(m->time, m->time, by, MPFR_RNDN);
 }
 
-/* A length over which 30 terms of the series are enough: |A| of it is below 1/2 (0.5^31/31! < 1e-43); forces that are
- * left turn no faster than their linear parts, of a size of q and v of about 1 */
+/* A length over which 44 terms of the series are enough: |A| of it is below 2 (2^45/45! < 1e-42); or 30, where it is
+ * below 1/2 (0.5^31/31! < 1e-43): forces that are left turn no faster than their linear parts, of a size of q and v of
+ * about 1 */
 static double piece_of(const struct moving *m)
 {
 	double most = 1;
@@ -721,7 +740,7 @@ static double piece_of(const struct moving *m)
 			sum += fabs(mpfr_get_d(m->A[i][j], MPFR_RNDN));
 		most = sum > most ? sum : most;
 	}
-	return ldexp(1, -2 - ilogb(most));
+	return ldexp(1, (m->s->left ? -2 : 0) - ilogb(most));
 }
 
 /* The first event within `width`: true, and where */
@@ -735,7 +754,7 @@ static bool next_event(struct moving *m, mpfr_ptr width)
 	mpfr_init2(at, BITS);
 	for (int i = 0; i < m->s->contacts; i++)
 		for (int which = 0; guard(m, i, which, r); which++) {
-			for (int k = 0; k <= DEGREE; k++)
+			for (int k = 0; k <= m->degree; k++)
 				dot(m->size, r, m->series[k], p[k]);
 			if (first_rise(p, width, m->tiny, at)) {
 				mpfr_set(width, at, MPFR_RNDN);
@@ -754,9 +773,11 @@ static void start(struct moving *m, double nudge)
 	m->one = 2 * s->n;
 	m->left = 2 * s->n + 4;
 	m->size = m->left + (s->left ? 3 * s->n : 0);
+	m->degree = s->left ? 30 : DEGREE;
 	for (int i = 0; i < MOST_MASSES; i++) {
 		row_start(m->square[i], DEGREE + 1);
 		row_start(m->cosine[i], DEGREE + 1);
+		row_start(m->rate[i], DEGREE + 1);
 	}
 	for (int i = 0; i < MOST; i++)
 		row_start(m->A[i], MOST);
@@ -800,6 +821,7 @@ static void finish(struct moving *m)
 	for (int i = 0; i < MOST_MASSES; i++) {
 		row_stop(m->square[i], DEGREE + 1);
 		row_stop(m->cosine[i], DEGREE + 1);
+		row_stop(m->rate[i], DEGREE + 1);
 	}
 	row_stop(m->x, MOST);
 	mpfr_clears(m->time, m->tiny, (mpfr_ptr)0);
@@ -850,7 +872,7 @@ void truth_run(const struct scene *s, double until, int views, const double *bri
 		mpfr_set_d(width, piece_of(m), MPFR_RNDN);
 		if (mpfr_cmp(width, left) > 0)
 			mpfr_set(width, left, MPFR_RNDN);
-		expand(m, DEGREE);
+		expand(m, m->degree);
 		check_limits(m);
 		const bool event = next_event(m, width);
 		go(m, width);
