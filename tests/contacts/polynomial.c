@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-/* Halvings at most, of these in doubles; the derivative from which on there are bounds alone; bits to which a root is closed in on */
+/* Halvings at most, of these in doubles; the derivative from which on there are bounds alone; bits to which a root is
+ * closed in on */
 enum { DEEPEST = 80, BEYOND = 7, DOUBLES = 12, ALIKE = 180, MOST_TRIES = 400 };
 
 static void value_and_slope(mpfr_t *p, mpfr_srcptr s, mpfr_ptr value, mpfr_ptr slope)
