@@ -4,7 +4,7 @@
 BUILD = build
 # The commands and their pictures; then what the demo shows, and what the tests compare with and run on
 PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
-	gnuplot-nox
+	libtcc-dev gnuplot-nox
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy octave octave-dev \

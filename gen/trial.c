@@ -42,11 +42,7 @@ struct opening { struct place at; const struct step *step; struct running *runni
 static void open_running(void *context)
 {
 	struct opening *o = context;
-	if (o->step->kind == KIND_CUT)          /* parts of its steps call back into the model */
-		error(o->at, "taylor, radau and auto are",
-		      "scheme %s from crossing to crossing is not run to be measured",
-		      scheme_name(o->step->model->scheme));
-	o->running = running_new(code_of_step(o->at, o->step, true), o->step);
+	o->running = running_new(o->at, o->step, WITH_RHS | WITH_COUNTS);
 }
 
 /* Its C, ready to run */

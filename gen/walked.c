@@ -111,7 +111,7 @@ struct opening { struct place at; const struct step *step; struct running *runni
 static void open_running(void *context)
 {
 	struct opening *o = context;
-	o->running = running_new(code_of_step(o->at, o->step, false), o->step);
+	o->running = running_new(o->at, o->step, 0);
 }
 
 /* How far one sample is off at most: the exact one is known to 2^-104 of itself */

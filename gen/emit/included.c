@@ -395,7 +395,6 @@ static const char *included_by(const char *line)
 void print_included(FILE *to, const char *text)
 {
 	struct including in = { .to = to };
-	define(&in, "PL_ROOM(n) ((n) > 0 ? (n) : 1)"); /* of plrt.h, which what runs inside the generator has not */
 	for (const char *end; *text; text = end) {
 		const char *name = macro_of(&in, "PL") ? included_by(text) : NULL;
 		end = next_line(text);

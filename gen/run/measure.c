@@ -35,23 +35,25 @@ struct trial trial_of(struct running *r, const struct course *reference, const d
 	if (start)
 		running_start(r, 0, start);
 	bool finite = compare_sample(&trial, r, reference, 0, ends);
-	const struct counted before = counted;
+	const struct counted before = running_counted(r);
+	struct counted now = before;
 	long k = 0;
 	for (; k < reference->samples && finite && !trial.why; k++) {
 		if (drive)
 			drive_step(drive, k, u);
 		running_step(r, u);
 		finite = compare_sample(&trial, r, reference, k + 1, ends);
+		now = running_counted(r);
 		if (running_status(r) != 0)
 			trial.why = format("it ends with status %d at t = %.3g s", running_status(r), running_time(r));
-		else if (counted.multiplications - before.multiplications > LIMIT_MEASURED)
+		else if (now.multiplications - before.multiplications > LIMIT_MEASURED)
 			trial.why = "it takes too long to be measured";
 	}
 	if (!finite && !trial.why)
 		trial.why = format("it leaves the finite numbers at t = %.3g s", running_time(r));
 	const double steps = k > 0 ? (double)k : 1;
-	trial.multiplications = (double)(counted.multiplications - before.multiplications) / steps;
-	trial.additions = (double)(counted.additions - before.additions) / steps;
-	trial.calls = (double)(counted.calls - before.calls) / steps;
+	trial.multiplications = (double)(now.multiplications - before.multiplications) / steps;
+	trial.additions = (double)(now.additions - before.additions) / steps;
+	trial.calls = (double)(now.calls - before.calls) / steps;
 	return trial;
 }

@@ -26,14 +26,15 @@ struct journey {                    /* one road from start to end */
 	gsl_odeiv2_driver *driver;
 };
 
-static uint64_t operations_so_far(void)
+static uint64_t operations_so_far(const struct roads *roads)
 {
+	const struct counted counted = running_counted(roads->r);
 	return counted.multiplications + counted.additions + 20 * counted.calls;
 }
 
 static bool is_spent(const struct journey *j)
 {
-	return operations_so_far() - j->before > j->roads->most;
+	return operations_so_far(j->roads) - j->before > j->roads->most;
 }
 
 /* At the ends of an interval its own formula counts, not that of the next. */
@@ -240,8 +241,8 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 {
 	const struct step *step = running_step_of(roads->r);
 	size_t n = (size_t)step->model->written->system.states;
-	struct journey j = { .roads = roads, .states = (int)n, .before = operations_so_far(), .step = 1e-3 * roads->h,
-			     .last = next_change(roads, 0) };
+	struct journey j = { .roads = roads, .states = (int)n, .before = operations_so_far(roads),
+			     .step = 1e-3 * roads->h, .last = next_change(roads, 0) };
 	struct course *course = NEW(struct course);
 	*course = (struct course){ .samples = (long)floor(roads->until / roads->h * (1 + 1e-14)),
 				   .outputs = step->model->outputs };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The same C, compiled, with -DMODEL=NAME -DRHS=NAME_rhs -DREAL=double and -DINPUTS where it has some: prints what
- * interpret.c does. With END FACTOR instead of STEPS: to this time, from the spec's initial values times the factor. */
+ * inside.c does. With END FACTOR instead of STEPS: to this time, from the spec's initial values times the factor. */
 #include <stdio.h>
 #include <stdlib.h>
 #include "plrt.h"

@@ -121,6 +121,7 @@ long && meets duffing x 1e-3 30 yes --real float
 meets shaken a 1e-4 30 yes
 meets clearance x 1e-3 40 yes
 meets clearance x 1e-6 10 yes --scheme exact
+meets clearance x 1e-3 40 yes --scheme etdrk4
 meets lorenz x 1e-3 5 no
 meets mathieu x 1e-5 30 yes
 meets driven x 1e-4 '20 for |u| <= 0.7' no

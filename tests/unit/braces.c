@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Braces around bodies of C as emitters print it: what comes out is written here by hand. */
-#include "emit/emit.h"
+/* C as emitters print it, with braces around bodies, and with counts: what comes out is written here by hand. */
+#include "run/run.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,16 +9,21 @@
 
 #include <cmocka.h>
 
-static void becomes(const char *text, const char *expected)
+static void becomes_by(void (*print)(FILE *to, const char *text), const char *text, const char *expected)
 {
 	char *made = NULL;
 	size_t length;
 	FILE *to = open_memstream(&made, &length);
 	assert_non_null(to);
-	print_braces(to, text);
+	print(to, text);
 	fclose(to);
 	assert_string_equal(made, expected);
 	free(made);
+}
+
+static void becomes(const char *text, const char *expected)
+{
+	becomes_by(print_braces, text, expected);
 }
 
 static void bodies_get_braces(void **state)
@@ -77,6 +82,21 @@ static void nothing_else_changes(void **state)
 		becomes(text[i], text[i]);
 }
 
+/* What is behind a sign is counted where it is evaluated: in branches, in brackets; of tables and places nothing is. */
+static void counts_stand_before_operands(void **state)
+{
+	(void)state;
+	becomes_by(print_counts,
+		   "const double A[] = {1.0 / 3.0};\nvoid f(int n)\n{\n    x = a ? b * -c[i + 1] : d;\n}\n",
+		   "const double A[] = {1.0 / 3.0};\nvoid f(int n)\n{\n"
+		   "    x = a ? b * (PL_MULTIPLIES(b, -c[i + 1]), -c[i + 1]) : d;\n}\n");
+	becomes_by(print_counts,
+		   "int f(void)\n{\n    static const double t = 1.0 / 3.0;\n    *s->y += (real)n - g(x / 2e-1);\n}\n",
+		   "int f(void)\n{\n    static const double t = 1.0 / 3.0;\n"
+		   "    *s->y += (PL_ADDS(*s->y, *s->y), (real)n "
+		   "- (PL_ADDS((real)n, g(x / 2e-1)), g(x / (PL_MULTIPLIES(x, 2e-1), 2e-1))));\n}\n");
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -84,6 +104,7 @@ int main(void)
 		cmocka_unit_test(an_else_stays_with_its_if),
 		cmocka_unit_test(loops_stand_in_each_other),
 		cmocka_unit_test(nothing_else_changes),
+		cmocka_unit_test(counts_stand_before_operands),
 	};
 	return cmocka_run_group_tests_name("braces", tests, NULL, NULL);
 }

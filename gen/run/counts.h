@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Behind plrt.h, before the C of a model that is counted (count.c): what has run so far, as step/cost.c counts it.
+ * Quotients are products, a call is one of <math.h>. Of what the runtime does with arrays it is an estimate. */
+static struct {
+	uint64_t multiplications, additions, calls;
+} pl_counted;
+const void *const pl_counts = &pl_counted;
+
+/* Of whole numbers nothing counts. */
+#define PL_IS_REAL(x) \
+	(__builtin_types_compatible_p(__typeof__(x), double) || __builtin_types_compatible_p(__typeof__(x), float))
+#define PL_ADDS(a, b) (PL_IS_REAL(a) || PL_IS_REAL(b) ? pl_counted.additions++ : 0)
+#define PL_MULTIPLIES(a, b) (PL_IS_REAL(a) || PL_IS_REAL(b) ? pl_counted.multiplications++ : 0)
+#define PL_CALLS (pl_counted.calls++)
+#define PL_TAKES(m, a) (pl_counted.multiplications += (uint64_t)(m), pl_counted.additions += (uint64_t)(a))
+#define PL_TAKES_BOTH(count) PL_TAKES(count, count)
+
+#define pl_cossin(a, z) (PL_TAKES(PL_COSSIN_MUL, PL_COSSIN_ADD), pl_cossin(a, z))
+#define pl_cossinf(a, z) (PL_TAKES(PL_COSSINF_MUL, PL_COSSINF_ADD), pl_cossinf(a, z))
+#define pl_growth_value(a) (PL_TAKES(PL_GROWTH_MUL, PL_GROWTH_ADD), pl_growth_value(a))
+#define pl_growthf_value(a) (PL_TAKES(PL_GROWTHF_MUL, PL_GROWTHF_ADD), pl_growthf_value(a))
+#define pl_accumulate(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulate(sum, term, small, rest))
+#define pl_accumulatef(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulatef(sum, term, small, rest))
+
+/* Matrices and linear equations */
+#define pl_multiply(rows, columns, A, x, y) (PL_TAKES_BOTH((rows) * (columns)), pl_multiply(rows, columns, A, x, y))
+#define pl_multiplyf(rows, columns, A, x, y) (PL_TAKES_BOTH((rows) * (columns)), pl_multiplyf(rows, columns, A, x, y))
+#define pl_multiply_add(rows, columns, A, x, y) \
+	(PL_TAKES_BOTH((rows) * (columns)), pl_multiply_add(rows, columns, A, x, y))
+#define pl_multiplyf_add(rows, columns, A, x, y) \
+	(PL_TAKES_BOTH((rows) * (columns)), pl_multiplyf_add(rows, columns, A, x, y))
+#define PL_FACTORS(n, products) PL_TAKES_BOTH((uint64_t)(products) * (uint64_t)(n) * (uint64_t)(n) * (uint64_t)(n) / 3)
+#define pl_factor(n, A, pivot) (PL_FACTORS(n, 1), pl_factor(n, A, pivot))
+#define pl_factorf(n, A, pivot) (PL_FACTORS(n, 1), pl_factorf(n, A, pivot))
+#define pl_factor_complex(n, A, pivot) (PL_FACTORS(n, 4), pl_factor_complex(n, A, pivot))
+#define pl_factorf_complex(n, A, pivot) (PL_FACTORS(n, 4), pl_factorf_complex(n, A, pivot))
+#define pl_solve(n, A, pivot, x) (PL_TAKES_BOTH((n) * (n)), pl_solve(n, A, pivot, x))
+#define pl_solvef(n, A, pivot, x) (PL_TAKES_BOTH((n) * (n)), pl_solvef(n, A, pivot, x))
+#define pl_solve_complex(n, A, pivot, x) (PL_TAKES_BOTH(4 * (n) * (n)), pl_solve_complex(n, A, pivot, x))
+#define pl_solvef_complex(n, A, pivot, x) (PL_TAKES_BOTH(4 * (n) * (n)), pl_solvef_complex(n, A, pivot, x))
+
+/* A step of regions, or a part of it, and whether it is clear */
+#define PL_PIECES(m, c, words) \
+	PL_TAKES_BOTH((m)->size * ((words) * (m)->size + 3 + ((m)->halvings[(c)->matrix] > 0 ? 4 * (m)->size : 0)))
+#define pl_switching_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_step(m, x, c, e, w))
+#define pl_switchingf_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_step(m, x, c, e, w))
+#define pl_switching_kept_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_kept_step(m, x, c, e, w))
+#define pl_switchingf_kept_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_kept_step(m, x, c, e, w))
+#define pl_switching_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_advance(m, t, x, c, e, w))
+#define pl_switchingf_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_advance(m, t, x, c, e, w))
+#define pl_switching_kept_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_kept_advance(m, t, x, c, e, w))
+#define pl_switchingf_kept_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_kept_advance(m, t, x, c, e, w))
+
+/* A part of a step with a leftover */
+#define PL_CUT_FLOWS(m) PL_TAKES_BOTH((m)->size * (m)->size * ((m)->terms > 0 ? (m)->terms : 1))
+#define pl_cut_flow(m, half, x, out) (PL_CUT_FLOWS(m), pl_cut_flow(m, half, x, out))
+#define pl_cutf_flow(m, half, x, out) (PL_CUT_FLOWS(m), pl_cutf_flow(m, half, x, out))

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The C of a model as code in memory, by libtcc: a compiler of a millisecond, which rounds each product and each sum as
+ * it is written. It reads no file and needs none. */
+#include "run/run.h"
+
+#include <libtcc.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "run_texts.h"
+
+/* ---- the text ---- */
+
+static void print_text_of(FILE *to, const char *name)
+{
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+		if (strcmp(texts[i].name, name) == 0)
+			fputs(texts[i].text, to);
+}
+
+/* Another text made of one, which is freed */
+static char *rewritten(char *text, void (*print)(FILE *to, const char *text))
+{
+	char *other = NULL;
+	size_t length = 0;
+	FILE *to = open_memstream(&other, &length);
+	need_memory(to);
+	print(to, need_memory(text));
+	fclose(to);
+	free(text);
+	return need_memory(other);
+}
+
+/* What nobody calls here is left out: batches, the selftest. */
+static void print_model(FILE *to, const struct step *step, bool rhs)
+{
+	struct step lean = *step;
+	struct model model = *step->model;
+	model.asked.batch = model.asked.selftest = false;
+	lean.model = &model;
+	emit_code(to, &lean, "", NULL, rhs);
+}
+
+/* Headers are in the text already. */
+static char *without_includes(char *text)
+{
+	for (char *line = text; line; line = strchr(line, '\n')) {
+		line += *line == '\n';
+		if (strncmp(line, "#include", strlen("#include")) == 0)
+			memcpy(line, "//", 2);
+	}
+	return text;
+}
+
+static char *text_of(const struct step *step, enum running_with with)
+{
+	char *text = NULL, *all = NULL;
+	size_t length = 0;
+	FILE *to = open_memstream(&text, &length);
+	need_memory(to);
+	print_model(to, step, with & WITH_RHS);
+	fclose(to);
+	text = rewritten(text, print_included);
+	text = step->model->asked.single ? rewritten(text, print_single) : text;
+	to = open_memstream(&all, &length);
+	print_apart(need_memory(to), text, step->model->name);
+	fclose(to);
+	free(text);
+	text = with & WITH_COUNTS ? rewritten(all, print_counts) : all;
+	to = open_memstream(&all, &length);
+	need_memory(to);
+	print_text_of(to, "prelude.h");
+	fputs(math_prototypes, to);
+	fputs(runtime_text("plrt.h"), to);
+	if (with & WITH_COUNTS) {
+		print_text_of(to, "counts.h");
+		fputs(math_counts, to);
+	}
+	fputs(text, to);
+	fclose(to);
+	free(text);
+	return without_includes(need_memory(all));
+}
+
+/* ---- the compiler ---- */
+
+static void keep_message(void *to, const char *message)
+{
+	*(const char **)to = format("%s", message);
+}
+
+static bool compile(TCCState *tcc, const char *text)
+{
+	tcc_set_options(tcc, "-nostdlib -nostdinc -w");
+	if (tcc_set_output_type(tcc, TCC_OUTPUT_MEMORY) < 0 || tcc_compile_string(tcc, text) < 0)
+		return false;
+	for (const struct runtime_symbol *s = runtime_symbols; s->name; s++)
+		tcc_add_symbol(tcc, s->name, s->at);
+	return true;
+}
+
+/* In pages of its own, until the end; later versions of the library have them, with the state */
+static bool link_here(TCCState *tcc)
+{
+#ifndef TCC_RELOCATE_AUTO
+	return tcc_relocate(tcc) >= 0;
+#else
+	const int size = tcc_relocate(tcc, NULL);
+	if (size < 0)
+		return false;
+	void *room = mmap(NULL, (size_t)size, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+	return room != MAP_FAILED && tcc_relocate(tcc, room) >= 0;
+#endif
+}
+
+struct native native_of(struct place at, const struct step *step, enum running_with with)
+{
+	const char *name = step->model->name, *message = "no memory that can run";
+	char *text = text_of(step, with);
+	TCCState *tcc = need_memory(tcc_new());
+	struct native native = { 0 };
+	tcc_set_error_func(tcc, &message, keep_message);
+	const bool done = compile(tcc, text) && link_here(tcc);
+	free(text);
+	if (done) {
+		const void *const *counts = tcc_get_symbol(tcc, "pl_counts");
+		native = (struct native){ tcc_get_symbol(tcc, format("%s_model", name)),
+					  tcc_get_symbol(tcc, format("%s_rhs", name)), counts ? *counts : NULL };
+	}
+#ifdef TCC_RELOCATE_AUTO
+	tcc_delete(tcc);
+#endif
+	if (!native.model)
+		error(at, NULL, "internal error: the C of the model cannot be run here: %s", message);
+	return native;
+}

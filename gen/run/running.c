@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An instance of a model that runs here, driven by its descriptor. */
+#include "run/run.h"
+
+struct running {
+	const struct step *step;
+	struct native native;
+	int states, inputs, outputs;
+	bool single;
+	void *instance;
+	void *y, *u, *out, *slope;  /* of the target's type */
+};
+
+/* A function of the descriptor, which has two types */
+#define CALL(r, call) \
+	((r)->single ? ((const pl_modelf *)(r)->native.model)->call : ((const pl_model *)(r)->native.model)->call)
+
+struct running *running_new(struct place at, const struct step *step, enum running_with with)
+{
+	const struct model *model = step->model;
+	struct running *r = NEW(struct running);
+	*r = (struct running){ .step = step, .native = native_of(at, step, with),
+			       .states = model->written->system.states, .inputs = model->system.inputs,
+			       .outputs = model->outputs, .single = model->asked.single };
+	r->instance = allocate(1, CALL(r, size));
+	r->y = ARRAY(double, (size_t)r->states + 1);
+	r->u = ARRAY(double, 2 * (size_t)r->inputs + 1);
+	r->out = ARRAY(double, (size_t)r->outputs + 1);
+	r->slope = ARRAY(double, (size_t)r->states + 1);
+	return r;
+}
+
+const struct step *running_step_of(const struct running *r)
+{
+	return r->step;
+}
+
+struct counted running_counted(const struct running *r)
+{
+	return *r->native.counted;
+}
+
+static void to_target(const struct running *r, const double *from, void *to, int count)
+{
+	for (int i = 0; i < count; i++) {
+		if (r->single)
+			((float *)to)[i] = (float)from[i];
+		else
+			((double *)to)[i] = from[i];
+	}
+}
+
+static void from_target(const struct running *r, const void *from, double *to, int count)
+{
+	for (int i = 0; i < count; i++)
+		to[i] = r->single ? (double)((const float *)from)[i] : ((const double *)from)[i];
+}
+
+void running_start(struct running *r, double t, const double *y)
+{
+	if (!y) {
+		CALL(r, init(r->instance));
+		return;
+	}
+	to_target(r, y, r->y, r->states);
+	if (r->single)
+		((const pl_modelf *)r->native.model)->set(r->instance, (float)t, r->y);
+	else
+		((const pl_model *)r->native.model)->set(r->instance, t, r->y);
+}
+
+void running_step(struct running *r, const double *u)
+{
+	to_target(r, u, r->u, r->inputs);
+	CALL(r, step(r->instance, r->u));
+}
+
+/* The samples of the step before k, and the last one */
+void running_drive(struct running *r, const struct sampled *d, long k)
+{
+	double *u = ARRAY(double, 2 * (size_t)r->inputs + 1);
+	drive_at(d, k > 0 ? k - 1 : 0, d->h * (double)(k > 0 ? k - 1 : 0), u);
+	to_target(r, u, r->u, r->inputs);
+	if (CALL(r, hold != NULL))
+		CALL(r, hold(r->instance, r->u));
+	if (k > 0) {
+		drive_step(d, k - 1, u);
+		running_step(r, u);
+	}
+	discard(u);
+}
+
+void running_state(struct running *r, double *y)
+{
+	CALL(r, get(r->instance, r->y));
+	from_target(r, r->y, y, r->states);
+}
+
+void running_outputs(struct running *r, double *out)
+{
+	CALL(r, out(r->instance, r->out));
+	from_target(r, r->out, out, r->outputs);
+}
+
+double running_time(struct running *r)
+{
+	return CALL(r, time(r->instance));
+}
+
+int running_status(struct running *r)
+{
+	return CALL(r, status(r->instance));
+}
+
+/* NAME_rhs takes inputs where there are any, and numbers of the target's type. */
+void running_rhs(struct running *r, double t, const double *y, const double *u, double *slope)
+{
+	to_target(r, y, r->y, r->states);
+	to_target(r, u, r->u, 2 * r->inputs);
+	typedef void driven(double t, const double *y, const double *u, double *slope);
+	typedef void drivenf(float t, const float *y, const float *u, float *slope);
+	typedef void alone(double t, const double *y, double *slope);
+	typedef void alonef(float t, const float *y, float *slope);
+	const void *rhs = r->native.rhs;
+	if (r->inputs > 0 && r->single)
+		((drivenf *)rhs)((float)t, r->y, r->u, r->slope);
+	else if (r->inputs > 0)
+		((driven *)rhs)(t, r->y, r->u, r->slope);
+	else if (r->single)
+		((alonef *)rhs)((float)t, r->y, r->slope);
+	else
+		((alone *)rhs)(t, r->y, r->slope);
+	from_target(r, r->slope, slope, r->states);
+}
