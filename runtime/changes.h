@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* changes.h: a linear model over a time in which loads change their formula: x' = A x, x being the states and what acts
- * on them, by Taylor's series from change to change.  Included by the file of the model, which defines before it
+/* changes.h: a linear model over part of a step: x' = A x, x being the states and what acts on them, by Taylor's
+ * series; from change to change where loads change their formula, or of independent blocks one after the other.
+ * Included by the file of the model, which defines before it
  *
  *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with member segment
  *     PL_STATES, PL_SIZE         the states; length of x
+ *     PL_BLOCKS, PL_LARGEST      how many independent blocks; what x has of the largest.  Their states are those of
+ *                                PL(block_state)[] from PL(block_first)[block] on.  0: what follows counts
  *     PL_SEGMENTS                of time, in which loads have their formulas
  *     PL_DEGREE, PL_HALVINGS     of a series: as in pl_series
  *     PL_CHANGING, PL_FIRST      columns of A that are others in each segment; the first of them
@@ -17,6 +20,39 @@
  *     PL(forced_change)[][PL_STATES][]   what the state gains at each change
  *     PL(until)(s, change)               time from now to a change [s] */
 #include "numbers.h"
+
+#if PL_BLOCKS > 0
+
+/* x goes on by tau [s], each block with all that acts on some */
+static void PL(pass_blocks)(const real slope[PL_SIZE][PL_SIZE], real tau, real x[PL_SIZE])
+{
+    real part[PL_LARGEST], A[PL_LARGEST * PL_LARGEST], work[2 * PL_LARGEST];
+    int block, i, j;
+    pl_series series;
+    series.degree = PL_DEGREE;
+    series.halvings = PL_HALVINGS;
+    series.A = A;
+    for (block = 0; block < PL_BLOCKS; block++) {
+        const unsigned short *const at = PL(block_state) + PL(block_first)[block];
+        const int states = PL(block_first)[block + 1] - PL(block_first)[block];
+        const int size = states + PL_SIZE - PL_STATES;
+        for (i = 0; i < size; i++) {
+            const int row = i < states ? at[i] : PL_STATES + i - states;
+            part[i] = x[row];
+            for (j = 0; j < size; j++) {
+                A[size * i + j] = slope[row][j < states ? at[j] : PL_STATES + j - states];
+            }
+        }
+        series.size = size;
+        series.states = states;
+        pl_series_advance(&series, tau, part, work);
+        for (i = 0; i < states; i++) {
+            x[at[i]] = part[i];
+        }
+    }
+}
+
+#else
 
 #if PL_FORCED > 0
 static void PL(add_forced)(const real share[PL_STATES][PL_LOAD_STATES], real x[PL_SIZE])
@@ -82,5 +118,7 @@ static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE]
     (void)whole;
     return segment;
 }
+
+#endif
 
 #include "undef.h"

@@ -84,6 +84,7 @@
 #undef PL_LADDER
 #undef PL_LANES
 #undef PL_LARGE
+#undef PL_LARGEST
 #undef PL_LEADS
 #undef PL_LEAN
 #undef PL_LEAST_PART

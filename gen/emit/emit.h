@@ -501,14 +501,12 @@ const char *group_note(const struct emitter *e, const struct group *g);
 /* Which row and column of its blocks a row of numbers of blocks alike is of; columns: states, loads, inputs */
 int  alike_entry(const struct emitter *e, const struct group *g, bool changing, int index, int *column);
 
-/* ---- blockwise.c: between steps, and many at once, of a large model block by block ---- */
+/* ---- blockwise.c: the independent blocks of a large model, one after the other between steps and many at once ---- */
 
 bool is_blockwise(const struct emitter *e);
+int  count_blocks(const struct emitter *e);
+int  states_of_largest_block(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
-void declare_blockwise_at(const struct emitter *e);               /* x, before what fills it */
-void emit_blockwise_at(const struct emitter *e);
-void declare_blockwise_leap(const struct emitter *e, const struct leap *leap); /* load, likewise */
-void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries);
 
 /* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
 

@@ -174,10 +174,13 @@ static void emit_passing_algorithm(const struct emitter *e)
 {
 	const struct load_slopes slopes = load_slopes_of(e->step);
 	const struct forced *forced = e->step->forced;
+	const int acting = e->step->layout.size - e->system->states;
+	const int blocks = e->system->segments == 1 ? count_blocks(e) : 0;
 	if (slopes.first >= 0)
 		emit_load_slopes(e, &slopes);
 	const struct size sizes[] = {
 		{ "STATES", e->system->states }, { "SIZE", e->step->layout.size },
+		{ "BLOCKS", blocks }, { "LARGEST", blocks ? states_of_largest_block(e) + acting : 0 },
 		{ "SEGMENTS", e->system->segments },
 		{ "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
 		{ "CHANGING", slopes.first >= 0 ? slopes.columns : 0 }, { "FIRST", slopes.first },
@@ -270,21 +273,18 @@ static void emit_passing_at(const struct emitter *e)
 
 static void emit_series_at(const struct emitter *e)
 {
-	if (is_blockwise(e)) {
-		declare_blockwise_at(e);
-		emit_series_vector(e);
-		emit_blockwise_at(e);
-		emit_hand_over(e);
-		return;
-	}
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	say(e, "    %sconst pl_series series = {%d, $N_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n"
-	       "    double x[%d], work[%d];\n",
-	    e->step->branches > 1 ? "" : "static ", layout->size, series->degree, series->halvings, slope_text(e),
-	    layout->size, 2 * layout->size);
+	const bool blocks = is_blockwise(e);
+	if (!blocks)
+		say(e, "    %sconst pl_series series = {%d, $N_STATES, %d, %d, %s[0]};  "
+		       "/* size, states, degree, halvings */\n"
+		       "    double work[%d];\n", e->step->branches > 1 ? "" : "static ", layout->size, series->degree,
+		    series->halvings, slope_text(e), 2 * layout->size);
+	say(e, "    double x[%d];\n", layout->size);
 	emit_series_vector(e);
-	say(e, "    pl_series_advance(&series, tau, x, work);\n");
+	say(e, "    %s;\n", blocks ? format("%s_pass_blocks(%s, tau, x)", e->name, slope_text(e))
+				    : "pl_series_advance(&series, tau, x, work)");
 	emit_hand_over(e);
 }
 
@@ -293,6 +293,8 @@ void emit_at(const struct emitter *e)
 	bool changes = e->system->segments > 1;
 	if (!changes && !has_peaks(e))
 		emit_series_slopes(e);
+	if (!changes && is_blockwise(e))
+		emit_passing_algorithm(e);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
 	e->kind->held(e);
 	if (changes)
@@ -323,8 +325,8 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 		return;
 	say(e, "\n"
 	       "/* ... and what the load states add, from column %d on */\n"
-	       "static const struct {%s int row, column; pl_two value; } $n_power_entry[] = {\n",
-	    e->system->states, segments ? " int segment;" : "");
+	       "static const struct { unsigned short %srow, column; pl_two value; } $n_power_entry[] = {\n",
+	    e->system->states, segments ? "segment, " : "");
 	for (int i = 0; i < entries; i++) {
 		const struct leap_entry *cell = &entry[i];
 		say(e, "    {%s%d, %d, {%s, %s}},\n", segments ? format("%d, ", cell->segment) : "", cell->row,
@@ -368,17 +370,22 @@ static int emit_carried(const struct emitter *e)
 	return e->step->carries;
 }
 
-/* load[...] = the load states that the step reads, behind the states */
-static void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector)
+/* load[...] = the load states that the step reads */
+static void emit_leap_loads(const struct emitter *e, const struct leap *leap)
 {
+	const int loads = leap->size - e->system->states;
+	if (loads == 0)
+		return;
+	open_function(e, NULL, "static void $n_leap_loads(const $n *s, pl_two load[%d])", loads);
 	emit_load_states(e, wanted_loads(e, leap->load), false);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && leap->load[l] >= 0; k++) {
 			const char *value = load_operand(e, l, k);
 			const int at = leap->load[l] + k - e->system->states;
-			say(e, "    %s[%d].hi = %s;\n"
-			       "    %s[%d].lo = 0.0;\n", vector, at, value ? value : "1.0", vector, at);
+			say(e, "    load[%d].hi = %s;\n"
+			       "    load[%d].lo = 0.0;\n", at, value ? value : "1.0", at);
 		}
+	close_function(e, "s");
 }
 
 static void emit_pass_steps(const struct emitter *e)
@@ -391,46 +398,25 @@ static void emit_pass_steps(const struct emitter *e)
 	close_function(e, "");
 }
 
-/* n steps without a change of the loads, of independent blocks */
-static void emit_leap_by_blocks(const struct emitter *e, const struct leap *leap, int entries)
-{
-	open_function(e, NULL, "static void $n_leap($n *s, uint64_t n)");
-	declare_blockwise_leap(e, leap);
-	emit_leap_loads(e, leap, "load");
-	emit_blockwise_leap(e, leap, entries);
-	say(e, "    $n_pass_steps(s, n);\n");
-	close_function(e, "");
-}
-
-static void emit_leap_functions(const struct emitter *e, const struct leap *leap)
-{
-	if (converts(e))
-		emit_conversion(e);
-	if (leap->size == e->system->states)
-		return;
-	open_function(e, NULL, "static void $n_leap_loads(const $n *s, pl_two load[%d])",
-		      leap->size - e->system->states);
-	emit_leap_loads(e, leap, "load");
-	close_function(e, "s");
-}
 
 void emit_jump(const struct emitter *e)
 {
 	const struct leap leap = leap_of(e->step);
 	struct leap_entry *entry;
 	const int entries = leap_entries_of(e->step, &leap, &entry);
-	const bool blocks = is_blockwise(e), whole = !converts(e) && !blocks;
+	const int blocks = is_blockwise(e) ? count_blocks(e) : 1, loads = leap.size - e->system->states;
 	emit_second_words(e);
 	emit_power_entries(e, entries, entry);
 	emit_pass_steps(e);
-	if (blocks)
-		emit_leap_by_blocks(e, &leap, entries);
-	else
-		emit_leap_functions(e, &leap);
+	if (converts(e))
+		emit_conversion(e);
+	emit_leap_loads(e, &leap);
 	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "SIZE", leap.size }, { "SEGMENTS", e->system->segments },
-		{ "BLOCKS", blocks }, { "CONVERTED", converts(e) }, { "KEPT", whole && e->step->program->compensated },
-		{ "CARRIES", whole ? emit_carried(e) : 0 }, { "ENTRIES", entries }
+		{ "STATES", e->system->states }, { "LOAD_STATES", loads },
+		{ "SIZE", (blocks > 1 ? states_of_largest_block(e) : e->system->states) + loads },
+		{ "SEGMENTS", e->system->segments }, { "BLOCKS", blocks }, { "CONVERTED", converts(e) },
+		{ "KEPT", !converts(e) && e->step->program->compensated },
+		{ "CARRIES", converts(e) ? 0 : emit_carried(e) }, { "ENTRIES", entries }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	say(e, "#define PL_PHI %s\n"
