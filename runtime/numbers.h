@@ -56,6 +56,10 @@
 #define pl_increment pl_incrementf
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels
+#define pl_region_of pl_regionf_of
+#define pl_region_large pl_regionf_large
+#define pl_region_bounds pl_regionf_bounds
+#define pl_region_reach pl_regionf_reach
 #define pl_block pl_blockf
 #define pl_group pl_groupf
 #else

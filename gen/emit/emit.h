@@ -45,6 +45,7 @@ void close_function(const struct emitter *e, const char *unread);
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
 /* static const int NAME_name[]; of none there is a 0 */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
+void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value);
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *whole_text(int number);
@@ -145,6 +146,7 @@ const char *of_step(const struct emitter *e, const char *table);
 struct size { const char *name; int value; };
 /* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size */
 void emit_sizes(const struct emitter *e, int count, const struct size *size);
+void put_sizes(const struct emitter *e, int count, const struct size *size);  /* further ones */
 
 void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 const char *param_list(const struct emitter *e);                  /* names, commas between */
@@ -680,6 +682,7 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 /* ---- emit_tuned_blocks.c: what retune.h is told of a linear step ---- */
 
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
+void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
 void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
 void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix);
 

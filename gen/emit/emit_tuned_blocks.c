@@ -181,35 +181,30 @@ static const char *list_text(const struct emitter *e, int count, int first)
 	return count ? format("%s_places + %d", e->name, first) : "NULL";
 }
 
-static void emit_entries(const struct emitter *e)
+void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed)
 {
-	const struct tuned_blocks *p = blocks_of_step(e);
-	int entries = 0;
-	for (int b = 0; b < p->blocks; b++)
-		entries += is_listed(e, b) ? p->block[b].slopes : 0;
-	if (entries == 0)
+	if (count == 0)
 		return;
-	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */\n", entries);
-	for (int b = 0; b < p->blocks; b++) {
-		if (!is_listed(e, b) || p->block[b].slopes == 0)
-			continue;
-		say(e, "    ");
-		for (int i = 0; i < p->block[b].slopes; i++) {
-			const struct fixed_slope *slope = &p->block[b].slope[i];
-			say(e, "%s{%d, %d, %s}", !i ? "" : i % 5 ? ", " : ",\n    ", slope->row, slope->column,
-			    two_words(slope->value));
-		}
-		say(e, ",\n");
-	}
-	say(e, "};\n");
+	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */\n    ", count);
+	for (int i = 0; i < count; i++)
+		say(e, "%s{%d, %d, %s}", !i ? "" : i % 5 ? ", " : ",\n    ", fixed[i].row, fixed[i].column,
+		    two_words(fixed[i].value));
+	say(e, "\n};\n");
 }
 
-static void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
+static void emit_all_entries(const struct emitter *e)
 {
-	say(e, "\nstatic const %s $n_%s[%d] = {", type, name, count);
-	for (int i = 0; i < count; i++)
-		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
-	say(e, "};\n");
+	const struct tuned_blocks *p = blocks_of_step(e);
+	struct fixed_slope *all = NULL;
+	int count = 0;
+	for (int b = 0; b < p->blocks; b++) {
+		if (!is_listed(e, b))
+			continue;
+		ENLARGE(all, (size_t)(count + p->block[b].slopes));
+		for (int i = 0; i < p->block[b].slopes; i++)
+			all[count++] = p->block[b].slope[i];
+	}
+	emit_entries(e, count, all);
 }
 
 static void emit_lists(const struct emitter *e, const struct listed *l)
@@ -342,7 +337,7 @@ static void emit_block_tables(const struct emitter *e)
 	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
 		if (p->block[b].group->tuned)
 			group[groups++] = group_text(e, &p->block[b], &lists);
-	emit_entries(e);
+	emit_all_entries(e);
 	emit_lists(e, &lists);
 	if (listed)
 		emit_blocks(e, listed, block);

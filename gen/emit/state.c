@@ -367,6 +367,12 @@ bool crowds(const struct emitter *e)
 	return has_unseen(e) && e->step->unseen->crowded > 0;
 }
 
+void put_sizes(const struct emitter *e, int count, const struct size *size)
+{
+	for (int i = 0; i < count; i++)
+		say_macro(e, size[i].name, whole_text(size[i].value));
+}
+
 void emit_sizes(const struct emitter *e, int count, const struct size *size)
 {
 	say(e, "\n/* ---- what is the same for every model ---- */\n\n"
@@ -374,8 +380,7 @@ void emit_sizes(const struct emitter *e, int count, const struct size *size)
 	       "#define PL_TYPE $n\n"
 	       "#define PL_H %s\n"
 	       "#define PL_SINGLE %d\n", step_length(e), e->model->asked.single);
-	for (int i = 0; i < count; i++)
-		say(e, "#define PL_%s %d\n", size[i].name, size[i].value);
+	put_sizes(e, count, size);
 }
 
 /* ---- tunable params ---- */
@@ -406,17 +411,6 @@ void emit_tuning_wrapper(const struct emitter *e)
 		name[k] = t->param[k].symbol->name;
 	say(e, "\n");
 	emit_name_list(e, "param_names", t->params, name);
-	if (e->kind->own_factors)
-		return;                         /* in retune.h */
-	say(e, "\n"
-	       "static int $n_any_retune(void *s, const double *params, double h)\n"
-	       "{\n"
-	       "    $n_coeffs fresh = $n_nominal;\n"
-	       "    const int status = $n_retune(&fresh, params, h);\n"
-	       "    if (status == 0)\n"
-	       "        $n_use((struct $n *)s, &fresh);\n"
-	       "    return status;\n"
-	       "}\n");
 }
 
 void emit_param_locals(const struct emitter *e, const bool *reads)

@@ -196,12 +196,17 @@ void say_macro(const struct emitter *e, const char *name, const char *text)
 	say(e, "#define PL_%s%s%s\n", name, *text ? " " : "", text);
 }
 
+void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
+{
+	say(e, "static const %s $n_%s[%d] = {%s", type, name, count ? count : 1, count ? "" : "0");
+	for (int i = 0; i < count; i++)
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
+	say(e, "};\n");
+}
+
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value)
 {
-	say(e, "static const int $n_%s[%d] = {%s", name, count ? count : 1, count ? "" : "0");
-	for (int i = 0; i < count; i++)
-		say(e, i ? ", %d" : "%d", value[i]);
-	say(e, "};\n");
+	emit_integers(e, "int", name, count, value);
 }
 
 void say_include(const struct emitter *e, const char *algorithm)

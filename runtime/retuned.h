@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* retuned.h: regions whose matrices tunable params change, so that an instance has their tables: NAME_retune, and what
+ * it gathers of them for steps that stay clear.  Included by the model's file, which defines before it
+ *
+ *     PL(name), PL_SINGLE, PL_H          the model's prefix before a name; 1: in float; its step [s]
+ *     PL_PARAMS, PL_SIZE, PL_STATES      sizes; of x; states, which x begins with
+ *     PL_EXPRESSIONS, PL_BREAKS, PL_SEGMENTS     expressions, breakpoints of all; segments of time of the loads
+ *     PL_BRANCHES, PL(slope_row)[]       linear systems that regions have; of each its first row of highest derivatives
+ *                                        among the numbers, -1: it stays, -2: and so do all rows that it has bounds of
+ *     PL(segment)[]                      of each, the segment of time it is of, where there are several
+ *     PL_ROWS, PL_BLOCKS, PL_WIDE        numbers that params change, rows over x: PL(equations)[1 + PL_BLOCKS] give
+ *                                        them, those behind the first, of so many entries at most with their W's, from
+ *     PL(block_row)[]                    this row on
+ *     PL(check)[2 PL_CHECKS]             a number that may not have any value, and which: 0: at least 0, 1: at most 1,
+ *                                        too, 2: above 0, 3: below 0
+ *     PL_FROM, PL(from)[]                per row of an instance's tables where it is found among the numbers, from 1;
+ *                                        below 0: with the other sign, 0: it stays. 0: all do
+ *     PL_ENTRIES, PL(entry)[], PL_HIGHEST, PL(highest)[]     of x' = A x: what stays; rows of highest derivatives
+ *     PL_WORK, PL_HALVINGS, PL_RUNGS     numbers of two words to work in; of pl_region_of: most; rungs
+ *     PL(first_rung)[]                   of each linear system
+ *     PL_GUARDS, PL_GATES, PL_VALUES, PL_IMPACTS, PL_GRIPS   of friction and impacts: guards, their rows, what is held,
+ *                                        impacts in all segments of time, what friction carries; else 0
+ *     PL(gate_branch)[], PL(gate_rung)[] of rows of guards
+ *     PL_BOUNDED, PL(bounded)[]          columns of x that are never above 1
+ *     PL_CLEARS                          1: steps that stay clear need no search, for which
+ *     PL_STAYS, PL(stays)[], PL(stay_param)[]    columns of x stay; which param each is, -1: 1
+ *     PL_PAIRS, PL(pair)[]               loads oscillate, the first column of each; the next is its other one
+ *     PL_STILL                           1: steps are looked at that stay still
+ *     PL(breaks)[]                       breakpoints of each expression
+ *     PL_LARGE, PL_FOLDED, PL_OPEN_END   what no number may pass; root of 2 less 1; of intervals without end */
+#include "numbers.h"
+
+/* ---- the numbers ---- */
+
+static int PL(numbers)(const real params[PL_PARAMS], pl_two *value, pl_two *work)
+{
+    int status = pl_equations_at(&PL(equations)[0], params, value, work);
+#if PL_BLOCKS > 0
+    pl_two wide[PL_WIDE];
+    int b, i;
+    for (b = 1; b <= PL_BLOCKS && status == 0; b++) {
+        const int rows = PL(equations)[b].rows, from = PL(block_row)[b - 1] * PL_SIZE;
+        status = pl_equations_at(&PL(equations)[b], params, wide, work);
+        for (i = 0; i < rows * PL_SIZE && status == 0; i++) {
+            value[from + i] = wide[i / PL_SIZE * (PL_SIZE + rows) + i % PL_SIZE];
+        }
+    }
+#endif
+    return status;
+}
+
+#if PL_CHECKS > 0
+static int PL(out_of_range)(const pl_two *value)
+{
+    int i, out = 0;
+    for (i = 0; i < PL_CHECKS; i++) {
+        const real number = value[PL(check)[2 * i] * PL_SIZE].hi;
+        const int kind = PL(check)[2 * i + 1];
+        out |= kind < 2 ? number < 0 || (kind == 1 && number > 1) : kind == 2 ? !(number > 0) : !(number < 0);
+    }
+    return out;
+}
+#endif
+
+#if PL_FROM > 0
+/* ---- into the tables ---- */
+
+/* The next of them, `rows` of so many columns, into a table; what is behind them in from[] */
+static PL_APART const short *PL(take)(const short *from, int rows, int columns, const pl_two *value, real *to)
+{
+    int i;
+    for (; rows > 0; rows--, from++) {
+        const int sign = *from < 0 ? -1 : 1;
+        const pl_two *const row = value + (*from != 0 ? sign * *from - 1 : 0) * PL_SIZE;
+        for (i = 0; i < columns; i++, to++) {
+            if (*from != 0) {
+                *to = (real)sign * row[i].hi + 0; /* no -0 */
+            }
+        }
+    }
+    return from;
+}
+
+#if PL_GATES > 0
+#if PL_BOUNDED > 0
+/* The sizes of a row's factors of what is never above 1 */
+static real PL(play)(const real *row)
+{
+    real sum = 0;
+    int j;
+    for (j = 0; j < PL_BOUNDED; j++) {
+        sum += pl_magnitude(row[PL(bounded)[j]]);
+    }
+    return sum;
+}
+#endif
+
+static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *value)
+{
+    int i;
+    from = PL(take)(from, PL_GATES, PL_SIZE, value, c->gate[0]);
+    from = PL(take)(from, PL_GUARDS, 1, value, c->limit);
+    from = PL(take)(from, PL_VALUES, PL_SIZE, value, c->value[0]);
+    for (i = 0; i < PL_IMPACTS; i++) {
+        from = PL(take)(from, 1, 1, value, &c->impact[i].restitution);
+        from = PL(take)(from, 1, PL_SIZE, value, c->speed[i]);
+        from = PL(take)(from, 1, PL_SIZE, value, c->back[i]);
+    }
+#if PL_GRIPS > 0
+    from = PL(take)(from, PL_GRIPS, PL_SIZE, value, c->grips[0][0]);
+#endif
+    (void)from;
+#if PL_BOUNDED > 0
+    for (i = 0; i < PL_SEGMENTS * PL_EXPRESSIONS; i++) {
+#if PL_SEGMENTS > 1
+        c->play[i] = PL(play)(c->row[i / PL_EXPRESSIONS][i % PL_EXPRESSIONS]);
+#else
+        c->play[i] = PL(play)(c->row[i]);
+#endif
+    }
+    for (i = 0; i < PL_GATES; i++) {
+        c->gate_play[i] = PL(play)(c->gate[i]);
+    }
+    for (i = 0; i < PL_IMPACTS; i++) {
+        c->impact[i].play = PL(play)(c->speed[i]);
+    }
+#endif
+}
+#endif
+
+static void PL(take_all)(PL(coeffs) *c, const pl_two *value)
+{
+    const short *from = PL(from);
+#if PL_SEGMENTS > 1
+    from = PL(take)(from, PL_SEGMENTS * PL_EXPRESSIONS, PL_SIZE, value, c->row[0][0]);
+#else
+    from = PL(take)(from, PL_EXPRESSIONS, PL_SIZE, value, c->row[0]);
+#endif
+    from = PL(take)(from, PL_BREAKS, 1, value, c->breakpoint);
+#if PL_GATES > 0
+    PL(take_guards)(c, from, value);
+#endif
+    (void)from;
+}
+
+#endif
+
+/* ---- matrices ---- */
+
+/* e^{A d} of one system, x' = A x, from its rows of highest derivatives */
+static int PL(matrices)(PL(coeffs) *c, int k, const pl_two *value, real h, pl_two *work)
+{
+    static const pl_two none = {0, 0};
+    pl_two A[PL_SIZE * PL_SIZE];
+    int i, j, status;
+    for (i = 0; i < PL_SIZE * PL_SIZE; i++) {
+        A[i] = none;
+    }
+#if PL_ENTRIES > 0
+    for (i = 0; i < PL_ENTRIES; i++) {
+        A[PL(entry)[i].row * PL_SIZE + PL(entry)[i].column] = PL(entry)[i].value;
+    }
+#endif
+    for (i = 0; i < PL_HIGHEST; i++) {
+        for (j = 0; j < PL_SIZE; j++) {
+            A[PL(highest)[i] * PL_SIZE + j] = value[i * PL_SIZE + j];
+        }
+    }
+    status = pl_region_of(PL_SIZE, A, h, PL_HALVINGS, PL_RUNGS, &c->halvings[k], &c->spacing[k], c->slopes[k][0],
+                          c->pieces[k][0], c->rungs[PL(first_rung)[k]][0], work);
+#if PL_CLEARS
+    if (status == 0) {
+        c->large[k] = pl_region_large(PL_SIZE, c->halvings[k], c->pieces[k][0], PL_LARGE);
+    }
+#endif
+    return status;
+}
+
+/* ---- bounds ---- */
+
+#if PL_GATES > 0
+/* Of the rows of guards that are a system's; they stand together */
+static void PL(bound_gates)(PL(coeffs) *c, int k, real h, real d, real *room)
+{
+    int first, last;
+    for (first = 0; first < PL_GATES; first = last) {
+        const int own = PL(gate_branch)[first] == k;
+        for (last = first + 1; last < PL_GATES && PL(gate_branch)[last] == PL(gate_branch)[first]; last++) {
+        }
+        if (own) {
+            pl_region_bounds(PL_SIZE, d, c->slopes[k][0], last - first, c->gate[first], c->gate_lean[first],
+                             c->gate_sag[first], c->gate_sway[first], room);
+        }
+        for (; own && first < last; first++) {
+            pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], 1, c->gate[first],
+                            c->bend[PL(gate_rung)[first]], room);
+        }
+    }
+}
+#endif
+
+static void PL(bound)(PL(coeffs) *c, int k, real h)
+{
+    const real d = h / (real)((uint32_t)1 << c->halvings[k]);
+    real room[PL_REACH_WORK(PL_SIZE, PL_EXPRESSIONS)];
+#if PL_GATES > 0 || PL_CLEARS
+    real spare[2][PL_EXPRESSIONS * PL_SIZE];
+#endif
+#if PL_SEGMENTS > 1
+    const real *const row = c->row[PL(segment)[k]][0];
+#else
+    const real *const row = c->row[0];
+#endif
+#if PL_GATES > 0
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->lean[k][0], spare[0], spare[1], room);
+    PL(bound_gates)(c, k, h, d, room);
+#else
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->lean[k][0], c->sag[k][0], c->sway[k][0],
+                     room);
+    pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], PL_EXPRESSIONS, row,
+                    c->bend[PL(first_rung)[k] * PL_EXPRESSIONS], room);
+#endif
+#if PL_CLEARS
+    if (c->halvings[k] == 1) {
+        pl_region_bounds(PL_SIZE, h, c->slopes[k][0], PL_EXPRESSIONS, row, spare[0], c->chord_off[k][0], spare[1],
+                         room);
+    }
+    if (c->halvings[k] == 0) {
+        int i, j;
+        for (i = 0; i < PL_EXPRESSIONS; i++) {
+            for (j = 0; j < PL_SIZE; j++) {
+                c->chord_off[k][i][j] = c->sag[k][i][j];
+            }
+        }
+    }
+#endif
+}
+
+/* ---- steps that stay clear: what stays of x from step to step summed, bounds over what is never above 1 ---- */
+
+#if PL_CLEARS
+#if PL_STILL
+/* At least the root of a^2 + b^2 */
+static real PL(folded)(real a, real b)
+{
+    return a > b ? a + PL_FOLDED * b : b + PL_FOLDED * a;
+}
+
+/* What one system adds to the states, and how far expressions may be off their chords */
+static void PL(gather_branch)(PL(coeffs) *c, int k, const real at[])
+{
+    int i, j;
+#if PL_STAYS > 0
+    for (i = 0; i < PL_STATES; i++) {
+        c->added[k][i] = 0;
+        for (j = 0; j < PL_STAYS; j++) {
+            c->added[k][i] += c->pieces[k][i][PL(stays)[j]] * at[j];
+        }
+        if (!(pl_magnitude(c->added[k][i]) < PL_LARGE)) {
+            c->large[k] = 0;
+        }
+    }
+#endif
+    for (i = 0; i < PL_EXPRESSIONS; i++) {
+        const real *const off = c->chord_off[k][i];
+        real still = 0;
+        for (j = 0; j < PL_PAIRS; j++) {
+            still += PL(folded)(off[PL(pair)[j]], off[PL(pair)[j] + 1]);
+        }
+        for (j = 0; j < PL_STAYS; j++) {
+            still += off[PL(stays)[j]] * pl_magnitude(at[j]);
+        }
+        c->still[k][i] = still * (real)1.000000001;
+    }
+}
+#endif
+
+static void PL(gather)(PL(coeffs) *c)
+{
+    real at[PL_STAYS + 1];
+    int i, j, from = 0, edge = 0;
+    for (j = 0; j < PL_STAYS; j++) {
+        at[j] = PL(stay_param)[j] < 0 ? 1 : c->params[PL(stay_param)[j]];
+    }
+#if PL_STILL
+    for (i = 0; i < PL_BRANCHES; i++) {
+        PL(gather_branch)(c, i, at);
+    }
+#endif
+    for (i = 0; i < PL_EXPRESSIONS; i++) {
+        real shift = 0;
+        for (j = 0; j < PL_STAYS; j++) {
+            shift += c->row[i][PL(stays)[j]] * at[j];
+        }
+        c->edge[edge++] = -PL_OPEN_END;
+        for (j = 0; j < PL(breaks)[i]; j++) {
+            c->edge[edge++] = c->breakpoint[from++] - shift;
+        }
+        c->edge[edge++] = PL_OPEN_END;
+    }
+}
+#endif
+
+/* ---- all ---- */
+
+int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
+{
+    PL(coeffs) made = PL(nominal);
+    pl_two value[PL_ROWS * PL_SIZE], work[PL_WORK];
+    int i, status;
+    if (h != PL_H) {
+        return PL_NO_STEP;
+    }
+    status = PL(numbers)(params, value, work);
+#if PL_CHECKS > 0
+    if (status == 0 && PL(out_of_range)(value)) {
+        status = PL_OUT_OF_RANGE;
+    }
+#endif
+    if (status != 0) {
+        return status;
+    }
+    for (i = 0; i < PL_PARAMS; i++) {
+        made.params[i] = params[i];
+    }
+#if PL_FROM > 0
+    PL(take_all)(&made, value);
+#endif
+    for (i = 0; i < PL_BRANCHES; i++) {
+        const int from = PL(slope_row)[i];
+        if (from >= 0) {
+            status = PL(matrices)(&made, i, value + from * PL_SIZE, h, work);
+        }
+        if (status != 0) {
+            return status;
+        }
+        if (from >= -1) {
+            PL(bound)(&made, i, h);
+        }
+    }
+#if PL_CLEARS
+    PL(gather)(&made);
+#endif
+    *c = made;
+    return 0;
+}
+
+#include "undef.h"
