@@ -306,7 +306,7 @@ batch_build() {
 		xargs ar rcsD run_only.a <run_only.list && finish_archive run_only.a passing
 		objects=$(echo "$objects" | tr ' ' '\n' | grep -v -x -F -f run_only.list)
 		# shellcheck disable=SC2086
-		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
+		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/tests/fuzz" -I"$source/runtime" "subjects_$cc.c" \
 			$objects run_only.a "$folder/drive_$cc.a" \
 			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \
 				2>&1 ||
