@@ -31,6 +31,7 @@ struct emitter {
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
+	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
  * name and place, $d that of the first part of its degree, $c the columns of a series, $$ a dollar. */
@@ -622,6 +623,7 @@ void emit_of_branches(const struct emitter *e, const struct pieces *p, const cha
 		      double *(*of)(const struct region_piece *));
 void close_table(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
+void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs, where it is these tables */
 /* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
  * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
 void emit_ladder_places(const struct emitter *e, const struct guards *guards);
@@ -688,7 +690,6 @@ void emit_term_start(const struct emitter *e, const struct tuning *t, const char
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 
-void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
 void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
 int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
 int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */

@@ -2,6 +2,8 @@
 /* A piecewise-linear model as C: tables of its regions, and a step that leaves finding crossings to the runtime. */
 #include "emit/emit.h"
 
+#include <stdlib.h>
+
 static const struct switching *regions_of(const struct emitter *e)
 {
 	return e->model->switching;
@@ -142,6 +144,22 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		emit_own_look(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
+}
+
+/* They are printed, to nowhere, for what they are. */
+void emit_retuned_members(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	const struct guards g = has_guards(e) ? guards_of(e->step, &pieces) : (struct guards){ 0 };
+	struct emitter nowhere = *e;
+	char *text = NULL;
+	size_t length = 0;
+	nowhere.members = e;
+	nowhere.to = open_memstream(&text, &length);
+	need_memory(nowhere.to);
+	emit_numbers_of_regions(&nowhere, &pieces, has_guards(e) ? &g : NULL);
+	fclose(nowhere.to);
+	free(text);
 }
 
 void emit_regions(const struct emitter *e)

@@ -12,7 +12,9 @@ int expressions_of(const struct emitter *e)
 static void open_as(const struct emitter *e, bool own, const char *type, const char *name, const char *shape,
 		    const char *note)
 {
-	if (own)
+	if (own && e->members)
+		say(e->members, "    %-46s /* %s */\n", format("%s %s%s;", type, name, shape), note);
+	else if (own)
 		say(e, "    {  /* %s: %s */\n", name, note);
 	else
 		say(e, "\nstatic const %s $o_%s%s = {  /* %s */\n", type, name, shape, note);
