@@ -8,6 +8,7 @@
 #undef PL_AHEAD
 #undef PL_ALL
 #undef PL_ALONE
+#undef PL_ANCHORED
 #undef PL_ANY_STEP
 #undef PL_ARGUMENTS
 #undef PL_AT
@@ -77,9 +78,11 @@
 #undef PL_HUGE
 #undef PL_IMPACTS
 #undef PL_INPUTS
+#undef PL_INSIDE
 #undef PL_INSTANCES
 #undef PL_INTERVAL
 #undef PL_IN_PARTS
+#undef PL_IN_STEP
 #undef PL_JUMPS
 #undef PL_KEEPS
 #undef PL_KEEPS_LOOK
@@ -146,6 +149,7 @@
 #undef PL_REACHES
 #undef PL_REGIONS
 #undef PL_REMAINDERS
+#undef PL_RESTS
 #undef PL_RETUNED
 #undef PL_RING
 #undef PL_RISE

@@ -405,7 +405,6 @@ void emit_over_members(const struct emitter *e);
 void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
 void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
 void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */
-void emit_over_run(const struct emitter *e);                      /* in NAME_run: what goes by blocks */
 
 /* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */
 
@@ -601,7 +600,6 @@ void emit_step(const struct emitter *e);
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
-void emit_rest(const struct emitter *e);                          /* NAME_rest: what has decayed comes to rest */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
 void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */

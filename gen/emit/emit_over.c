@@ -127,23 +127,3 @@ void emit_over_block(const struct emitter *e)
 	say(e, "    return 1;\n"
 	       "}\n");
 }
-
-void emit_over_run(const struct emitter *e)
-{
-	if (!runs_in_blocks(e))
-		return;
-	say(e, "    for (; n > 0u && s->served > 0; n--) {\n"
-	       "        $n_step(s);\n"
-	       "        if (out) {\n"
-	       "            $n_out(s, out);\n"
-	       "            out += $N_OUTPUTS;\n"
-	       "        }\n"
-	       "    }\n"
-	       "    if (n >= %d) {\n"
-	       "        $n now = *s;\n"
-	       "        for (; n >= %d && $n_block(&now, out); n -= %d)\n"
-	       "            if (out)\n"
-	       "                out += %d * $N_OUTPUTS;\n"
-	       "        *s = now;\n"
-	       "    }\n", truncation(e)->over, truncation(e)->over, truncation(e)->over, truncation(e)->over);
-}

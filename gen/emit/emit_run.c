@@ -1,39 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_run: many steps, outputs after each. In blocks of rows where there is a table for them. */
+/* NAME_run: what run.h is told; tables and functions of the blocks of rows that it takes at once. */
 #include "emit/emit.h"
 
 #include <string.h>
-
-/* ---- step by step ---- */
-
-/* What has decayed comes to rest here: the step of a small model does not look. */
-static bool run_rests(const struct emitter *e)
-{
-	return e->step->rest && !e->step->rest->in_step;
-}
-
-static void emit_steps(const struct emitter *e)
-{
-	bool inputs = given_inputs(e) > 0;
-	say(e, "    for (; n > 0u; n--) {\n");
-	if (serves_rows(e))
-		say(e, "        if (s->served + 1 < s->valid)\n"
-		       "            $n_inside(s);\n"
-		       "        else\n"
-		       "            $n_step(s);\n");
-	else
-		say(e, "        $n_step(s%s);\n", inputs ? ", u" : "");
-	if (inputs)
-		say(e, "        u += $N_INPUTS;\n");
-	say(e, "        if (out != NULL) {\n"
-	       "            $n_out(s, out);\n"
-	       "            out += $N_OUTPUTS;\n"
-	       "        }\n");
-	if (run_rests(e))
-		say(e, "        if ((s->k & 63) == 0)\n"
-		       "            $n_rest(s);\n");
-	say(e, "    }\n");
-}
 
 /* ---- the tables of a block ---- */
 
@@ -356,42 +325,46 @@ static void emit_block(const struct emitter *e)
 	close_function(e, "");
 }
 
-/* The state is a local over all blocks. */
-static void emit_blocks(const struct emitter *e)
+/* ---- what comes to rest ---- */
+
+/* As run.h has it: 1: all at once, else one more than there are parts */
+static int rests_of(const struct emitter *e)
 {
-	bool inputs = given_inputs(e) > 0;
-	say(e, "    if (n >= $N_ROWS) {\n"
-	       "        $n now = *s;\n");
-	if (e->step->anchors)
-		say(e, "        $n_drop_anchor(&now);\n");
-	say(e, "        for (; n >= $N_ROWS; n -= $N_ROWS) {\n"
-	       "            $n_block(&now, %sout);\n", inputs ? "u, " : "");
-	if (inputs)
-		say(e, "            u += $N_ROWS * $N_INPUTS;\n");
-	if (run_rests(e))
-		say(e, "            if ((now.k & 63) < $N_ROWS)\n"
-		       "                $n_rest(&now);\n");
-	say(e, "            if (out != NULL)\n"
-	       "                out += $N_ROWS * $N_OUTPUTS;\n"
-	       "        }\n"
-	       "        *s = now;\n"
-	       "    }\n");
+	const struct rest *rest = e->step->rest;
+	bool apart = rest && rest->parts > 1;
+	for (int i = 0; rest && i < e->system->states; i++)
+		apart = apart || rest->part[i] < 0;
+	return !rest ? 0 : apart ? rest->parts + 1 : 1;
+}
+
+static void emit_parts_at_rest(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* Which part each state is of, of those that decay by themselves; -1: of none */\n"
+	       "static const short $n_part[$N_STATES] = {\n    ");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", e->step->rest->part[i]);
+	say(e, "};\n");
 }
 
 void emit_run(const struct emitter *e)
 {
-	if (run_rests(e))
-		emit_rest(e);
-	if (e->step->rows) {
+	const struct rows *rows = e->step->rows;
+	const int rests = rests_of(e);
+	const bool over = runs_in_blocks(e);
+	if (rests > 1)
+		emit_parts_at_rest(e);
+	if (rows) {
 		emit_row_tables(e);
 		emit_block(e);
 	}
 	emit_over_block(e);
-	open_function(e, NULL, "void $n_run($n *s, size_t n, %sdouble *out)",
-		      given_inputs(e) ? "const double *u, " : "");
-	if (e->step->rows)
-		emit_blocks(e);
-	emit_over_run(e);
-	emit_steps(e);
-	close_function(e, "");
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		{ "INSIDE", serves_rows(e) }, { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
+		{ "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
+		{ "IN_STEP", rests && e->step->rest->in_step }, { "KEPT", e->step->program->compensated }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#include \"run.h\"\n");
 }

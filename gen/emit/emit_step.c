@@ -253,7 +253,7 @@ void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
 	if (e->step->rest && e->step->rest->in_step)
-		emit_rest(e);
+		say(e, "\nstatic void $n_rest($n *s);\n");
 	if (e->system->segments > 1) {
 		emit_changing_step(e);
 		return;
