@@ -27,12 +27,17 @@ static const char *slice(const char *text, size_t length)
 	return format("%.*s", (int)length, text);
 }
 
-static const struct macro *macro_of(const struct including *in, const char *name)
+static const struct macro *macro_at(const struct including *in, const char *text, size_t length)
 {
 	for (int i = in->macros; i-- > 0;)
-		if (strcmp(in->macro[i].name, name) == 0)
+		if (*in->macro[i].name == *text && is_named(text, length, in->macro[i].name))
 			return &in->macro[i];
 	return NULL;
+}
+
+static const struct macro *macro_of(const struct including *in, const char *name)
+{
+	return macro_at(in, name, strlen(name));
 }
 
 static void undefine(struct including *in, const char *name)
@@ -92,22 +97,27 @@ static const char *read_arguments(const char *text, int count, const char **argu
 /* The body with the arguments put in, and what stands on both sides of ## as one word */
 static const char *with_arguments(const struct macro *m, const char *const *argument)
 {
-	const char *text = "";
-	for (const char *at = m->body; *at;) {
+	char *text = NULL;
+	size_t size = 0;
+	FILE *to = need_memory(open_memstream(&text, &size));
+	for (const char *at = m->body, *end; *at; at = end) {
 		const char *joint = at + strspn(at, " ");
-		size_t length = name_length(at);
-		if (strncmp(joint, "##", 2) == 0) {
-			at = joint + 2 + strspn(joint + 2, " ");
-			continue;
-		}
-		const char *word = slice(at, length ? length : 1);
-		for (int i = 0; i < m->parameters && length; i++)
-			if (is_named(at, length, m->parameter[i]))
-				word = argument[i];
-		text = format("%s%s", text, word);
-		at += length ? length : 1;
+		const size_t length = name_length(at);
+		end = at + (length ? length : 1);
+		int place = 0;
+		while (place < m->parameters && !(length && is_named(at, length, m->parameter[place])))
+			place++;
+		if (strncmp(joint, "##", 2) == 0)
+			end = joint + 2 + strspn(joint + 2, " ");
+		else if (place < m->parameters)
+			fputs(argument[place], to);
+		else
+			put(to, at, (size_t)(end - at));
 	}
-	return text;
+	fclose(to);
+	const char *copy = format("%s", (char *)need_memory(text));
+	free(text);
+	return copy;
 }
 
 static void put_words(const struct including *in, FILE *to, const char *text, int depth);
@@ -117,7 +127,7 @@ static const char *put_word(const struct including *in, FILE *to, const char *te
 {
 	size_t length = name_length(text);
 	const char *end = text + length;
-	const struct macro *m = depth == MOST_DEEP ? NULL : macro_of(in, slice(text, length));
+	const struct macro *m = depth == MOST_DEEP ? NULL : macro_at(in, text, length);
 	const char *argument[MOST_PARAMETERS] = { "", "", "", "" };
 	if (!m || (m->parameters >= 0 && *end != '(')) {
 		put(to, text, length);
@@ -129,36 +139,26 @@ static const char *put_word(const struct including *in, FILE *to, const char *te
 	return end;
 }
 
-static void put_words(const struct including *in, FILE *to, const char *text, int depth)
+/* 0x1p-3, 1.5e3 up to a sign: no word begins in it */
+static const char *behind_digits(const char *text)
 {
-	for (const char *at = text; *at;) {
-		const char *quoted = behind_quoted(at, false);
-		size_t length = 1;
-		if (quoted || isdigit((unsigned char)*at)) {
-			while (!quoted && (in_name(at[length]) || at[length] == '.'))
-				length++;
-			length = quoted ? (size_t)(quoted - at) : length;
-		} else if (in_name(*at)) {
-			at = put_word(in, to, at, depth);
-			continue;
-		}
-		put(to, at, length);
-		at += length;
-	}
+	while (in_name(*text) || *text == '.')
+		text++;
+	return text;
 }
 
-static const char *words_put_in(const struct including *in, const char *text)
+static void put_words(const struct including *in, FILE *to, const char *text, int depth)
 {
-	char *result = NULL;
-	size_t length = 0;
-	FILE *to = open_memstream(&result, &length);
-	need_memory(to);
-	put_words(in, to, text, 0);
-	fclose(to);
-	need_memory(result);
-	const char *copy = format("%s", result);
-	free(result);
-	return copy;
+	for (const char *at = text, *end; *at; at = end) {
+		const char *quoted = behind_quoted(at, false);
+		const bool digit = isdigit((unsigned char)*at) != 0;
+		if (!quoted && !digit && in_name(*at)) {
+			end = put_word(in, to, at, depth);
+			continue;
+		}
+		end = quoted ? quoted : digit ? behind_digits(at) : behind_plain(at);
+		put(to, at, (size_t)(end - at));
+	}
 }
 
 /* ---- conditions ---- */
@@ -345,7 +345,7 @@ static const char *put_block(struct including *in, const char *text)
 	while (*end && *end != '#')
 		end = strncmp(end, "/*", 2) == 0 ? next_line(behind_quoted(end, false)) : next_line(end);
 	if (is_taken(in))
-		fputs(words_put_in(in, slice(text, (size_t)(end - text))), in->to);
+		put_words(in, in->to, slice(text, (size_t)(end - text)), 0);
 	return end;
 }
 

@@ -24,6 +24,14 @@ bool is_named(const char *text, size_t length, const char *name)
 	return strlen(name) == length && memcmp(text, name, length) == 0;
 }
 
+const char *behind_plain(const char *text)
+{
+	text++;
+	while (*text && *text != '/' && *text != '"' && !in_name(*text))
+		text++;
+	return text;
+}
+
 /* Behind a line of the preprocessor, and those that continue it */
 static const char *behind_directive(const char *text)
 {

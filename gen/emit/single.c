@@ -63,12 +63,9 @@ static const char *print_number(FILE *to, const char *text)
 	return end;
 }
 
-/* At least one character */
 static const char *print_other(FILE *to, const char *text)
 {
-	const char *end = text + 1;
-	while (*end && *end != '/' && *end != '"' && !in_name(*end))
-		end++;
+	const char *end = behind_plain(text);
 	put(to, text, (size_t)(end - text));
 	return end;
 }

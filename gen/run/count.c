@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* C that counts what it does: where a sum or a product stands in a function of a model's C, what is behind its sign is
- * evaluated after a count: a * b as a * (PL_MULTIPLIES(a, b), b), which keeps every bit and counts no branch that is
+ * evaluated after a count: a * b as a * (PL_MULTIPLIES(a * b), b), which keeps every bit and counts no branch that is
  * not taken. What is whole costs nothing: counts.h asks the compiler. The C is as emitters and the runtime's headers
  * write it: a sign between two operands has blanks on both sides, no other has. */
 #include "run/run.h"
@@ -110,13 +110,13 @@ static void print_within(FILE *to, const char *at, const char *end)
 /* An operand as it is, but for what stands in its round brackets */
 static void print_operand(FILE *to, const char *at, const char *end)
 {
-	while (at < end) {
-		const char *behind = *at == '(' || *at == '[' ? behind_bracket(at) : at + 1;
+	for (const char *next; at < end; at = next) {
+		next = *at == '[' || *at == '(' ? behind_bracket(at) : at + strcspn(at, "[(");
+		next = next < end ? next : end;
 		if (*at == '(')
-			print_within(to, at, behind);
+			print_within(to, at, next);
 		else
-			copy(to, at, behind);
-		at = behind;
+			copy(to, at, next);
 	}
 }
 
@@ -127,9 +127,7 @@ static struct piece print_sign(FILE *to, struct piece left, const char *at, size
 	right.end = length == 1 ? behind_operand(right.at) : behind_assigned(right.at, end);
 	copy(to, at, right.at);
 	fprintf(to, "(%s(", strchr("*/", *at) ? "PL_MULTIPLIES" : "PL_ADDS");
-	copy(to, left.end ? left.at : right.at, left.end ? left.end : right.end);
-	fputs(", ", to);
-	copy(to, length == 1 ? right.at : left.at, length == 1 ? right.end : left.end);
+	copy(to, left.end ? left.at : right.at, right.end);
 	fputs("), ", to);
 	(length == 1 ? print_operand : print_counted)(to, right.at, right.end);
 	putc(')', to);
@@ -167,6 +165,8 @@ static void print_counted(FILE *to, const char *at, const char *end)
 		}
 		if (!is_blank(at))
 			left.end = NULL;
+		while (next < end && is_blank(at) && is_blank(next) && is_blank(next + 1))
+			next++;
 		copy(to, at, next);
 		at = next;
 	}
@@ -176,16 +176,17 @@ static void print_counted(FILE *to, const char *at, const char *end)
 void print_counts(FILE *to, const char *text)
 {
 	bool bracket = false;
+	const char *from = text;
 	for (const char *at = text; *at;) {
 		const char *next = behind_quoted(at, at == text || at[-1] == '\n');
-		const bool body = !next && *at == '{' && bracket;
-		if (!next && !is_blank(at))
-			bracket = *at == ')';
-		next = next ? next : body ? behind_bracket(at) : at + 1;
-		if (body)
+		if (!next && *at == '{' && bracket) {
+			copy(to, from, at);
+			from = next = behind_bracket(at);
 			print_within(to, at, next);
-		else
-			copy(to, at, next);
-		at = next;
+		} else if (!next && !is_blank(at)) {
+			bracket = *at == ')';
+		}
+		at = next ? next : at + 1;
 	}
+	copy(to, from, from + strlen(from));
 }

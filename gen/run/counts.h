@@ -6,11 +6,10 @@ static struct {
 } pl_counted;
 const void *const pl_counts = &pl_counted;
 
-/* Of whole numbers nothing counts. */
-#define PL_IS_REAL(x) \
-	(__builtin_types_compatible_p(__typeof__(x), double) || __builtin_types_compatible_p(__typeof__(x), float))
-#define PL_ADDS(a, b) (PL_IS_REAL(a) || PL_IS_REAL(b) ? pl_counted.additions++ : 0)
-#define PL_MULTIPLIES(a, b) (PL_IS_REAL(a) || PL_IS_REAL(b) ? pl_counted.multiplications++ : 0)
+/* Of whole numbers nothing counts: pl_real is the type of the others. */
+#define PL_IS_REAL(x) __builtin_types_compatible_p(__typeof__(x), pl_real)
+#define PL_ADDS(sum) (PL_IS_REAL(sum) ? pl_counted.additions++ : 0)
+#define PL_MULTIPLIES(product) (PL_IS_REAL(product) ? pl_counted.multiplications++ : 0)
 #define PL_CALLS (pl_counted.calls++)
 #define PL_TAKES(m, a) (pl_counted.multiplications += (uint64_t)(m), pl_counted.additions += (uint64_t)(a))
 #define PL_TAKES_BOTH(count) PL_TAKES(count, count)

@@ -74,6 +74,7 @@ static char *text_of(const struct step *step, enum running_with with)
 	fputs(math_prototypes, to);
 	fputs(runtime_text("plrt.h"), to);
 	if (with & WITH_COUNTS) {
+		fprintf(to, "typedef %s pl_real;\n", step->model->asked.single ? "float" : "double");
 		print_text_of(to, "counts.h");
 		fputs(math_counts, to);
 	}

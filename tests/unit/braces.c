@@ -89,12 +89,12 @@ static void counts_stand_before_operands(void **state)
 	becomes_by(print_counts,
 		   "const double A[] = {1.0 / 3.0};\nvoid f(int n)\n{\n    x = a ? b * -c[i + 1] : d;\n}\n",
 		   "const double A[] = {1.0 / 3.0};\nvoid f(int n)\n{\n"
-		   "    x = a ? b * (PL_MULTIPLIES(b, -c[i + 1]), -c[i + 1]) : d;\n}\n");
+		   "    x = a ? b * (PL_MULTIPLIES(b * -c[i + 1]), -c[i + 1]) : d;\n}\n");
 	becomes_by(print_counts,
 		   "int f(void)\n{\n    static const double t = 1.0 / 3.0;\n    *s->y += (real)n - g(x / 2e-1);\n}\n",
 		   "int f(void)\n{\n    static const double t = 1.0 / 3.0;\n"
-		   "    *s->y += (PL_ADDS(*s->y, *s->y), (real)n "
-		   "- (PL_ADDS((real)n, g(x / 2e-1)), g(x / (PL_MULTIPLIES(x, 2e-1), 2e-1))));\n}\n");
+		   "    *s->y += (PL_ADDS(*s->y += (real)n - g(x / 2e-1)), (real)n "
+		   "- (PL_ADDS((real)n - g(x / 2e-1)), g(x / (PL_MULTIPLIES(x / 2e-1), 2e-1))));\n}\n");
 }
 
 int main(void)
