@@ -47,6 +47,12 @@ void put(FILE *to, const char *text, size_t length);              /* of finished
 /* static const int NAME_name[]; of none there is a 0 */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
 void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value);
+/* Members of NAME_coeffs: of the spec's values, numbers between the two; or in declare_members what declares them */
+void open_member(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
+void close_member(const struct emitter *e);
+void number_member(const struct emitter *e, const char *name, const char *value, const char *note);
+void declare_members(const struct emitter *e, void (*print)(const struct emitter *e));
+void emit_nominal_of(const struct emitter *e, void (*print)(const struct emitter *e));    /* NAME_nominal */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *whole_text(int number);
@@ -152,7 +158,7 @@ void put_sizes(const struct emitter *e, int count, const struct size *size);  /*
 
 void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 const char *param_list(const struct emitter *e);                  /* names, commas between */
-void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
+void emit_nominal_params(const struct emitter *e);                /* a member */
 void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 
@@ -240,8 +246,7 @@ void emit_peak_tables(const struct emitter *e);
 void emit_peak_members(const struct emitter *e);
 void emit_peak_set(const struct emitter *e);
 void emit_peak_step(const struct emitter *e);
-/* Of tunable models, in NAME_coeffs: members, the spec's, retuned */
-void emit_peak_coefficients(const struct emitter *e);
+/* Members of NAME_coeffs, of tunable models */
 void emit_nominal_peaks(const struct emitter *e);
 
 /* ---- emit_lanes.c, emit_batch.c: many instances in one call ---- */
@@ -622,7 +627,7 @@ void emit_of_branches(const struct emitter *e, const struct pieces *p, const cha
 		      double *(*of)(const struct region_piece *));
 void close_table(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
-void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs, where it is these tables */
+void emit_retuned_numbers(const struct emitter *e);               /* NAME_coeffs, where it is these tables */
 /* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
  * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
 void emit_ladder_places(const struct emitter *e, const struct guards *guards);

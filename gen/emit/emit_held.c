@@ -18,11 +18,9 @@ void emit_held_types(const struct emitter *e)
 		return;
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
 	       "typedef struct $n_coeffs $n_coeffs;  /* what %s read */\n"
-	       "struct $n_coeffs {\n"
-	       "    double params[$N_PARAMS];  /* %s */\n", held(e)->params, param_list(e),
-	    e->model->retuned ? "a step and outputs" : "the equations and outputs", param_list(e));
-	if (e->model->retuned)
-		emit_retuned_members(e);
+	       "struct $n_coeffs {\n", held(e)->params, param_list(e),
+	    e->model->retuned ? "a step and outputs" : "the equations and outputs");
+	declare_members(e, e->model->retuned ? emit_retuned_numbers : emit_nominal_params);
 	say(e, "};\n"
 	       "\n");
 }
@@ -93,10 +91,7 @@ void emit_held_nominal(const struct emitter *e)
 {
 	if (!held(e) || e->model->retuned)
 		return;                         /* with the tables of regions */
-	say(e, "\nconst $n_coeffs $n_nominal = {\n"
-	       "    ");
-	emit_nominal_params(e);
-	say(e, "};\n");
+	emit_nominal_of(e, emit_nominal_params);
 }
 
 /* Angular frequencies of the sines that have a lead */

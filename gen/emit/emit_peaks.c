@@ -25,34 +25,27 @@ static bool has_reach(const struct emitter *e)
 	return e->model->asked.batch && e->step->layout.size > e->system->states;
 }
 
-void emit_peak_coefficients(const struct emitter *e)
-{
-	int size = e->step->layout.size;
-	if (!has_peaks(e))
-		return;
-	say(e, "    double slope[%d][%d];  /* x' = slope x, x = the states and what acts on them */\n"
-	       "    double bend[%d][%d];   /* bend |x| bounds how far a peak's output is off its chord in a step */\n",
-	    size, size, peak_outputs(e->model), size);
-	if (has_reach(e))
-		say(e, "    double reach[%d];      /* so many times as with the spec's values what acts on the states "
-		       "bends it */\n", peak_outputs(e->model));
-}
-
 void emit_nominal_peaks(const struct emitter *e)
 {
-	if (!has_peaks(e))
+	const int size = e->step->layout.size, peaks = has_peaks(e) ? peak_outputs(e->model) : 0;
+	if (peaks == 0)
 		return;
-	say(e, "    {\n");
-	emit_number_rows(e, e->step->layout.size, e->step->layout.size, slopes_of(e->step, 0),
-			 layout_names(&e->step->layout, e->system, e->model));
-	say(e, "    },\n"
-	       "    {\n");
-	emit_number_rows(e, peak_outputs(e->model), e->step->layout.size, peaks_of(e->step).bend, peak_names(e));
-	say(e, "    },\n");
-	for (int i = 0; i < peak_outputs(e->model) && has_reach(e); i++)
-		say(e, i ? ", 1.0" : "    {1.0");
-	if (has_reach(e))
-		say(e, "},\n");
+	open_member(e, "double", "slope", format("[%d][%d]", size, size),
+		    "x' = slope x, x = the states and what acts on them");
+	emit_number_rows(e, size, size, slopes_of(e->step, 0), layout_names(&e->step->layout, e->system, e->model));
+	close_member(e);
+	open_member(e, "double", "bend", format("[%d][%d]", peaks, size),
+		    "bend |x| bounds how far a peak's output is off its chord in a step");
+	emit_number_rows(e, peaks, size, peaks_of(e->step).bend, peak_names(e));
+	close_member(e);
+	if (!has_reach(e))
+		return;
+	open_member(e, "double", "reach", format("[%d]", peaks),
+		    "so many times as with the spec's values what acts on the states bends it");
+	for (int i = 0; i < peaks; i++)
+		say(e, i ? ", 1.0" : "    1.0");
+	say(e, "\n");
+	close_member(e);
 }
 
 /* Is there one whose row no param changes? */

@@ -2,8 +2,6 @@
 /* A piecewise-linear model as C: tables of its regions, and a step that leaves finding crossings to the runtime. */
 #include "emit/emit.h"
 
-#include <stdlib.h>
-
 static const struct switching *regions_of(const struct emitter *e)
 {
 	return e->model->switching;
@@ -146,20 +144,12 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		emit_numbers_of_guards(e, g);
 }
 
-/* They are printed, to nowhere, for what they are. */
-void emit_retuned_members(const struct emitter *e)
+void emit_retuned_numbers(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
 	const struct guards g = has_guards(e) ? guards_of(e->step, &pieces) : (struct guards){ 0 };
-	struct emitter nowhere = *e;
-	char *text = NULL;
-	size_t length = 0;
-	nowhere.members = e;
-	nowhere.to = open_memstream(&text, &length);
-	need_memory(nowhere.to);
-	emit_numbers_of_regions(&nowhere, &pieces, has_guards(e) ? &g : NULL);
-	fclose(nowhere.to);
-	free(text);
+	emit_nominal_params(e);
+	emit_numbers_of_regions(e, &pieces, has_guards(e) ? &g : NULL);
 }
 
 void emit_regions(const struct emitter *e)
@@ -176,13 +166,10 @@ void emit_regions(const struct emitter *e)
 	if (g && e->model->retuned)
 		emit_guards(e, g);
 	if (e->model->retuned)
-		say(e, "\nconst $n_coeffs $n_nominal = {\n    ");
-	if (e->model->retuned)
-		emit_nominal_params(e);
-	emit_numbers_of_regions(e, &pieces, g);
-	if (e->model->retuned)
-		say(e, "};\n");
-	else if (g)
+		emit_nominal_of(e, emit_retuned_numbers);
+	else
+		emit_numbers_of_regions(e, &pieces, g);
+	if (g && !e->model->retuned)
 		emit_guards(e, g);
 	if (e->step->swift) {
 		emit_swift_tables(e, &pieces, expression_names(e));

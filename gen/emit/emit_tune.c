@@ -16,11 +16,6 @@ static int step_columns(const struct emitter *e)
 	return e->model->tuning->x.size;
 }
 
-static int tuned_outputs(const struct emitter *e)
-{
-	return e->model->tuning->outputs;
-}
-
 /* Names of the columns as a comment says them: the load states once, lines broken */
 static const char *column_list(const struct emitter *e)
 {
@@ -69,32 +64,6 @@ void banner_tuning(const struct emitter *e)
 		    p->whole ? " and another h" : "", p->kilobytes);
 }
 
-/* A member of struct NAME_coeffs, its comment at a common column */
-static void coefficient_member(const struct emitter *e, const char *text, const char *comment)
-{
-	if (*comment)
-		say(e, "    %-38s /* %s */\n", text, comment);
-	else
-		say(e, "    %s\n", text);
-}
-
-static const char *ramp_note(const struct emitter *e, const char *what)
-{
-	return e->ramps ? format("; of a ramp %s", what) : "";
-}
-
-/* Of the loads, in one step */
-static void load_members(const struct emitter *e)
-{
-	if (e->phases)
-		coefficient_member(e, format("pl_turn phase_step[%d];", e->phases), "of the loads, in one step");
-	if (e->model->tuning->frequencies)
-		coefficient_member(e, format("pl_rate phase_rate[%d];", e->phases), "in turns per second");
-	if (e->growths)
-		coefficient_member(e, format("pl_growth growth_step[%d];", e->growths),
-		       e->phases ? "" : "of the loads, in one step");
-}
-
 static const char *first_state(const struct emitter *e, const struct group *g)
 {
 	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
@@ -114,20 +83,7 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 			print(e, &p->block[b]);
 }
 
-static void emit_group_member(const struct emitter *e, const struct tuned_block *first)
-{
-	const struct group_shape shape = shape_of_group(e, first->group);
-	const bool whole = blocks_of_step(e)->solved;
-	const char *note = whole ? e->step->form == FORM_DELTA ? "y += step z" : "y = step z"
-				 : first_state(e, first->group);
-	if (shape.rows)
-		coefficient_member(e, format("double %s[%d][%d];", tuned_table(e, first), shape.rows, shape.columns),
-				   note);
-	if (shape.changing)
-		coefficient_member(e, format("double loads%d[%d][%d][%d];", first->index, e->system->segments,
-					     shape.changing, shape.columns),
-				   "in each segment of time");
-}
+static void emit_members(const struct emitter *e);
 
 void emit_coefficient_struct(const struct emitter *e)
 {
@@ -136,17 +92,8 @@ void emit_coefficient_struct(const struct emitter *e)
 	       "  /* what a step multiplies with, at one set of params and one h */\n"
 	       "/* z = %s%s */\n"
 	       "struct $n_coeffs {\n", e->model->tuning->params, param_list(e), column_list(e),
-	    ramp_note(e, "its value before the step, then after it"));
-	coefficient_member(e, "double h;", "[s]");
-	if (e->system->segments > 1)
-		coefficient_member(e, "double h_low;", "of the spec's step: what h leaves out; else 0");
-	coefficient_member(e, format("double params[%s_PARAMS];", e->upper), param_list(e));
-	each_tuned_group(e, emit_group_member);
-	if (tuned_outputs(e))
-		coefficient_member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
-		       format("out z, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
-	emit_peak_coefficients(e);
-	load_members(e);
+	    e->ramps ? "; of a ramp its value before the step, then after it" : "");
+	declare_members(e, emit_members);
 	say(e, "};\n\n");
 }
 
@@ -171,63 +118,75 @@ void emit_tuning_declarations(const struct emitter *e)
 	       "\n", e->phases ? "; phases of loads go on from where they are" : "");
 }
 
-/* ---- the generator's own coefficients ---- */
+/* ---- all of them: declared, or the generator's own ---- */
 
-static void emit_nominal_outputs(const struct emitter *e)
+static void emit_outputs(const struct emitter *e)
 {
-	const char **name = ARRAY(const char *, (size_t)tuned_outputs(e));
+	const struct tuning *t = e->model->tuning;
+	const char **name = ARRAY(const char *, (size_t)t->outputs);
 	for (int o = 0; o < e->model->outputs; o++)
-		if (e->model->tuning->output[o] >= 0)
-			name[e->model->tuning->output[o] - e->model->n] = e->model->output[o].name;
-	say(e, "    {\n");
-	emit_number_rows(e, tuned_outputs(e), step_columns(e), nominal_outputs(e->step), name);
-	say(e, "    },\n");
+		if (t->output[o] >= 0)
+			name[t->output[o] - e->model->n] = e->model->output[o].name;
+	open_member(e, "double", "out", format("[%d][%d]", t->outputs, t->x.size),
+		    format("out z, where outputs depend on params%s",
+			   e->ramps ? "; of a ramp its value and its slope" : ""));
+	emit_number_rows(e, t->outputs, t->x.size, nominal_outputs(e->step), name);
+	close_member(e);
 }
 
 /* What of each load moves on in a step: its phase, or its growth */
-static void emit_nominal_loads(const struct emitter *e, const int *index,
-			       const char *(*step_text)(const struct emitter *, int))
+static void emit_loads(const struct emitter *e, const char *type, const char *name, int count, const int *index,
+		       const char *(*step_text)(const struct emitter *, int))
 {
-	say(e, "    {\n");
+	if (count == 0)
+		return;
+	open_member(e, type, name, format("[%d]", count), "of the loads, in one step");
 	for (int l = 0; l < e->system->loads; l++)
 		if (index[l] >= 0)
 			say(e, "    %s,  /* %s */\n", step_text(e, l), column_text(&e->system->load[l], 0));
-	say(e, "    },\n");
+	close_member(e);
 }
 
-static void emit_nominal_group(const struct emitter *e, const struct tuned_block *first)
+static void emit_group(const struct emitter *e, const struct tuned_block *first)
 {
 	const struct group_shape shape = shape_of_group(e, first->group);
-	const int parts = 1 + (shape.changing > 0);
-	for (int part = shape.rows ? 0 : 1; part < parts; part++) {
-		const bool noted = part == 0 && !blocks_of_step(e)->solved;
-		say(e, "    {%s\n", noted ? format("  /* %s */", group_note(e, first->group)) : "");
-		emit_group_numbers(e, first->group, part == 1);
-		say(e, "    },\n");
+	const char *whole = e->step->form == FORM_DELTA ? "y += step z" : "y = step z";
+	if (shape.rows) {
+		open_member(e, "double", tuned_table(e, first), format("[%d][%d]", shape.rows, shape.columns),
+			    blocks_of_step(e)->solved ? whole : format("%s: %s", first_state(e, first->group),
+								       group_note(e, first->group)));
+		emit_group_numbers(e, first->group, false);
+		close_member(e);
 	}
+	if (shape.changing) {
+		open_member(e, "double", format("loads%d", first->index),
+			    format("[%d][%d][%d]", e->system->segments, shape.changing, shape.columns),
+			    "in each segment of time");
+		emit_group_numbers(e, first->group, true);
+		close_member(e);
+	}
+}
+
+static void emit_members(const struct emitter *e)
+{
+	number_member(e, "h", spell(e, "$N_H"), "[s]");
+	if (e->system->segments > 1)
+		number_member(e, "h_low", low_text(e->model->h), "of the spec's step: what h leaves out; else 0");
+	emit_nominal_params(e);
+	each_tuned_group(e, emit_group);
+	if (e->model->tuning->outputs)
+		emit_outputs(e);
+	emit_nominal_peaks(e);
+	emit_loads(e, "pl_turn", "phase_step", e->phases, e->phase, phase_step_text);
+	if (e->phases && e->model->tuning->frequencies) {
+		open_member(e, "pl_rate", "phase_rate", format("[%d]", e->phases), "in turns per second");
+		emit_phase_rates(e);
+		close_member(e);
+	}
+	emit_loads(e, "pl_growth", "growth_step", e->growths, e->growth, growth_step_text);
 }
 
 void emit_nominal(const struct emitter *e)
 {
-	say(e, "\nconst $n_coeffs $n_nominal = {\n"
-	       "    $N_H,\n"
-	       "    ");
-	if (e->system->segments > 1)
-		say(e, "%s,\n"
-		       "    ", low_text(e->model->h));
-	emit_nominal_params(e);
-	each_tuned_group(e, emit_nominal_group);
-	if (tuned_outputs(e))
-		emit_nominal_outputs(e);
-	emit_nominal_peaks(e);
-	if (e->phases)
-		emit_nominal_loads(e, e->phase, phase_step_text);
-	if (e->phases && e->model->tuning->frequencies) {
-		say(e, "    {\n");
-		emit_phase_rates(e);
-		say(e, "    },\n");
-	}
-	if (e->growths)
-		emit_nominal_loads(e, e->growth, growth_step_text);
-	say(e, "};\n");
+	emit_nominal_of(e, emit_members);
 }

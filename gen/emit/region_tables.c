@@ -12,17 +12,18 @@ int expressions_of(const struct emitter *e)
 static void open_as(const struct emitter *e, bool own, const char *type, const char *name, const char *shape,
 		    const char *note)
 {
-	if (own && e->members)
-		say(e->members, "    %-46s /* %s */\n", format("%s %s%s;", type, name, shape), note);
-	else if (own)
-		say(e, "    {  /* %s: %s */\n", name, note);
+	if (own)
+		open_member(e, type, name, shape, note);
 	else
 		say(e, "\nstatic const %s $o_%s%s = {  /* %s */\n", type, name, shape, note);
 }
 
 static void close_as(const struct emitter *e, bool own)
 {
-	say(e, own ? "    },\n" : "};\n");
+	if (own)
+		close_member(e);
+	else
+		say(e, "};\n");
 }
 
 void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)

@@ -397,10 +397,11 @@ const char *param_list(const struct emitter *e)
 void emit_nominal_params(const struct emitter *e)
 {
 	const struct tuning *t = tunables_of(e->model);
-	say(e, "{");
+	open_member(e, "double", "params", format("[%s_PARAMS]", e->upper), param_list(e));
 	for (int k = 0; k < t->params; k++)
-		say(e, "%s%s", k ? ", " : "", finite_text(t->param[k].at, t->nominal[k]));
-	say(e, "},\n");
+		say(e, k ? ", %s" : "    %s", finite_text(t->param[k].at, t->nominal[k]));
+	say(e, "\n");
+	close_member(e);
 }
 
 void emit_tuning_wrapper(const struct emitter *e)

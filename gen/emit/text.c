@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* `layout` with the names in it: names are C identifiers, without a % */
@@ -212,4 +213,47 @@ void emit_int_list(const struct emitter *e, const char *name, int count, const i
 void say_include(const struct emitter *e, const char *algorithm)
 {
 	say(e, "#include \"%s\"\n", algorithm);
+}
+
+/* ---- NAME_coeffs: declared, or of the spec's values ---- */
+
+void open_member(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)
+{
+	if (e->members)
+		say(e->members, "    %-46s /* %s */\n", format("%s %s%s;", type, name, shape), note);
+	else
+		say(e, "    {  /* %s: %s */\n", name, note);
+}
+
+void close_member(const struct emitter *e)
+{
+	say(e, "    },\n");
+}
+
+void number_member(const struct emitter *e, const char *name, const char *value, const char *note)
+{
+	if (e->members)
+		open_member(e, "double", name, "", note);
+	else
+		say(e, "    %s,\n", value);
+}
+
+void declare_members(const struct emitter *e, void (*print)(const struct emitter *e))
+{
+	struct emitter nowhere = *e;
+	char *text = NULL;
+	size_t length = 0;
+	nowhere.members = e;
+	nowhere.to = open_memstream(&text, &length);
+	need_memory(nowhere.to);
+	print(&nowhere);
+	fclose(nowhere.to);
+	free(text);
+}
+
+void emit_nominal_of(const struct emitter *e, void (*print)(const struct emitter *e))
+{
+	say(e, "\nconst $n_coeffs $n_nominal = {\n");
+	print(e);
+	say(e, "};\n");
 }
