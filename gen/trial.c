@@ -37,24 +37,15 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 	return refused ? NULL : m->step;
 }
 
-struct opening { struct place at; const struct step *step; struct running *running; };
-
-static void open_running(void *context)
-{
-	struct opening *o = context;
-	o->running = running_new(o->at, o->step, WITH_RHS | WITH_COUNTS);
-}
-
 /* Its C, ready to run */
 struct running *running_of(struct measuring *m, const struct step *step, const char **why)
 {
-	struct opening o = { m->model->requirement[0].need->at, step, NULL };
-	(step->model->asked.single ? target_float : target_double)();
-	const char *refused = unheard_refusal_of(open_running, &o);
+	const char *refused;
+	struct running *r = running_new(m->model->requirement[0].need->at, step, WITH_RHS | WITH_COUNTS, &refused);
 	(m->single ? target_float : target_double)();
 	if (refused)
 		*why = refused;
-	return refused ? NULL : o.running;
+	return r;
 }
 
 /* ---- the reference ---- */

@@ -106,14 +106,6 @@ double exact_largest(const struct exact_run *run, int requirement)
 
 /* ---- one step beside them ---- */
 
-struct opening { struct place at; const struct step *step; struct running *running; };
-
-static void open_running(void *context)
-{
-	struct opening *o = context;
-	o->running = running_new(o->at, o->step, 0);
-}
-
 /* How far one sample is off at most: the exact one is known to 2^-104 of itself */
 static double error_of_sample(double got, double value, double low)
 {
@@ -138,17 +130,17 @@ static bool keep_errors(const struct exact_run *run, struct running *r, long k, 
 
 bool walk_beside(const struct exact_run *run, const struct step *step, struct certificate *found)
 {
-	struct opening o = { run->model->requirement[0].need->at, step, NULL };
+	const char *why;
 	const int requirements = run->model->requirements;
 	double *out = ARRAY(double, (size_t)step->model->outputs + 1), *error = ARRAY(double, (size_t)requirements);
-	(step->model->asked.single ? target_float : target_double)();
-	if (!silent_guard(open_running, &o))
+	struct running *r = running_new(run->model->requirement[0].need->at, step, 0, &why);
+	if (!r)
 		return false;
-	running_start(o.running, 0, NULL);
-	bool finite = keep_errors(run, o.running, 0, out, error);
+	running_start(r, 0, NULL);
+	bool finite = keep_errors(run, r, 0, out, error);
 	for (long k = 1; k <= run->samples && finite; k++) {
-		running_step(o.running, NULL);
-		finite = keep_errors(run, o.running, k, out, error) && running_status(o.running) == 0;
+		running_step(r, NULL);
+		finite = keep_errors(run, r, k, out, error) && running_status(r) == 0;
 	}
 	for (int i = 0; i < requirements && finite; i++) {
 		found[i].walked = true;

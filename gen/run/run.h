@@ -31,7 +31,8 @@ struct native native_of(struct place at, const struct step *step, enum running_w
 /* ---- running.c: an instance ---- */
 
 struct running;
-struct running *running_new(struct place at, const struct step *step, enum running_with with);
+/* The target's type is that of the step behind it. NULL: *why */
+struct running *running_new(struct place at, const struct step *step, enum running_with with, const char **why);
 const struct step *running_step_of(const struct running *r);
 struct counted running_counted(const struct running *r);     /* of all instances of this code */
 void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */

@@ -15,11 +15,24 @@ struct running {
 #define CALL(r, call) \
 	((r)->single ? ((const pl_modelf *)(r)->native.model)->call : ((const pl_model *)(r)->native.model)->call)
 
-struct running *running_new(struct place at, const struct step *step, enum running_with with)
+struct opening { struct place at; const struct step *step; enum running_with with; struct native native; };
+
+static void open_native(void *context)
+{
+	struct opening *o = context;
+	o->native = native_of(o->at, o->step, o->with);
+}
+
+struct running *running_new(struct place at, const struct step *step, enum running_with with, const char **why)
 {
 	const struct model *model = step->model;
+	struct opening o = { at, step, with, { 0 } };
+	(model->asked.single ? target_float : target_double)();
+	*why = unheard_refusal_of(open_native, &o);
+	if (*why)
+		return NULL;
 	struct running *r = NEW(struct running);
-	*r = (struct running){ .step = step, .native = native_of(at, step, with),
+	*r = (struct running){ .step = step, .native = o.native,
 			       .states = model->written->system.states, .inputs = model->system.inputs,
 			       .outputs = model->outputs, .single = model->asked.single };
 	r->instance = allocate(1, CALL(r, size));

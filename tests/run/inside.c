@@ -42,7 +42,10 @@ static void run(void *context)
     struct step *step = model ? step_build(model) : NULL;
     if (!step)
         abandon();
-    struct running *r = running_new((struct place){ source, 0 }, step, WITH_RHS | WITH_COUNTS);
+    const char *why;
+    struct running *r = running_new((struct place){ source, 0 }, step, WITH_RHS | WITH_COUNTS, &why);
+    if (!r)
+        error((struct place){ source, 0 }, NULL, "%s", why);
     int states = model->written->system.states;
     double value[600], u[64];
     struct counted took = {0};
