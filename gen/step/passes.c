@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-enum { AT_ONCE = 64 };              /* events at one instant, before they count as without end */
+/* Events at one instant, before they count as without end; instants that so many bits do not tell apart are one. */
+enum { AT_ONCE = 64, BITS_OF_ONE = 768 };
 
 /* ---- a piece that stays clear ---- */
 
@@ -118,6 +119,20 @@ static bool is_fresh(const struct through *t, const struct gate *gate)
 	return t->order[gate->expression] > 0 && gate->upward == t->back[gate->expression] && !gate->release;
 }
 
+/* Whether nothing of a polynomial is told apart from 0 */
+static bool is_none(const struct through *t, int degree)
+{
+	for (int m = 0; m <= degree; m++)
+		if (!mpfi_has_zero(t->value[m]))
+			return false;
+	return true;
+}
+
+static bool bounces(const struct through *t, const struct gate *gate)
+{
+	return gate->impact >= 0 && t->s->impact[gate->impact].bounces;
+}
+
 /* 1: found; -1: not known; 0: none */
 int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
 {
@@ -136,6 +151,13 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 		if (is_fresh(t, gate) && degree > t->order[gate->expression])
 			terms = divide_by_power(t, degree, t->order[gate->expression], tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
+		    bounces(t, *found)) /* struck with what was found, where it touches then */
+			continue;
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_fresh(t, gate) && is_none(t, terms)) {
+			t->resting[gate->expression] = true;    /* let go by no force */
+			continue;
+		}
 		if (rise == RISE_UNKNOWN) {
 			through_lost(t, gate, "it comes closer than is known");
 			result = -1;

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: dry friction and impacts, by the rules of runtime/guards.c; each sign that decides is
+/* Of a way through crossings: what sticks and what slips, by the rules of runtime/guards.c; each sign that decides is
  * enclosed apart from 0, or what it decides is not known. */
 #include "step/through.h"
 
-#include <math.h>
-
-enum { MOST_IDLE = 6, MOST_STRUCK = 200, MOST_SOLVED = 4000 };
+enum { MOST_IDLE = 6 };
 
 struct idle {                       /* an expression on a breakpoint that stands twice */
 	int expression, stick;      /* stick: the interval between */
@@ -14,7 +12,7 @@ struct idle {                       /* an expression on a breakpoint that stands
 };
 
 /* Of row . x - less: its sign, 0 where it is exactly 0; *known false: it is not told apart from 0 */
-static int sign_of(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
+int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	mpfi_t value;
 	mpfi_init2(value, t->precision);
@@ -27,38 +25,30 @@ static int sign_of(const struct through *t, const mpq_t *row, mpq_srcptr less, b
 	return sign;
 }
 
-static mpq_t *row_of(const struct through *t, const struct output *output)
+mpq_t *through_row_of(const struct through *t, const struct output *output)
 {
 	mpq_t *row = rationals((size_t)t->n);
 	through_row(t, output, row);
 	return row;
 }
 
-static void assign(struct through *t, int state, const struct output *output, mpfi_t *fresh)
+void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh)
 {
-	mpq_t *row = row_of(t, output);
+	mpq_t *row = through_row_of(t, output);
 	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, fresh[state]);
 	rationals_free(row, (size_t)t->n);
-}
-
-static void jump(struct through *t, int jumps, const struct jump *list)
-{
-	for (int k = 0; k < jumps; k++)
-		assign(t, list[k].state, list[k].row, t->y);
-	for (int k = 0; k < jumps; k++)
-		mpfi_set(t->x[list[k].state], t->y[list[k].state]);
 }
 
 void through_hold(struct through *t)
 {
 	const struct region *r = &t->s->region[t->region];
 	for (int k = 0; k < r->holds; k++)
-		assign(t, r->hold[k].state, r->hold[k].row, t->y);
+		through_assign(t, r->hold[k].state, r->hold[k].row, t->y);
 	for (int k = 0; k < r->holds; k++)
 		mpfi_set(t->x[r->hold[k].state], t->y[r->hold[k].state]);
 }
 
-static bool unknown(struct through *t, const char *what)
+bool through_unknown(struct through *t, const char *what)
 {
 	t->undecided = format("at t = %s s it is not known %s", through_time(t->base), what);
 	return false;
@@ -92,9 +82,9 @@ static int is_held(struct through *t, struct area *area, const struct idle *idle
 			continue;
 		if (idle->goes == (gate->upward ? 1 : -1))
 			return 0;
-		int sign = sign_of(t, (const mpq_t *)gate->row, gate->limit, &known);
+		int sign = through_sign(t, (const mpq_t *)gate->row, gate->limit, &known);
 		if (known && sign == 0)
-			sign = sign_of(t, (const mpq_t *)gate->slope, NULL, &known);
+			sign = through_sign(t, (const mpq_t *)gate->slope, NULL, &known);
 		if (!known)
 			return -1;
 		if (sign > 0)
@@ -106,14 +96,14 @@ static int is_held(struct through *t, struct area *area, const struct idle *idle
 /* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
 static int heads(struct through *t, const struct area *area, int expression, bool *known)
 {
-	mpq_t *row = row_of(t, t->s->expression[expression].row);
+	mpq_t *row = through_row_of(t, t->s->expression[expression].row);
 	int sign = 0;
 	*known = true;
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
 		mpq_t *next = through_times(t, (const mpq_t *)row, (const mpq_t *)area->A);
 		rationals_free(row, (size_t)t->n);
 		row = next;
-		sign = sign_of(t, (const mpq_t *)row, NULL, known);
+		sign = through_sign(t, (const mpq_t *)row, NULL, known);
 	}
 	rationals_free(row, (size_t)t->n);
 	return sign;
@@ -176,9 +166,9 @@ static int order_of(struct through *t, const struct gate *gate)
 	if (impact_resting(t->s, t->segment, gate->expression,
 			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
 		return 3;
-	mpq_t *row = row_of(t, t->s->expression[gate->expression].row);
+	mpq_t *row = through_row_of(t, t->s->expression[gate->expression].row);
 	mpq_t *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	int sign = sign_of(t, (const mpq_t *)slope, NULL, &known);
+	int sign = through_sign(t, (const mpq_t *)slope, NULL, &known);
 	rationals_free(row, (size_t)t->n);
 	rationals_free(slope, (size_t)t->n);
 	return known && sign != 0 ? 0 : 2;
@@ -200,12 +190,12 @@ static int slides_back(const struct through *t, const struct gate *met, const st
 		if (!gate->release || is_stick(&t->s->expression[gate->expression],
 					       interval_of(t->s, t->region, gate->expression)))
 			continue;
-		int sign = sign_of(t, (const mpq_t *)gate->row, NULL, &known);
+		int sign = through_sign(t, (const mpq_t *)gate->row, NULL, &known);
 		bool none = known && sign == 0;
 		if (!known && met)
 			none = through_meets(t, met, gate);
 		if (none)
-			sign = sign_of(t, (const mpq_t *)gate->slope, NULL, &known);
+			sign = through_sign(t, (const mpq_t *)gate->slope, NULL, &known);
 		*release = gate;
 		if (!known)
 			return -2;
@@ -239,7 +229,24 @@ static bool settle_sliders(struct through *t, const struct gate *gate, mpfr_srcp
 	else
 		mpfr_set_zero(t->fresh_off, 1);
 	discard(gone);
-	return back == -1 || unknown(t, "what slides on");
+	return back == -1 || through_unknown(t, "what slides on");
+}
+
+/* Contacts at rest that are let go have the value 0 where they are, with their slopes. */
+static void note_parting(struct through *t, const struct idle *idle, int count, int before, mpfr_srcptr off)
+{
+	for (int i = 0; i < count; i++) {
+		int e = idle[i].expression;
+		if (idle[i].impact < 0 || interval_of(t->s, before, e) != idle[i].stick ||
+		    interval_of(t->s, t->region, e) == idle[i].stick)
+			continue;
+		t->order[e] = 2;
+		t->back[e] = t->s->impact[idle[i].impact].in[t->segment].upward;
+		if (off)
+			mpfr_set(t->fresh_off, off, MPFR_RNDU);
+		else
+			mpfr_set_zero(t->fresh_off, 1);
+	}
 }
 
 static bool settle_idle(struct through *t, const struct gate *gate, mpfr_srcptr off)
@@ -255,237 +262,22 @@ static bool settle_idle(struct through *t, const struct gate *gate, mpfr_srcptr 
 			int score, region = region_with(t, idle, count, code, &score);
 			int agree = score == least ? agrees(t, region, idle, count) : 0;
 			if (agree < 0)
-				return unknown(t, "what sticks and what slips");
+				return through_unknown(t, "what sticks and what slips");
 			best = agree > 0 ? region : -1;
 		}
 	if (best < 0)
-		return unknown(t, "what sticks: no combination of what sticks and what slips agrees");
+		return through_unknown(t, "what sticks: no combination of what sticks and what slips agrees");
 	if (best == t->region)
 		return true;
+	int before = t->region;
 	if (off)
 		note_change(t, idle, count, best, off);
 	through_enter(t, best);
+	note_parting(t, idle, count, before, off);
 	return true;
 }
 
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	return settle_idle(t, gate, off) && settle_sliders(t, gate, off);
-}
-
-/* ---- impacts ---- */
-
-static int free_of(const struct through *t, const struct impact *p)
-{
-	return rest_of(t->s, t->segment, p) + (p->in[t->segment].upward ? -1 : 1);
-}
-
-static void go_to(struct through *t, const struct impact *p, int interval)
-{
-	int now = interval_of(t->s, t->region, p->in[t->segment].expression);
-	if (now != interval)
-		through_enter(t, t->region + (interval - now) * t->s->expression[p->in[t->segment].expression].stride);
-}
-
-static int breakpoint_of(const struct through *t, const struct impact *p)
-{
-	const struct expression *e = &t->s->expression[p->in[t->segment].expression];
-	int b = 0;
-	while (!mpq_equal(e->at[b], p->in[t->segment].at))
-		b++;
-	return b + (p->bounces && !p->in[t->segment].upward);
-}
-
-static bool touches(const struct through *t, const struct impact *p)
-{
-	int interval = interval_of(t->s, t->region, p->in[t->segment].expression);
-	return p->bounces && (interval == rest_of(t->s, t->segment, p) || interval == free_of(t, p)) &&
-	       through_side(t, p->in[t->segment].expression, p->in[t->segment].at) == 0;
-}
-
-/* Whether a speed is 0 to half the digits of the largest: speeds that impacts have made equal */
-static bool is_none(const struct through *t, const mpq_t *row)
-{
-	mpfi_t value;
-	double most = 0, size = 0;
-	mpfi_init2(value, t->precision);
-	through_dot(t, row, (const mpfi_t *)t->x, value);
-	for (int i = t->system->n; i < t->layout.states; i++) {
-		most = fmax(most, fabs(mpfi_get_d(t->x[i])));
-		size += fabs(mpq_get_d(row[i]));
-	}
-	size = ldexp(size * most, -t->precision / 2);
-	bool none = fabs(mpfr_get_d(&value->left, MPFR_RNDA)) <= size &&
-		    fabs(mpfr_get_d(&value->right, MPFR_RNDA)) <= size;
-	mpfi_clear(value);
-	return none;
-}
-
-/* Whether it comes closer: 1, 0, -1: not known. What was struck without restitution, or rests, does not. */
-static int closes(const struct through *t, int k, unsigned struck)
-{
-	const struct impact *p = &t->s->impact[k];
-	const struct strike *strike = &p->in[t->segment];
-	bool rests = interval_of(t->s, t->region, strike->expression) == rest_of(t->s, t->segment, p);
-	bool known, still = rests || ((struck >> k & 1) && mpq_sgn(strike->restitution) == 0);
-	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
-	int sign = sign_of(t, (const mpq_t *)row, NULL, &known);
-	if (!known && !still)
-		still = is_none(t, (const mpq_t *)row);
-	rationals_free(row, (size_t)t->n);
-	return known ? sign > 0 : still ? 0 : -1;
-}
-
-/* How fast it comes closer, or parts: at most; 0: it does not bounce */
-static double speed_of(struct through *t, const struct impact *p)
-{
-	if (!p->bounces)
-		return 0;
-	mpq_t *row = row_of(t, p->in[t->segment].speed_row);
-	mpfi_t speed;
-	mpfi_init2(speed, t->precision);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, speed);
-	mpfi_abs(speed, speed);
-	double most = mpfr_get_d(&speed->right, MPFR_RNDU);
-	mpfi_clear(speed);
-	rationals_free(row, (size_t)t->n);
-	return most;
-}
-
-/* Those that touch and have come to less than `slow` by striking each other without end rest, as the region lets them:
- * what is left of their speeds is below half the digits. For --solution alone: a selftest compares what is listed, too,
- * and the target lists as many impacts as it has room for. */
-static unsigned calm(struct through *t, double slow, mpfr_srcptr off)
-{
-	unsigned laid = 0;
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct impact *p = &t->s->impact[k];
-		const struct strike *strike = &p->in[t->segment];
-		int before = t->region, rest = rest_of(t->s, t->segment, p);
-		if (!touches(t, p) || interval_of(t->s, t->region, strike->expression) == rest || speed_of(t, p) > slow)
-			continue;
-		go_to(t, p, rest);
-		if (!t->s->region[t->region].possible) {        /* others hold it already */
-			through_enter(t, before);
-			continue;
-		}
-		through_note_plain(t, strike->expression, breakpoint_of(t, p), strike->upward, off);
-		laid |= 1u << k;
-	}
-	through_hold(t);
-	return laid;
-}
-
-static bool collide(struct through *t, int begins, mpfr_srcptr off, unsigned *struck)
-{
-	const bool solves = t->whole->asked.solution;
-	int rounds = 0;
-	double most = 0;
-	bool calms = false;
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct impact *p = &t->s->impact[k];
-		const double slow = ldexp(most, -t->precision / 2);
-		int comes = k == begins ? 1 : touches(t, p) ? closes(t, k, *struck) : 0;
-		if (solves && comes != 0 && k != begins && speed_of(t, p) <= slow) {
-			calms = true;
-			continue;
-		}
-		if (comes < 0 || rounds > (solves ? MOST_SOLVED : MOST_STRUCK))
-			return unknown(t, "whether what touches comes closer");
-		if (comes == 0)
-			continue;
-		rounds++;
-		calms = false;
-		most = fmax(most, speed_of(t, p));
-		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
-		jump(t, p->in[t->segment].jumps, p->in[t->segment].jump);
-		if (p->bounces)
-			go_to(t, p, free_of(t, p));
-		*struck |= 1u << k;
-		begins = k == begins ? -1 : begins;
-		k = -1;
-	}
-	if (calms)
-		*struck &= ~calm(t, ldexp(most, -t->precision / 2), off);
-	return true;
-}
-
-/* left = 2 v/(a (1 - e)) of what leaves with v and is pressed back by a; false: nothing presses it. *known */
-static bool time_left(struct through *t, const struct impact *p, mpfi_ptr left, bool *known)
-{
-	mpq_t *row = row_of(t, p->in[t->segment].speed_row), part;
-	mpq_t *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	bool presses = sign_of(t, (const mpq_t *)press, NULL, known) > 0;
-	mpfi_t a;
-	mpq_init(part);
-	mpfi_init2(a, t->precision);
-	mpfi_set_ui(left, 0);
-	if (presses && mpq_sgn(p->in[t->segment].restitution) != 0) {
-		through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, left);
-		through_dot(t, (const mpq_t *)press, (const mpfi_t *)t->x, a);
-		mpfi_div(left, left, a);
-		mpq_set_si(part, 1, 1);
-		mpq_sub(part, p->in[t->segment].restitution, part);
-		mpfi_div_q(left, left, part);
-		mpfi_mul_ui(left, left, 2);
-	}
-	mpfi_clear(a);
-	mpq_clear(part);
-	rationals_free(row, (size_t)t->n);
-	rationals_free(press, (size_t)t->n);
-	return presses;
-}
-
-/* By the stated rule: where infinitely many bounces take no more than 2^-23 h (float: 2^-10) */
-static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
-{
-	mpq_t brief, one;
-	mpfi_t left;
-	bool known = true;
-	mpq_inits(brief, one, NULL);
-	mpfi_init2(left, t->precision);
-	mpq_set_ui(one, 1, 1);
-	mpq_div_2exp(brief, t->whole->h, t->whole->asked.single && !t->whole->asked.solution ? 10 : 23);
-	for (int k = 0; k < t->s->impacts && known; k++) {
-		const struct impact *p = &t->s->impact[k];
-		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 ||
-				!touches(t, p))
-			continue;
-		bool presses = time_left(t, p, left, &known);
-		if (!known || !presses)
-			continue;
-		bool stands = mpfi_has_zero(left) > 0 && mpq_sgn(p->in[t->segment].restitution) != 0;
-		mpfi_sub_q(left, left, brief);
-		known = mpfr_sgn(&left->left) > 0 || mpfr_sgn(&left->right) <= 0;
-		if (!known || mpfr_sgn(&left->left) > 0)
-			continue;
-		mpfi_add_q(left, left, brief);
-		jump(t, p->in[t->segment].jumps, p->in[t->segment].still);
-		go_to(t, p, rest_of(t->s, t->segment, p));
-		through_hold(t);
-		through_note_plain(t, p->in[t->segment].expression, breakpoint_of(t, p), p->in[t->segment].upward, off);
-		mpfi_add(t->list[t->passed - 1].at, t->list[t->passed - 1].at, left);
-		t->list[t->passed - 1].stands = stands;
-		known = through_settle(t, NULL, off);
-	}
-	mpfi_clear(left);
-	mpq_clears(brief, one, NULL);
-	return known || t->undecided || unknown(t, "whether what bounces comes to rest");
-}
-
-bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
-{
-	unsigned struck = 0;
-	bool known = stream_change(t->at->flow, NULL, off, t->x);
-	if (!t->s->impact[gate->impact].bounces)
-		through_enter(t, t->region + gate->leads);
-	known = known && collide(t, gate->impact, off, &struck);
-	known = known && stream_change(t->at->flow, NULL, off, t->x);
-	if (!known)
-		return t->undecided ? false : unknown(t, "when an impact is");
-	/* first what an impact sets in motion leaves where it stuck, then what still sticks is held */
-	if (!through_follow(t))
-		return false;
-	through_hold(t);
-	return through_settle(t, NULL, off) && come_to_rest(t, struck, off);
 }

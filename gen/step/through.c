@@ -195,7 +195,7 @@ static void make_room(struct through *t)
 	for (int k = 0; k < 2; k++)
 		t->near[k] = (struct near){ ARRAY(double, (size_t)t->n), ARRAY(double, (size_t)t->n) };
 	t->most = ARRAY(double, (size_t)t->n);
-	mpq_init(t->base);
+	mpq_inits(t->base, t->struck, NULL);
 	mpfr_init2(t->fresh_off, 64);
 	mpfr_init2(t->most_off, 64);
 	mpfr_init2(t->one, 2);
@@ -264,6 +264,6 @@ void through_free(struct through *t)
 	free_room(t->n, t->y);
 	series_room_free(t->n, &t->room);
 	mpfr_clears(t->one, t->fresh_off, t->most_off, NULL);
-	mpq_clear(t->base);
+	mpq_clears(t->base, t->struck, NULL);
 	discard(t);
 }

@@ -61,6 +61,8 @@ struct through {
 	bool *back;                 /* which way it would come back */
 	mpfr_t fresh_off, most_off;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
+	mpq_t struck;               /* the last impact [s], and the fastest of those that it follows */
+	double fastest;
 	int passed, most_passed;    /* most: 0: any number */
 	struct passed *list;
 	const char *undecided;
@@ -95,13 +97,21 @@ bool through_follow(struct through *t);                      /* what has left it
 void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
 
-/* ---- settling.c: friction and impacts ---- */
+/* ---- settling.c: what sticks and what slips ---- */
 
+/* Of row . x - less: its sign, 0 where it is exactly 0; *known false: it is not told apart from 0 */
+int  through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known);
+mpq_t *through_row_of(const struct through *t, const struct output *output);
+void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh);
+bool through_unknown(struct through *t, const char *what);   /* false */
 void through_hold(struct through *t);                        /* states that the region gives */
 /* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
-bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
+
+/* ---- struck.c: impacts, and what comes to rest by them ---- */
+
+bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
 
 /* ---- begun.c ---- */
 
