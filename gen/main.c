@@ -356,7 +356,8 @@ static bool compile(struct work *w)
 /* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from
  * system to system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of
  * pages that cost nothing until they are used. */
-enum { STACK_SIZE = 96 << 20 };
+/* Of the thread that works; of memory that is not given back, as what is asked for again would be cleared again */
+enum { STACK_SIZE = 96 << 20, KEPT = 256 << 20 };
 
 struct command { int argc; char **argv; int status; };
 
@@ -380,6 +381,10 @@ int plgen(int argc, char **argv)
 	pthread_t thread;
 #ifdef M_ARENA_MAX
 	mallopt(M_ARENA_MAX, 1);        /* one thread works: it needs no heap of its own */
+#endif
+#ifdef M_TRIM_THRESHOLD
+	mallopt(M_TRIM_THRESHOLD, KEPT);
+	mallopt(M_MMAP_THRESHOLD, KEPT);
 #endif
 	if (pthread_attr_init(&attributes) != 0 || pthread_attr_setstacksize(&attributes, STACK_SIZE) != 0 ||
 	    pthread_create(&thread, &attributes, run, &command) != 0) {

@@ -8,6 +8,7 @@ set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "$root/tests/run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
@@ -73,8 +74,7 @@ looks() {
     case "$*" in *float*) flags="$flags -DFLOAT" ;; esac
     # shellcheck disable=SC2086
     "$plgen" --prefix the "$@" one.spec >one.c 2>log &&
-        ${CC:-cc} -std=c99 -Wall -Wextra -Wconversion -Werror -O0 $flags -I"$root/runtime" look.c one.c "$archive" \
-            -lm -o look 2>>log && timeout 60 ./look >>log
+        $run_cc $flags -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log && timeout 60 ./look >>log
     result $? "$name: the step that leaves the range"
 }
 

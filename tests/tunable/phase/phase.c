@@ -71,8 +71,8 @@ static void oscillate(const struct truth *truth, long double s, double *a, doubl
 {
     const long double f = 0.7L, of_load = truth->drives ? truth->f : f, W = turn * of_load;
     const long double since = turn * f * truth->since, p = (truth->drives ? truth->turned : since) + 0.3L;
-    const long double size = truth->F / (9 - W * W);
-    const long double A0 = truth->a - size * cosl(p), B0 = (truth->v + size * W * sinl(p)) / 3;
+    const long double F = truth->F, start = truth->a, speed = truth->v;     /* tcc takes no double times a long one */
+    const long double size = F / (9 - W * W), A0 = start - size * cosl(p), B0 = (speed + size * W * sinl(p)) / 3;
     *a = (double)(A0 * cosl(3 * s) + B0 * sinl(3 * s) + size * cosl(W * s + p));
     *v = (double)(3 * (B0 * cosl(3 * s) - A0 * sinl(3 * s)) - size * W * sinl(W * s + p));
 }

@@ -6,6 +6,7 @@ plgen=$(realpath "$1")
 source=$(realpath "$2")
 real=$3
 . "$source/tests/tap.sh"
+. "$source/tests/run_cc.sh"
 runtime_archive "$source/runtime"
 float=''
 [ "$real" = double ] || float=-DREAL_FLOAT
@@ -17,7 +18,7 @@ drive() {
 	tolerance=$2
 	[ "$real" = double ] || tolerance=$(echo "$2" | awk '{ print $1 < 2e-5 ? "2e-5f" : $1 "f" }')
 	turn=$((turn + 1))
-	compile="${CC:-cc} -std=c11 -O0 -w"
+	compile=$run_cc
 	{ ! long && [ $((turn % 3)) -ne 1 ]; } || compile=$sanitizing
 	# shellcheck disable=SC2086
 	"$plgen" --real "$real" ${3:+--scheme "$3"} -o phase_pl.c "$source/tests/tunable/phase/$1.spec" >log 2>&1 &&
