@@ -71,7 +71,8 @@ runtime_archive "$root/runtime"
 driver() {          # driver FILE NAME PROGRAM [LIBRARIES]: an object, or C, with LONG=1 in the compiler's own dialect
     case $1 in *.c)
         if ! long; then
-            $run_cc -I"$root/runtime" "-DMODEL=$2" "$root/runtime/host/plmain.c" "$1" "$archive" ${4-} -o "$3" >>log 2>&1
+            $run_cc -I"$root/runtime" "-DMODEL=$2" "$root/runtime/host/plmain.c" "$1" "$archive" ${4-} -o "$3" \
+                >>log 2>&1
             return
         fi ;;
     esac

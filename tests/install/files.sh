@@ -56,6 +56,7 @@ mv "$prefix/share/plgen/away" "$prefix/share/plgen/runtime"
 plgen --bundle "$prefix/share/plgen/models/sdcsf.spec" >moved.c 2>>log
 cmp built.c moved.c >>log 2>&1 && [ -s built.c ]
 result $? 'a bundle has the same bytes from the build and from what is installed'
-CC=${run_cc%% *} XDG_CACHE_HOME=$work/cache plrun "$prefix/share/plgen/models/scs.spec" 1 >out 2>log && [ "$(wc -l <out)" -gt 10 ]
+CC=${run_cc%% *} XDG_CACHE_HOME=$work/cache plrun "$prefix/share/plgen/models/scs.spec" 1 >out 2>log &&
+	[ "$(wc -l <out)" -gt 10 ]
 result $? 'plrun runs'
 tap_end
