@@ -9,8 +9,8 @@
  *                                        among the numbers, -1: it stays, -2: and so do all rows that it has bounds of
  *     PL(segment)[]                      of each, the segment of time it is of, where there are several
  *     PL_ROWS, PL_BLOCKS, PL_WIDE        numbers that params change, rows over x: PL(equations)[1 + PL_BLOCKS] give
- *                                        them, those behind the first, of so many entries at most with their W's, from
- *     PL(block_row)[]                    this row on
+ *     PL(block_row)[1 + PL_BLOCKS]       them, from this row on; those behind the first with their W's, of so many
+ *                                        entries at most
  *     PL(check)[2 PL_CHECKS]             a number that may not have any value, and which: 0: at least 0, 1: at most 1,
  *                                        too, 2: above 0, 3: below 0
  *     PL_FROM, PL(from)[]                per row of an instance's tables where it is found among the numbers, from 1;
@@ -39,7 +39,7 @@ static int PL(numbers)(const real params[PL_PARAMS], pl_two *value, pl_two *work
     pl_two wide[PL_WIDE];
     int b, i;
     for (b = 1; b <= PL_BLOCKS && status == 0; b++) {
-        const int rows = PL(equations)[b].rows, from = PL(block_row)[b - 1] * PL_SIZE;
+        const int rows = PL(equations)[b].rows, from = PL(block_row)[b] * PL_SIZE;
         status = pl_equations_at(&PL(equations)[b], params, wide, work);
         for (i = 0; i < rows * PL_SIZE && status == 0; i++) {
             value[from + i] = wide[i / PL_SIZE * (PL_SIZE + rows) + i % PL_SIZE];

@@ -689,8 +689,11 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 
 const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
-void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
-void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix);
+void emit_monomials(const struct emitter *e, const struct tuning *t);
+void emit_term_start(const struct emitter *e, int terms);
+void emit_term(const struct emitter *e, int row, int column, const struct tuned_term *of, const char *note);
+/* rows, columns, terms, of which the first is this one */
+const char *equations_text(const struct emitter *e, int monomials, bool solves, const int part[4]);
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 

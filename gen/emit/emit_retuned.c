@@ -65,47 +65,42 @@ static const struct retuned_row *row_at(const struct emitter *e, int place)
 }
 
 /* W a = R x, or a = R x; rows from `place` on */
-static void emit_terms(const struct emitter *e, const struct tuning *t, int place, const char *suffix)
+static void emit_terms(const struct emitter *e, const struct tuning *t, int place)
 {
 	const char **column = layout_names(&e->step->layout, e->system, e->model);
-	emit_monomials(e, t, suffix);
-	emit_term_start(e, t, suffix);
 	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++) {
 		const struct retuned_row *row = row_at(e, place + term->row);
 		bool left = term->column >= t->x.size;
 		const char *of = is_number(row) ? ""
 				 : left ? format(" row %d", term->column - t->x.size)
 					: format(" %s", column[term->column]);
-		say(e, "    {%d, %d, %d, %s},  /* %s%s: %s%s */\n", term->row, term->column, term->monomial,
-		    two_words(equation_number(e->model, term->factor)), name_of_row(e, row), left ? ", left" : "",
-		    tuned_product(t, term), of);
+		emit_term(e, term->row, term->column, term, format("%s%s: %s%s", name_of_row(e, row),
+								    left ? ", left" : "",
+								    tuned_product(retuned_of(e)->tuning, term), of));
 	}
-	say(e, "};\n");
 }
 
-static const char *equations_of(const struct emitter *e, const struct tuning *t, const char *suffix)
-{
-	return format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", t->rows, t->x.size, t->solves, e->upper, t->monomials,
-		      t->terms, t->monomials ? spell(e, "$n_monomial%s", suffix) : "NULL",
-		      spell(e, "$n_term%s", suffix));
-}
-
-/* All rows but what the target solves for, then these */
+/* All rows but what the target solves for, and behind it that, block by block */
 static void emit_equations(const struct emitter *e)
 {
 	const struct retuned *r = retuned_of(e);
-	const char *text = equations_of(e, r->tuning, "");
-	int *row = ARRAY(int, (size_t)r->blocks + 1);
-	emit_terms(e, r->tuning, 0, "");
-	for (int b = 0; b < r->blocks; b++) {
-		const char *suffix = format("%d", b + 1);
-		emit_terms(e, r->block[b].tuning, r->block[b].place, suffix);
-		text = format("%s,\n    %s", text, equations_of(e, r->block[b].tuning, suffix));
-		row[b] = r->block[b].place;
+	const char *text = "";
+	int terms = 0, *row = ARRAY(int, (size_t)r->blocks + 1);
+	emit_monomials(e, r->tuning);
+	for (int b = 0; b <= r->blocks; b++) {
+		const struct tuning *t = b ? r->block[b - 1].tuning : r->tuning;
+		const int part[] = { t->rows, t->x.size, t->terms, terms };
+		text = format("%s    %s,\n", text, equations_text(e, r->tuning->monomials, t->solves, part));
+		terms += t->terms;
+		row[b] = b ? r->block[b - 1].place : 0;
 	}
-	say(e, "\nstatic const pl_equations $n_equations[%d] = {\n    %s\n};\n", r->blocks + 1, text);
+	emit_term_start(e, terms);
+	emit_terms(e, r->tuning, 0);
+	for (int b = 0; b < r->blocks; b++)
+		emit_terms(e, r->block[b].tuning, r->block[b].place);
+	say(e, "};\n\nstatic const pl_equations $n_equations[%d] = {\n%s};\n", r->blocks + 1, text);
 	if (r->blocks)
-		emit_integers(e, "short", "block_row", r->blocks, row);
+		emit_integers(e, "short", "block_row", r->blocks + 1, row);
 }
 
 static int widest_block(const struct emitter *e)
@@ -115,18 +110,6 @@ static int widest_block(const struct emitter *e)
 	for (int b = 0; b < r->blocks; b++) {
 		int rows = r->block[b].tuning->rows, cells = rows * (rows + e->step->layout.size);
 		most = cells > most ? cells : most;
-	}
-	return most;
-}
-
-/* Numbers that a retune works in: products of params, or e^{A d} */
-static int most_work(const struct emitter *e)
-{
-	const struct retuned *r = retuned_of(e);
-	int most = PL_REGION_WORK(e->step->layout.size);
-	for (int b = -1; b < r->blocks; b++) {
-		int products = 1 + (b < 0 ? r->tuning : r->block[b].tuning)->monomials;
-		most = products > most ? products : most;
 	}
 	return most;
 }
@@ -311,21 +294,22 @@ void emit_retuned(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
 	emit_equations(e);
-	const int taken = emit_from(e, &g);
+	const int taken = emit_from(e, &g), products = retuned_of(e)->tuning->monomials + 1;
+	const int work = PL_REGION_WORK(e->step->layout.size);
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
 	const struct size sizes[] = {
 		{ "PARAMS", e->model->held->params }, { "SIZE", e->step->layout.size },
-		{ "STATES", e->system->states },
-		{ "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) }, { "SEGMENTS", s->segments },
-		{ "BRANCHES", e->step->branches }, { "ROWS", retuned_of(e)->tuning->rows },
-		{ "BLOCKS", retuned_of(e)->blocks }, { "WIDE", widest_block(e) }, { "FROM", taken },
-		{ "CHECKS", checks }, { "ENTRIES", entries }, { "HIGHEST", e->system->n }, { "WORK", most_work(e) },
+		{ "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
+		{ "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
+		{ "ROWS", retuned_of(e)->tuning->rows }, { "BLOCKS", retuned_of(e)->blocks },
+		{ "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
+		{ "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
 		{ "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		{ "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
-		{ "GRIPS", has_guards(e) ? s->regions * s->felts : 0 },
-		{ "BOUNDED", bounded }, { "CLEARS", e->step->clears }
+		{ "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
+		{ "CLEARS", e->step->clears }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	if (e->step->clears)

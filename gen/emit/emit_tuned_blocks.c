@@ -19,11 +19,11 @@ static const char *monomial_text(const struct tuning *t, int number)
 	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
 }
 
-void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix)
+void emit_monomials(const struct emitter *e, const struct tuning *t)
 {
 	if (t->monomials == 0)
 		return;
-	say(e, "\nstatic const pl_monomial $n_monomial%s[%d] = {\n", suffix, t->monomials);
+	say(e, "\nstatic const pl_monomial $n_monomial[%d] = {\n", t->monomials);
 	for (int m = 0; m < t->monomials; m++) {
 		const struct tuned_monomial *made = &t->monomial[m];
 		const char *text = monomial_text(t, m + 1);
@@ -74,12 +74,25 @@ const char *two_words(struct coefficient number)
 }
 
 /* An array has one element at least. */
-void emit_term_start(const struct emitter *e, const struct tuning *t, const char *suffix)
+void emit_term_start(const struct emitter *e, int terms)
 {
-	say(e, "\nstatic const pl_term $n_term%s[%d] = {  /* row, column, product of params, factor */\n", suffix,
-	    t->terms > 0 ? t->terms : 1);
-	if (t->terms == 0)
+	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n",
+	    terms > 0 ? terms : 1);
+	if (terms == 0)
 		say(e, "    {0, 0, 0, {0.0, 0.0}},\n");
+}
+
+void emit_term(const struct emitter *e, int row, int column, const struct tuned_term *of, const char *note)
+{
+	say(e, "    {%d, %d, %d, %s},  /* %s */\n", row, column, of->monomial,
+	    two_words(equation_number(e->model, of->factor)), note);
+}
+
+const char *equations_text(const struct emitter *e, int monomials, bool solves, const int part[4])
+{
+	return format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", part[0], part[1], solves, e->upper, monomials, part[2],
+		      monomials ? format("%s_monomial", e->name) : "NULL",
+		      part[2] ? format("%s_term + %d", e->name, part[3]) : "NULL");
 }
 
 /* Blocks in tables: all where NAME_at is there, else those that params touch */
@@ -99,8 +112,7 @@ static int number_of_block(const struct emitter *e, int block)
 static void emit_part_terms(const struct emitter *e, const struct tuned_part *part)
 {
 	for (const struct part_term *term = part->term; term < part->term + part->terms; term++)
-		say(e, "    {%d, %d, %d, %s},  /* %s */\n", term->row, term->column, term->of->monomial,
-		    two_words(equation_number(e->model, term->of->factor)), tuned_term_note(e, term->of));
+		emit_term(e, term->row, term->column, term->of, tuned_term_note(e, term->of));
 }
 
 static int count_terms(const struct emitter *e)
@@ -114,11 +126,10 @@ static int count_terms(const struct emitter *e)
 static void emit_terms(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_monomials(e, e->model->tuning, "");
+	emit_monomials(e, e->model->tuning);
 	if (count_terms(e) == 0)
 		return;
-	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n",
-	    count_terms(e));
+	emit_term_start(e, count_terms(e));
 	for (int b = 0; b < p->blocks; b++)
 		if (is_listed(e, b))
 			emit_part_terms(e, &p->block[b].part);
@@ -127,12 +138,10 @@ static void emit_terms(const struct emitter *e)
 	say(e, "};\n");
 }
 
-static const char *equations_text(const struct emitter *e, const struct tuned_part *part, int first)
+static const char *part_text(const struct emitter *e, const struct tuned_part *part, int first)
 {
 	const struct tuning *t = e->model->tuning;
-	return format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", part->rows, part->columns, t->solves, e->upper,
-		      t->monomials, part->terms, t->monomials ? format("%s_monomial", e->name) : "NULL",
-		      part->terms ? format("%s_term + %d", e->name, first) : "NULL");
+	return equations_text(e, t->monomials, t->solves, (int[]){ part->rows, part->columns, part->terms, first });
 }
 
 /* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
@@ -225,7 +234,7 @@ static const char *block_text(const struct emitter *e, const struct tuned_block 
 	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
 	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
 	const char *places = placed ? list_text(e, 1, add_columns(l, e, b)) : "NULL";
-	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations_text(e, &b->part, term),
+	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", part_text(e, &b->part, term),
 		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
 		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
 }
@@ -361,7 +370,7 @@ static void emit_others(const struct emitter *e)
 	    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
 				: "Outputs, over x",
 	    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
-	    equations_text(e, &p->others, count_terms(e) - p->others.terms));
+	    part_text(e, &p->others, count_terms(e) - p->others.terms));
 }
 
 /* By phases: which row of the equations its frequency is; by growths: whether a load decays */

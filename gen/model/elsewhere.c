@@ -208,15 +208,17 @@ void add_tuned_unit(struct tuning *t, int row, int column)
 	mpq_set_ui(add_term(t, row, column, 0)->factor, 1, 1);
 }
 
-static void add_fitted(struct tuning *t, const struct fit *f, int row, int column, int sign)
+/* Products are those of s->tuning, whichever the terms are of. */
+static void add_fitted(struct elsewhere *s, struct tuning *t, int row, int column, int sign)
 {
+	const struct fit *f = &s->fit;
 	for (int i = 0; i < f->products; i++) {
 		signed char power[LIMIT_TUNABLES];
 		if (mpq_sgn(f->factor[i]) == 0)
 			continue;
 		for (int k = 0; k < t->params; k++)
 			power[k] = f->power[i][k];
-		struct tuned_term *term = add_term(t, row, column, monomial_of(t, power));
+		struct tuned_term *term = add_term(t, row, column, monomial_of(s->tuning, power));
 		mpq_set(term->factor, f->factor[i]);
 		if (sign < 0)
 			mpq_neg(term->factor, term->factor);
@@ -251,7 +253,7 @@ bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, 
 {
 	const bool fits = fits_entry(s, index);
 	if (fits)
-		add_fitted(t, &s->fit, row, column, sign);
+		add_fitted(s, t, row, column, sign);
 	return fits;
 }
 
@@ -265,21 +267,13 @@ void refuse_fit(const struct elsewhere *s, const char *what, const char *way)
 	      "the %s depend on '%s' in a way that cannot be recomputed on the target", what, why->symbol->name);
 }
 
-static bool uses(const struct tuning *t, int param)
-{
-	bool used = false;
-	for (int m = 0; m < t->monomials; m++)
-		used = used || t->monomial[m].param == param;
-	return used;
-}
-
-void warn_of_idle(const struct elsewhere *s, int blocks, const struct retuned_block *block)
+void warn_of_idle(const struct elsewhere *s)
 {
 	const struct tuning *t = s->tuning;
 	for (int k = 0; k < t->params; k++) {
-		bool used = (s->factor && !s->factor[k]) || uses(t, k);
-		for (int b = 0; b < blocks; b++)
-			used = used || uses(block[b].tuning, k);
+		bool used = s->factor && !s->factor[k];
+		for (int m = 0; m < t->monomials; m++)
+			used = used || t->monomial[m].param == k;
 		if (!used)
 			say_warning(t->param[k].at, NULL, "tunable '%s' changes nothing that the target recomputes",
 				    t->param[k].symbol->name);

@@ -919,7 +919,7 @@ struct retuned_row {
 	bool positive;
 };
 struct retuned_block {              /* a system that the target solves, and what reads its highest derivatives */
-	const struct tuning *tuning;
+	const struct tuning *tuning; /* products of params are those of the whole */
 	int place;                  /* of its first row */
 };
 struct retuned {
@@ -968,7 +968,7 @@ bool fits_entry(struct elsewhere *s, ptrdiff_t index);
 bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column, int sign);
 _Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
 void add_tuned_unit(struct tuning *t, int row, int column);
-void warn_of_idle(const struct elsewhere *s, int blocks, const struct retuned_block *block);
+void warn_of_idle(const struct elsewhere *s);
 void check_tuned(const struct model *model, bool regions);      /* what is no such sum, by the text */
 
 struct listing {                    /* retuned_rows.c: the numbers of one model's regions, in columns of x */

@@ -332,7 +332,7 @@ static void find(void *context)
 	check_size(s);
 	fit_rows(s);
 	if (!s->model->relative)
-		warn_of_idle(&s->at, s->r->blocks, s->r->block);
+		warn_of_idle(&s->at);
 }
 
 /* model->retuned; false: it was said why not */

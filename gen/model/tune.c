@@ -296,7 +296,7 @@ static void find(void *context)
 			   s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
 						   : "multiply an equation by what divides it");
 	mark_acting(s);
-	warn_of_idle(s, 0, NULL);
+	warn_of_idle(s);
 }
 
 bool find_tuning(struct model *model, const struct request *request)
