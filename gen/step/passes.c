@@ -87,15 +87,24 @@ static void expand_gate(struct through *t, const struct gate *gate, int degree, 
 	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
 }
 
-/* Of an expression that was let go: its polynomial has its first coefficients 0, but that it was let go `fresh_off`
- * away; it is divided by that power of s. */
-static int divide_by_power(struct through *t, int degree, int order, mpq_srcptr tau)
+/* How many first coefficients of a polynomial that begins below 0 are exactly 0 */
+static int zeros_of(const struct through *t, int degree)
+{
+	int order = 0;
+	while (order < degree && mpfr_zero_p(&t->value[order]->left) && mpfr_zero_p(&t->value[order]->right))
+		order++;
+	return mpfr_sgn(&t->value[order]->right) < 0 ? order : 0;
+}
+
+/* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that power
+ * of s. */
+static int divide_by_power(struct through *t, int degree, int order, bool fresh, mpq_srcptr tau)
 {
 	mpfi_t wide;
 	int rest = degree - order;
 	mpfi_init2(wide, t->precision);
 	for (int m = 0; m <= degree; m++) {
-		if (m < degree) {
+		if (m < degree && fresh) {
 			mpfi_set_fr(wide, t->fresh_off);
 			mpfi_div_q(wide, wide, tau);
 			mpfi_mul(wide, wide, t->value[m + 1]);
@@ -148,8 +157,10 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 			continue;
 		int terms = degree;
 		expand_gate(t, gate, degree, tau);
-		if (is_fresh(t, gate) && degree > t->order[gate->expression])
-			terms = divide_by_power(t, degree, t->order[gate->expression], tau);
+		bool fresh = is_fresh(t, gate);
+		int order = fresh ? t->order[gate->expression] : zeros_of(t, degree);
+		if (order > 0 && degree > order)
+			terms = divide_by_power(t, degree, order, fresh, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
 		    bounces(t, *found)) /* struck with what was found, where it touches then */

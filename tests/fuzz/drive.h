@@ -29,6 +29,7 @@ struct subject {
 	int (*region)(const void *s);   /* NAME_region, or NULL */
 	double regions;             /* how many there may be */
 	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
+	double rounded;             /* of the largest value of a state, as its banner has it; 0: it says nothing */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */
