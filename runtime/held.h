@@ -55,15 +55,4 @@ void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
 #endif
 }
 
-/* For programs that drive any model */
-static int PL(any_retune)(void *s, const real *params, real h)
-{
-    PL(coeffs) fresh = PL(nominal);
-    const int status = PL(retune)(&fresh, params, h);
-    if (status == 0) {
-        PL(use)((struct PL_TYPE *)s, &fresh);
-    }
-    return status;
-}
-
 #include "undef.h"

@@ -62,6 +62,7 @@
 #define pl_region_reach pl_regionf_reach
 #define pl_block pl_blockf
 #define pl_group pl_groupf
+#define pl_model pl_modelf
 #else
 #define real double
 #endif

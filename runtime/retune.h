@@ -438,17 +438,6 @@ void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
     s->coeffs = *c;
 }
 
-/* For programs that drive any model */
-static int PL(any_retune)(void *s, const real *params, real h)
-{
-    PL(coeffs) fresh;
-    const int status = PL(retune)(&fresh, params, h);
-    if (status == 0) {
-        PL(use)((struct PL_TYPE *)s, &fresh);
-    }
-    return status;
-}
-
 /* ---- any time ---- */
 
 #if PL_BLOCKS > 0

@@ -113,6 +113,7 @@
 #undef PL_MOMENTA
 #undef PL_MOST
 #undef PL_MOVES
+#undef PL_NAME
 #undef PL_NEAR
 #undef PL_NODES
 #undef PL_NOISE
@@ -178,6 +179,7 @@
 #undef PL_SLOPES
 #undef PL_SLOPE_ROUNDED
 #undef PL_SOLVED
+#undef PL_SPEC_H
 #undef PL_SPEEDS
 #undef PL_STABLE
 #undef PL_STAGES
@@ -272,3 +274,4 @@
 #undef pl_region_reach
 #undef pl_block
 #undef pl_group
+#undef pl_model

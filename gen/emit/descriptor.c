@@ -67,17 +67,6 @@ void emit_gamma(const struct emitter *e)
 		emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
 }
 
-static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters,
-			 const char *arguments, bool is_const)
-{
-	/* the tag: a parameter may bear the name */
-	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name);
-	say(e, "static %s $n_any_%s(%svoid *s%s) { %s$n_%s((%s *)s%s); }\n", result, function,
-	       is_const ? "const " : "", parameters,
-	       *result != 'v' ? "return " : !given_inputs(e) && strstr(parameters, "*u") ? "(void)u; " : "",
-	       function, state, arguments);
-}
-
 static void emit_start_samples(const struct emitter *e, int inputs)
 {
 	say(e, "static const int $n_start_samples[] = {");
@@ -86,7 +75,7 @@ static void emit_start_samples(const struct emitter *e, int inputs)
 	say(e, "};\n");
 }
 
-static void emit_names(const struct emitter *e, int inputs)
+static void emit_names(const struct emitter *e, int inputs, const struct tuning *tunable)
 {
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
 	if (inputs) {
@@ -94,31 +83,12 @@ static void emit_names(const struct emitter *e, int inputs)
 		emit_start_samples(e, inputs);
 	}
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
-}
-
-static void emit_wrappers(const struct emitter *e)
-{
-	bool inputs = given_inputs(e) > 0;
-	emit_wrapper(e, "void", "init", "", "", false);
-	emit_wrapper(e, "void", "set", ", double t, const double *y", ", t, y", false);
-	emit_wrapper(e, "void", "get", ", double *y", ", y", true);
-	emit_wrapper(e, "double", "time", "", "", true);
-	emit_wrapper(e, "void", "step", ", const double *u", inputs ? ", u" : "", false);
-	emit_wrapper(e, "void", "out", ", double *out", ", out", true);
-	emit_wrapper(e, "void", "run", ", size_t n, const double *u, double *out", inputs ? ", n, u, out" : ", n, out",
-		     false);
-	if (e->step->series.emitted)
-		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y",
-			     inputs ? ", u, tau, y" : ", tau, y", true);
-	emit_wrapper(e, "int", "status", "", "", true);
-	if (e->ramps)
-		emit_wrapper(e, "void", "hold", ", const double *u", ", u", false);
-}
-
-/* The name of what there is in some models only */
-static const char *name_if(const struct emitter *e, bool there, const char *name)
-{
-	return there ? spell(e, "$n_%s", name) : "NULL";
+	if (!tunable)
+		return;
+	const char **name = ARRAY(const char *, (size_t)tunable->params);
+	for (int k = 0; k < tunable->params; k++)
+		name[k] = tunable->param[k].symbol->name;
+	emit_name_list(e, "param_names", tunable->params, name);
 }
 
 /* Of the size that errors are measured by */
@@ -135,32 +105,22 @@ static void emit_allowed(const struct emitter *e)
 
 void emit_model(const struct emitter *e, int inputs, bool core)
 {
-	const bool jump = core && has_jump(e);
-	emit_names(e, inputs);
-	say(e, "\n");
-	emit_wrappers(e);
-	if (jump)
-		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
-	if (core)
-		e->kind->wrappers(e);
-	say(e, "\nconst pl_model $n_model = {\n"
-	       "    PL_MODEL_VERSION, sizeof(double), \"$n\", sizeof(struct $n),\n"
-	       "    $N_STATES, $N_INPUTS, $N_OUTPUTS, $N_H,\n"
-	       "    $n_state_names, %s, $n_output_names,\n"
-	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
-	       "    $n_any_out, $n_any_run, %s, %s, $n_any_status,\n", name_if(e, inputs, "input_names"),
-	       name_if(e, e->step->series.emitted, "any_at"), name_if(e, jump, "any_jump"));
-	if (core)
-		e->kind->params(e);
-	else
-		say(e, "    0, NULL, NULL, NULL,\n");
-	say(e, "    %s, %s\n"
-	       "};\n", name_if(e, e->ramps, "any_hold"), name_if(e, inputs, "start_samples"));
+	const struct tuning *tunable = core ? tunables_of(e->model) : NULL;
+	emit_names(e, inputs, tunable);
+	const struct size sizes[] = {
+		{ "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
+		{ "PARAMS", tunable ? tunable->params : 0 }, { "AT", e->step->series.emitted },
+		{ "JUMPS", core && has_jump(e) }, { "RAMPS", e->ramps }
+	};
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say(e, "#define PL_NAME \"$n\"\n"
+	       "#define PL_SPEC_H $N_H\n"
+	       "#include \"descriptor.h\"\n");
 }
 
 void emit_descriptor(const struct emitter *e)
 {
-	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
+	say(e, "\n/* ---- what programs read that drive any model ---- */\n\n");
 	emit_model(e, given_inputs(e), true);
 	if (tells_tolerance(e))
 		emit_allowed(e);

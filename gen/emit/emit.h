@@ -156,7 +156,6 @@ struct size { const char *name; int value; };
 void emit_sizes(const struct emitter *e, int count, const struct size *size);
 void put_sizes(const struct emitter *e, int count, const struct size *size);  /* further ones */
 
-void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 const char *param_list(const struct emitter *e);                  /* names, commas between */
 void emit_nominal_params(const struct emitter *e);                /* a member */
 void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
@@ -305,9 +304,6 @@ struct kind {
 	void (*step)(const struct emitter *e);
 	void (*held)(const struct emitter *e);          /* in at: what is held over the step */
 	void (*at)(const struct emitter *e);
-	/* The descriptor: functions that it names; its line of tunable params */
-	void (*wrappers)(const struct emitter *e);
-	void (*params)(const struct emitter *e);
 };
 const struct kind *row_of_kind(enum step_kind kind);
 
@@ -711,8 +707,6 @@ void emit_held_declarations(const struct emitter *e);
 void banner_held(const struct emitter *e);
 void emit_held_nominal(const struct emitter *e);
 void emit_held_retune(const struct emitter *e);
-void emit_held_wrapper(const struct emitter *e);
-void emit_params_line(const struct emitter *e);                   /* of the descriptor, of either kind */
 /* the generator's own coefficients, of the spec's values */
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */

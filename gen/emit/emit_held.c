@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a model has of params that an instance holds: types, retune, its wrappers. */
+/* What a model has of params that an instance holds: types, retune. */
 #include "emit/emit.h"
 
 static const struct tuning *held(const struct emitter *e)
@@ -128,18 +128,4 @@ void emit_held_retune(const struct emitter *e)
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	say(e, "#include \"held.h\"\n");
-}
-
-void emit_held_wrapper(const struct emitter *e)
-{
-	if (held(e))
-		emit_tuning_wrapper(e);
-}
-
-void emit_params_line(const struct emitter *e)
-{
-	if (tunables_of(e->model))
-		say(e, "    $N_PARAMS, $n_param_names, $n_nominal.params, $n_any_retune,\n");
-	else
-		say(e, "    0, NULL, NULL, NULL,\n");
 }

@@ -71,9 +71,7 @@ static const struct kind linear = {
 	.pass = emit_held_pass,
 	.step = emit_step,
 	.held = nothing,
-	.at = emit_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_at
 };
 
 /* ---- tuned: a linear step whose factors the instance has, of a large model those of blocks that params touch ---- */
@@ -124,9 +122,7 @@ static const struct kind tuned = {
 	.pass = emit_retune,
 	.step = emit_step,
 	.held = nothing,
-	.at = emit_tuned_at,
-	.wrappers = emit_tuning_wrapper,
-	.params = emit_params_line
+	.at = emit_tuned_at
 };
 
 /* ---- regions ---- */
@@ -184,9 +180,7 @@ static const struct kind regions = {
 	.pass = emit_held_retune,
 	.step = emit_regions_step,
 	.held = nothing,
-	.at = emit_region_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_region_at
 };
 
 /* ---- regions of independent parts ---- */
@@ -242,9 +236,7 @@ static const struct kind parts = {
 	.pass = emit_held_retune,
 	.step = emit_step_of_parts,
 	.held = nothing,
-	.at = emit_parts_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_parts_at
 };
 
 /* ---- leftover: a list of actions ---- */
@@ -296,9 +288,7 @@ static const struct kind leftover = {
 	.pass = emit_held_pass,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
-	.at = emit_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_at
 };
 
 /* ---- cut: the same, from crossing to crossing ---- */
@@ -354,9 +344,7 @@ static const struct kind cut = {
 	.pass = emit_held_retune,
 	.step = emit_cut_step,
 	.held = nothing,
-	.at = emit_expansion_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_expansion_at
 };
 
 /* ---- expanded: the Taylor series of the solution ---- */
@@ -407,9 +395,7 @@ static const struct kind expanded = {
 	.pass = emit_held_retune,
 	.step = emit_expansion_step,
 	.held = nothing,
-	.at = emit_expansion_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_expansion_at
 };
 
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
@@ -448,9 +434,7 @@ static const struct kind collocated = {
 	.pass = emit_held_retune,
 	.step = emit_collocation_step,
 	.held = nothing,
-	.at = emit_collocation_at,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = emit_collocation_at
 };
 
 /* ---- normal modes ---- */
@@ -498,9 +482,7 @@ static const struct kind normal_modes = {
 	.pass = emit_held_retune,
 	.step = emit_normal_step,
 	.held = nothing,
-	.at = nothing,
-	.wrappers = emit_held_wrapper,
-	.params = emit_params_line
+	.at = nothing
 };
 
 const struct kind *row_of_kind(enum step_kind kind)

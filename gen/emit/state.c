@@ -404,16 +404,6 @@ void emit_nominal_params(const struct emitter *e)
 	close_member(e);
 }
 
-void emit_tuning_wrapper(const struct emitter *e)
-{
-	const struct tuning *t = tunables_of(e->model);
-	const char **name = ARRAY(const char *, (size_t)t->params);
-	for (int k = 0; k < t->params; k++)
-		name[k] = t->param[k].symbol->name;
-	say(e, "\n");
-	emit_name_list(e, "param_names", t->params, name);
-}
-
 void emit_param_locals(const struct emitter *e, const bool *reads)
 {
 	for (int k = 0; k < held_values(e->model); k++)
