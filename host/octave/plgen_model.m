@@ -559,7 +559,7 @@ end
 % Loaded from the cache, or made: in a folder of its own, and renamed into its place.
 function code = open_code(c)
     [words, runtime, key] = compiler();
-    found = regexp(c, '\nconst pl_modelf? (\w*)_model ', "tokens", "once");
+    found = regexp(c, '\nextern const pl_modelf? (\w*)_model;', "tokens", "once");
     if isempty(found)
         fail("what plgen wrote has no descriptor");
     end

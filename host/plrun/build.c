@@ -259,8 +259,8 @@ static struct code *code_of(char *text)
 {
 	struct code *c = need(calloc(1, sizeof *c));
 	c->text = text;
-	c->single = strstr(text, "\nconst pl_modelf ") != NULL;
-	c->name = text_behind(text, c->single ? "\nconst pl_modelf " : "\nconst pl_model ", " ");
+	c->single = strstr(text, "\nextern const pl_modelf ") != NULL;
+	c->name = text_behind(text, c->single ? "\nextern const pl_modelf " : "\nextern const pl_model ", "; ");
 	size_t length = c->name ? strlen(c->name) : 0;
 	if (length < 7)
 		fail(WRONG_DATA, "what plgen wrote has no descriptor");

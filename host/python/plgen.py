@@ -246,9 +246,9 @@ class _Code:
 
     def __init__(self, text, notes):
         self.text, self.notes = text, notes
-        self.single = '\nconst pl_modelf ' in text
-        mark = '\nconst pl_modelf ' if self.single else '\nconst pl_model '
-        found = text.partition(mark)[2].partition(' ')[0]
+        self.single = '\nextern const pl_modelf ' in text
+        mark = '\nextern const pl_modelf ' if self.single else '\nextern const pl_model '
+        found = text.partition(mark)[2].partition(';')[0]
         if not found.endswith('_model'):
             raise Error('what plgen wrote has no descriptor')
         self.name = found[:-len('_model')]

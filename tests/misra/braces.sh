@@ -39,6 +39,9 @@ done
 for spec in sdcsf oscillator; do
 	make ${spec}_batch models/$spec.spec --batch
 done
+for spec in sdcsf gear1 pendulum; do
+	make ${spec}_bundle_x models/$spec.spec --bundle
+done
 make tuned_x tests/tunable/changes.spec
 make selftest_x models/sdcsf.spec --selftest
 [ ! -s log ] && python3 "$look" ./*_x.c ./*_rhs.c ./*_float.c ./*_batch.c >log 2>&1

@@ -46,7 +46,7 @@ one_model() {
 		return
 	fi
 	record >record.csv
-	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {/\1/p' model_pl.c)
+	model=$(sed -n 's/^extern const pl_modelf\{0,1\} \(.*\)_model;/\1/p' model_pl.c)
 	# shellcheck disable=SC2086
 	$run_cc $define -I"$root/runtime" -DMODEL="$model" "$root/runtime/host/plmain.c" model_pl.c "$archive" -lm \
 		-o main 2>>log &&

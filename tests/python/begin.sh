@@ -36,7 +36,7 @@ rows() {
 	case $options in *float*) single=-DFLOAT ;; esac
 	# shellcheck disable=SC2086
 	"$PLGEN" $options "$spec" >"$name.c" 2>said || cat said
-	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {$/\1/p' "$name.c")
+	model=$(sed -n 's/^extern const pl_modelf\{0,1\} \(.*\)_model;$/\1/p' "$name.c")
 	# shellcheck disable=SC2086
 	$run_cc $single -I"$root/runtime" -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" "$archive" -lm \
 		-o "$name.program" || exit 99
