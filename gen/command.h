@@ -70,7 +70,7 @@ struct file *file_inside(void);                             /* open; part of ano
 void file_drop(struct file *f);
 void file_close(struct file *f);
 /* C becomes other C: for the target float, or with locals apart from the model's name. */
-void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name));
+void file_rewrite(struct file *f, const char *name, rewriter *print);
 /* Another text for it, made of the one it has */
 void file_replace(struct file *f, void (*print)(FILE *to, const char *text, const void *context), const void *context);
 void mark_pair(struct file *code, struct file *header);     /* of two runs they must not compile; code NULL: alone */

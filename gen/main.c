@@ -220,24 +220,6 @@ static void print_header(struct work *w)
 	file_close(w->header);
 }
 
-static void print_as_float(FILE *to, const char *text, const char *name)
-{
-	(void)name;
-	print_single(to, text);
-}
-
-static void print_with_braces(FILE *to, const char *text, const char *name)
-{
-	(void)name;
-	print_braces(to, text);
-}
-
-static void print_with_included(FILE *to, const char *text, const char *name)
-{
-	(void)name;
-	print_included(to, text);
-}
-
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
 static bool has_inside(const struct work *w, const struct file *f)
 {
@@ -247,10 +229,10 @@ static bool has_inside(const struct work *w, const struct file *f)
 static void rewrite(struct work *w, struct file *f)
 {
 	if (has_inside(w, f))
-		file_rewrite(f, w->model->name, print_with_included);
-	file_rewrite(f, w->model->name, print_with_braces);
+		file_rewrite(f, w->model->name, print_included);
+	file_rewrite(f, w->model->name, print_braces);
 	if (w->options.request.single)
-		file_rewrite(f, w->model->name, print_as_float);
+		file_rewrite(f, w->model->name, print_single);
 	file_rewrite(f, w->model->name, print_apart);
 }
 

@@ -145,7 +145,7 @@ void file_replace(struct file *f, void (*print)(FILE *to, const char *text, cons
 	free(text);
 }
 
-void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
+void file_rewrite(struct file *f, const char *name, rewriter *print)
 {
 	char *text = f->text;
 	open_text(f);

@@ -140,8 +140,9 @@ static void brace_statement(struct braces *b)
 }
 
 /* What stands outside of functions stays: a function's body is the brace behind a bracket. */
-void print_braces(FILE *to, const char *text)
+void print_braces(FILE *to, const char *text, const char *name)
 {
+	(void)name;
 	struct braces b = { to, text, text };
 	const char *at = text;
 	while (*at) {

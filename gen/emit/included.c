@@ -2,7 +2,6 @@
 /* The runtime's algorithms in the text of a model, in the place of the lines that include them: for what is bundled,
  * what runs inside the generator, and models whose name an algorithm uses. What a compiler's preprocessor would decide
  * by the model alone is decided here: macros are put in, and of #if what holds is left. */
-#define _GNU_SOURCE     /* mempcpy */
 #include "emit/emit.h"
 
 #include <ctype.h>
@@ -349,21 +348,9 @@ static const char *put_block(struct including *in, const char *text)
 	return end;
 }
 
-/* Its numbers are doubles here: what is of float is made of them. */
-static const char *for_double(const char *text)
-{
-	char *copy = ARRAY(char, 2 * strlen(text) + 1), *end = copy;
-	for (size_t length; *text; text += length) {
-		const char *quoted = behind_quoted(text, false);
-		length = quoted ? (size_t)(quoted - text) : name_length(text) ? name_length(text) : 1;
-		end = is_named(text, length, "real") ? stpcpy(end, "double") : mempcpy(end, text, length);
-	}
-	return copy;
-}
-
 static void include(struct including *in, const char *name)
 {
-	for (const char *text = for_double(runtime_text(name)); *text;) {
+	for (const char *text = runtime_text(name); *text;) {
 		if (*text == '#') {
 			put_directive(in, slice(text, strcspn(text, "\n")));
 			text = next_line(text);
@@ -392,9 +379,10 @@ static const char *included_by(const char *line)
 	return begins(name, "pl") || !runtime_text(name) ? NULL : name;
 }
 
-void print_included(FILE *to, const char *text)
+void print_included(FILE *to, const char *text, const char *model)
 {
 	struct including in = { .to = to };
+	(void)model;
 	for (const char *end; *text; text = end) {
 		const char *name = macro_of(&in, "PL") ? included_by(text) : NULL;
 		end = next_line(text);
@@ -402,6 +390,7 @@ void print_included(FILE *to, const char *text)
 		    (begins(text, "#define PL_") && !begins(text, "#define PL_FLOAT_ONLY"))) {
 			define(&in, slice(text + strlen("#define "), strcspn(text, "\n") - strlen("#define ")));
 		} else if (name) {
+			define(&in, "real double");     /* what is of float is made of it */
 			include(&in, name);
 		} else {
 			put(to, text, (size_t)(end - text));

@@ -70,8 +70,9 @@ static const char *print_other(FILE *to, const char *text)
 	return end;
 }
 
-void print_single(FILE *to, const char *text)
+void print_single(FILE *to, const char *text, const char *name)
 {
+	(void)name;
 	while (*text) {
 		const char *quoted = behind_quoted(text, false);
 		put(to, text, quoted ? (size_t)(quoted - text) : 0);

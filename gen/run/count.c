@@ -173,8 +173,9 @@ static void print_counted(FILE *to, const char *at, const char *end)
 }
 
 /* What stands outside of functions stays: a function's body is the brace behind a bracket. */
-void print_counts(FILE *to, const char *text)
+void print_counts(FILE *to, const char *text, const char *name)
 {
+	(void)name;
 	bool bracket = false;
 	const char *from = text;
 	for (const char *at = text; *at;) {

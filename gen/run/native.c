@@ -19,27 +19,45 @@ static void print_text_of(FILE *to, const char *name)
 			fputs(texts[i].text, to);
 }
 
-/* Another text made of one, which is freed */
-static char *rewritten(char *text, void (*print)(FILE *to, const char *text))
+/* A text that is being printed */
+struct printing { FILE *to; char *text; size_t length; };
+
+static void start_text(struct printing *p)
 {
-	char *other = NULL;
-	size_t length = 0;
-	FILE *to = open_memstream(&other, &length);
-	need_memory(to);
-	print(to, need_memory(text));
-	fclose(to);
+	p->to = need_memory(open_memstream(&p->text, &p->length));
+}
+
+static char *text_printed(struct printing *p)
+{
+	fclose(p->to);
+	return need_memory(p->text);
+}
+
+/* Another text made of one, which is freed */
+static char *rewritten(char *text, rewriter *print, const char *name)
+{
+	struct printing p;
+	start_text(&p);
+	print(p.to, text, name);
 	free(text);
-	return need_memory(other);
+	return text_printed(&p);
 }
 
 /* What nobody calls here is left out: batches, the selftest. */
-static void print_model(FILE *to, const struct step *step, bool rhs)
+static char *model_text(const struct step *step, enum running_with with)
 {
 	struct step lean = *step;
 	struct model model = *step->model;
+	struct printing p;
 	model.asked.batch = model.asked.selftest = false;
 	lean.model = &model;
-	emit_code(to, &lean, "", NULL, rhs);
+	start_text(&p);
+	emit_code(p.to, &lean, "", NULL, with & WITH_RHS);
+	char *text = rewritten(text_printed(&p), print_included, model.name);
+	if (model.asked.single)
+		text = rewritten(text, print_single, model.name);
+	text = rewritten(text, print_apart, model.name);
+	return with & WITH_COUNTS ? rewritten(text, print_counts, model.name) : text;
 }
 
 /* Headers are in the text already. */
@@ -55,33 +73,20 @@ static char *without_includes(char *text)
 
 static char *text_of(const struct step *step, enum running_with with)
 {
-	char *text = NULL, *all = NULL;
-	size_t length = 0;
-	FILE *to = open_memstream(&text, &length);
-	need_memory(to);
-	print_model(to, step, with & WITH_RHS);
-	fclose(to);
-	text = rewritten(text, print_included);
-	text = step->model->asked.single ? rewritten(text, print_single) : text;
-	to = open_memstream(&all, &length);
-	print_apart(need_memory(to), text, step->model->name);
-	fclose(to);
-	free(text);
-	text = with & WITH_COUNTS ? rewritten(all, print_counts) : all;
-	to = open_memstream(&all, &length);
-	need_memory(to);
-	print_text_of(to, "prelude.h");
-	fputs(math_prototypes, to);
-	fputs(runtime_text("plrt.h"), to);
+	char *model = model_text(step, with);
+	struct printing p;
+	start_text(&p);
+	print_text_of(p.to, "prelude.h");
+	fputs(math_prototypes, p.to);
+	fputs(runtime_text("plrt.h"), p.to);
 	if (with & WITH_COUNTS) {
-		fprintf(to, "typedef %s pl_real;\n", step->model->asked.single ? "float" : "double");
-		print_text_of(to, "counts.h");
-		fputs(math_counts, to);
+		fprintf(p.to, "typedef %s pl_real;\n", step->model->asked.single ? "float" : "double");
+		print_text_of(p.to, "counts.h");
+		fputs(math_counts, p.to);
 	}
-	fputs(text, to);
-	fclose(to);
-	free(text);
-	return without_includes(need_memory(all));
+	fputs(model, p.to);
+	free(model);
+	return without_includes(text_printed(&p));
 }
 
 /* ---- the compiler ---- */

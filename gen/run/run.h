@@ -7,7 +7,7 @@
 
 /* ---- count.c: C that counts what it does ---- */
 
-void print_counts(FILE *to, const char *text);              /* for what stands behind counts.h */
+rewriter print_counts;                                      /* for what stands behind counts.h */
 
 /* ---- symbols.c: what the C of a model calls ---- */
 

@@ -534,7 +534,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     if (v->single) {
         char *draft = code;
         e.to = open_memstream(&code, &length);
-        print_single(e.to, draft);
+        print_single(e.to, draft, NULL);
         fclose(e.to);
         free(draft);
     }

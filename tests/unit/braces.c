@@ -9,13 +9,13 @@
 
 #include <cmocka.h>
 
-static void becomes_by(void (*print)(FILE *to, const char *text), const char *text, const char *expected)
+static void becomes_by(rewriter *print, const char *text, const char *expected)
 {
 	char *made = NULL;
 	size_t length;
 	FILE *to = open_memstream(&made, &length);
 	assert_non_null(to);
-	print(to, text);
+	print(to, text, "model");
 	fclose(to);
 	assert_string_equal(made, expected);
 	free(made);
