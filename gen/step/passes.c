@@ -96,8 +96,8 @@ static int zeros_of(const struct through *t, int degree)
 	return mpfr_sgn(&t->value[order]->right) < 0 ? order : 0;
 }
 
-/* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that power
- * of s. */
+/* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that
+ * power of s. */
 static int divide_by_power(struct through *t, int degree, int order, bool fresh, mpq_srcptr tau)
 {
 	mpfi_t wide;

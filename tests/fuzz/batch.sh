@@ -229,7 +229,8 @@ batch_add() {
 			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id"), $other, $(rounding_of "$id")},"
+			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id"), $other," \
+			"$(rounding_of "$id")},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

@@ -11,7 +11,8 @@
  *     jump, set, retune                  1e-12 per step; at(h): 1e-12; at(0): get, to the last bit
  *     another scheme of piecewise linear 1e-6
  *     run                                2 units in the last place per step, and what outputs, and products in a step
- *                                        of states that --reduce leaves, make of those of states; restore: to the last bit
+ *                                        of states that --reduce leaves, make of those of states;
+ *                                        restore: to the last bit
  *     a batch                            1e-12 per step of one that steps alone
  * selftest 100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
  *                                        where all steps round alike, and where breakpoints are passed, each of
@@ -493,7 +494,8 @@ static void run_steps(void)
 	free(s);
 }
 
-/* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs. */
+/* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
+ * more than what rounding makes of a step that begins in another region. */
 static void find_ramps(void)
 {
 	for (int i = 0; i < of->whole->inputs; i++) {
@@ -515,7 +517,7 @@ static void find_ramps(void)
 			of->whole->out(s, seen[round] + of->whole->states);
 		}
 		for (int j = 0; j < of->whole->states + of->whole->outputs; j++)
-			ramps[i] = ramps[i] || seen[0][j] != seen[1][j];
+			ramps[i] = ramps[i] || fabs(seen[0][j] - seen[1][j]) > 1e-10 * fmax(1, fabs(seen[0][j]));
 		free(s);
 	}
 }
@@ -766,8 +768,8 @@ static void judge_run(void)
 		}
 		model_get(s, y);
 		for (int i = 0; i < states; i++)
-			near(y[i], row[STEPS].y[i], STEPS * ulps * grown * size, rows ? "run with rows" : "run", STEPS * h,
-			     state_name(i));
+			near(y[i], row[STEPS].y[i], STEPS * ulps * grown * size, rows ? "run with rows" : "run",
+			     STEPS * h, state_name(i));
 		for (int k = 0; k < STEPS && rows; k++)
 			for (int i = 0; i < outputs; i++)
 				near(out[k * outputs + i], row[k + 1].out[i],
