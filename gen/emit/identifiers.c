@@ -39,7 +39,7 @@ static bool begins_with(const char *name, const char *prefix)
 static bool is_load_local(const char *name)
 {
 	static const char *const stem[] = { "wave", "load", "part", "left", "flow", "stage", "driven", "accel", "end",
-					    "from", "to", "off", "before", "lead" };
+					    "from", "to", "off", "before", "lead", "kicked", "drifted" };
 	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
 		size_t length = strlen(stem[i]);
 		const char *number = strncmp(name, stem[i], length) == 0 ? name + length : "";

@@ -139,6 +139,15 @@ static tape_ref assigned_ref(const struct sums *s, const struct assignment *a)
 	return a->added ? tape_binary(s->t, TAPE_ADD, s->state[a->target], sum) : sum;
 }
 
+/* Of a step in order, kick, drift, kick: velocities after the first kick, and where the drift ends */
+static void name_assigned(const struct sums *s, int state)
+{
+	const struct linear *system = &s->step->branch->system;
+	if (!s->assigned[state] && !tape_is_operand(s->t, s->state[state]))
+		tape_name(s->t, s->state[state],
+			  format("%s%d", state < system->n ? "drifted" : "kicked", system->coord[state] + 1));
+}
+
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector)
 {
 	enum { INDENT = 14 };
@@ -153,6 +162,8 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 		if (stepped && !stepped[a->target])
 			continue;
 		to[a->target] = assigned_ref(&s, a);
+		if (program->in_order)
+			name_assigned(&s, a->target);
 		s.assigned[a->target] = true;
 	}
 	for (int i = 0; i < states; i++)
