@@ -25,7 +25,8 @@ tab=$(printf '\t')
 
 # words_of ID ROW: what there is to say against ID.spec, made or not; nothing if all of the row is there
 words_of() {
-	make_c "$1" "$1.spec" "$(head_of "$1.spec" options)"
+	heads_of "$1.spec"
+	make_c "$1" "$1.spec" "$given"
 	status=$?
 	if [ $status -ne 0 ]; then
 		sed -n 's/.*: error: //p' "$1.said" | grep -v '^$' | tail -n 1
@@ -50,7 +51,7 @@ is_program() {
 	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program \
 		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
 	kind=$(sed -n "1s/^Program of a step of $1\(_core\)\{0,1\}: \([a-z]*\).*/\2/p" program)
-	case $kind:$(head_of "$1.spec" class) in
+	case $kind:$class in
 		linear:\ linear|regions:\ piecewise|regions:\ sticking|with:*) ;;
 		*) echo "the program is of kind '$kind'" >>"$1.wrong" ;;
 	esac

@@ -41,12 +41,35 @@ head_of() { # SPEC WHAT
 	sed -n "s/^# $2://p" "$1" | head -n 1
 }
 
+# heads_of SPEC: sets of its lines of comment `given`, `class`, `retune`, `more`, `beside`, `instead`, `changes` and
+# `impact`, by one program
+heads_of() {
+	eval "$(awk -v quote="'" 'BEGIN {
+			count = split("options class retune plain beside instead changes impact", word, " ")
+			split("given class retune more beside instead changes impact", name, " ")
+			for (i = 1; i <= count; i++)
+				to[word[i]] = name[i]
+		}
+		/^# [a-z]*:/ {
+			at = index($0, ":")
+			of = substr($0, 3, at - 3)
+			if ((of in to) && !(of in found))
+				found[of] = substr($0, at + 1)
+		}
+		END {
+			for (of in to) {
+				value = found[of]
+				gsub(quote, quote "\\" quote quote, value)
+				print to[of] "=" quote value quote
+			}
+		}' "$1")"
+}
+
 # make_c ID SPEC OPTIONS: with --rhs, where there is a formula for it; 0, or the status of plgen, in which case
 # ID.said has its words
 make_c() {
 	rhs=--rhs
-	[ "$(head_of "$2" class)" != ' sticking' ] || rhs=
-	! grep -q '^# beside:' "$2" || rhs=
+	! grep -q -e '^# class: sticking$' -e '^# beside:' "$2" || rhs=
 	# shellcheck disable=SC2086
 	timeout 1200 "$plgen" $rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
@@ -104,9 +127,7 @@ slopes() {
 batch_add() {
 	id=$1
 	spec=$2
-	given=$(head_of "$spec" options)
-	class=$(head_of "$spec" class | tr -d ' ')
-	retune=$(head_of "$spec" retune)
+	heads_of "$spec"
 	said=broken
 	: >"$id.wrong"
 	make_c "$id" "$spec" "$given"
@@ -121,11 +142,9 @@ batch_add() {
 		awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
 		$i, $(i + 1) }')
 	grep -q '^step' "$spec" || plain="$plain --step $(step_of "$id")"
-	plain="$plain$(head_of "$spec" plain)"
-	beside=$(head_of "$spec" beside)
+	plain="$plain$more"
 	whole=$id
 	code="$id.c"
-	instead=$(head_of "$spec" instead)
 	grep -v '^need' "$spec" | sed "${instead:+/^tunable /d; }$instead" >"$id.free.spec"
 	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead}${beside:+ --beside} in
 		*--real*|*--reduce*|*--modes*|*--need*|*--instead*|*--beside)
@@ -222,14 +241,13 @@ batch_add() {
 				echo "double *out);"
 			done
 		fi
-		changes=$(head_of "$spec" changes)
 		adds=1
 		! grep -q 'kick-drift-kick' "$id.c" || adds=3
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, $slopes, \"$scheme\", \"$class\"," \
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, $slopes, \"$scheme\", \"$(echo $class)\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$(head_of "$spec" impact)\", $adds, $region, $(regions_of "$id"), $other," \
+			"\"$impact\", $adds, $region, $(regions_of "$id"), $other," \
 			"$(rounding_of "$id")},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
