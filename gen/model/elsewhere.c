@@ -209,7 +209,7 @@ void add_tuned_unit(struct tuning *t, int row, int column)
 }
 
 /* Products are those of s->tuning, whichever the terms are of. */
-static void add_fitted(struct elsewhere *s, struct tuning *t, int row, int column, int sign)
+static void add_fitted(struct elsewhere *s, struct tuning *t, int row, int column)
 {
 	const struct fit *f = &s->fit;
 	for (int i = 0; i < f->products; i++) {
@@ -218,10 +218,7 @@ static void add_fitted(struct elsewhere *s, struct tuning *t, int row, int colum
 			continue;
 		for (int k = 0; k < t->params; k++)
 			power[k] = f->power[i][k];
-		struct tuned_term *term = add_term(t, row, column, monomial_of(s->tuning, power));
-		mpq_set(term->factor, f->factor[i]);
-		if (sign < 0)
-			mpq_neg(term->factor, term->factor);
+		mpq_set(add_term(t, row, column, monomial_of(s->tuning, power))->factor, f->factor[i]);
 	}
 }
 
@@ -249,11 +246,11 @@ bool fits_entry(struct elsewhere *s, ptrdiff_t index)
 	return true;
 }
 
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column, int sign)
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column)
 {
 	const bool fits = fits_entry(s, index);
 	if (fits)
-		add_fitted(s, t, row, column, sign);
+		add_fitted(s, t, row, column);
 	return fits;
 }
 

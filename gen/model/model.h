@@ -964,8 +964,8 @@ void look_elsewhere(struct elsewhere *s);
 mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
 bool fits_entry(struct elsewhere *s, ptrdiff_t index);
-/* its terms, times the sign; false: it is no such sum, as refuse_fit says */
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column, int sign);
+/* its terms; false: it is no such sum, as refuse_fit says */
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column);
 _Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
 void add_tuned_unit(struct tuning *t, int row, int column);
 void warn_of_idle(const struct elsewhere *s);
@@ -979,6 +979,14 @@ struct listing {                    /* retuned_rows.c: the numbers of one model'
 	mpq_t *entry;               /* rows x columns */
 };
 struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
+void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row);   /* n x size, 0 before */
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segment,
+		   mpq_t *row);
+/* R and W of an equation, W a = R x; of an output, R x - W a: what of it is no highest derivative; size and n entries,
+ * 0 before. highest: a over x; form: of the output, NULL: it reads none */
+void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W);
+void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest, const mpq_t *whole,
+	      mpq_t *R, mpq_t *W);
 /* factors.c */
 const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
 int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);

@@ -144,11 +144,11 @@ static void merge_systems(struct search *s)
 
 /* ---- terms ---- */
 
-/* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them, `sign` times */
-static void fit_row(struct search *s, struct tuning *t, int row, int to, int from, int columns, int sign)
+/* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
+static void fit_row(struct search *s, struct tuning *t, int row, int to, int from, int columns)
 {
 	for (int j = 0; j < columns; j++)
-		if (!fit_entry(&s->at, index_of(s, row, j), t, to, from + j, sign))
+		if (!fit_entry(&s->at, index_of(s, row, j), t, to, from + j))
 			refuse_fit(&s->at, "regions", "only masses in equations may be sums");
 }
 
@@ -198,8 +198,8 @@ static void add_block(struct search *s, int system)
 		if (!is_of_system(s, i, system))
 			continue;
 		bool slope = row->kind == RETUNED_SLOPE;
-		fit_row(s, t, row_apart(s, i, false), t->rows, 0, size, 1);
-		fit_row(s, t, row_apart(s, i, true), t->rows, size, n, slope ? 1 : -1);
+		fit_row(s, t, row_apart(s, i, false), t->rows, 0, size);
+		fit_row(s, t, row_apart(s, i, true), t->rows, size, n);
 		if (!slope)
 			add_tuned_unit(t, t->rows, size + t->rows);
 		row->place = s->t->rows++;
@@ -229,8 +229,8 @@ static bool add_divided(struct search *s, int row)
 	ENLARGE(s->r->block, (size_t)s->r->blocks + 1);
 	s->r->block[s->r->blocks++] = (struct retuned_block){ t, s->t->rows };
 	r->place = s->t->rows++;
-	fit_row(s, t, row + 1, 0, 0, t->x.size, 1);
-	fit_row(s, t, answer, 0, t->x.size, 1, 1);
+	fit_row(s, t, row + 1, 0, 0, t->x.size);
+	fit_row(s, t, answer, 0, t->x.size, 1);
 	return true;
 }
 
@@ -241,7 +241,7 @@ static void place_row(struct search *s, int row)
 	struct retuned_row *r = &s->r->row[row];
 	r->place = s->t->rows++;
 	r->positive = mpq_sgn(entry_seen(&s->at, 0, index_of(s, row, 0))) > 0;
-	fit_row(s, s->t, row, r->place, 0, s->t->x.size, 1);
+	fit_row(s, s->t, row, r->place, 0, s->t->x.size);
 }
 
 /* All rows of a system or none */

@@ -1,7 +1,74 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All numbers of the regions, row by row over x, in one order for all values of params: what of them changes with
- * params is found by comparing such lists. */
+/* Rows over x: highest derivatives, outputs, and the two apart from each other. All numbers of the regions, row by row,
+ * in one order for all values of params: what of them changes with params is found by comparing such lists. */
 #include "model/model.h"
+
+/* ---- of any model ---- */
+
+void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
+{
+	const int size = x->size;
+	mpq_t *A = augmented_matrix(x, system, 0);
+	for (int i = 0; i < system->n; i++) {
+		mpq_t *from = A + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
+		for (int j = 0; j < size; j++)
+			mpq_swap(row[i * size + j], from[j]);
+	}
+	rationals_free(A, (size_t)size * (size_t)size);
+}
+
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segment,
+		   mpq_t *row)
+{
+	for (int i = 0; i < system->states; i++)
+		mpq_set(row[i], output->state[i]);
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++)
+			for (int s = 0; s < x->segments; s++)
+				mpq_set(row[x->load[l] + s * x->loads + k],
+					output->load[l][k * system->segments + (x->segments > 1 ? s : segment)]);
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k <= system->input[i].hold && k < 2; k++)
+			mpq_set(row[x->input[i] + k], output->input[k][i]);
+}
+
+static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *row)
+{
+	mpq_t part;
+	mpq_init(part);
+	for (int j = 0; j < size && mpq_sgn(factor) != 0; j++) {
+		if (mpq_sgn(from[j]) == 0)
+			continue;
+		mpq_mul(part, factor, from[j]);
+		mpq_add(row[j], row[j], part);
+	}
+	mpq_clear(part);
+}
+
+void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
+{
+	const int n = system->n;
+	for (int k = 0; k < n; k++) {
+		mpq_set(W[k], (system->velocity[k] >= 0 ? system->M : system->C)[equation * n + k]);
+		add_multiple(size, W[k], highest + k * size, R);
+	}
+}
+
+void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest, const mpq_t *whole,
+	      mpq_t *R, mpq_t *W)
+{
+	for (int j = 0; j < size; j++)
+		mpq_set(R[j], whole[j]);
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind != BASIS_COORD || basis->order < model->frame.coord[basis->index]->highest)
+			continue;
+		mpq_neg(W[basis->index], form->term[i].factor);
+		add_multiple(size, W[basis->index], highest + basis->index * size, R);
+	}
+}
+
+/* ---- of regions ---- */
 
 static mpq_t *add_row(struct listing *l, enum retuned_kind kind, int of, int index)
 {
@@ -22,86 +89,43 @@ static void add_number(struct listing *l, enum retuned_kind kind, int of, int in
 static void list_output(struct listing *l, enum retuned_kind kind, int of, int index, const struct output *row,
 			int segment)
 {
-	const struct linear *system = &l->model->system;
 	mpq_t *entry = add_row(l, kind, of, index);
-	for (int i = 0; i < system->states; i++)
-		mpq_set(entry[i], row->state[i]);
-	for (int m = 0; m < system->loads; m++)
-		for (int k = 0; k < system->load[m].columns; k++)
-			mpq_set(entry[l->x->load[m] + k], row->load[m][k * system->segments + segment]);
-	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k <= system->input[i].hold; k++)
-			mpq_set(entry[l->x->input[i] + k], row->input[k][i]);
+	row_of_output(l->x, &l->model->system, row, segment, entry);
 }
 
 static void list_system(struct listing *l, int index)
 {
 	const struct linear *system = &l->model->switching->system[index];
-	int size = l->x->size, cells = size * size;
-	mpq_t *A = augmented_matrix(l->x, system, 0);
-	for (int i = 0; i < system->n; i++) {
-		mpq_t *entry = add_row(l, RETUNED_SLOPE, index, i);
-		const mpq_t *from = A + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
-		for (int j = 0; j < size; j++)
-			mpq_set(entry[j], from[j]);
-	}
-	rationals_free(A, (size_t)cells);
+	const int first = l->rows;
+	for (int i = 0; i < system->n; i++)
+		add_row(l, RETUNED_SLOPE, index, i);
+	rows_of_highest(l->x, system, l->entry + first * l->x->size);
 }
 
-static const mpq_t *slope_of(const struct listing *l, int system, int coord)
+static const mpq_t *highest_of(const struct listing *l, int system)
 {
-	return (const mpq_t *)l->entry + (system * l->model->n + coord) * l->x->size;
-}
-
-/* row <- row + factor times a highest derivative */
-static void add_highest(const struct listing *l, int system, int coord, mpq_srcptr factor, mpq_t *row)
-{
-	mpq_t part;
-	mpq_init(part);
-	const mpq_t *from = slope_of(l, system, coord);
-	for (int j = 0; j < l->x->size && mpq_sgn(factor) != 0; j++) {
-		mpq_mul(part, factor, from[j]);
-		mpq_add(row[j], row[j], part);
-	}
-	mpq_clear(part);
+	return (const mpq_t *)l->entry + system * l->model->n * l->x->size;
 }
 
 /* W, and R = W times what it was solved to */
 static void list_equations(struct listing *l, int index)
 {
 	const struct linear *system = &l->model->switching->system[index];
-	int n = system->n;
-	for (int i = 0; i < n; i++) {
-		mpq_t *W = add_row(l, RETUNED_W, index, i);
-		for (int k = 0; k < n; k++)
-			mpq_set(W[k], (system->velocity[k] >= 0 ? system->M : system->C)[i * n + k]);
-		int from = l->rows - 1;
+	for (int i = 0; i < system->n; i++) {
+		add_row(l, RETUNED_W, index, i);
 		mpq_t *R = add_row(l, RETUNED_R, index, i);
-		for (int k = 0; k < n; k++)
-			add_highest(l, index, k, l->entry[from * l->x->size + k], R);
+		equation_row(system, i, l->x->size, highest_of(l, index), R, R - l->x->size);
 	}
 }
 
-/* The last row apart: what is left of it without highest derivatives, and their factors */
-static void part_row(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
+/* The last row apart */
+static void list_parts(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
 {
-	struct retuned_row whole = l->row[l->rows - 1];
-	int at = l->rows - 1, size = l->x->size;
-	mpq_t *factor = add_row(l, W, whole.of, whole.index), minus;
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD && basis->order == l->model->frame.coord[basis->index]->highest)
-			mpq_set(factor[basis->index], form->term[i].factor);
-	}
+	const struct retuned_row whole = l->row[l->rows - 1];
+	const int size = l->x->size;
+	add_row(l, W, whole.of, whole.index);
 	mpq_t *rest = add_row(l, R, whole.of, whole.index);
-	mpq_init(minus);
-	for (int j = 0; j < size; j++)
-		mpq_set(rest[j], l->entry[at * size + j]);
-	for (int k = 0; k < l->model->n; k++) {
-		mpq_neg(minus, l->entry[(at + 1) * size + k]);
-		add_highest(l, system, k, minus, rest);
-	}
-	mpq_clear(minus);
+	part_row(l->model, form, size, highest_of(l, system), (const mpq_t *)rest - 2 * size, rest, rest - size);
 }
 
 static void list_expressions(struct listing *l)
@@ -123,13 +147,13 @@ static void list_region(struct listing *l, int index)
 		list_output(l, RETUNED_HOLD, index, k, region->hold[k].row, 0);
 	for (int k = 0; k < region->releases; k++) {
 		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
-		part_row(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
+		list_parts(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
 	}
 	for (int k = 0; k < s->felts && region->grip; k++) {
 		if (!region->grip[k])
 			continue;
 		list_output(l, RETUNED_GRIP, index, k, region->grip[k], 0);
-		part_row(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
+		list_parts(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
 	}
 }
 

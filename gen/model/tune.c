@@ -69,132 +69,28 @@ static ptrdiff_t frequency_index(const struct elsewhere *s, int load)
 	return raw_index(s, all_rows(s), 0) + load;
 }
 
-static mpq_t *solved_entry(const struct elsewhere *s, mpq_t *entry, int row, int column)
-{
-	return &entry[solved_index(s, row, column)];
-}
-
-static mpq_t *raw_entry(const struct elsewhere *s, mpq_t *entry, int row, int column)
-{
-	return &entry[raw_index(s, row, column)];
-}
-
-/* Calls take(context, column, force) for what acts on the equations, in the order of the columns behind the states */
-static void each_force(const struct linear *system, void (*take)(void *context, int column, const mpq_t *force),
-		       void *context)
-{
-	int column = system->states;
-	const mpq_t *none = rationals((size_t)system->n); /* of further derivatives of inputs */
-	for (int s = 0; s < system->segments; s++)
-		for (int l = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++)
-				take(context, column++, (const mpq_t *)system->load[l].force[k] + s * system->n);
-	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k <= system->input[i].hold; k++)
-			take(context, column++, k < 2 ? (const mpq_t *)system->input[i].force[k] : none);
-}
-
-struct reading {
-	const struct elsewhere *search;
-	const struct model *model;
-	const mpq_t *inverse;
-	mpq_t *entry;
-};
-
-static void read_force(void *context, int column, const mpq_t *force)
-{
-	const struct reading *r = context;
-	int n = r->model->n;
-	mpq_t *product = rationals((size_t)n);
-	rational_product(n, n, 1, r->inverse, force, product);
-	for (int i = 0; i < n; i++) {
-		mpq_set(*raw_entry(r->search, r->entry, i, column), force[i]);
-		mpq_set(*solved_entry(r->search, r->entry, i, column), product[i]);
-	}
-	rationals_free(product, (size_t)n);
-}
-
-/* W highest = -(K q + C v) + forces, and the same solved */
-static void read_equations(struct reading *r)
-{
-	const struct elsewhere *s = r->search;
-	const struct linear *system = &r->model->system;
-	int n = system->n, states = system->states, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)(n * states));
-	leading_inverse(system, inverse, &column);
-	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
-	r->inverse = (const mpq_t *)inverse;
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < states; j++) {
-			mpq_set(*solved_entry(s, r->entry, i, j), highest[i * states + j]);
-			mpq_neg(*raw_entry(s, r->entry, i, j),
-				(j < n ? system->K : system->C)[i * n + system->coord[j]]);
-		}
-		for (int j = 0; j < n; j++)
-			mpq_set(*raw_entry(s, r->entry, i, s->tuning->x.size + j),
-				(system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
-	}
-	each_force(system, read_force, r);
-	rationals_free(inverse, (size_t)(n * n));
-	rationals_free(highest, (size_t)(n * states));
-}
-
-/* The whole row of an output over the columns */
-static void read_output_row(const struct reading *r, int row, const struct output *output)
-{
-	const struct linear *system = &r->model->system;
-	int column = 0;
-	for (int j = 0; j < system->states; j++)
-		mpq_set(*solved_entry(r->search, r->entry, row, column++), output->state[j]);
-	for (int s = 0; s < system->segments; s++)
-		for (int l = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++)
-				mpq_set(*solved_entry(r->search, r->entry, row, column++),
-					output->load[l][k * system->segments + s]);
-	for (int i = 0; i < system->inputs; i++) {
-		for (int k = 0; k <= system->input[i].hold; k++)
-			if (k < 2)
-				mpq_set(*solved_entry(r->search, r->entry, row, column + k), output->input[k][i]);
-		column += system->input[i].hold + 1;
-	}
-}
-
-/* output - sum of factors of highest derivatives times these = what is left of the row without them */
-static void part_output_row(const struct reading *r, int row, const struct output *output)
-{
-	const struct elsewhere *s = r->search;
-	/* a reduced model has no highest derivatives of what is written */
-	const struct form *form = r->model->reduction.row ? NULL : output->form;
-	mpq_t product;
-	mpq_init(product);
-	for (int j = 0; j < s->tuning->x.size; j++)
-		mpq_set(*raw_entry(s, r->entry, row, j), *solved_entry(s, r->entry, row, j));
-	mpq_set_ui(*raw_entry(s, r->entry, row, s->tuning->x.size + row), 1, 1);
-	for (int i = 0; form && i < form->terms; i++) {
-		const struct form_term *term = &form->term[i];
-		int coord = term->basis.index;
-		if (term->basis.kind != BASIS_COORD || term->basis.order < r->model->frame.coord[coord]->highest)
-			continue;
-		mpq_neg(*raw_entry(s, r->entry, row, s->tuning->x.size + coord), term->factor);
-		for (int j = 0; j < s->tuning->x.size; j++) {
-			mpq_mul(product, term->factor, *solved_entry(s, r->entry, coord, j));
-			mpq_sub(*raw_entry(s, r->entry, row, j), *raw_entry(s, r->entry, row, j), product);
-		}
-	}
-	mpq_clear(product);
-}
-
 static mpq_t *read_entries(struct elsewhere *s, const struct model *model)
 {
-	struct reading r = { s, model, NULL, rationals((size_t)s->entries) };
-	read_equations(&r);
+	const struct linear *system = &model->system;
+	const int n = system->n, size = s->tuning->x.size;
+	mpq_t *entry = rationals((size_t)s->entries);
+	rows_of_highest(&s->tuning->x, system, entry);
+	for (int i = 0; i < n; i++)
+		equation_row(system, i, size, (const mpq_t *)entry, &entry[raw_index(s, i, 0)],
+			     &entry[raw_index(s, i, size)]);
 	for (int o = 0; o < model->outputs; o++) {
-		read_output_row(&r, model->n + o, &model->output[o]);
-		part_output_row(&r, model->n + o, &model->output[o]);
+		/* a reduced model has no highest derivatives of what is written */
+		const struct form *form = model->reduction.row ? NULL : model->output[o].form;
+		const int row = n + o;
+		mpq_t *whole = &entry[solved_index(s, row, 0)];
+		row_of_output(&s->tuning->x, system, &model->output[o], 0, whole);
+		part_row(model, form, size, (const mpq_t *)entry, (const mpq_t *)whole, &entry[raw_index(s, row, 0)],
+			 &entry[raw_index(s, row, size)]);
+		mpq_set_ui(entry[raw_index(s, row, size + row)], 1, 1);
 	}
-	for (int l = 0; l < model->system.loads; l++)
-		mpq_set(r.entry[frequency_index(s, l)], model->system.load[l].wave->w);
-	return r.entry;
+	for (int l = 0; l < system->loads; l++)
+		mpq_set(entry[frequency_index(s, l)], system->load[l].wave->w);
+	return entry;
 }
 
 /* ---- all of them ---- */
@@ -242,7 +138,7 @@ static bool fit_frequencies(struct elsewhere *s)
 	struct tuning *t = s->tuning;
 	for (int l = 0; l < s->model->system.loads; l++) {
 		int row = t->frequency[l];
-		if (row >= 0 && !fit_entry(s, frequency_index(s, l), t, row, 0, 1))
+		if (row >= 0 && !fit_entry(s, frequency_index(s, l), t, row, 0))
 			return false;
 		if (row >= 0 && t->solves)
 			add_tuned_unit(t, row, t->x.size + row);
@@ -260,7 +156,7 @@ static bool fit_all(struct elsewhere *s, bool solved)
 		for (int j = 0; j < t->x.size + (solved ? 0 : rows); j++) {
 			const ptrdiff_t index = solved ? solved_index(s, entry_row(s, i), j)
 						       : raw_index(s, entry_row(s, i), entry_column(s, j));
-			if (!fit_entry(s, index, t, i, j, 1))
+			if (!fit_entry(s, index, t, i, j))
 				return false;
 		}
 	return fit_frequencies(s);
