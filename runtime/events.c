@@ -298,8 +298,8 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
     return 1;
 }
 
-/* Whether a bounce is on its guard, flying or at rest, or where rounding has taken it beyond */
-static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
+/* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
+static int touches_by(const pl_events *m, const pl_instant *at, const pl_strike *p, real least)
 {
     const int interval = at->interval[p->expression];
     column w;
@@ -308,7 +308,12 @@ static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
         return 0;
     }
     w = watched(m, at, p->place);
-    return off_start(&w, 0, &noise) >= -noise;
+    return off_start(&w, 0, &noise) >= -larger(noise, least);
+}
+
+static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
+{
+    return touches_by(m, at, p, 0);
 }
 
 /* How long it flies that leaves the guard of this impact, in the unit of time of c; -1: for good */
@@ -781,10 +786,15 @@ static uint32_t near_rest(const pl_events *m, const pl_instant *at)
     int k, together = 0;
     for (k = 0; k < m->strikes; k++) {
         if (touches(m, at, &m->strike[k])) {
-            const column place = watched(m, at, m->strike[k].place), speed = watched(m, at, m->strike[k].speed);
+            const column place = watched(m, at, m->strike[k].place);
             (void)off_start(&place, 0, &noise);
-            most = larger(most, column_at(&speed, 1));
             rounding = larger(rounding, noise);
+        }
+    }
+    for (k = 0; k < m->strikes; k++) { /* what rounding takes one by moves those that it lies on */
+        if (touches_by(m, at, &m->strike[k], rounding)) {
+            const column speed = watched(m, at, m->strike[k].speed);
+            most = larger(most, column_at(&speed, 1));
         }
     }
     fastest = most * BRIEF / 2;

@@ -125,8 +125,8 @@ static real speed_of(const pl_guards *m, int k, const real *x)
     return magnitude(speed) <= noise_of(sizes(m->size, row, x) + m->impact[k].play) ? 0 : speed;
 }
 
-/* Whether a bounce is on its guard, flying or at rest, or where rounding has taken it beyond */
-static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
+/* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
+static int touches_by(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x, real least)
 {
     const walk w = switch_of(m, c->region, p->expression);
     real noise, e;
@@ -134,7 +134,12 @@ static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, 
         return 0;
     }
     e = excess(m, c, &w, p->breakpoint, x, &noise);
-    return (p->upward ? e : -e) >= -noise;
+    return (p->upward ? e : -e) >= -larger(noise, least);
+}
+
+static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
+{
+    return touches_by(m, c, p, x, 0);
 }
 
 static int rests(const pl_guards *m, const pl_contact *c, const pl_impact *p)
@@ -807,20 +812,24 @@ static int is_pressed(const pl_guards *m, int region, int expression, const real
 }
 
 /* The largest acceleration by which one of those that touch is pressed, and the most that rounding does to their
- * places: they lie on each other.  work: size */
+ * places: they lie on each other, and what that takes one by moves another one.  work: size */
 static real most_pressed(const pl_guards *m, const pl_contact *c, const real *x, real *rounding, real *work)
 {
     const int n = m->size;
     real most = 0, press, noise;
     int k;
-    pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
     for (k = 0; k < m->impacts; k++) {
-        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
+        if (touches(m, c, &m->impact[k], x)) {
             const walk w = switch_of(m, c->region, m->impact[k].expression);
-            press = dot(n, m->speed + (ptrdiff_t)k * n, work);
-            most = larger(most, press);
             (void)excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
             *rounding = larger(*rounding, noise);
+        }
+    }
+    pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
+    for (k = 0; k < m->impacts; k++) {
+        if (touches_by(m, c, &m->impact[k], x, *rounding)) {
+            press = dot(n, m->speed + (ptrdiff_t)k * n, work);
+            most = larger(most, press);
         }
     }
     return most;
