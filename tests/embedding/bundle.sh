@@ -107,12 +107,16 @@ warns() {
 }
 
 number=0
-# bundles TITLE SPEC OPTIONS: in double and float
+kinds=0
+# bundles TITLE SPEC OPTIONS: in double and float; of every second kind in double alone, with MERGE=1 or LONG=1 of none
 bundles() {
     title=$1
     spec=$2
     shift 2
-    for real in double float; do
+    kinds=$((kinds + 1))
+    reals='double float'
+    merging || [ $((kinds % 2)) -eq 1 ] || reals=double
+    for real in $reals; do
         own=
         [ $real = double ] || own=-DFLOAT
         rm -f model.c model.h
