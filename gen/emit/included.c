@@ -134,7 +134,10 @@ static const char *put_word(const struct including *in, FILE *to, const char *te
 	}
 	if (m->parameters >= 0)
 		end = read_arguments(end, m->parameters, argument);
-	put_words(in, to, with_arguments(m, argument), depth + 1);
+	if (strcmp(m->name, "PL_TYPE") == 0)
+		fputs(m->body, to);     /* a model may be called `real`, too */
+	else
+		put_words(in, to, with_arguments(m, argument), depth + 1);
 	return end;
 }
 
