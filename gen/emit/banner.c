@@ -582,9 +582,9 @@ static void banner_forced(const struct emitter *e)
 /* What is counted */
 static const char *step_note_of(const struct emitter *e)
 {
-	return e->kind->step_note && most_halvings(e->step) > 0
-		       ? " * A step that a bound shows clear of every breakpoint, as a whole:\n"
-		       : e->kind->step_note;
+	const char *note = e->kind->step_note ? e->kind->step_note : "";
+	return most_halvings(e->step) > 0 ? " * A step that a bound shows clear of every breakpoint, as a whole:\n"
+					  : note;
 }
 
 static void banner_cost(const struct emitter *e)
@@ -665,7 +665,7 @@ static void banner_run(const struct emitter *e)
 /* Functions that there are not, and why; what one of them needs */
 static void banner_functions(const struct emitter *e)
 {
-	const char *no_at = e->kind->no_at(e->step);
+	const char *no_at = e->kind->no_at ? e->kind->no_at(e->step) : NULL;
 	int states = is_blockwise(e) ? 0 : e->system->states;
 	if (has_jump(e) && states > 12)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
@@ -694,7 +694,7 @@ void emit_banner(const struct emitter *e)
 	banner_form(e);
 	if (e->step->forced)
 		banner_forced(e);
-	e->kind->banner_more(e);
+	(e->kind->own_factors ? banner_tuning : banner_held)(e);
 	banner_state(e);
 	banner_run(e);
 	banner_functions(e);

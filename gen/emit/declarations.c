@@ -32,7 +32,9 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->model->relative)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");
-	e->kind->coefficients(e);
+	if (e->kind->own_factors)
+		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+	emit_held_member(e);
 	if (given_inputs(e))
 		say(e, "    double u[$N_INPUTS];  /* the %s */\n",
 		    most_taps_before(e) ? "sample now" : "last sample");
@@ -47,7 +49,7 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    int segment;          /* of time: how many changes of the loads are past */\n");
 	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"
 	       "    uint64_t k;           /* steps since then */\n");
-	e->kind->members(e);
+	emit_if_any(e->kind->members, e);
 	emit_peak_members(e);
 	if (keeps_status(e))
 		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
@@ -63,14 +65,15 @@ void declare_reading(const struct emitter *e, const char *status_note)
 
 static void declare_state_functions(const struct emitter *e)
 {
-	announce(e, spell(e, "void   $n_init($n *s);"), e->kind->init_note);
+	announce(e, spell(e, "void   $n_init($n *s);"), e->kind->own_factors
+		? "first: t = 0, the spec's initial values and coefficients" : "t = 0, the spec's initial values");
 	announce(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"),
 		"any state at any time [s]");
 	const char *note = e->model->switching && has_events(e->model->switching)
 			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED, PL_PENETRATED"
 			: e->kind->status_note;
 	declare_reading(e, has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
-	e->kind->declare_state(e);
+	emit_if_any(e->kind->declare_state, e);
 	if (e->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
 			most_taps_before(e) ? "the next sample, no step" : "the previous sample");
@@ -148,7 +151,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		declare_free_step(e);
 	if (has_jump(e))
 		announce(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
-	e->kind->declare_more(e);
+	(e->kind->own_factors ? emit_tuning_declarations : emit_held_declarations)(e);
 	if (e->model->asked.batch)
 		emit_batch_declarations(e);
 	declare_checks(e, rhs);
@@ -184,10 +187,11 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	open_declarations(e, e->model->asked.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
 						    : "#include \"plrt.h\"\n\n");
 	emit_counts(e, given_inputs(e));
-	e->kind->constants(e);
+	emit_if_any(e->kind->constants, e);
 	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
-	e->kind->types(e);
+	emit_if_any(e->kind->types, e);
+	(e->kind->own_factors ? emit_coefficient_struct : emit_held_types)(e);
 	emit_state_struct(e);
 	emit_functions(e, rhs);
 	close_declarations(e);

@@ -37,7 +37,7 @@ static bool leftovers_read(const struct model *model, const struct wave *wave)
 
 static bool load_is_needed(const struct emitter *e, int load)
 {
-	return e->kind->reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
+	return (e->kind->reads_load && e->kind->reads_load(e, load)) || load_acts(e->system, &e->system->load[load]) ||
 	       leftovers_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
 }
 
@@ -131,7 +131,10 @@ static void emit_all_tables(const struct emitter *e)
 	emit_mode_matrices(e);
 	emit_load_tables(e);
 	emit_anchor_tables(e);
-	e->kind->tables(e);
+	(e->kind->own_factors ? emit_nominal : emit_held_nominal)(e);
+	if (e->system->segments > 1)
+		emit_changes(e);
+	emit_if_any(e->kind->tables, e);
 	emit_peak_tables(e);
 }
 
@@ -140,7 +143,7 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 {
 	emit_block_list(e);
 	if (e->step->series.emitted)
-		e->kind->at(e);
+		emit_if_any(e->kind->at, e);
 	if (has_jump(e))
 		emit_jump(e);
 	if (e->model->asked.batch)
@@ -174,7 +177,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_all_tables(e);
 	emit_modes(e);
 	emit_access(e);
-	e->kind->pass(e);
+	(e->kind->own_factors ? emit_retune : emit_held_retune)(e);
+	emit_if_any(e->kind->pass, e);
 	e->kind->step(e);
 	emit_out(e);
 	emit_peak_step(e);

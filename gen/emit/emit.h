@@ -43,6 +43,7 @@ const char *spell(const struct emitter *e, const char *layout, ...) __attribute_
 void open_function(const struct emitter *e, const char *note, const char *layout, ...)
 	__attribute__((format(printf, 3, 4)));
 void close_function(const struct emitter *e, const char *unread);
+void emit_if_any(void (*printer)(const struct emitter *e), const struct emitter *e);  /* NULL: none */
 void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
 /* static const int NAME_name[]; of none there is a 0 */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
@@ -268,22 +269,19 @@ void emit_selftest(const struct emitter *e, bool jumps);
 
 /* ---- kinds.c: what the C of a step has that depends on its kind, in the order of the C ---- */
 
-struct kind {
-	/* The comment at the top: what is approximated; before what a step costs; after it */
+struct kind {                           /* NULL: none of its own */
+	/* The comment at the top: what is approximated; before what a step costs */
 	void (*banner)(const struct emitter *e);
 	const char *step_note;
-	void (*banner_more)(const struct emitter *e);
 	const char *no_jump;                            /* why there never is a NAME_jump; NULL: there may be one */
 	const char *(*no_at)(const struct step *step);  /* why there is no NAME_at; NULL: there is one */
-	/* The header: constants; types before that of the state; in it, before the inputs and at its end; functions */
+	/* The header: constants; types before that of the state; at its end; functions */
 	void (*constants)(const struct emitter *e);
 	void (*types)(const struct emitter *e);
-	void (*coefficients)(const struct emitter *e);
 	void (*members)(const struct emitter *e);
 	bool keeps_status;                              /* else NAME_status looks at the state when it is asked */
-	const char *init_note, *status_note;
+	const char *status_note;
 	void (*declare_state)(const struct emitter *e); /* of what else the state has */
-	void (*declare_more)(const struct emitter *e);
 	/* The state */
 	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
 	bool (*places)(const struct emitter *e);        /* NAME_place(s) finds what follows from a state that was set */
@@ -291,7 +289,7 @@ struct kind {
 	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
 	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
 	void (*tables)(const struct emitter *e);
-	void (*pass)(const struct emitter *e);          /* over what changes at a time, or when it is told to */
+	void (*pass)(const struct emitter *e);          /* over what changes at a time */
 	void (*step)(const struct emitter *e);
 	void (*held)(const struct emitter *e);          /* in at: what is held over the step */
 	void (*at)(const struct emitter *e);

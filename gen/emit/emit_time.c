@@ -296,7 +296,7 @@ void emit_at(const struct emitter *e)
 	if (!changes && is_blockwise(e))
 		emit_passing_algorithm(e);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
-	e->kind->held(e);
+	emit_if_any(e->kind->held, e);
 	if (changes)
 		emit_passing_at(e);
 	else

@@ -1,17 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the C of each kind of step has: a row of functions for each. */
+/* What the C of each kind of step has: a row for each of what it has of its own, functions and words. */
 #include "emit/emit.h"
-
-static void nothing(const struct emitter *e)
-{
-	(void)e;
-}
-
-static bool never(const struct step *step)
-{
-	(void)step;
-	return false;
-}
 
 /* ---- linear ---- */
 
@@ -20,57 +9,18 @@ static const char *far_pole(const struct step *step)
 	return step->series.emitted ? NULL : "the largest |pole| times h is above 8";
 }
 
-static bool no_further_load(const struct emitter *e, int load)
-{
-	(void)e;
-	(void)load;
-	return false;
-}
-
-static void emit_times_of_changes(const struct emitter *e)
-{
-	if (e->system->segments > 1)
-		emit_changes(e);
-}
-
 static void emit_pass_of_changes(const struct emitter *e)
 {
 	if (e->system->segments > 1)
 		emit_passing(e);
 }
 
-/* Params that nothing reads are held where a scheme with a leftover has found none. */
-static void emit_linear_tables(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-}
-
-static void emit_held_pass(const struct emitter *e)
-{
-	emit_held_retune(e);
-	emit_pass_of_changes(e);
-}
-
 static const struct kind linear = {
 	.banner = banner_linear,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_at = far_pole,
-	.constants = nothing,
-	.types = emit_held_types,
-	.coefficients = emit_held_member,
-	.members = nothing,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
-	.declare_state = nothing,
-	.declare_more = emit_held_declarations,
-	.reads_load = no_further_load,
-	.reads_phi = never,
-	.tables = emit_linear_tables,
-	.pass = emit_held_pass,
+	.pass = emit_pass_of_changes,
 	.step = emit_step,
-	.held = nothing,
 	.at = emit_at
 };
 
@@ -90,38 +40,14 @@ static bool any_load(const struct emitter *e, int load)
 	return true;
 }
 
-static void emit_own_coefficients(const struct emitter *e)
-{
-	say(e, "    $n_coeffs coeffs;    /* its own */\n");
-}
-
-static void emit_tuned_tables(const struct emitter *e)
-{
-	emit_nominal(e);
-	emit_times_of_changes(e);
-}
-
 static const struct kind tuned = {
 	.banner = banner_linear,
-	.step_note = "",
-	.banner_more = banner_tuning,
 	.no_jump = "retuned coefficients have one word",
 	.no_at = far_block,
-	.constants = nothing,
-	.types = emit_coefficient_struct,
-	.coefficients = emit_own_coefficients,
-	.members = nothing,
-	.init_note = "first: t = 0, the spec's initial values and coefficients",
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
-	.declare_state = nothing,
-	.declare_more = emit_tuning_declarations,
 	.own_factors = true,
 	.reads_load = any_load,
-	.reads_phi = never,
-	.tables = emit_tuned_tables,
-	.pass = emit_retune,
 	.step = emit_step,
-	.held = nothing,
 	.at = emit_tuned_at
 };
 
@@ -145,8 +71,6 @@ static void emit_event_limit(const struct emitter *e)
 
 static void emit_region_tables(const struct emitter *e)
 {
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
 	emit_regions(e);
 	emit_region_start(e);
 }
@@ -161,25 +85,17 @@ static void emit_regions_step(const struct emitter *e)
 static const struct kind regions = {
 	.banner = banner_regions,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit,
-	.types = emit_held_types,
-	.coefficients = emit_held_member,
 	.members = emit_region_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_crossing_declarations,
-	.declare_more = emit_held_declarations,
 	.places = any_place,
 	.reads_load = regions_read_load,
-	.reads_phi = never,
 	.tables = emit_region_tables,
-	.pass = emit_held_retune,
 	.step = emit_regions_step,
-	.held = nothing,
 	.at = emit_region_at
 };
 
@@ -201,8 +117,6 @@ static void emit_event_limit_of_parts(const struct emitter *e)
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
 	emit_part_tables(e);
 	emit_part_start(e);
 }
@@ -217,25 +131,17 @@ static void emit_step_of_parts(const struct emitter *e)
 static const struct kind parts = {
 	.banner = banner_parts,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit_of_parts,
-	.types = emit_held_types,
-	.coefficients = emit_held_member,
 	.members = emit_part_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_crossing_declarations,
-	.declare_more = emit_held_declarations,
 	.places = any_place,
 	.reads_load = parts_read_load,
-	.reads_phi = never,
 	.tables = emit_tables_of_parts,
-	.pass = emit_held_retune,
 	.step = emit_step_of_parts,
-	.held = nothing,
 	.at = emit_parts_at
 };
 
@@ -261,31 +167,14 @@ static void emit_actions_step(const struct emitter *e)
 	emit_leftover_step(e);
 }
 
-static void emit_leftover_tables(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-}
-
 static const struct kind leftover = {
 	.banner = banner_leftover,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = no_values_between,
-	.constants = nothing,
-	.types = emit_held_types,
-	.coefficients = emit_held_member,
-	.members = nothing,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.declare_state = nothing,
-	.declare_more = emit_held_declarations,
-	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
-	.tables = emit_leftover_tables,
-	.pass = emit_held_pass,
+	.pass = emit_pass_of_changes,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
 	.at = emit_at
@@ -293,28 +182,14 @@ static const struct kind leftover = {
 
 /* ---- cut: the same, from crossing to crossing ---- */
 
-static const char *always(const struct step *step)
-{
-	(void)step;
-	return NULL;
-}
-
 static bool look_reads_load(const struct emitter *e, int load)
 {
 	return e->step->cut->look->load[load];
 }
 
-static void emit_cut_tables(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-	emit_cut_place(e);
-}
-
 static void emit_cut_types(const struct emitter *e)
 {
 	emit_divided_types(looking(e));
-	emit_held_types(e);
 }
 
 static void emit_cut_declarations(const struct emitter *e)
@@ -324,26 +199,18 @@ static void emit_cut_declarations(const struct emitter *e)
 
 static const struct kind cut = {
 	.banner = banner_cut,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
-	.no_at = always,
 	.constants = emit_event_limit,
 	.types = emit_cut_types,
-	.coefficients = emit_held_member,
 	.members = emit_cut_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_cut_declarations,
-	.declare_more = emit_held_declarations,
 	.places = any_place,
 	.reads_load = look_reads_load,
 	.reads_phi = flows_whole,
-	.tables = emit_cut_tables,
-	.pass = emit_held_retune,
+	.tables = emit_cut_place,
 	.step = emit_cut_step,
-	.held = nothing,
 	.at = emit_expansion_at
 };
 
@@ -354,58 +221,29 @@ static bool expansion_reads_load(const struct emitter *e, int load)
 	return e->step->expansion->load[load];
 }
 
-static void emit_expansion_tables(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-	emit_expansion_place(e);
-}
-
 static void emit_expansion_constants(const struct emitter *e)
 {
 	if (is_divided(e))
 		emit_event_limit(e);
 }
 
-static void emit_expansion_types(const struct emitter *e)
-{
-	emit_divided_types(e);
-	emit_held_types(e);
-}
-
 static const struct kind expanded = {
 	.banner = banner_expanded,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
-	.no_at = always,
 	.constants = emit_expansion_constants,
-	.types = emit_expansion_types,
-	.coefficients = emit_held_member,
+	.types = emit_divided_types,
 	.members = emit_expansion_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
-	.declare_more = emit_held_declarations,
 	.places = expansion_places,
 	.reads_load = expansion_reads_load,
-	.reads_phi = never,
-	.tables = emit_expansion_tables,
-	.pass = emit_held_retune,
+	.tables = emit_expansion_place,
 	.step = emit_expansion_step,
-	.held = nothing,
 	.at = emit_expansion_at
 };
 
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
-
-static void emit_collocation_tables(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-	emit_collocation_place(e);
-}
 
 static bool collocation_reads_load(const struct emitter *e, int load)
 {
@@ -414,26 +252,17 @@ static bool collocation_reads_load(const struct emitter *e, int load)
 
 static const struct kind collocated = {
 	.banner = banner_collocated,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
-	.no_at = always,
 	.constants = emit_expansion_constants,
-	.types = emit_expansion_types,
-	.coefficients = emit_held_member,
+	.types = emit_divided_types,
 	.members = emit_collocation_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
-	.declare_more = emit_held_declarations,
 	.places = collocation_places,
 	.reads_load = collocation_reads_load,
-	.reads_phi = never,
-	.tables = emit_collocation_tables,
-	.pass = emit_held_retune,
+	.tables = emit_collocation_place,
 	.step = emit_collocation_step,
-	.held = nothing,
 	.at = emit_collocation_at
 };
 
@@ -453,36 +282,17 @@ static bool reads_wave(const struct emitter *e, int load)
 	return found;
 }
 
-static void emit_normal_constants(const struct emitter *e)
-{
-	emit_held_nominal(e);
-	emit_times_of_changes(e);
-	emit_normal_tables(e);
-}
-
 static const struct kind normal_modes = {
 	.banner = banner_normal,
-	.step_note = "",
-	.banner_more = banner_held,
 	.no_jump = "what is left over changes in time",
 	.no_at = too_many_turns,
-	.constants = nothing,
-	.types = emit_held_types,
-	.coefficients = emit_held_member,
 	.members = emit_normal_members,
 	.keeps_status = true,
-	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.declare_state = nothing,
-	.declare_more = emit_held_declarations,
 	.places = any_place,
 	.reads_load = reads_wave,
-	.reads_phi = never,
-	.tables = emit_normal_constants,
-	.pass = emit_held_retune,
-	.step = emit_normal_step,
-	.held = nothing,
-	.at = nothing
+	.tables = emit_normal_tables,
+	.step = emit_normal_step
 };
 
 const struct kind *row_of_kind(enum step_kind kind)

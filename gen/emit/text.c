@@ -79,6 +79,12 @@ void close_function(const struct emitter *e, const char *unread)
 	say(e, "}\n");
 }
 
+void emit_if_any(void (*printer)(const struct emitter *e), const struct emitter *e)
+{
+	if (printer)
+		printer(e);
+}
+
 void put(FILE *to, const char *text, size_t length)
 {
 	fwrite(text, 1, length, to);
