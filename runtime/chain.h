@@ -12,15 +12,17 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 <<
 
 /* CALM: of the fastest impact, what is slower is over.  BRIEF: of h, what is over by then is at rest.  SPAN: of h,
  * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
- * rounding any more. */
+ * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force. */
 #ifdef REAL_IS_FLOAT
 #define CALM 0x1p-20f
 #define BRIEF PL_BRIEFF
 #define SPAN 0x1p-8f
+#define TINY 0x1p-96f
 #else
 #define CALM 0x1p-48
 #define BRIEF PL_BRIEF
 #define SPAN 0x1p-10
+#define TINY 0x1p-288
 #endif
 #define DEEP 64
 

@@ -35,7 +35,7 @@ static real value_of(const pl_events *m, const pl_instant *at, int watch)
 static real certain(const column *w)
 {
     const real value = column_at(w, 0);
-    return magnitude(value) <= noise_of(w->terms) ? 0 : value;
+    return magnitude(value) <= noise_of(w->terms) + TINY ? 0 : value;
 }
 
 static int is_near(const pl_events *m, const pl_instant *at, int watch)
@@ -964,7 +964,7 @@ static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *
         terms = terms * s + magnitude(column_at(&e, k));
     }
     terms += e.terms + magnitude(b) + p->per * terms_behind(m, at, p, s);
-    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms);
+    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms) + TINY;
 }
 
 int pl_events_places(const pl_events *m, const pl_instant *at, real s)
