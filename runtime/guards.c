@@ -942,19 +942,29 @@ static void take_up(const pl_guards *m, int jumped, real *x, pl_contact *c, pl_c
     assign(m, m->hold[c->region], x, work);
 }
 
-/* Whether there is nothing to take up: what is held is where it is held, and every guard is below its limit by more
- * than rounding, so that nothing touches, leaves its interval or is let go.  work: WORDS */
-static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, real *work)
+/* Whether what is held is where it is held.  work: WORDS */
+static int is_in_place(const pl_guards *m, const pl_contact *c, const real *x, real *work)
 {
     const int n = m->size, set = m->hold[c->region];
     int i, k;
-    for (k = m->set[set]; k < m->set[set + 1]; k++) {
+    for (k = set < 0 ? 0 : m->set[set]; set >= 0 && k < m->set[set + 1]; k++) {
         value_of(n, m->value, k, x, work);
         for (i = 0; i < WORDS; i++) {
             if (!(magnitude(x[i * n + m->state[k]] - work[i]) <= 0)) {
                 return 0;
             }
         }
+    }
+    return 1;
+}
+
+/* Whether there is nothing to take up: what is held is in place, and every guard is below its limit by more than
+ * rounding, so that nothing touches, leaves its interval or is let go.  work: WORDS */
+static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, real *work)
+{
+    int k;
+    if (!is_in_place(m, c, x, work)) {
+        return 0;
     }
     for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
         if (!(pull_of(m, k, x) < 0)) {
@@ -1062,7 +1072,67 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     }
 }
 
-void pl_guards_step(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+#ifndef REST_IS_KEPT
+#ifndef REAL_IS_FLOAT
+
+/* row . x as dot, but for what is 0 in the row: where products are calls, a look at the row costs less. */
+static PL_APART double sum_of(int n, const double *row, const double *x)
 {
-    pl_guards_advance(m, m->h, x, c, crossing, work);
+    double sum[4] = {-0.0, -0.0, -0.0, -0.0};
+    int j;
+    for (j = 0; j < n; j++) {
+        real_parts u;
+        u.value = row[j];
+        if (u.bits << 1 != 0) {
+            sum[j % 4] += row[j] * x[j];
+        }
+    }
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
+
+/* Whether guard k keeps below its limit from x to y by its chord, and by what rounding may hide where it begins */
+static int is_below(const pl_guards *m, int k, const double *x, const double *y, const double *size)
+{
+    const int n = m->size;
+    const ptrdiff_t row = m->guard[k].row;
+    const double from = sum_of(n, m->gate + row * n, x), to = sum_of(n, m->gate + row * n, y);
+    const double off = sum_of(n, m->chord_error + row * n, size);
+    return larger(from, to) + off + noise_of(magnitude(m->limit[k]) + m->gate_play[row]) < m->limit[k];
+}
+
+/* y: x over h; whether that surely meets no guard.  work: 2 size */
+static int is_unmet(const pl_guards *m, const pl_contact *c, const double *x, double *y, double *work)
+{
+    const int n = m->size, region = c->region, matrix = m->matrix[region];
+    int i;
+    if (matrix < 0 || pl_not_finite(x, n) || !is_in_place(m, c, x, work)) {
+        return 0;
+    }
+    for (i = 0; i < n; i++) {
+        y[i] = 0.0 + sum_of(n, m->Phi + ((ptrdiff_t)matrix * n + i) * n, x);
+        work[i] = magnitude(x[i]);
+    }
+    assign(m, m->hold[region], y, work + n);
+    for (i = m->first[region]; i < m->first[region + 1]; i++) {
+        if (!is_below(m, i, x, y, work)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+{
+    int i;
+    if (tau < m->h || !is_unmet(m, c, x, work, work + m->size)) {
+        pl_guards_advance(m, tau, x, c, crossing, work);
+        return;
+    }
+    for (i = 0; i < m->size; i++) {
+        x[i] = work[i];
+    }
+    c->crossings = 0;
+}
+
+#endif
+#endif

@@ -425,6 +425,34 @@ static inline float pl_magnitudef(float a)
 #define PL_APART
 #endif
 
+/* Of a function that is a part of its caller, in which its arguments are numbers */
+#ifdef __GNUC__
+#define PL_INLINE inline __attribute__((always_inline))
+#else
+#define PL_INLINE inline
+#endif
+
+/* Whether a sum is shorter and hardly slower as a call: code is to be small, or products of doubles are calls, too. A
+ * function that is rare where that is not so, is written out where it is. */
+#if defined __OPTIMIZE_SIZE__ || (defined __arm__ && !(defined __ARM_FP && (__ARM_FP & 8)))
+#define PL_SOFT 1
+#define PL_APART_HARD
+#else
+#define PL_SOFT 0
+#define PL_APART_HARD PL_APART
+#endif
+
+/* The loop that follows is of constant length, and is written out unless code is to be small. */
+#if defined __OPTIMIZE_SIZE__
+#define PL_UNROLL
+#elif defined __clang__
+#define PL_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined __GNUC__ && __GNUC__ >= 8
+#define PL_UNROLL _Pragma("GCC unroll 16")
+#else
+#define PL_UNROLL
+#endif
+
 /* No array is empty. */
 #define PL_ROOM(n) ((n) > 0 ? (n) : 1)
 
@@ -832,7 +860,7 @@ enum { PL_PENETRATED = 64 };
  * what is on another one goes as in pl_switching_start. */
 void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double *work);
 
-/* x over h, and over tau, 0 <= tau <= h, as pl_switching_step and pl_switching_advance.  Where several stick or slip at
+/* x over tau, 0 <= tau <= h, as pl_switching_advance.  Where several stick or slip at
  * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
  * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
  *
@@ -846,8 +874,11 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * pressed then.  Speeds of what comes to rest go by impacts with e = 0, so momentum stays.  What rests is held until
  * it would have to be pulled.  Impacts with e < 1 go on beyond the list, to 65536 events in a step.  What rounding has
  * taken beyond a bounce is still before it; PL_PENETRATED: at the end of a step it is there by more. */
-void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+/* The same, but h sooner where it is sure that no guard is met: chord_error has 8 units in the last place of |gate| +
+ * 3 |gate_tangent| more, for what rounding may hide where the step begins. */
+void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* At this time [s] of a step: behind loads that have changed their formula, in the region of the same intervals, which
  * m is of now.  What has left its interval by a jump of a load passes its breakpoints, in the order of expressions, and
@@ -858,7 +889,6 @@ void pl_guards_change(const pl_guards *m, double time, double *x, pl_contact *c,
  * words and then as many second ones. */
 #define PL_GUARDS_KEPT_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
 void pl_guards_kept_start(const pl_guards *m, const double *x, pl_contact *c, double *work);
-void pl_guards_kept_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_kept_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
                             double *work);
 void pl_guards_kept_change(const pl_guards *m, double time, double *x, pl_contact *c, pl_crossing *crossing,
@@ -895,11 +925,9 @@ typedef struct pl_guardsf {
 } pl_guardsf;
 
 void pl_guardsf_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
-void pl_guardsf_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_change(const pl_guardsf *m, float time, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_kept_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
-void pl_guardsf_kept_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_kept_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
                              float *work);
 void pl_guardsf_kept_change(const pl_guardsf *m, float time, float *x, pl_contact *c, pl_crossingf *crossing,

@@ -34,16 +34,6 @@
 
 #ifndef PLRT_RADAU_H
 #define PLRT_RADAU_H
-/* The loop that follows is of constant length, and is written out unless code is to be small. */
-#if defined __OPTIMIZE_SIZE__
-#define PL_UNROLL
-#elif defined __clang__
-#define PL_UNROLL _Pragma("clang loop unroll(full)")
-#elif defined __GNUC__ && __GNUC__ >= 8
-#define PL_UNROLL _Pragma("GCC unroll 16")
-#else
-#define PL_UNROLL
-#endif
 /* Why there is no step, beside what a status says: a series should do it; nothing moves; what is next has changed */
 enum { PL_BY_SERIES = -1, PL_NO_MOVE = -2, PL_ANOTHER = -3 };
 /* What ends an internal step: its error, the step of h, a change of the loads, a crossing */

@@ -87,7 +87,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_advance pl_switchingf_kept_advance
 #define pl_switching_move pl_switchingf_kept_move
 #define pl_guards_start pl_guardsf_kept_start
-#define pl_guards_step pl_guardsf_kept_step
 #define pl_guards_advance pl_guardsf_kept_advance
 #define pl_guards_change pl_guardsf_kept_change
 #else
@@ -95,7 +94,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_step pl_switchingf_step
 #define pl_switching_advance pl_switchingf_advance
 #define pl_guards_start pl_guardsf_start
-#define pl_guards_step pl_guardsf_step
 #define pl_guards_advance pl_guardsf_advance
 #define pl_guards_change pl_guardsf_change
 #endif
@@ -108,7 +106,6 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_advance pl_switching_kept_advance
 #define pl_switching_move pl_switching_kept_move
 #define pl_guards_start pl_guards_kept_start
-#define pl_guards_step pl_guards_kept_step
 #define pl_guards_advance pl_guards_kept_advance
 #define pl_guards_change pl_guards_kept_change
 #endif

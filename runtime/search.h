@@ -22,7 +22,7 @@
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
- *     PL_CLEARS                  whether most steps are seen to be clear before it is asked
+ *     PL_CLEARS                  whether most steps are seen to be clear before it is asked: of guards by unmet.h
  *     PL_FEW                     crossings by few.h, which is included then; 0: none */
 #include "numbers.h"
 
@@ -180,6 +180,12 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
     PL_ADVANCE(&here, tau, x, contact, crossing, work);
 #else
     (void)s;
+#if PL_CLEARS && PL_GUARDS
+    if (PL_SOFT) {
+        pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
+        return;
+    }
+#endif
     PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work);
 #endif
 }
@@ -188,15 +194,17 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 
 /* ---- a step, and what is asked about it ---- */
 
-#if PL_CLEARS
-#define PL_RARE PL_APART
+#if PL_CLEARS && PL_GUARDS
+#define PL_SOUGHT PL_APART_HARD void PL(by_search)
+#elif PL_CLEARS
+#define PL_SOUGHT PL_APART void PL(seek)
 #else
-#define PL_RARE
+#define PL_SOUGHT void PL(seek)
 #endif
 
 #if PL_EXPRESSIONS > 0
 /* By the search, from x */
-static PL_RARE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 {
     int i;
     PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
@@ -207,6 +215,94 @@ static PL_RARE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 #endif
     }
     s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);
+}
+#endif
+
+#if PL_CLEARS && PL_GUARDS
+/* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
+#define PL_FEW_REGIONS (PL_REGIONS <= 4 && PL_SIZE <= 8)
+
+/* row . x in the order of the runtime's sums: of each fourth term, then these */
+#if PL_FEW_REGIONS
+#define PL_TERM(j) (row[j] < 0.0 || row[j] > 0.0 ? row[j] * x[j] : -0.0)
+static PL_INLINE double PL(sum)(const double *row, const double *x)
+{
+    double s0 = PL_TERM(0), s1 = -0.0, s2 = -0.0, s3 = -0.0;
+#if PL_SIZE > 1
+    s1 = PL_TERM(1);
+#endif
+#if PL_SIZE > 2
+    s2 = PL_TERM(2);
+#endif
+#if PL_SIZE > 3
+    s3 = PL_TERM(3);
+#endif
+#if PL_SIZE > 4
+    s0 += PL_TERM(4);
+#endif
+#if PL_SIZE > 5
+    s1 += PL_TERM(5);
+#endif
+#if PL_SIZE > 6
+    s2 += PL_TERM(6);
+#endif
+#if PL_SIZE > 7
+    s3 += PL_TERM(7);
+#endif
+    return (s0 + s2) + (s1 + s3);
+}
+#else
+static double PL(sum)(const double *row, const double *x)
+{
+    double s[4] = {-0.0, -0.0, -0.0, -0.0};
+    int j;
+    PL_UNROLL
+    for (j = 0; j < PL_SIZE; j++) {
+        s[j % 4] += row[j] * x[j];
+    }
+    return (s[0] + s[2]) + (s[1] + s[3]);
+}
+#endif
+
+#define PL_SUM(row, x) PL(sum)(row, x)
+#if PL_FEW_REGIONS
+#define PL_EACH PL_UNROLL
+#else
+#define PL_EACH
+#endif
+#include "unmet.h"
+
+/* x over h to end, where it is sure that no guard is met */
+static inline int PL(unmet)(int region, const double x[PL_SIZE], double end[PL_SIZE])
+{
+    double size[PL_SIZE], place[PL_SIZE];
+#if PL_FEW_REGIONS
+    int i, clear = 0;
+    PL_UNROLL
+    for (i = 0; i < PL_REGIONS; i++) {
+        if (i == region) {
+            clear = PL(keeps_all)(&PL(switching), i, x, end, size, place);
+        }
+    }
+    return clear;
+#else
+    return PL(keeps_all)(&PL(switching), region, x, end, size, place);
+#endif
+}
+
+/* The same where that is so; else by the search */
+static inline void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+{
+    double end[PL_SIZE];
+    int i;
+    if (PL_SOFT || !PL(unmet)(s->contact PL_PART.region, x, end)) {
+        PL(by_search)(s, x);
+        return;
+    }
+    for (i = 0; i < PL_STATES; i++) {
+        s->y[PL_PLACE(i)] = end[i];
+    }
+    s->contact PL_PART.crossings = 0;
 }
 #endif
 

@@ -33,18 +33,19 @@
 #undef PL_CHOICES
 #undef PL_CLEARS
 #undef PL_COLUMNS
-#undef PL_CROSSED
 #undef PL_CONTACTS
 #undef PL_CONVERTED
 #undef PL_COORDS
 #undef PL_CORE
 #undef PL_CORE_H
 #undef PL_CORRECTION
+#undef PL_CROSSED
 #undef PL_CROWDED
 #undef PL_DAMPED
 #undef PL_DEGREE
 #undef PL_DIRECT
 #undef PL_DIVIDED
+#undef PL_EACH
 #undef PL_ENDED
 #undef PL_ENTRIES
 #undef PL_EQUATIONS
@@ -52,6 +53,7 @@
 #undef PL_FACTORS
 #undef PL_FASTEST
 #undef PL_FEW
+#undef PL_FEW_REGIONS
 #undef PL_FIRST
 #undef PL_FIRST_SWEEPS
 #undef PL_FLAT
@@ -144,7 +146,6 @@
 #undef PL_PLAYS
 #undef PL_POINTS
 #undef PL_RAMPS
-#undef PL_RARE
 #undef PL_RATES
 #undef PL_REACH
 #undef PL_REACHES
@@ -179,6 +180,7 @@
 #undef PL_SLOPES
 #undef PL_SLOPE_ROUNDED
 #undef PL_SOLVED
+#undef PL_SOUGHT
 #undef PL_SPEC_H
 #undef PL_SPEEDS
 #undef PL_STABLE
@@ -190,10 +192,12 @@
 #undef PL_STEPPED
 #undef PL_STILL
 #undef PL_STRAIGHT
+#undef PL_SUM
 #undef PL_SWAY
 #undef PL_SWEEPS
 #undef PL_SWIFT
 #undef PL_TABLES
+#undef PL_TERM
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE

@@ -658,8 +658,6 @@ void emit_parts_at(const struct emitter *e);
 void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
-/* emit_unmet.c: of one with friction or impacts: cases of its regions; x, size: of each entry of x */
-void emit_unmet_cases(const struct emitter *e, const struct pieces *p, const char *const *x, const char *const *size);
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);

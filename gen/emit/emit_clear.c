@@ -334,36 +334,22 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	emit_case_end(e);
 }
 
-/* Where guards end regions */
-static void emit_guarded_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
-{
-	const char *list = "";
-	for (int i = 0; i < e->system->states; i++)
-		list = format("%s%send%d = 0.0", list, i ? ", " : "", i);
-	emit_case_begin(e, list);
-	emit_unmet_cases(e, p, x, magnitudes(e, x));
-	emit_case_end(e);
-}
-
 void emit_clear_step(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
 	const char **x = operands(e);
-	const bool events = has_events(e->model->switching);
 	for (int i = 0; i < e->system->inputs; i++) {
 		int of = place_of_input(e, i);
 		if (e->system->input[i].hold)
 			say(e, "    const double part%d = %s;  /* its slope */\n", of,
-			    events ? ramp_slope(e, of) : spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
+			    spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
 	}
 	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
 		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
 	if (e->model->retuned)
 		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
-	if (events)
-		emit_guarded_cases(e, &pieces, x);
-	else if (is_cleared_by_tables(e->step))
+	if (is_cleared_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);

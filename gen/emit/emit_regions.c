@@ -394,7 +394,7 @@ static void emit_whole_step(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
-	if (e->step->clears)
+	if (e->step->clears && !has_guards(e))
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);

@@ -52,7 +52,10 @@ static long swift_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
 	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
-	return !step->clears ? 0 : step->swift ? size * size + MOST_LOOKS * (bounds + moves) : size * size;
+	return !step->clears                         ? 0
+	       : step->swift                        ? size * size + MOST_LOOKS * (bounds + moves)
+	       : has_events(step->model->switching) ? products_of_unmet(step)
+						    : size * size;
 }
 
 /* Of what regions with friction have beside these, less two of them that they do not */

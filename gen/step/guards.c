@@ -195,22 +195,11 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 }
 
 /* What rounding may hide is 8 units in the last place of all terms, as in the search. */
-static void bound_steps(const struct step *step, struct guards *g)
+static void add_rounding(const struct step *step, struct guards *g)
 {
 	const double rounding = 8 * ldexp(1, -52) * (1 + 1e-9);
-	int size = step->layout.size;
-	double *still = ARRAY(double, (size_t)g->rows);
-	g->off = ARRAY(double, (size_t)g->rows * (size_t)size);
-	g->still = ARRAY(double, (size_t)g->guards);
-	for (int i = 0; i < g->rows; i++) {
-		for (int j = i * size; j < (i + 1) * size; j++)
-			g->off[j] = g->second[j] + rounding * (fabs(g->row[j]) + 3 * fabs(g->slope[j]));
-		fold_loads(step, g->off + i * size, &still[i]);
-		still[i] += rounding * g->row_play[i];
-	}
-	for (int k = 0; k < g->guards; k++)
-		g->still[k] = still[g->guard[k].row] + rounding * fabs(g->guard[k].limit);
-	discard(still);
+	for (int i = 0; i < g->rows * step->layout.size; i++)
+		g->second[i] += rounding * (fabs(g->row[i]) + 3 * fabs(g->slope[i]));
 }
 
 double *grips_of(const struct step *step)
@@ -259,7 +248,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	for (int i = 0; i < g.rows; i++)
 		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	if (step->clears)
-		bound_steps(step, &g);
+		add_rounding(step, &g);
 	return g;
 }
 

@@ -455,6 +455,7 @@ void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
 int products_of_piece(const struct step *step);             /* and of the bound that shows it clear */
 bool is_cleared_by_tables(const struct step *step);         /* a step that clears does by tables, not case by case */
+long products_of_unmet(const struct step *step);            /* of one with friction or impacts that clears, at most */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
@@ -567,10 +568,8 @@ struct guards {
 	struct guard *guard;
 	int rows, *branch;          /* of each row: whose it is, */
 	struct gate_key *gate;          /* and what */
-	double *row, *slope, *second, *fourth; /* rows x size */
-	/* Of a step that clears: over h each is off its chord, and what rounding may hide where it begins, by at most
-	 * off . |x(0)| + still: rows x size; per guard */
-	double *off, *still;
+	/* rows x size; of a step that clears `second` has what rounding may hide where it begins, too */
+	double *row, *slope, *second, *fourth;
 	int reaches, *reach_at;     /* of each row: where it begins in reach, reaches x size, as in pl_ladder */
 	double *reach;
 	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */

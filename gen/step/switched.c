@@ -20,7 +20,7 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 /* Why a step of regions does not look over the whole of h first; NULL: it does */
 static const char *no_look(const struct step *step)
 {
-	enum { TERMS = 400, BOUNDS = 1024, MOST_CASES = 400 };
+	enum { TERMS = 400, BOUNDS = 1024 };
 	const struct switching *s = step->model->switching;
 	const bool events = has_events(s);
 	bool turns = false;
@@ -36,8 +36,6 @@ static const char *no_look(const struct step *step)
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
 	       : step->model->retuned && matrices > LIMIT_TUNED_NUMBERS
 		       ? "an instance would have too many numbers, for tunable params"
-	       : events && possible_regions(s) * step->layout.states * step->layout.size > MOST_CASES
-		       ? "its cases would be more than a few pages"
 		       : NULL;
 }
 
@@ -68,6 +66,24 @@ int products_of_piece(const struct step *step)
 	return size * (products_of_words(step) * size + (ladder ? 4 * size + 3 * expressions + 1 : 6 * expressions));
 }
 
+/* Where guards end regions: x on, what is held at both ends, each guard there and between; of the region with most */
+long products_of_unmet(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	int most = 0;
+	for (int r = 0; r < s->regions; r++) {
+		int guards = s->region[r].releases;
+		for (int e = 0; e < s->expressions; e++) {
+			const int interval = interval_of(s, r, e);
+			if (!is_stick(&s->expression[e], interval))
+				guards += (interval > 0) + (interval < s->expression[e].breaks);
+		}
+		const int rows = 2 * s->region[r].holds + 3 * guards;
+		most = s->region[r].possible && rows > most ? rows : most;
+	}
+	return (long)(step->layout.size + most) * step->layout.size;
+}
+
 static void plan_look(struct step *step)
 {
 	bool any = false;
@@ -81,7 +97,9 @@ static void plan_look(struct step *step)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =
-		(products_of_words(step) * step->layout.states + expressions) * step->layout.size;
+		has_events(step->model->switching)
+			? (int)products_of_unmet(step)
+			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications + 2 * expressions;
 	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* unmet.h: part of search.h: a step of a model with friction or impacts that meets none of the guards of its region, by
+ * the tables of its search.  That (guards.c) would take the same one, to the last bit: sums have its order, and what is
+ * accepted here leaves nothing to take up, nothing that touches, and each guard below its limit by the bound of the
+ * search.  A guard that has just been left, and one that a cubic alone clears, goes by the search.  pl_guards_step is
+ * the same for small processors. */
+
+/* Whether what a set holds is where it is held; at the end it is put there, all from the same x.  place: size */
+static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, double *end, double *place)
+{
+    const int first = m->set[set], last = m->set[set + 1];
+    int k;
+    PL_EACH
+    for (k = first; k < last; k++) {
+        const double *const value = m->value + k * PL_SIZE;
+        if (!(pl_magnitude(x[m->state[k]] - PL_SUM(value, x)) <= 0.0)) {
+            return 0;
+        }
+        place[k - first] = 0.0 + PL_SUM(value, end);
+    }
+    PL_EACH
+    for (k = first; k < last; k++) {
+        end[m->state[k]] = place[k - first];
+    }
+    return 1;
+}
+
+/* Whether guard k keeps below its limit from x to end: by its chord, h^2/8 of its second derivative, and what rounding
+ * may hide at the start, 8 units in the last place of all terms; those of x are in the table */
+static PL_INLINE int PL(keeps)(const pl_guards *m, int k, const double *x, const double *end, const double *size)
+{
+    const int row = m->guard[k].row;
+    const double from = PL_SUM(m->gate + row * PL_SIZE, x), to = PL_SUM(m->gate + row * PL_SIZE, end);
+    const double off = PL_SUM(m->chord_error + row * PL_SIZE, size)
+                     + 1.7763568412e-15 * (pl_magnitude(m->limit[k]) + m->gate_play[row]);
+    return (from > to ? from : to) + off < m->limit[k];
+}
+
+/* x over h in a region to end, and whether it is sure that nothing is met.  size, place: for sizes of x, and work */
+static PL_INLINE int PL(keeps_all)(const pl_guards *m, int region, const double *x, double *end, double *size,
+                                   double *place)
+{
+    const int which = m->matrix[region], set = m->hold[region];
+    double all = 0.0;
+    int i;
+    if (which < 0) {
+        return 0;
+    }
+    PL_EACH
+    for (i = 0; i < PL_SIZE; i++) {
+        end[i] = 0.0 + PL_SUM(m->Phi + (which * PL_SIZE + i) * PL_SIZE, x);
+        size[i] = pl_magnitude(x[i]);
+        all += size[i];
+    }
+    if (!(all < 1e300) || (set >= 0 && !PL(holds)(m, set, x, end, place))) {
+        return 0;
+    }
+    PL_EACH
+    for (i = m->first[region]; i < m->first[region + 1]; i++) {
+        if (!PL(keeps)(m, i, x, end, size)) {
+            return 0;
+        }
+    }
+    return 1;
+}
