@@ -281,9 +281,10 @@ static void tripled_step(tripled *s)
 #define PL(name) tripled_##name
 #define PL_TYPE tripled
 #define PL_STATES 1
+#define PL_LOAD_STATES 1
 #define PL_SIZE 2
 #define PL_SEGMENTS 3
-#define PL_BLOCKS 0
+#define PL_BLOCKS 1
 #define PL_CONVERTED 0
 #define PL_KEPT 1
 #define PL_CARRIES 0
