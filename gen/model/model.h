@@ -980,8 +980,9 @@ struct listing {                    /* retuned_rows.c: the numbers of one model'
 };
 struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
 void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row);   /* n x size, 0 before */
-void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segment,
-		   mpq_t *row);
+/* An output, whose loads have so many segments of time, in one of these, or as x in all */
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
+		   int segment, mpq_t *row);
 /* R and W of an equation, W a = R x; of an output, R x - W a: what of it is no highest derivative; size and n entries,
  * 0 before. highest: a over x; form: of the output, NULL: it reads none */
 void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W);

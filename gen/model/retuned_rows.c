@@ -17,16 +17,16 @@ void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t 
 	rationals_free(A, (size_t)size * (size_t)size);
 }
 
-void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segment,
-		   mpq_t *row)
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
+		   int segment, mpq_t *row)
 {
 	for (int i = 0; i < system->states; i++)
 		mpq_set(row[i], output->state[i]);
 	for (int l = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++)
+		for (int k = 0; k < system->load[l].columns && x->load[l] >= 0; k++)
 			for (int s = 0; s < x->segments; s++)
 				mpq_set(row[x->load[l] + s * x->loads + k],
-					output->load[l][k * system->segments + (x->segments > 1 ? s : segment)]);
+					output->load[l][k * segments + (x->segments > 1 ? s : segment)]);
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k <= system->input[i].hold && k < 2; k++)
 			mpq_set(row[x->input[i] + k], output->input[k][i]);
@@ -90,7 +90,7 @@ static void list_output(struct listing *l, enum retuned_kind kind, int of, int i
 			int segment)
 {
 	mpq_t *entry = add_row(l, kind, of, index);
-	row_of_output(l->x, &l->model->system, row, segment, entry);
+	row_of_output(l->x, &l->model->system, row, l->model->system.segments, segment, entry);
 }
 
 static void list_system(struct listing *l, int index)

@@ -83,7 +83,7 @@ static mpq_t *read_entries(struct elsewhere *s, const struct model *model)
 		const struct form *form = model->reduction.row ? NULL : model->output[o].form;
 		const int row = n + o;
 		mpq_t *whole = &entry[solved_index(s, row, 0)];
-		row_of_output(&s->tuning->x, system, &model->output[o], 0, whole);
+		row_of_output(&s->tuning->x, system, &model->output[o], system->segments, 0, whole);
 		part_row(model, form, size, (const mpq_t *)entry, (const mpq_t *)whole, &entry[raw_index(s, row, 0)],
 			 &entry[raw_index(s, row, size)]);
 		mpq_set_ui(entry[raw_index(s, row, size + row)], 1, 1);

@@ -8,17 +8,7 @@
 
 void through_row(const struct through *t, const struct output *output, mpq_t *row)
 {
-	const struct linear *system = t->system;
-	for (int i = 0; i < t->layout.states; i++)
-		mpq_set(row[i], output->state[i]);
-	for (int l = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns && t->layout.load[l] >= 0; k++)
-			mpq_set(row[t->layout.load[l] + k], output->load[l][k * t->segments + t->segment]);
-	for (int i = 0; i < system->inputs; i++) {
-		mpq_set(row[t->layout.input[i]], output->input[0][i]);
-		if (system->input[i].hold)
-			mpq_set(row[t->layout.input[i] + 1], output->input[1][i]);
-	}
+	row_of_output(&t->layout, t->system, output, t->segments, t->segment, row);
 }
 
 void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)

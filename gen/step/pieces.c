@@ -31,20 +31,13 @@ static double word_of(const struct step *step, mpq_srcptr number, bool second)
 
 static void fill_row(const struct step *step, const struct output *expression, int segment, bool second, double *row)
 {
-	const struct layout *layout = &step->layout;
-	const struct linear *system = &step->branch->system;
-	int segments = step->shown->model->system.segments;
-	for (int i = 0; i < system->states; i++)
-		row[i] = word_of(step, expression->state[i], second);
-	for (int l = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns && layout->load[l] >= 0; k++)
-			row[layout->load[l] + k] =
-				word_of(step, expression->load[l][k * segments + segment], second);
-	for (int i = 0; i < system->inputs; i++) {
-		row[layout->input[i]] = word_of(step, expression->input[0][i], second);
-		if (system->input[i].hold)
-			row[layout->input[i] + 1] = word_of(step, expression->input[1][i], second);
-	}
+	const int size = step->layout.size;
+	mpq_t *exact = rationals((size_t)size);
+	row_of_output(&step->layout, &step->branch->system, expression, step->shown->model->system.segments, segment,
+		      exact);
+	for (int i = 0; i < size; i++)
+		row[i] = word_of(step, exact[i], second);
+	rationals_free(exact, (size_t)size);
 }
 
 void row_over_x(const struct step *step, const struct output *expression, int segment, double *row)

@@ -3,31 +3,21 @@
  * changes of x' = A x. */
 #include "step/step.h"
 
-/* A row of an output over the columns */
-static void fill_output(const struct step *step, const struct output *output, double *row)
-{
-	const struct linear *system = &step->branch->system;
-	const struct model *model = step->model;
-	int column = 0;
-	for (int j = 0; j < system->states; j++)
-		row[column++] = equation_number(model, output->state[j]).value;
-	for (int s = 0; s < system->segments; s++)
-		for (int l = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++)
-				row[column++] = equation_number(model, output->load[l][k * system->segments + s]).value;
-	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k <= system->input[i].hold; k++)
-			row[column++] = k < 2 ? equation_number(model, output->input[k][i]).value : 0;
-}
-
 double *nominal_outputs(const struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
-	double *value = ARRAY(double, (size_t)(t->outputs * t->x.size));
-	for (int o = 0; o < step->model->outputs; o++) {
-		int row = t->output[o] - step->model->n;
-		if (row >= 0)
-			fill_output(step, &step->model->output[o], value + row * t->x.size);
+	const struct model *model = step->model;
+	const struct tuning *t = model->tuning;
+	const struct linear *system = &step->branch->system;
+	const int size = t->x.size;
+	double *value = ARRAY(double, (size_t)(t->outputs * size));
+	mpq_t *row = rationals((size_t)size);
+	for (int o = 0; o < model->outputs; o++) {
+		if (t->output[o] < 0)
+			continue;
+		double *to = value + (t->output[o] - model->n) * size;
+		row_of_output(&t->x, system, &model->output[o], system->segments, 0, row);
+		for (int j = 0; j < size; j++)
+			to[j] = equation_number(model, row[j]).value;
 	}
 	return value;
 }
