@@ -29,11 +29,12 @@ static void PL(keep)(PL_TYPE *s, const real u[PL_INPUTS])
     }
 }
 
-/* The sample so many steps before the newest */
-static real PL(sample)(const PL_TYPE *s, const real kept[PL_INPUTS][PL_RING], int input, int steps)
+/* Where the sample so many steps before the newest is: not the sample, of which a pointer to all samples would be an
+ * address more in a loop over inputs */
+static int PL(slot)(const PL_TYPE *s, int steps)
 {
     const int at = s->newest - steps;
-    return kept[input][at < 0 ? at + PL_RING : at];
+    return at < 0 ? at + PL_RING : at;
 }
 
 #if PL_RAMPS
@@ -42,8 +43,8 @@ static real PL(ramp_now)(const PL_TYPE *s, int i, int ago)
 {
     const int whole = ago / PL_PARTS;
     const real between = (real)(ago % PL_PARTS) / (real)PL_PARTS;
-    const real now = PL(sample)(s, s->ends, PL(input_of)[i], whole);
-    return between > 0 ? now + between * (PL(sample)(s, s->past, PL(input_of)[i], whole + 1) - now) : now;
+    const real now = s->ends[PL(input_of)[i]][PL(slot)(s, whole)];
+    return between > 0 ? now + between * (s->past[PL(input_of)[i]][PL(slot)(s, whole + 1)] - now) : now;
 }
 
 /* Samples from which ramps of the core begin with a part of the step: u of those that do so there */
@@ -53,7 +54,7 @@ static void PL(starts)(const PL_TYPE *s, int part, real u[PL_ALL])
     for (i = 0; i < PL_ALL; i++) {
         const int ago = PL(parts_ago)[i] + PL_PARTS - part;
         if (ago % PL_PARTS == 0 && PL(is_ramp)[i]) {
-            u[i] = PL(sample)(s, s->past, PL(input_of)[i], ago / PL_PARTS);
+            u[i] = s->past[PL(input_of)[i]][PL(slot)(s, ago / PL_PARTS)];
         }
     }
 }
@@ -62,7 +63,7 @@ static void PL(starts)(const PL_TYPE *s, int part, real u[PL_ALL])
 /* Inputs of the core in a part of the step: 0 .. PL_PARTS - 1 */
 static void PL(samples)(const PL_TYPE *s, int part, real u[PL_ALL])
 {
-    int i;
+    int i, at;
     for (i = 0; i < PL_ALL; i++) {
         const int ago = PL(parts_ago)[i] - part;
 #if PL_RAMPS
@@ -71,7 +72,8 @@ static void PL(samples)(const PL_TYPE *s, int part, real u[PL_ALL])
             continue;
         }
 #endif
-        u[i] = PL(sample)(s, s->past, PL(input_of)[i], ago > 0 ? (ago + PL_PARTS - 1) / PL_PARTS : 0);
+        at = PL(slot)(s, ago > 0 ? (ago + PL_PARTS - 1) / PL_PARTS : 0);
+        u[i] = s->past[PL(input_of)[i]][at];
     }
 }
 
