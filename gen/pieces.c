@@ -183,7 +183,7 @@ static void take_line(struct reader *f, const char *line)
 static int decided(const struct runtime *r, const char *name)
 {
 	size_t length = strlen(name);
-	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0)
+	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0 || strcmp(name, "PL_SINGLE") == 0)
 		return r->single;
 	if (strcmp(name, "REST_IS_KEPT") == 0)
 		return r->kept;
@@ -197,11 +197,11 @@ static bool take_condition(struct reader *f, const char *line)
 {
 	char word[64] = "", name[64] = "";
 	sscanf(line, "#%63s %63s", word, name);
-	bool asks = strcmp(word, "ifdef") == 0 || strcmp(word, "ifndef") == 0;
+	bool asks = strcmp(word, "ifdef") == 0 || strcmp(word, "ifndef") == 0 || strcmp(line, "#if PL_SINGLE") == 0;
 	int is = asks ? decided(f->runtime, name) : -1;
 	if (is >= 0) {
 		f->opaque_inside[++f->known] = 0;
-		if (!f->left_out && (is == 1) != (word[2] == 'd'))
+		if (!f->left_out && (is == 1) == (word[2] == 'n'))
 			f->left_out = f->known;
 		return true;
 	}
@@ -239,6 +239,8 @@ static bool take_directive(struct reader *f, const char *line)
 	int words = sscanf(line, "#define %63s %63s %c", name, other, &end);
 	if (words == 1 && decided(r, name) >= 0)
 		return true;
+	if (words == 2 && strcmp(name, "real") == 0)
+		return true;                    /* a type of real.h here */
 	if (words != 2 || strncmp(name, "pl_", 3) != 0 || strncmp(other, "pl_", 3) != 0)
 		return false;
 	ENLARGE(r->from, (size_t)r->aliases + 1);

@@ -147,7 +147,6 @@
 #undef PL_POINTS
 #undef PL_RAMPS
 #undef PL_RATES
-#undef PL_REACH
 #undef PL_REACHES
 #undef PL_REGIONS
 #undef PL_REMAINDERS
