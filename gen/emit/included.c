@@ -405,7 +405,7 @@ void print_included(FILE *to, const char *text, const char *model)
 
 static bool uses(const char *text, const char *name)
 {
-	for (const char *at = text; *at;) {
+	for (const char *at = strstr(text, name) ? text : ""; *at;) {  /* most models are called otherwise */
 		size_t length = name_length(at);
 		const char *quoted = behind_quoted(at, false);
 		if (length && is_named(at, length, name))
