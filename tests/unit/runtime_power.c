@@ -225,6 +225,55 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     assert_double(x[2].hi, 0.0, "no terms");
 }
 
+/* y0 doubles at each step and y1 triples and gains 1: two independent blocks, the second state's first.  NAME_run takes
+ * four steps at once where it can: run.h and jump.h without the generator */
+typedef struct paired {
+    real y[2];
+    int k;
+} paired;
+typedef struct paired_entry {
+    int row, column;
+    pl_two value;
+} paired_entry;
+static const real paired_Phi[2][2] = {{2, 0}, {0, 3}}, paired_Phi_low[2][2] = {{0}};
+static const unsigned short paired_block_first[] = {0, 1, 2}, paired_block_state[] = {1, 0};
+static const paired_entry paired_power_entry[] = {{1, 2, {1, 0}}, {2, 2, {1, 0}}};
+static int blocks; /* taken at once */
+
+static void paired_leap_loads(const paired *s, pl_two load[])
+{
+    (void)s;
+    load[0] = word_of(1.0);
+}
+
+static void paired_pass_steps(paired *s, uint64_t n)
+{
+    s->k += (int)n;
+}
+
+static void paired_step(paired *s)
+{
+    s->y[0] = 2 * s->y[0];
+    s->y[1] = 3 * s->y[1] + 1;
+    s->k++;
+}
+
+static void paired_out(const paired *s, real out[1])
+{
+    out[0] = s->y[0] + s->y[1];
+}
+
+static void paired_block(paired *s, real *out)
+{
+    int i;
+    for (i = 0; i < 4; i++) {
+        paired_step(s);
+        if (out)
+            paired_out(s, out + i);
+    }
+    blocks++;
+}
+
 /* y triples at each step of 1 s and gains 1, after 4 s 2, after 9 s 0: jump.h without the generator */
 typedef struct tripled {
     real y[1], rest[1];
@@ -310,6 +359,71 @@ static void from_change_to_change(void **state)
     }
 }
 
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) paired_##name
+#define PL_TYPE paired
+#define PL_STATES 2
+#define PL_LOAD_STATES 1
+#define PL_SIZE 2
+#define PL_SEGMENTS 1
+#define PL_BLOCKS 2
+#define PL_CONVERTED 0
+#define PL_KEPT 0
+#define PL_CARRIES 0
+#define PL_PHI paired_Phi
+#define PL_ENTRIES 2
+#define PL_H 1
+void paired_jump(paired *s, uint64_t n);
+#include "jump.h"
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) paired_##name
+#define PL_TYPE paired
+#define PL_STATES 2
+#define PL_INPUTS 0
+#define PL_OUTPUTS 1
+#define PL_INSIDE 0
+#define PL_ROWS 4
+#define PL_OVER 0
+#define PL_ANCHORED 0
+#define PL_RESTS 2
+#define PL_IN_STEP 0
+#define PL_KEPT 0
+static const short paired_part[] = {0, -1};
+void paired_run(paired *s, size_t n, real *out);
+#include "run.h"
+
+static void by_blocks(void **state)
+{
+    int n, k;
+    (void)state;
+    for (n = 0; n <= 12; n++) {
+        paired stepped = {{1, 0}, 0}, jumped = stepped, run = stepped;
+        real row[12], sum[1];
+        blocks = 0;
+        paired_run(&run, (size_t)n, row);
+        assert_int_equal(blocks, n / 4);
+        for (k = 0; k < n; k++) {
+            paired_step(&stepped);
+            paired_out(&stepped, sum);
+            assert_double((double)row[k], (double)sum[0], "a row");
+        }
+        paired_jump(&jumped, (uint64_t)n);
+        for (k = 0; k < 2; k++)
+            assert_double((double)jumped.y[k], (double)stepped.y[k], "a state");
+        assert_int_equal(jumped.k, n);
+        assert_int_equal(run.k, n);
+    }
+}
+
 static void report(void)
 {
     print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
@@ -322,4 +436,5 @@ ROOM_WITH(power, NULL, report,
     cmocka_unit_test(no_steps),
     cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
     cmocka_unit_test(overflow_has_the_sign_of_the_sum),
-    cmocka_unit_test(from_change_to_change))
+    cmocka_unit_test(from_change_to_change),
+    cmocka_unit_test(by_blocks))
