@@ -223,8 +223,12 @@ static bool starts_with(const char *text, const char *start)
 /* Is this statement one of the step's sums?  The others compute loads and time, or store. */
 static bool is_sum(const char *text, const char *end)
 {
-    if (starts_with(text, "s->y[") || starts_with(text, "const double part") ||
-        starts_with(text, "const float part"))
+    static const char *const sums[] = { "part", "kicked", "drifted" };
+    for (int i = 0; i < 3; i++)
+        if (starts_with(text, format("const double %s", sums[i])) ||
+            starts_with(text, format("const float %s", sums[i])))
+            return true;
+    if (starts_with(text, "s->y["))
         return true;
     while (isalnum((unsigned char)*text) || *text == '_')
         text++;
