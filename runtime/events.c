@@ -678,8 +678,9 @@ static int agrees(const pl_events *m, pl_instant *at, const int *resting, int co
             }
             continue;
         }
-        if (h->strike >= 0 && speed_of(m, at, &m->strike[h->strike]) < 0) { /* another impact has parted it */
-            if (side == 0) {
+        /* Another impact has parted it; without one, a speed is what rounding has left. */
+        if (at->strike >= 0 && h->strike >= 0 && speed_of(m, at, &m->strike[h->strike]) < 0) {
+            if (at->interval[h->expression] != free_of(m, &m->strike[h->strike])) {
                 return 0;
             }
             continue;
