@@ -492,6 +492,24 @@ static int is_let_go(const pl_guards *m, int region, const resting *r, int side,
     return 0;
 }
 
+/* Whether others hold it already where it neither sticks nor rests, for no region holds it twice: friction slips there
+ * as it would but for the contacts at rest. */
+static int is_spared(const pl_guards *m, int region, const resting *r, int count, const resting *of, int side,
+                     const real *x, real *work)
+{
+    int flying = region, i;
+    if (m->matrix[region - side * of->stride] >= 0 || of->impact >= 0) {
+        return m->matrix[region - side * of->stride] < 0;
+    }
+    for (i = 0; i < count; i++) {
+        if (r[i].impact >= 0 && interval_of(m, &r[i], region) == r[i].stick) {
+            flying += (free_of(&m->impact[r[i].impact]) - r[i].stick) * r[i].stride;
+        }
+    }
+    return m->matrix[flying] >= 0 && heading(m->size, matrix_of(m->A, m, m->matrix[flying]),
+                                             m->row + of->expression * m->size, x, work) == side;
+}
+
 /* Whether all of them agree with a region: what sticks is held, what slips moves away as it does there */
 static int agrees(const pl_guards *m, int region, const resting *r, int count, const real *x, real *work)
 {
@@ -512,9 +530,12 @@ static int agrees(const pl_guards *m, int region, const resting *r, int count, c
         if (side == 0 && !is_held(m, region, r[i].expression, x, work)) {
             return 0;
         }
-        if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side &&
-            !is_let_go(m, region, &r[i], side, x, work)) {
-            return 0;
+        if (side != 0) {
+            const int way = heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work);
+            if (way != side && !(way == 0 && is_spared(m, region, r, count, &r[i], side, x, work)) &&
+                !is_let_go(m, region, &r[i], side, x, work)) {
+                return 0;
+            }
         }
     }
     return 1;
