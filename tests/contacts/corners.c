@@ -8,6 +8,8 @@
 #include "high_ball.h"
 #include "landed.h"
 #include "landed_series.h"
+#include "late_ball.h"
+#include "late_series.h"
 #include "lively_ball.h"
 #include "slopes.h"
 #include "thrown.h"
@@ -137,7 +139,7 @@ static void high(void)
 	ok(y[0] == 1000 && y[1] == 0, "high ball: rests at 1000, velocity 0 (%.17g, %g)", y[0], y[1]);
 }
 
-/* ---- where the list is almost full and what is left is over within a step, it rests ---- */
+/* ---- more bounces than the list has room for, and it rests behind them ---- */
 
 static void lively(void)
 {
@@ -149,6 +151,29 @@ static void lively(void)
 	ok(y[0] == 0 && y[1] == 0, "lively ball: rests at 0 (%g, %g)", y[0], y[1]);
 	is_close(lively_ball_rested(&s), 1, 0, "lively ball: contacts that came to rest");
 	is_close(lively_ball_status(&s), 0, 0, "lively ball: status");
+}
+
+/* ---- a list that is all but full lays nothing down: 0.2 s of bounces are left, and 0.1 s later the ball is at the top
+ * of the first of them, 0.002^2/(2 0.02) high ---- */
+
+static void late(void)
+{
+	double y[4];
+	late_ball s;
+	late_series by_series;
+	pl_crossing crossing[LATE_BALL_MAX_EVENTS];
+	late_ball_init(&s);
+	late_ball_step(&s);
+	late_ball_get(&s, y);
+	const int listed = late_ball_crossings(&s, crossing);
+	ok(listed > LATE_BALL_MAX_EVENTS - 4 && listed <= LATE_BALL_MAX_EVENTS, "late ball: %d crossings of %d", listed,
+	   LATE_BALL_MAX_EVENTS);
+	is_close(y[0], 1e-4, 1e-15, "late ball: at the top of a bounce");
+	late_series_init(&by_series);
+	late_series_step(&by_series);
+	late_series_get(&by_series, y);
+	is_close(y[0], 1e-4, 1e-12, "late ball: at the top of a bounce, by series");
+	is_close(late_ball_status(&s) + late_series_status(&by_series), 0, 0, "late ball: status");
 }
 
 /* ---- too many: time is lost, but neither speed nor place ---- */
@@ -301,6 +326,7 @@ int main(void)
 	dead_wall();
 	high();
 	lively();
+	late();
 	limits();
 	on_slopes();
 	landings();
