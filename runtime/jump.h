@@ -35,6 +35,7 @@ static inline int PL(state_of)(int block, int i)
     return PL(block_state)[PL(block_first)[block] + i];
 }
 
+#if PL_ENTRIES > 0 || PL_CARRIES > 0
 static int PL(place_of)(int block, int row)
 {
     const int states = PL(states_of)(block);
@@ -46,6 +47,7 @@ static int PL(place_of)(int block, int row)
     }
     return row < PL_STATES ? -1 : row - PL_STATES + states;
 }
+#endif
 #else
 static inline int PL(states_of)(int block)
 {
@@ -59,11 +61,13 @@ static inline int PL(state_of)(int block, int i)
     return i;
 }
 
+#if PL_ENTRIES > 0 || PL_CARRIES > 0
 static inline int PL(place_of)(int block, int row)
 {
     (void)block;
     return row;
 }
+#endif
 #endif
 
 static void PL(first_power)(const PL_TYPE *s, int block, pl_two power[PL_SIZE * PL_SIZE])
