@@ -12,7 +12,8 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 <<
 
 /* CALM: of the fastest impact, what is slower is over.  BRIEF: of h, what is over by then is at rest.  SPAN: of h,
  * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
- * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force. */
+ * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force: sweeps that
+ * leave 7/8 of a speed take it there before there are too many. */
 #ifdef REAL_IS_FLOAT
 #define CALM 0x1p-20f
 #define BRIEF PL_BRIEFF
@@ -22,7 +23,7 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 <<
 #define CALM 0x1p-48
 #define BRIEF PL_BRIEF
 #define SPAN 0x1p-10
-#define TINY 0x1p-288
+#define TINY 0x1p-192
 #endif
 #define DEEP 64
 
