@@ -865,7 +865,8 @@ static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
         const pl_strike *p = &m->strike[k];
         const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, at, p) : -1;
         const real left = along / (1 - e);
-        if (!(left >= 0 && left <= BRIEF) || !touches(m, at, p) || holds_now(m, at, p->hold)) {
+        const int full = *at->crossings > m->max_events - 2 * MOST;
+        if (!(left >= 0 && left <= (full ? SPAN : BRIEF)) || !touches(m, at, p) || holds_now(m, at, p->hold)) {
             continue;
         }
         if (lay(m, (uint32_t)1 << k, at) != 0) {

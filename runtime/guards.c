@@ -907,13 +907,14 @@ static void rest_together(const pl_guards *m, uint32_t set, real *x, pl_contact 
 static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contact *c, pl_crossing *crossing, real time,
                          real *work)
 {
+    const real brief = (c->crossings > m->max_events - MOST ? SPAN : BRIEF) * m->h;
     uint32_t set;
     int k;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
         const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
         const real left = along / (1 - e);
-        if (!(left >= 0 && left <= BRIEF * m->h) || !touches(m, c, p, x)) {
+        if (!(left >= 0 && left <= brief) || !touches(m, c, p, x)) {
             continue;
         }
         list_rests(m, lay(m, (uint32_t)1 << k, x, c, work), c, crossing, time + left);

@@ -869,11 +869,12 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * and rests; so does, with e < 1, what still acts after 1000 of them.  The first 12 are listed; once the list is half
  * full, of those within 2^-10 h (float: 2^-8).  Behind a bounce that leaves with the velocity v and is pressed back by
  * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
- * later.  Several that touch and strike each other rest together where that holds of each with the largest a, or
- * their bounces are lower than rounding, and all are pressed then.  Speeds of what comes to rest go by impacts with e
- * = 0, so momentum stays.  What rests is held until it would have to be pulled.  Impacts with e < 1 go on beyond the
- * list, to 65536 events in a step.  What rounding has taken beyond a bounce is still before it; PL_PENETRATED: at the
- * end of a step it is there by more. */
+ * later; where the list of crossings is full but for a few, where T <= 2^-10 h (float: 2^-8).  Several that touch
+ * and strike each other rest together where that holds of each with the largest a, or their bounces are lower than
+ * rounding, and all are pressed then.  Speeds of what comes to rest go by impacts with e = 0, so momentum stays.
+ * What rests is held until it would have to be pulled.  Impacts with e < 1 go on beyond the list, to 65536 events in
+ * a step.  What rounding has taken beyond a bounce is still before it; PL_PENETRATED: at the end of a step it is
+ * there by more. */
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* The same, but h sooner where it is sure that no guard is met: chord_error has 8 units in the last place of |gate| +

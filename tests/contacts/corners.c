@@ -153,8 +153,8 @@ static void lively(void)
 	is_close(lively_ball_status(&s), 0, 0, "lively ball: status");
 }
 
-/* ---- a list that is all but full lays nothing down: 0.2 s of bounces are left, and 0.1 s later the ball is at the top
- * of the first of them, 0.002^2/(2 0.02) high ---- */
+/* ---- a list that is all but full lays down what ends within 2^-10 h alone: 0.2 s of bounces are left, and 0.1 s
+ * later the ball is at the top of the first of them, 0.002^2/(2 0.02) high ---- */
 
 static void late(void)
 {
