@@ -172,10 +172,10 @@ static void emit_load_slopes(const struct emitter *e, const struct load_slopes *
 
 static void emit_passing_algorithm(const struct emitter *e)
 {
-	const struct load_slopes slopes = load_slopes_of(e->step);
 	const struct forced *forced = e->step->forced;
 	const int acting = e->step->layout.size - e->system->states;
 	const int blocks = e->system->segments == 1 ? count_blocks(e) : 0;
+	const struct load_slopes slopes = blocks ? (struct load_slopes){ .first = -1 } : load_slopes_of(e->step);
 	if (slopes.first >= 0)
 		emit_load_slopes(e, &slopes);
 	const struct size sizes[] = {
@@ -183,8 +183,8 @@ static void emit_passing_algorithm(const struct emitter *e)
 		{ "BLOCKS", blocks }, { "LARGEST", blocks ? states_of_largest_block(e) + acting : 0 },
 		{ "SEGMENTS", e->system->segments },
 		{ "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
-		{ "CHANGING", slopes.first >= 0 ? slopes.columns : 0 }, { "FIRST", slopes.first },
-		{ "FORCED", emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
+		{ "CHANGING", slopes.columns }, { "FIRST", slopes.first },
+		{ "FORCED", blocks ? 0 : emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
 		{ "LOSES", forced && forced->changes }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
