@@ -20,7 +20,7 @@
  *     PL_BLOCKS                  for the state at any time; 0: it is not asked for
  *
  *     PL(nominal), PL(until)     the spec's coefficients; time to a change of the loads
- *     PL(retune_groups)(c, params, h, value, work)   each group by PL(retune_group)
+ *     PL(retune_groups)(c, params, h, value, work)   each group by PL(retune_group), if there is one
  *     PL(block)[PL_BLOCKS], PL(vector_now)(s, u, x)    x of the whole now
  *     PL(rate_row)[PL_PHASES]    rows of the frequencies, -1: no param changes it; PL(decays)[PL_GROWTHS]
  *     PL(phase_rate), PL(growth_rate)  of loads */
@@ -302,9 +302,9 @@ static int PL(retune_group)(const pl_group *g, const real *params, real h, const
     return status;
 }
 
-#endif
-
 static int PL(retune_groups)(PL(coeffs) *c, const real *params, real h, const pl_two *value, pl_two *work);
+
+#endif
 
 /* ---- beside it: outputs, loads, peaks ---- */
 
@@ -407,9 +407,11 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
         status = PL_NO_RATE;
     }
 #endif
+#if PL_WHOLE || PL_LISTED
     if (status == 0) {
         status = PL(retune_groups)(to, params, h, value, work);
     }
+#endif
     if (status != 0) {
         return status;
     }

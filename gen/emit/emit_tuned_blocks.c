@@ -463,8 +463,10 @@ void emit_retune(const struct emitter *e)
 	say(e, blocks_of_step(e)->solved ? "\n#define PL_EQUATIONS $n_block[0].equations\n"
 					 : "\n#define PL_EQUATIONS $n_equations\n");
 	emit_sizes_of_tuning(e);
-	say(e, "#include \"retune.h\"\n"
-	       "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *value, "
+	say(e, "#include \"retune.h\"\n");
+	if (!has_kind(e, false) && !has_kind(e, true))
+		return;
+	say(e, "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *value, "
 	       "pl_two *work)\n"
 	       "{\n"
 	       "    int status = 0;\n");
