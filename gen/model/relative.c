@@ -694,8 +694,9 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 
 struct relative *relative_of(const struct model *model)
 {
-	if (model->n < 2 || (model->switching && has_events(model->switching)))
-		return NULL;                    /* what sticks is held in the coordinates as they are written */
+	bool events = model->drags + model->impacts > 0 || (model->switching && has_events(model->switching));
+	if (model->n < 2 || events)
+		return NULL;        /* what sticks is held, and what is struck jumps, in the coordinates as written */
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;
 	mpq_t **place, **rate, **sum;
