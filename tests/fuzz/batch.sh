@@ -124,6 +124,20 @@ slopes() {
 	fi
 }
 
+# ratio_of ID: the largest by which its banner measures one coordinate from another, 10*x - y; at least 1
+ratio_of() {
+	awk '/is kept apart from what moves in it:/ && !lists++ {
+			sub(/;.*/, "")
+			for (count = split($0, part, /[^0-9.*\/]+/); count > 0; count--) {
+				if (split(part[count], of, /[*\/]/) < 2)
+					continue
+				ratio = of[1] / (of[2] ? of[2] : 1)
+				most = ratio > most ? ratio : most
+			}
+		}
+		END { print (most > 1 ? most : 1) }' "$1.c"
+}
+
 batch_add() {
 	id=$1
 	spec=$2
@@ -248,7 +262,7 @@ batch_add() {
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
 			"\"$impact\", $adds, $region, $(regions_of "$id"), $other," \
-			"$(rounding_of "$id")},"
+			"$(rounding_of "$id"), $(ratio_of "$id")},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"
