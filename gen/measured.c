@@ -161,7 +161,8 @@ static void tell_unmet(const struct measuring *m)
 			  "the need cannot be met: %s meets it from the spec's start, and misses it by a factor of "
 			  "%.3g where %s", alternative_text(best), best->worst_neighbour, best->worst_name);
 	else
-		say_error(at, m->request->step_open ? NULL : "without 'step' one is chosen",
+		say_error(at,
+			  m->request->step_open || m->model->system.inputs > 0 ? NULL : "without 'step' one is chosen",
 			  "the need cannot be met: the best that was measured, %s, misses it by a factor of %.3g",
 			  alternative_text(best), best->excess);
 }
