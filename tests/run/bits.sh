@@ -75,6 +75,8 @@ for name in scs sdcs sdcsf linear2dof quarter_car drivetrain inertia; do
 	straight "$root/models/$name.spec" 30 double
 	straight "$root/models/$name.spec" 30 float
 done
+printf "model quotient\ncoord x\ninit x = 1\nx'' + x/(1 + x^2) = 0\nstep 0.01\n" >quotient.spec
+straight quotient.spec 30 double etdrk2
 for scheme in etd1 etdrk2; do
 	straight "$root/models/pendulum.spec" 30 double $scheme
 	straight "$root/models/duffing.spec" 30 float $scheme
@@ -104,7 +106,7 @@ input v hold first
 input w hold first
 init x = 0.3
 x'' + 0.1*x' + 2*x - y + x^3 = u + exp(-0.2*t)*cos(3*t)
-y' + y + x^2*y = v + 0.1*w + (t < 1 ? t : 1) + exp(-t)
+y' + y + x^2*y = v + 0.1*w + 0.02*w' + (t < 1 ? t : 1) + exp(-t)
 output a = x''
 output b = sqrt(1 + x^2) + atan2(x, 1 + y^2)
 step 0.05

@@ -53,6 +53,8 @@ int main(int argc, char **argv)
     }
     NAME(MODEL).get(s, value);
 #ifdef INPUTS
+    for (int i = 0; i < NAME(MODEL).inputs; i++) /* of ramps */
+        u[NAME(MODEL).inputs + i] = (real)(i + 1) / 4;
     RHS(NAME(MODEL).time(s), value, u, value + 300);
 #else
     RHS(NAME(MODEL).time(s), value, value + 300);

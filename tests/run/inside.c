@@ -64,6 +64,8 @@ static void run(void *context)
         print_row('o', value, model->outputs);
     }
     running_state(r, value);
+    for (int i = 0; i < model->system.inputs; i++)
+        u[model->system.inputs + i] = (double)(i + 1) / 4;
     running_rhs(r, running_time(r), value, u, value + 300);
     print_row('r', value + 300, states);
     printf("s %d\n", running_status(r));

@@ -19,7 +19,7 @@ struct equations {
     double start[3];
     void (*slopes)(double t, const double *y, double load, double *dydt);
     double (*output)(double t, const double *y, double load);
-    bool held; /* the load is the input of drive.c, held for a step */
+    enum { LOAD, HELD, RAMP } drive; /* the load is the input of drive.c, held for a step or straight through it */
 };
 
 static double first(double t, const double *y, double load)
@@ -90,6 +90,13 @@ static void plain(double t, const double *y, double u, double *dydt)
     dydt[1] = u - 0.3 * y[1] - 4 * y[0];
 }
 
+static double pushed_back(double t, const double *y, double u)
+{
+    double dydt[2];
+    driven(t, y, u, dydt);
+    return dydt[1];
+}
+
 static double energy(double t, const double *y, double u)
 {
     (void)t, (void)u;
@@ -97,23 +104,39 @@ static double energy(double t, const double *y, double u)
 }
 
 static const struct equations all[] = {
-    {"pendulum", 2, {1.0472, 0}, pendulum, first, false},
-    {"duffing", 2, {1, 0}, duffing, first, false},
-    {"shaken", 2, {1, 0}, duffing, acceleration, false},
-    {"clearance", 2, {0.2, 0}, clearance, first, false},
-    {"lorenz", 3, {1, 1, 20}, lorenz, first, false},
-    {"mathieu", 2, {0.5, 0}, mathieu, first, false},
-    {"driven", 2, {0.1, 0}, driven, first, true},
-    {"pushed", 2, {0.1, 0}, pushed, first, true},
-    {"plain", 2, {0.1, 0}, plain, energy, true},
+    {"pendulum", 2, {1.0472, 0}, pendulum, first, LOAD},
+    {"duffing", 2, {1, 0}, duffing, first, LOAD},
+    {"shaken", 2, {1, 0}, duffing, acceleration, LOAD},
+    {"clearance", 2, {0.2, 0}, clearance, first, LOAD},
+    {"lorenz", 3, {1, 1, 20}, lorenz, first, LOAD},
+    {"mathieu", 2, {0.5, 0}, mathieu, first, LOAD},
+    {"driven", 2, {0.1, 0}, driven, first, HELD},
+    {"pushed", 2, {0.1, 0}, pushed, first, HELD},
+    {"ramped", 2, {0.1, 0}, driven, pushed_back, RAMP},
+    {"plain", 2, {0.1, 0}, plain, energy, HELD},
 };
 
-struct solving { const struct equations *of; double load; };
+struct solving { const struct equations *of; double load, slope, since; };
+
+/* u, and beside a ramp a fifth of u' */
+static double load_at(const struct solving *s, double t)
+{
+    return s->load + s->slope * (t - s->since) + 0.2 * s->slope;
+}
+
+/* Over the step that ends now, by the sample of drive.c; a ramp begins with the one before, the first with 0 */
+static void sample(struct solving *s, long n, double t, double now)
+{
+    const double u = (double)(n * 7 % 11 - 5) / 8;
+    s->load = s->of->drive == HELD ? u : s->load + s->slope * (t - s->since);
+    s->slope = (u - s->load) / (now - t);
+    s->since = t;
+}
 
 static int slopes(realtype t, N_Vector y, N_Vector dydt, void *from)
 {
     const struct solving *s = from;
-    s->of->slopes(t, N_VGetArrayPointer(y), s->load, N_VGetArrayPointer(dydt));
+    s->of->slopes(t, N_VGetArrayPointer(y), load_at(s, t), N_VGetArrayPointer(dydt));
     return 0;
 }
 
@@ -144,12 +167,12 @@ static struct found compare(struct solving *s, double until, double times)
         if (line[0] != 'o' || now > until * (1 + 1e-12))
             continue;
         out = strtod(line + 1, NULL);
-        if (s->of->held) {
-            s->load = (double)(found.samples * 7 % 11 - 5) / 8;
+        if (s->of->drive != LOAD) {
+            sample(s, found.samples, t, now);
             good = CVodeReInit(cvode, t, y) == CV_SUCCESS;
         }
         good = good && CVode(cvode, now, y, &t, CV_NORMAL) >= 0;
-        const double exact = s->of->output(now, N_VGetArrayPointer(y), s->load), error = fabs(out - exact);
+        const double exact = s->of->output(now, N_VGetArrayPointer(y), load_at(s, now)), error = fabs(out - exact);
         found.worst = error <= found.worst ? found.worst : error;
         found.largest = fmax(found.largest, fabs(exact));
         found.samples++;
@@ -160,12 +183,13 @@ static struct found compare(struct solving *s, double until, double times)
 
 int main(int argc, char **argv)
 {
-    struct solving s = {NULL, argc > 5 ? atof(argv[5]) : 1};
+    struct solving s = {NULL, argc > 5 ? atof(argv[5]) : 1, 0, 0};
     for (size_t i = 0; argc > 5 && i < sizeof all / sizeof *all; i++)
         if (strcmp(all[i].name, argv[1]) == 0)
             s.of = &all[i];
     if (!s.of)
         return 2;
+    s.load = s.of->drive == RAMP ? 0 : s.load;
     const struct found found = compare(&s, atof(argv[3]), atof(argv[4]));
     const double within = atof(argv[2]) * (strchr(argv[2], '%') ? found.largest / 100 : 1);
     printf("off by %.3g at most in %ld samples, %.3g is needed\n", found.worst, found.samples, within);

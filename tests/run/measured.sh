@@ -53,6 +53,7 @@ driven() {
 }
 driven driven ' + x^3'
 driven pushed ' + 9*max(x - 0.05, 0)'
+sed "s/input u/& hold first/; s/= u/& + 0.2*u'/; \$a output a = x''" driven.txt >ramped.txt
 driven plain ''
 echo "output e = 0.5*x'^2 + 2*x^2" >>plain.txt
 
@@ -126,6 +127,7 @@ meets lorenz x 1e-3 5 no
 meets mathieu x 1e-5 30 yes
 meets driven x 1e-4 '20 for |u| <= 0.7' no
 long && meets driven x 1e-9 '10 for |u| <= 0.7' no
+meets ramped a 1e-4 '20 for |u| <= 0.7' no
 meets pushed x 1e-3 '20 for |u| <= 0.7' no
 meets plain e 1e-4 '20 for |u| <= 0.7' no
 
