@@ -280,16 +280,21 @@ static void check_instances(const struct tuned *m)
 
 /* ---- refused ---- */
 
+/* What is refused leaves all as it is, of an instance values other than the spec's. */
 static void refuse(const struct tuned *m, const real *params, real h, int expected, const char *what)
 {
     static instance coeffs, kept, s, before;
+    real there[PARAMS], h_there;
+    values_there(m, there, &h_there);
+    m->retune(&coeffs, there, h_there);
+    m->model->init(&s);
+    m->use(&s, &coeffs);
     memcpy(&coeffs, m->nominal, m->size);
     memcpy(&kept, &coeffs, m->size);
     const int status = m->retune(&coeffs, params, h);
     ok(status == expected && same_coeffs(m, &coeffs, &kept), TYPE ", %s, %s: status %d, expected %d, coefficients %s",
         m->name, what, status, expected,
        same_coeffs(m, &coeffs, &kept) ? "as they were" : "changed");
-    m->model->init(&s);
     m->model->step(&s, samples(m->model, 3));
     memcpy(&before, &s, sizeof s);
     const int other = m->model->retune(&s, params, h);
