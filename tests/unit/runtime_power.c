@@ -424,6 +424,120 @@ static void by_blocks(void **state)
     }
 }
 
+/* States halve at each step.  What is below `lowest` comes to rest where a multiple of 64 steps is passed: of `faded`
+ * by parts, but for the last state; of `faded_whole` all at once, with what rounding took. */
+typedef struct faded {
+    real y[3], rest[3];
+    int k;
+} faded;
+typedef struct faded faded_whole;
+static const short faded_part[] = {0, 1, -1};
+#ifdef REAL_IS_FLOAT
+static const real lowest = (real)1e-35;
+#else
+static const real lowest = 1e-290;
+#endif
+
+static void faded_step(faded *s)
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        s->y[i] /= 2;
+    s->k++;
+}
+
+static void faded_out(const faded *s, real out[1])
+{
+    out[0] = s->y[0];
+}
+
+static void faded_block(faded *s, real *out)
+{
+    int i;
+    for (i = 0; i < 4; i++) {
+        faded_step(s);
+        if (out)
+            faded_out(s, out + i);
+    }
+}
+
+#define faded_whole_step faded_step
+#define faded_whole_out faded_out
+#define faded_whole_block faded_block
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) faded_##name
+#define PL_TYPE faded
+#define PL_STATES 3
+#define PL_INPUTS 0
+#define PL_OUTPUTS 1
+#define PL_INSIDE 0
+#define PL_ROWS 4
+#define PL_OVER 0
+#define PL_ANCHORED 0
+#define PL_RESTS 3
+#define PL_IN_STEP 0
+#define PL_KEPT 0
+void faded_run(faded *s, size_t n, real *out);
+#include "run.h"
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) faded_whole_##name
+#define PL_TYPE faded_whole
+#define PL_STATES 3
+#define PL_INPUTS 0
+#define PL_OUTPUTS 1
+#define PL_INSIDE 0
+#define PL_ROWS 4
+#define PL_OVER 0
+#define PL_ANCHORED 0
+#define PL_RESTS 1
+#define PL_IN_STEP 0
+#define PL_KEPT 1
+void faded_whole_run(faded_whole *s, size_t n, real *out);
+#include "run.h"
+
+/* After n steps from step k, from so many times what is lowest then */
+static faded fading(void (*run)(faded *, size_t, real *), int k, int n, double a, double b, double c)
+{
+    faded s = {{0}, {1, 1, 1}, 0};
+    s.k = k;
+    s.y[0] = (real)ldexp(a * (double)lowest, n);
+    s.y[1] = (real)ldexp(b * (double)lowest, n);
+    s.y[2] = (real)ldexp(c * (double)lowest, n);
+    run(&s, (size_t)n, NULL);
+    return s;
+}
+
+static void small_states_rest(void **state)
+{
+    static const int start[] = {60, 61, 62, 63, 63, 124, 64, 60, 65}, steps[] = {4, 4, 4, 4, 1, 4, 4, 3, 4};
+    size_t i;
+    (void)state;
+    for (i = 0; i < sizeof start / sizeof *start; i++) {
+        const int rests = i < 6;
+        faded s = fading(faded_run, start[i], steps[i], 0.9, 1.1, 0.9);
+        assert_int_equal(s.y[0] > 0, !rests);
+        assert_true(s.y[1] > 0 && s.y[2] > 0);
+        s = fading(faded_run, start[i], steps[i], -1.1, -0.9, 0.9);
+        assert_int_equal(s.y[1] < 0, !rests);
+        assert_true(s.y[0] < 0 && s.y[2] > 0);
+        s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 0.9);
+        assert_int_equal(s.y[0] < 0 && s.y[1] > 0 && s.y[2] > 0 && s.rest[1] > 0, !rests);
+        assert_int_equal(s.y[0] < 0 || s.y[1] > 0 || s.y[2] > 0 || s.rest[1] > 0, !rests);
+        s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 1.1);
+        assert_true(s.y[0] < 0 && s.y[1] > 0 && s.rest[1] > 0);
+    }
+}
+
 static void report(void)
 {
     print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
@@ -436,5 +550,6 @@ ROOM_WITH(power, NULL, report,
     cmocka_unit_test(no_steps),
     cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
     cmocka_unit_test(overflow_has_the_sign_of_the_sum),
+    cmocka_unit_test(small_states_rest),
     cmocka_unit_test(from_change_to_change),
     cmocka_unit_test(by_blocks))
