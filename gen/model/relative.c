@@ -301,7 +301,7 @@ static void scale(int n, mpq_t *v, mpq_srcptr divisor)
 		mpq_div(v[j], v[j], divisor);
 }
 
-/* The motion of a component: what no velocity feels either, if there is such; else the only one of several
+/* The first motion of a component: what no velocity feels either, if there is such; else the only one of several
  * coordinates that no force feels. */
 static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rate, const int *component, int number)
 {
@@ -491,9 +491,12 @@ static const char *times(mpq_srcptr ratio, const char *name)
 	return mpq_cmp_ui(ratio, 1, 1) == 0 ? name : format("%s*%s", readable_text(ratio), name);
 }
 
-static void name_kept(struct relative *r, int centres)
+static void name_kept(struct relative *r)
 {
 	const struct model *model = r->written;
+	int centres = 0;
+	for (int j = 0; j < model->n; j++)
+		centres += r->link[j].kind == LINK_CENTRE;
 	for (int j = 0, centre = 0; j < model->n; j++) {
 		const struct link *link = &r->link[j];
 		const char *own = model->coord_name[j],
@@ -692,6 +695,34 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 	return form;
 }
 
+/* Whether it is one; moved[j]: coordinate j stands in this motion, or centre, or in one that was tried before */
+static bool add_group(struct relative *r, const struct look *l, const mpq_t *motion, mpq_t *weight, bool *moved)
+{
+	struct group g;
+	for (int j = 0; j < l->model->n; j++)
+		moved[j] = moved[j] || mpq_sgn(motion[j]) != 0 || (weight && mpq_sgn(weight[j]) != 0);
+	if (!make_group(l, motion, weight, &g))
+		return false;
+	int first = r->links;
+	grow_tree(r, l, &g);
+	if (g.weight)
+		place_root(r, &g, first);
+	return g.weight || r->links > first;
+}
+
+/* Of several coordinates, which no other such motion has, and no group */
+static bool moves_alone(int n, int places, mpq_t **place, int which, const bool *moved)
+{
+	bool alone = support(n, (const mpq_t *)place[which]) > 1;
+	for (int j = 0; j < n && alone; j++) {
+		int others = 0;
+		for (int v = 0; v < places; v++)
+			others += v != which && mpq_sgn(place[v][j]) != 0 && support(n, (const mpq_t *)place[v]) > 1;
+		alone = mpq_sgn(place[which][j]) == 0 || (others == 0 && !moved[j]);
+	}
+	return alone;
+}
+
 struct relative *relative_of(const struct model *model)
 {
 	bool events = model->drags + model->impacts > 0 || (model->switching && has_events(model->switching));
@@ -700,7 +731,7 @@ struct relative *relative_of(const struct model *model)
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;
 	mpq_t **place, **rate, **sum;
-	int n = model->n, count, groups = 0, centres = 0, places = echelon_null_space(&l.place, &place);
+	int n = model->n, count, groups = 0, places = echelon_null_space(&l.place, &place);
 	if (places == 0)
 		return NULL;
 	close_acts(&l);
@@ -726,23 +757,20 @@ struct relative *relative_of(const struct model *model)
 			sum[s] = rationals((size_t)n);
 	}
 	struct relative *r = relative_new(model);
+	bool *moved = ARRAY(bool, (size_t)n);
 	for (int c = 0; c < count; c++) {
 		int found;
-		struct group g;
 		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c),
 		      *weight = sum_in(n, sums, sum, component, c, &found);
-		if (!motion || !make_group(&l, (const mpq_t *)motion, found == 1 ? weight : NULL, &g))
-			continue;
-		int first = r->links;
-		grow_tree(r, &l, &g);
-		if (g.weight)
-			place_root(r, &g, first);
-		centres += g.weight != NULL;
-		groups += g.weight || r->links > first;
+		if (motion)
+			groups += add_group(r, &l, (const mpq_t *)motion, found == 1 ? weight : NULL, moved);
 	}
+	for (int v = 0; v < places; v++)
+		if (moves_alone(n, places, place, v, moved))
+			groups += add_group(r, &l, (const mpq_t *)place[v], NULL, moved);
 	if (groups == 0)
 		return NULL;
-	name_kept(r, centres);
+	name_kept(r);
 	split_velocities(r);
 	write_forms(r);
 	r->solved = leading_factors(model);
