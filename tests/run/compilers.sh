@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What tests compile only to run it, by tcc (run_cc.sh), has the bits that other compilers give: what the models of
 # ../same/runs.list do by tcc, gcc and clang, not optimised, is the same to the byte. In `make check` every twentieth,
-# with LONG=1 all.
+# with LONG=1 all. And what small processors have of their own.
 #
 #     compilers.sh PLGEN SOURCE_ROOT
 set -u
@@ -36,4 +36,14 @@ while read -r run; do
 		cmp by_tcc.csv by_gcc.csv >>log 2>&1 && cmp by_tcc.csv by_clang.csv >>log 2>&1
 	result $? "$run: the same bytes by tcc, gcc and clang"
 done <list
+
+# Where code is to be small, or doubles are software, steps beside friction and impacts are seen to be clear by the
+# runtime (pl_guards_step), elsewhere by the model's file.
+for run in models/bouncing_ball.spec models/brake.spec models/impact_oscillator.spec tests/contacts/clatter.spec \
+	tests/friction/leaning.spec; do
+	chosen "$run small" || continue
+	emit "$plgen" "$run" >log 2>&1 && rows large tcc && rows small tcc -D__OPTIMIZE_SIZE__ && [ -s small.csv ] &&
+		grep -q 'pl_guards_step(' model.c && cmp large.csv small.csv >>log 2>&1
+	result $? "$run small: the same bytes as large"
+done
 tap_end
