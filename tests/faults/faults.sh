@@ -11,9 +11,11 @@
 #   # notice: build          plgen may stop while it writes what the suite is made of; otherwise what does not build
 #                            is not noticed
 #   # says: ...              what a user would see
-# Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it. --check: do
-# all apply? --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there
-# is one, for the next time; no two runs at a time may share it.
+# Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it, and is ended
+# where it first does. The seconds told are of processor time. --check: do all apply? --refresh writes the patches anew
+# where lines or files have moved. The copies stay in FOLDER, where there is one, for the next time; no two runs at a
+# time may share it.
+# faults.sh --first COMMAND ...: a test by TAP, ended where it first fails; for `meson test --wrapper`.
 set -u
 here=$(cd "$(dirname "$0")" && pwd) || exit 99
 root=$(cd "$here/../.." && pwd) || exit 99
@@ -25,6 +27,25 @@ usage()
 	echo "usage: faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]" >&2
 	exit 2
 }
+
+# first COMMAND ...: what it prints up to its first failure; it has a session of its own, to be ended whole
+first()
+{
+	pipe=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
+	mkfifo "$pipe/tap" || exit 99
+	setsid "$@" >"$pipe/tap" &
+	test=$!
+	trap 'kill -TERM -"$test" 2>/dev/null; rm -rf "$pipe"' EXIT
+	trap 'exit 99' HUP INT TERM
+	awk '{ print } /^not ok/ && !/# (TODO|SKIP)/ { exit 1 }' "$pipe/tap" || exit 1
+	wait "$test"
+}
+
+if [ "${1:-}" = --first ]; then
+	shift
+	first "$@"
+	exit
+fi
 
 copies=1
 folder=
@@ -91,20 +112,27 @@ file_of()
 
 # ---- do they apply? ----
 
-# As TAP, for the tests that `make check` runs. The heads of all by one program: to start them is what takes time.
+# heads NAME ...: of each a line SUITE SAYS FILE, a dash where there is none; by one program, as to start them is what
+# takes time
+heads()
+{
+	for name; do
+		echo "$here/$name.patch"
+	done | xargs awk 'FNR == 1 { tell(); suite = says = file = "-" }
+		/^# suite: *[^ ]/ && file == "-" { suite = $3 }
+		/^# says: *[^ ]/ && file == "-" { says = "says" }
+		/^\+\+\+ b\// && file == "-" { file = substr($0, 7) }
+		function tell() { if (NR > 1) print suite, says, file }
+		END { NR++; tell() }'
+}
+
+# As TAP, for the tests that `make check` runs.
 check_all()
 {
 	number=0
 	failed=0
 	echo "1..$#"
-	for name; do
-		echo "$here/$name.patch"
-	done | xargs awk 'FNR == 1 { tell(); suite = says = file = "-" }
-		/^# suite: *[^ ]/ && file == "-" { suite = "suite" }
-		/^# says: *[^ ]/ && file == "-" { says = "says" }
-		/^\+\+\+ b\// && file == "-" { file = substr($0, 7) }
-		function tell() { if (NR > 1) print suite, says, file }
-		END { NR++; tell() }' >"$work/heads"
+	heads "$@" >"$work/heads"
 	while read -r suite says file; do
 		name=$1
 		shift
@@ -144,13 +172,16 @@ make_copy()
 {
 	mkdir -p "$1" || return 1
 	(cd "$root" && for entry in *; do
-		[ -f "$entry/build.ninja" ] || [ -f "$entry/index.html" ] || echo "$entry"
-	done) >"$1.entries"
-	(cd "$root" && find $(cat "$1.entries") -type f) | while IFS= read -r file; do
-		if ! cmp -s "$root/$file" "$1/$file"; then
-			mkdir -p "$1/$(dirname "$file")" && cp -p "$root/$file" "$1/$file" && touch "$1/$file"
+		if [ -f "$entry/build.ninja" ] || [ -f "$entry/index.html" ]; then
+			continue
+		elif [ -e "$1/$entry" ]; then
+			diff -rq "$entry" "$1/$entry" |
+				sed -n 's/^Files \(.*\) and .* differ$/\1/p; s|^Only in \([^/].*\): |\1/|p'
+		else
+			echo "$entry"
 		fi
-	done
+	done) >"$1.entries"
+	(cd "$root" && tar cf - -T "$1.entries") | (cd "$1" && tar xmf -) || return 1
 	[ -f "$1/build/build.ninja" ] ||
 		meson setup -Dtests=enabled -Dbuildtype=plain -Doptimization=0 "$1/build" "$1" >"$1.log" 2>&1
 }
@@ -160,14 +191,13 @@ run_suite()
 {
 	suite=$(head_of "$2" suite)
 	program=$(head_of "$2" run)
-	ninja -C "$1/build" plgen >"$3" 2>&1 || return 2
 	if [ -n "$program" ]; then
-		ninja -C "$1/build" "${program%% *}" >>"$3" 2>&1 || return 2
+		ninja -C "$1/build" "${program%% *}" >"$3" 2>&1 || return 2
 		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
 	timeout 600 meson test -C "$1/build" --setup all --timeout-multiplier 5 --print-errorlogs "$suite" \
-		--test-args="$(head_of "$2" case)" >>"$3" 2>&1
+		--wrapper="sh $here/faults.sh --first" --test-args="$(head_of "$2" case)" >"$3" 2>&1
 	case $? in
 	0) return 0 ;;
 	125) return 2 ;;
@@ -179,11 +209,12 @@ run_suite()
 passes_without()
 {
 	key=$(head_of "$2" 'suite' && head_of "$2" run && head_of "$2" case)
-	key=$(printf '%s' "$key" | tr -c 'a-zA-Z0-9_.-' '_')
-	if [ ! -f "$work/passed.$key" ]; then
-		run_suite "$1" "$2" "$1.log" || return 1
-		: >"$work/passed.$key"
+	key=$work/passed.$(printf '%s' "$key" | tr -c 'a-zA-Z0-9_.-' '_')
+	if [ ! -f "$key" ]; then
+		run_suite "$1" "$2" "$key.log"
+		echo $? >"$key"
 	fi
+	[ "$(cat "$key")" -eq 0 ] || { cp "$key.log" "$1.log"; return 1; }
 }
 
 # verdict COPY NAME: a word or two
@@ -203,29 +234,42 @@ verdict()
 	cp "$1.kept" "$1/$file"
 }
 
+# spent FILE ...: processor time of children by what `times` wrote to FILE; of a second less that of the first. A
+# command that is substituted has waited for none.
+spent()
+{
+	awk 'FNR == 2 { split($1 " " $2, part, /[ms ]+/); last = part[1] * 60 + part[2] + part[3] * 60 + part[4] - last }
+		END { printf "%.1f", last }' "$@"
+}
+
 # one NAME COPY
 one()
 {
-	begin=$(date +%s)
+	times >"$2.begin"
 	is=$(verdict "$2" "$1")
-	printf '%-32s %-24s %s, %d s\n' "$1" "$(head_of "$1" suite)" "$is" $(($(date +%s) - begin))
+	times >"$2.end"
+	printf '%-32s %-24s %s, %s s\n' "$1" "$(head_of "$1" suite)" "$is" "$(spent "$2.begin" "$2.end")"
 	echo "$is" >"$work/verdict.$1"
 	if [ "$is" != noticed ]; then
 		tail -n 20 "$2.log" | cut -c 1-200 | sed 's/^/    /'
 	fi
 }
 
-# worker COPY SUITE-LIST NAME ...: takes a suite that nobody took, and all its faults
+# worker COPY SUITE-LIST: takes a suite that nobody took, and all its faults; first each way to call it without them,
+# so that what has no fault is built once
 worker()
 {
 	copy=$1
 	suites=$2
-	shift 2
 	make_copy "$copy" || { echo "faults.sh: no copy $copy" >&2; cat "$copy.log" >&2; return 1; }
 	for suite in $suites; do
 		mkdir "$work/taken.$suite" 2>/dev/null || continue
-		for name; do
-			[ "$(head_of "$name" suite)" != "$suite" ] || one "$name" "$copy"
+		faults=$(awk -v suite="$suite" '$2 == suite { print $1 }' "$work/suites")
+		for name in $faults; do
+			passes_without "$copy" "$name"
+		done
+		for name in $faults; do
+			one "$name" "$copy"
 		done
 	done
 }
@@ -233,11 +277,15 @@ worker()
 run_all()
 {
 	start=$(date +%s)
-	suites=$(for name; do head_of "$name" suite; done | sort | uniq -c | sort -rn | awk '{ print $2 }')
+	heads "$@" | while read -r suite _; do
+		echo "$1 $suite"
+		shift
+	done >"$work/suites"
+	suites=$(cut -d ' ' -f 2 "$work/suites" | sort | uniq -c | sort -rn | awk '{ print $2 }')
 	number=1
 	workers=
 	while [ "$number" -le "$copies" ]; do
-		worker "$folder/copy$number" "$suites" "$@" &
+		worker "$folder/copy$number" "$suites" &
 		workers="$workers $!"
 		number=$((number + 1))
 	done
@@ -247,7 +295,8 @@ run_all()
 	for name; do
 		[ "$(cat "$work/verdict.$name" 2>/dev/null)" != noticed ] || noticed=$((noticed + 1))
 	done
-	echo "$noticed of $# noticed, $(($(date +%s) - start)) seconds"
+	times >"$work/times"
+	echo "$noticed of $# noticed, $(($(date +%s) - start)) seconds, of processor time $(spent "$work/times")"
 	[ "$noticed" -eq $# ]
 }
 
