@@ -238,7 +238,7 @@ verdict()
 # command that is substituted has waited for none.
 spent()
 {
-	awk 'FNR == 2 { split($1 " " $2, part, /[ms ]+/); last = part[1] * 60 + part[2] + part[3] * 60 + part[4] - last }
+	awk 'FNR == 2 { split($1 " " $2, p, /[ms ]+/); last = p[1] * 60 + p[2] + p[3] * 60 + p[4] - last }
 		END { printf "%.1f", last }' "$@"
 }
 
