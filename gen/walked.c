@@ -32,8 +32,7 @@ static void make_output(void *context)
 	const struct making *m = context;
 	const struct exact_run *run = m->run;
 	struct started *list;
-	mpq_t t;
-	mpq_init(t);
+	RATIONAL t = ZERO;
 	const int count = responses_of_output(m->written, &m->full->system, (const mpq_t *)m->full->initial,
 					      &m->full->output[m->output], &list);
 	const size_t first = (size_t)run->place[m->output] * (size_t)(run->samples + 1);
@@ -44,7 +43,6 @@ static void make_output(void *context)
 		run->low[first + (size_t)k] = value.low;
 		mpq_add(t, t, m->full->h);
 	}
-	mpq_clear(t);
 }
 
 /* Below 0: they are too many to be counted */

@@ -104,6 +104,55 @@ void  spend_terms(size_t count);
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
 
+/* ---- what belongs to one block: cleared where that is left, by `return` too; `error` leaves it to the end ---- */
+
+#define RATIONAL  __attribute__((cleanup(clear_rational))) mpq_t  /* RATIONAL x = ZERO, y = ZERO; */
+#define INTEGER   __attribute__((cleanup(clear_integer))) mpz_t   /* INTEGER n = INTEGER_ZERO; */
+#define REAL      __attribute__((cleanup(clear_real))) mpfr_t     /* REAL x = WITH_BITS(64); it is no number yet */
+#define INTERVAL  __attribute__((cleanup(clear_interval))) mpfi_t /* INTERVAL x = OVER_BITS(64); likewise */
+#define RATIONALS __attribute__((cleanup(clear_rationals))) mpq_t /* RATIONALS *x = rationals(n); */
+#define SCRATCH   __attribute__((cleanup(clear_scratch)))         /* SCRATCH double *x = ARRAY(double, n); */
+#define ZERO { new_rational() }
+#define INTEGER_ZERO { new_integer() }
+#define WITH_BITS(bits) { new_real(bits) }
+#define OVER_BITS(bits) { new_interval(bits) }
+
+void clear_rationals(mpq_t **q);
+void clear_scratch(void *block);                           /* the address of what points to it */
+
+static inline __mpq_struct new_rational(void)
+{
+	mpq_t x;
+	mpq_init(x);
+	return *x;
+}
+
+static inline __mpz_struct new_integer(void)
+{
+	mpz_t n;
+	mpz_init(n);
+	return *n;
+}
+
+static inline __mpfr_struct new_real(mpfr_prec_t bits)
+{
+	mpfr_t x;
+	mpfr_init2(x, bits);
+	return *x;
+}
+
+static inline __mpfi_struct new_interval(mpfr_prec_t bits)
+{
+	mpfi_t x;
+	mpfi_init2(x, bits);
+	return *x;
+}
+
+static inline void clear_rational(mpq_t *x) { mpq_clear(*x); }
+static inline void clear_integer(mpz_t *n) { mpz_clear(*n); }
+static inline void clear_real(mpfr_t *x) { mpfr_clear(*x); }
+static inline void clear_interval(mpfi_t *x) { mpfi_clear(*x); }
+
 /* ---- progress.c: how far slow work is, on stderr ---- */
 
 void progress(const char *what, int done, int all);         /* done = 0 starts the clock */

@@ -276,6 +276,19 @@ void rationals_free(mpq_t *q, size_t count)
 	discard(q);
 }
 
+void clear_rationals(mpq_t **q)
+{
+	if (*q)
+		rationals_free(*q, *size_of(*q) / sizeof **q);
+}
+
+void clear_scratch(void *block)
+{
+	void *scratch;
+	memcpy(&scratch, block, sizeof scratch);
+	discard(scratch);
+}
+
 mpq_t *rationals(size_t count)
 {
 	enum { DENOMINATOR = 64 };      /* bytes of that of 0/1 */

@@ -48,12 +48,9 @@ static double rounded_value(mpfr_ptr x, int inexact)
 
 double round_rational(mpq_srcptr q)
 {
-	mpfr_t x;
-	mpfr_init2(x, target->bits);
+	REAL x = WITH_BITS(target->bits);
 	int inexact = mpfr_set_q(x, q, MPFR_RNDN);
-	double d = rounded_value(x, inexact);
-	mpfr_clear(x);
-	return d;
+	return rounded_value(x, inexact);
 }
 
 double nearest_double(mpq_srcptr q)
@@ -67,23 +64,17 @@ double nearest_double(mpq_srcptr q)
 
 static double round_bound(mpfr_srcptr bound)
 {
-	mpfr_t x;
-	mpfr_init2(x, target->bits);
+	REAL x = WITH_BITS(target->bits);
 	int inexact = mpfr_set(x, bound, MPFR_RNDN);
-	double d = rounded_value(x, inexact);
-	mpfr_clear(x);
-	return d;
+	return rounded_value(x, inexact);
 }
 
 double rounding_rest(mpq_srcptr q)
 {
-	mpq_t rest;
-	mpq_init(rest);
+	RATIONAL rest = ZERO;
 	mpq_set_d(rest, round_rational(q));
 	mpq_sub(rest, q, rest);
-	double low = round_rational(rest);
-	mpq_clear(rest);
-	return low;
+	return round_rational(rest);
 }
 
 bool beyond_range(mpq_srcptr q)
@@ -107,25 +98,20 @@ bool round_enclosure(mpfi_srcptr x, double *d)
 
 bool round_integer(mpfi_srcptr x, mpz_ptr n)
 {
-	mpz_t right;
-	mpz_init(right);
+	INTEGER right = INTEGER_ZERO;
 	mpfr_get_z(n, &x->left, MPFR_RNDN);
 	mpfr_get_z(right, &x->right, MPFR_RNDN);
-	bool decided = mpz_cmp(n, right) == 0;
-	mpz_clear(right);
-	return decided;
+	return mpz_cmp(n, right) == 0;
 }
 
 bool round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent)
 {
-	mpfr_t left, right;
-	mpfr_inits2(bits, left, right, NULL);
+	REAL left = WITH_BITS(bits), right = WITH_BITS(bits);
 	mpfr_set(left, &x->left, MPFR_RNDN);
 	mpfr_set(right, &x->right, MPFR_RNDN);
 	bool decided = !mpfr_zero_p(left) && mpfr_equal_p(left, right);
 	if (decided)
 		*exponent = mpfr_get_z_2exp(digits, left);
-	mpfr_clears(left, right, NULL);
 	return decided;
 }
 

@@ -7,15 +7,13 @@
 /* q = digits / 10^places if its denominator allows */
 static bool decimal_places(mpq_srcptr q, unsigned long *places)
 {
-	mpz_t rest, five;
-	mpz_init(rest);
-	mpz_init_set_ui(five, 5);
+	INTEGER rest = INTEGER_ZERO, five = INTEGER_ZERO;
+	mpz_set_ui(five, 5);
 	unsigned long twos = mpz_scan1(mpq_denref(q), 0);
 	mpz_fdiv_q_2exp(rest, mpq_denref(q), twos);
 	unsigned long fives = mpz_remove(rest, rest, five);
 	bool decimal = mpz_cmp_ui(rest, 1) == 0;
 	*places = twos > fives ? twos : fives;
-	mpz_clears(rest, five, NULL);
 	return decimal;
 }
 
@@ -27,15 +25,13 @@ const char *exact_text(mpq_srcptr q)
 		char *text = ARRAY(char, mpz_sizeinbase(mpq_numref(q), 10) + mpz_sizeinbase(mpq_denref(q), 10) + 3);
 		return mpq_get_str(text, 10, q);
 	}
-	mpz_t digits;
-	mpz_init(digits);
+	INTEGER digits = INTEGER_ZERO;
 	mpz_ui_pow_ui(digits, 10, places);
 	mpz_mul(digits, digits, mpq_numref(q));
 	mpz_divexact(digits, digits, mpq_denref(q));
 	mpz_abs(digits, digits);
 	char *all = ARRAY(char, mpz_sizeinbase(digits, 10) + 2);
 	mpz_get_str(all, 10, digits);
-	mpz_clear(digits);
 	const char *sign = mpq_sgn(q) < 0 ? "-" : "";
 	if (places == 0)
 		return format("%s%s", sign, all);

@@ -204,12 +204,10 @@ static bool flattens(const struct atom *product, unsigned exponent)
 /* m->factor *= factor^exponent */
 static void multiply_factor(const struct node *node, struct monomial *m, mpq_srcptr factor, unsigned exponent)
 {
-	mpq_t power, whole;
-	mpq_inits(power, whole, NULL);
+	RATIONAL power = ZERO, whole = ZERO;
 	mpq_set_ui(whole, exponent, 1);
 	constant_power(node->at, factor, whole, power);
 	mpq_mul(m->factor, m->factor, power);
-	mpq_clears(power, whole, NULL);
 }
 
 static void multiply_base(const struct node *node, struct monomial *m, const struct shared *base, unsigned exponent)
@@ -237,8 +235,7 @@ static void multiply_form(struct collector *c, const struct node *node, struct m
 {
 	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
 	mpq_srcptr first = form->term[0].factor;
-	mpq_t unit;
-	mpq_init(unit);
+	RATIONAL unit = ZERO;
 	mpq_set_si(unit, mpq_sgn(first), 1);
 	multiply_factor(node, m, form->terms == 1 ? first : unit, exponent);
 	if (atom && atom->kind == ATOM_PRODUCT && flattens(atom, exponent))
@@ -248,7 +245,6 @@ static void multiply_form(struct collector *c, const struct node *node, struct m
 		multiply_base(node, m, share(c, form_unit(form->term[0].basis)), exponent);
 	else
 		multiply_base(node, m, share(c, form_scale(form, unit)), exponent);
-	mpq_clear(unit);
 }
 
 static bool is_of_time(const struct form *form)
@@ -352,8 +348,7 @@ struct form *kept_product(struct collector *c, const struct node *node, const st
 
 struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	struct form *form;
 	if (is_constant(x)) {
 		constant_value(c, x, value);
@@ -368,21 +363,18 @@ struct form *kept_reciprocal(struct collector *c, const struct node *node, const
 	} else {
 		form = new_atom(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &x);
 	}
-	mpq_clear(value);
 	return form;
 }
 
 static struct form *constant_to_power(struct collector *c, const struct node *node, const struct form *base,
 				      mpq_srcptr exponent)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	constant_value(c, base, value);
 	if (!constant_power(node->at, value, exponent, value))
 		met_irrational(c, &c->irrationals.root);
 	struct form *form = form_constant(value);
 	check_form(node->at, form);
-	mpq_clear(value);
 	return form;
 }
 
@@ -408,16 +400,13 @@ static struct form *load_power(struct collector *c, const struct node *node, con
 
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
 {
-	mpq_t exponent;
-	mpq_init(exponent);
+	RATIONAL exponent = ZERO;
 	mpq_set_ui(exponent, n, 1);
 	bool load = !c->whole_time && n <= LIMIT_LOAD_POWER && is_of_time(x) && time_part(x, true)->terms == 0;
-	struct form *form = is_constant(x) ? constant_to_power(c, node, x, exponent)
-			    : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })
-			    : load         ? load_power(c, node, x, n)
-					   : power_form(c, node, x, n);
-	mpq_clear(exponent);
-	return form;
+	return is_constant(x) ? constant_to_power(c, node, x, exponent)
+	       : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })
+	       : load         ? load_power(c, node, x, n)
+			      : power_form(c, node, x, n);
 }
 
 struct form *kept_power(struct collector *c, const struct node *node, const struct form *base,
@@ -426,8 +415,7 @@ struct form *kept_power(struct collector *c, const struct node *node, const stru
 	const struct form *operand[] = { base, exponent };
 	if (!is_constant(exponent))
 		return new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
-	mpq_t e;
-	mpq_init(e);
+	RATIONAL e = ZERO;
 	constant_value(c, exponent, e);
 	bool whole = mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpz_cmpabs_ui(mpq_numref(e), LIMIT_EXPONENT) <= 0;
 	struct form *form;
@@ -439,7 +427,6 @@ struct form *kept_power(struct collector *c, const struct node *node, const stru
 	} else {
 		form = new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
 	}
-	mpq_clear(e);
 	return form;
 }
 
@@ -489,12 +476,9 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 	const struct form *operand[] = { a, b };
 	if (!is_decided(c, 1, &difference))
 		return new_atom(c, node, (struct atom){ .kind = ATOM_COMPARE, .comparison = comparison }, 2, operand);
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	mpq_set_ui(value, compare_values(comparison, order_now(c, node, difference, NEW(struct form))), 1);
-	struct form *form = form_constant(value);
-	mpq_clear(value);
-	return form;
+	return form_constant(value);
 }
 
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
@@ -502,14 +486,12 @@ struct form *kept_choice(struct collector *c, const struct node *node, const str
 {
 	const struct form *operand[] = { condition, a, b };
 	if (is_constant(condition) || same_form(a, b)) {
-		mpq_t value;
-		mpq_init(value);
+		RATIONAL value = ZERO;
 		bool first = true;
 		if (is_constant(condition)) {
 			constant_value(c, condition, value);
 			first = mpq_sgn(value) != 0;
 		}
-		mpq_clear(value);
 		return form_sum(first ? a : b, NEW(struct form), false);
 	}
 	return new_atom(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
@@ -598,8 +580,7 @@ static struct form *signed_product(struct collector *c, const struct node *node,
 				   const struct form *x)
 {
 	const struct form *zero = form_number(0), *none = form_number(0);
-	mpq_t ratio;
-	mpq_init(ratio);
+	RATIONAL ratio = ZERO;
 	if (g->terms == x->terms)
 		mpq_div(ratio, x->term[0].factor, g->term[0].factor);
 	struct form *form, *argument = form_sum(g, zero, false);
@@ -609,7 +590,6 @@ static struct form *signed_product(struct collector *c, const struct node *node,
 		form = kept_choice(c, node, kept_comparison(c, node, CMP_LT, g, zero), form_difference(zero, x), none);
 		form = kept_choice(c, node, kept_comparison(c, node, CMP_GT, g, zero), x, form);
 	}
-	mpq_clear(ratio);
 	return form;
 }
 

@@ -278,14 +278,11 @@ static struct form *place_product(struct point *p, const struct atom *a, struct 
 
 static struct form *place_param(const struct point *p, const struct atom *a)
 {
-	mpq_t value;
 	if (!p->values)
 		return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	param_value(a->param, value);
-	struct form *form = form_constant(value);
-	mpq_clear(value);
-	return form;
+	return form_constant(value);
 }
 
 static struct form *place_atom(struct point *p, const struct atom *a)
@@ -296,11 +293,9 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	struct form **x = ARRAY(struct form *, (size_t)a->operands);
 	x[0] = place_form(p, a->operand[0]);
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
-		mpq_t truth;
-		mpq_init(truth);
+		RATIONAL truth = ZERO;
 		constant_value(c, x[0], truth);
 		int taken = mpq_sgn(truth) != 0 ? 1 : 2;
-		mpq_clear(truth);
 		return place_form(p, a->operand[taken]);
 	}
 	for (int i = 1; i < a->operands; i++)

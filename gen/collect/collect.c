@@ -128,8 +128,7 @@ static bool has_coordinate(const struct form *form)
 /* F is no less than 0, and no more than what is held, where they are constant */
 static void check_friction(struct collector *c, const struct node *node, struct form *const *x)
 {
-	mpq_t force, rest;
-	mpq_inits(force, rest, NULL);
+	RATIONAL force = ZERO, rest = ZERO;
 	for (int i = 1; i < node->children; i++) {
 		if (is_constant(x[i]))
 			constant_value(c, x[i], rest);
@@ -144,7 +143,6 @@ static void check_friction(struct collector *c, const struct node *node, struct 
 			error(node->child[2]->start, "friction(v, F, S): F while it slides, S up to which it sticks",
 			      "friction that sticks holds no less than it brakes while it slides");
 	}
-	mpq_clears(force, rest, NULL);
 }
 
 /* Dry friction: a force, which only scheme exact can treat, where it switches; elsewhere it says so */
@@ -227,8 +225,7 @@ static struct value *collect_sum(struct collector *c, struct node *node)
 	struct value *sum = NULL;
 	const struct node *outer = c->term;
 	const struct place before = working_at();
-	mpq_t minus;
-	mpq_init(minus);
+	RATIONAL minus = ZERO;
 	mpq_set_si(minus, -1, 1);
 	for (int i = 0; i < node->children; i++) {
 		if (node->children > 1) {
@@ -246,7 +243,6 @@ static struct value *collect_sum(struct collector *c, struct node *node)
 			check_sum(node->operator[i], sum->cell[k], term->cell[k]);
 		}
 	}
-	mpq_clear(minus);
 	c->term = outer;
 	work_at(before);
 	return sum;
@@ -254,22 +250,17 @@ static struct value *collect_sum(struct collector *c, struct node *node)
 
 static struct form *collect_division(struct collector *c, const struct form *a, const struct form *b, struct place at)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	mpq_srcptr one = factor_of(a, BASIS_PI), pi = factor_of(b, BASIS_PI);
 	if (one && pi && a->terms == 1 && b->terms == 1) {      /* pi/pi */
 		mpq_div(value, one, pi);
-		struct form *ratio = form_constant(value);
-		mpq_clear(value);
-		return ratio;
+		return form_constant(value);
 	}
 	constant_value(c, b, value);
 	if (mpq_sgn(value) == 0)
 		error(at, NULL, "division by zero");
 	mpq_inv(value, value);
-	struct form *quotient = form_scale(a, value);
-	mpq_clear(value);
-	return quotient;
+	return form_scale(a, value);
 }
 
 static bool has_input(const struct form *form)
@@ -376,8 +367,7 @@ static struct form *collect_power(struct collector *c, struct node *node)
 		return kept_power(c, node, base, exponent);
 	if (!is_constant(exponent))
 		not_linear(c, node, "is not linear");
-	mpq_t b, e;
-	mpq_inits(b, e, NULL);
+	RATIONAL b = ZERO, e = ZERO;
 	constant_value(c, exponent, e);
 	struct form *power = NULL;
 	if (is_constant(base)) {
@@ -399,7 +389,6 @@ static struct form *collect_power(struct collector *c, struct node *node)
 		for (unsigned long k = mpz_get_ui(mpq_numref(e)); k > 1; k--)
 			power = load_product(c, power, base);
 	}
-	mpq_clears(b, e, NULL);
 	if (!power && keeps(c))
 		return kept_power(c, node, base, exponent);
 	if (!power)
@@ -413,14 +402,11 @@ static struct form *collect_comparison(struct collector *c, struct node *node)
 {
 	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]),
 		    *difference = form_sum(left, right, true);
-	mpq_t truth;
 	if (keeps_piecewise(c) && !is_decided(c, 1, &difference))
 		return kept_comparison(c, node, node->comparison, left, right);
-	mpq_init(truth);
+	RATIONAL truth = ZERO;
 	mpq_set_ui(truth, compare_values(node->comparison, order_now(c, node, left, right)), 1);
-	struct form *form = form_constant(truth);
-	mpq_clear(truth);
-	return form;
+	return form_constant(truth);
 }
 
 static struct value *kept_choices(struct collector *c, struct node *node, const struct form *condition)

@@ -105,12 +105,10 @@ static bool niven(bool sine, const struct form *x, mpq_ptr value)
 	mpq_srcptr pi = factor_of(x, BASIS_PI);
 	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 6) > 0 || 6 % mpz_get_ui(mpq_denref(pi)) != 0)
 		return false;
-	mpz_t k;
-	mpz_init(k);
+	INTEGER k = INTEGER_ZERO;
 	mpz_mul_ui(k, mpq_numref(pi), 6);
 	mpz_divexact(k, k, mpq_denref(pi));
 	unsigned long sixth = (mpz_fdiv_ui(k, 12) + (sine ? 9 : 0)) % 12;
-	mpz_clear(k);
 	if (halves[sixth] == 99)
 		return false;
 	mpq_set_si(value, halves[sixth], 2);
@@ -124,12 +122,10 @@ static bool tangent(const struct node *node, const struct form *x, mpq_ptr value
 	mpq_srcptr pi = factor_of(x, BASIS_PI);
 	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 4) > 0 || 4 % mpz_get_ui(mpq_denref(pi)) != 0)
 		return false;
-	mpz_t k;
-	mpz_init(k);
+	INTEGER k = INTEGER_ZERO;
 	mpz_mul_ui(k, mpq_numref(pi), 4);
 	mpz_divexact(k, k, mpq_denref(pi));
 	unsigned long eighth = mpz_fdiv_ui(k, 4);
-	mpz_clear(k);
 	if (eighth == 2)
 		error(node->at, NULL, "tan of an odd number of quarter turns");
 	mpq_set_si(value, eighth == 0 ? 0 : eighth == 1 ? 1 : -1, 1);
@@ -138,8 +134,7 @@ static bool tangent(const struct node *node, const struct form *x, mpq_ptr value
 
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	bool trigonometric = function == FN_SIN || function == FN_COS;
 	bool rational = function == FN_TAN ? tangent(node, x, value)
 					   : trigonometric && niven(function == FN_SIN, x, value);
@@ -149,9 +144,7 @@ struct form *constant_call(struct collector *c, const struct node *node, enum fu
 			met_irrational(c, &c->irrationals.used[function]);
 	}
 	check_bits(node->at, value);
-	struct form *form = form_constant(value);
-	mpq_clear(value);
-	return form;
+	return form_constant(value);
 }
 
 bool compare_values(enum comparison comparison, int order)

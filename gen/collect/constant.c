@@ -6,38 +6,32 @@ enum { GUARD_BITS = 128, LIMIT_ARGUMENT = 1 << 16 };    /* bits before the point
 
 static void set_irrational(mpq_ptr value, struct place at, mpfr_srcptr wide)
 {
-	mpfr_t rounded;
 	if (mpfr_nan_p(wide))
 		error(at, NULL, "the value is not a number");
 	/* infinite or 0: beyond even the range of MPFR */
 	if (!mpfr_regular_p(wide) || (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))
 		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
-	mpfr_init2(rounded, IRRATIONAL_BITS);
+	REAL rounded = WITH_BITS(IRRATIONAL_BITS);
 	mpfr_set(rounded, wide, MPFR_RNDN);
 	mpfr_get_q(value, rounded);
-	mpfr_clear(rounded);
 }
 
 void constant_pi(mpq_ptr value)
 {
-	mpfr_t pi;
-	mpfr_init2(pi, IRRATIONAL_BITS);
+	REAL pi = WITH_BITS(IRRATIONAL_BITS);
 	mpfr_const_pi(pi, MPFR_RNDN);
 	mpfr_get_q(value, pi);
-	mpfr_clear(pi);
 }
 
 /* The exact n-th root of a non-negative rational, if it has one. */
 static bool exact_root(mpq_srcptr q, unsigned long n, mpq_ptr root)
 {
-	mpz_t numerator, denominator;
-	mpz_inits(numerator, denominator, NULL);
+	INTEGER numerator = INTEGER_ZERO, denominator = INTEGER_ZERO;
 	bool exact = mpz_root(numerator, mpq_numref(q), n) && mpz_root(denominator, mpq_denref(q), n);
 	if (exact) {
 		mpz_set(mpq_numref(root), numerator);
 		mpz_set(mpq_denref(root), denominator);
 	}
-	mpz_clears(numerator, denominator, NULL);
 	return exact;
 }
 
@@ -92,8 +86,7 @@ static void set_wide(mpfr_ptr wide, struct place at, mpq_srcptr x)
 
 bool constant_function(struct place at, enum function function, mpq_srcptr x, mpq_ptr value)
 {
-	mpq_t result;
-	mpq_init(result);
+	RATIONAL result = ZERO;
 	bool exact = exact_value(at, function, x, result);
 	if (!exact) {
 		mpfr_t wide;
@@ -103,7 +96,6 @@ bool constant_function(struct place at, enum function function, mpq_srcptr x, mp
 		mpfr_clear(wide);
 	}
 	mpq_set(value, result);
-	mpq_clear(result);
 	return exact;
 }
 
@@ -131,15 +123,13 @@ static void integer_power(struct place at, mpq_srcptr base, mpz_srcptr exponent,
 	else if (!mpz_fits_slong_p(exponent))
 		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
 	check_power(at, base, n);
-	mpz_t numerator, denominator;
-	mpz_inits(numerator, denominator, NULL);
+	INTEGER numerator = INTEGER_ZERO, denominator = INTEGER_ZERO;
 	mpz_pow_ui(numerator, mpq_numref(base), n);
 	mpz_pow_ui(denominator, mpq_denref(base), n);
 	bool negative = mpz_sgn(exponent) < 0;
 	mpq_set_num(value, negative ? denominator : numerator);
 	mpq_set_den(value, negative ? numerator : denominator);
 	mpq_canonicalize(value);
-	mpz_clears(numerator, denominator, NULL);
 }
 
 bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_ptr value)
@@ -152,8 +142,7 @@ bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_p
 	}
 	if (mpq_sgn(base) < 0)
 		error(at, NULL, "a number below 0 to a power that is no integer");
-	mpq_t root;
-	mpq_init(root);
+	RATIONAL root = ZERO;
 	bool exact = mpz_fits_ulong_p(mpq_denref(exponent)) && exact_root(base, mpz_get_ui(mpq_denref(exponent)), root);
 	if (exact) {
 		integer_power(at, root, mpq_numref(exponent), value);
@@ -165,6 +154,5 @@ bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_p
 		set_irrational(value, at, wide);
 		mpfr_clears(wide, power, NULL);
 	}
-	mpq_clear(root);
 	return exact;
 }

@@ -43,22 +43,16 @@ struct form *form_constant(mpq_srcptr value)
 
 struct form *form_number(long value)
 {
-	mpq_t q;
-	mpq_init(q);
+	RATIONAL q = ZERO;
 	mpq_set_si(q, value, 1);
-	struct form *form = form_constant(q);
-	mpq_clear(q);
-	return form;
+	return form_constant(q);
 }
 
 struct form *form_unit(struct basis basis)
 {
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
-	struct form *form = form_single(basis, one);
-	mpq_clear(one);
-	return form;
+	return form_single(basis, one);
 }
 
 /* a + factor * b, merged in basis order */
@@ -67,8 +61,7 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 	struct form *sum = NEW(struct form);
 	sum->term = ARRAY(struct form_term, (size_t)(a->terms + b->terms));
 	spend_terms((size_t)(a->terms + b->terms));
-	mpq_t scaled;
-	mpq_init(scaled);
+	RATIONAL scaled = ZERO;
 	for (int i = 0, j = 0; i < a->terms || j < b->terms;) {
 		int order = i == a->terms ? 1 : j == b->terms ? -1 : basis_order(&a->term[i].basis, &b->term[j].basis);
 		struct form_term *term = &sum->term[sum->terms];
@@ -85,7 +78,6 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 		else
 			mpq_clear(term->factor);
 	}
-	mpq_clear(scaled);
 	return sum;
 }
 
@@ -120,15 +112,13 @@ static void make_room(struct form *sum, int more)
 
 static void add_factor(mpq_ptr sum, mpq_srcptr value, mpq_srcptr factor)
 {
-	mpq_t product;
 	if (!factor) {
 		mpq_add(sum, sum, value);
 		return;
 	}
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	mpq_mul(product, value, factor);
 	mpq_add(sum, sum, product);
-	mpq_clear(product);
 }
 
 static void insert_term(struct form *sum, const struct form_term *term, mpq_srcptr factor)
@@ -212,12 +202,9 @@ void form_free(struct form *form)
 
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract)
 {
-	mpq_t sign;
-	mpq_init(sign);
+	RATIONAL sign = ZERO;
 	mpq_set_si(sign, subtract ? -1 : 1, 1);
-	struct form *sum = form_add(a, b, sign);
-	mpq_clear(sign);
-	return sum;
+	return form_add(a, b, sign);
 }
 
 struct form *form_difference(const struct form *a, const struct form *b)
@@ -252,8 +239,7 @@ void met_irrational(struct collector *c, bool *which)
 
 void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 {
-	mpq_t sum;
-	mpq_init(sum);
+	RATIONAL sum = ZERO;
 	mpq_srcptr one = factor_of(form, BASIS_ONE), pi = factor_of(form, BASIS_PI);
 	if (pi) {
 		constant_pi(sum);
@@ -263,7 +249,6 @@ void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 	if (one)
 		mpq_add(sum, sum, one);
 	mpq_set(value, sum);
-	mpq_clear(sum);
 }
 
 /* a * b, one of them constant. Products with pi keep it symbolic only beside a plain number. */
@@ -272,20 +257,16 @@ struct form *form_product(struct collector *c, const struct form *a, const struc
 	const struct form *constant = is_constant(a) ? a : b, *other = is_constant(a) ? b : a;
 	mpq_srcptr plain = factor_of(constant, BASIS_ONE);
 	bool only_plain = !factor_of(constant, BASIS_PI);
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	if (only_plain && plain) {
 		mpq_set(value, plain);
 	} else if (is_constant(other) && !factor_of(other, BASIS_PI)) {
 		struct form *swapped = form_scale(constant, other->terms ? other->term[0].factor : value);
-		mpq_clear(value);
 		return swapped;
 	} else {
 		constant_value(c, constant, value);
 	}
-	struct form *product = form_scale(other, value);
-	mpq_clear(value);
-	return product;
+	return form_scale(other, value);
 }
 
 void check_form(struct place at, const struct form *form)

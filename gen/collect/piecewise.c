@@ -53,8 +53,7 @@ bool holds_now(const struct collector *c, struct span span)
 /* A time inside interval `index` of those that the breakpoints leave. */
 static void sample_time(const struct collector *c, int index, mpq_ptr t)
 {
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (c->changes == 0) {
 		mpq_set_ui(t, 0, 1);
@@ -66,14 +65,12 @@ static void sample_time(const struct collector *c, int index, mpq_ptr t)
 		mpq_add(t, c->change[index - 1], c->change[index]);
 		mpq_div_2exp(t, t, 1);
 	}
-	mpq_clear(one);
 }
 
 /* The sign of factor t + phase in the collector's interval; where it is 0 there is a breakpoint. */
 static int sign_in_time(struct collector *c, mpq_srcptr factor, mpq_srcptr phase)
 {
-	mpq_t t, root;
-	mpq_inits(t, root, NULL);
+	RATIONAL t = ZERO, root = ZERO;
 	mpq_div(root, phase, factor);
 	mpq_neg(root, root);
 	sample_time(c, c->interval, t);
@@ -83,7 +80,6 @@ static int sign_in_time(struct collector *c, mpq_srcptr factor, mpq_srcptr phase
 		narrow_span(c, side > 0 ? (struct span){ change, NULL } : (struct span){ NULL, change });
 	else
 		narrow_span(c, (struct span){ change, change });
-	mpq_clears(t, root, NULL);
 	return side * mpq_sgn(factor);
 }
 
@@ -91,8 +87,7 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 {
 	struct form *difference = form_sum(a, b, true), phase;
 	mpq_srcptr factor;
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	int sign;
 	if (is_constant(difference)) {
 		constant_value(c, difference, value);
@@ -106,7 +101,6 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 						  : "conditions on what moves are");
 	}
 	form_free(difference);
-	mpq_clear(value);
 	return sign;
 }
 
@@ -193,21 +187,19 @@ void check_breakpoints(struct collector *c, const struct node *node, struct form
 
 void slope_between(const mpq_srcptr *point, mpq_ptr slope)
 {
-	mpq_t width;
-	mpq_init(width);
+	RATIONAL width = ZERO;
 	mpq_sub(slope, point[3], point[1]);
 	mpq_sub(width, point[2], point[0]);
 	mpq_div(slope, slope, width);
-	mpq_clear(width);
 }
 
 /* y0 + slope (x - x0) on the piece that holds x; extended by the end slopes */
 static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
 {
 	int points = (node->children - 1) / 2, left = 0;
-	mpq_t slope, *room = ARRAY(mpq_t, (size_t)node->children);
-	mpq_srcptr *v = table_points(c, node, x, room);
-	mpq_init(slope);
+	SCRATCH mpq_t *room = ARRAY(mpq_t, (size_t)node->children);
+	SCRATCH mpq_srcptr *v = table_points(c, node, x, room);
+	RATIONAL slope = ZERO;
 	/* all breakpoints at the first sight */
 	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)
 		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
@@ -215,25 +207,19 @@ static struct form *tabulated(struct collector *c, const struct node *node, stru
 	struct form *value = form_sum(x[0], x[2 * left + 1], true), *piece = form_scale(value, slope);
 	form_free(value);
 	form_add_to(piece, x[2 * left + 2], NULL);
-	mpq_clear(slope);
-	discard(v);
-	discard(room);
 	return piece;
 }
 
 static struct form *angle(struct collector *c, const struct node *node, struct form *const *x)
 {
-	mpq_t a, b;
-	mpq_inits(a, b, NULL);
+	RATIONAL a = ZERO, b = ZERO;
 	if (!is_constant(x[0]) || !is_constant(x[1]))
 		not_linear(c, node, "is not linear");
 	constant_value(c, x[0], a);
 	constant_value(c, x[1], b);
 	if (!constant_atan2(node->at, a, b, a))
 		met_irrational(c, &c->irrationals.used[FN_ATAN2]);
-	struct form *form = form_constant(a);
-	mpq_clears(a, b, NULL);
-	return form;
+	return form_constant(a);
 }
 
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x)

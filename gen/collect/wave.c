@@ -58,20 +58,16 @@ static bool quarter_turns(const struct form *phase, int *quarters)
 /* t^k, e^{a t} */
 struct form *plain_wave(struct collector *c, int power, mpq_srcptr a)
 {
-	mpq_t zero;
-	mpq_init(zero);
-	struct form *form = form_unit(
-		(struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a ? a : zero, zero, zero), .power = power });
-	mpq_clear(zero);
-	return form;
+	RATIONAL zero = ZERO;
+	return form_unit(
+   (struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a ? a : zero, zero, zero), .power = power });
 }
 
 /* factor t^power e^{a t} cos or sin of (w t + p), with w > 0 or a number in its place */
 static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, mpq_srcptr a, mpq_srcptr frequency,
 			     mpq_srcptr phase, bool sine)
 {
-	mpq_t w, p, scale;
-	mpq_inits(w, p, scale, NULL);
+	RATIONAL w = ZERO, p = ZERO, scale = ZERO;
 	mpq_set(scale, factor);
 	mpq_set(w, frequency);
 	mpq_set(p, phase);
@@ -90,20 +86,17 @@ static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, 
 		mpq_set_ui(p, 0, 1);
 		sine = false;
 	}
-	struct form *form = form_single((struct basis){ .kind = BASIS_WAVE,
-							.wave = wave_of(c, a, w, p),
-							.power = power,
-							.sine = sine },
-					scale);
-	mpq_clears(w, p, scale, NULL);
-	return form;
+	return form_single((struct basis){ .kind = BASIS_WAVE,
+					   .wave = wave_of(c, a, w, p),
+					   .power = power,
+					   .sine = sine },
+			   scale);
 }
 
 /* cos or sin of w t + phase; whole quarter turns leave no phase behind. */
 struct form *collect_wave(struct collector *c, bool sine, mpq_srcptr frequency, const struct form *phase)
 {
-	mpq_t zero, p, sign;
-	mpq_inits(zero, p, sign, NULL);
+	RATIONAL zero = ZERO, p = ZERO, sign = ZERO;
 	mpq_set_si(sign, 1, 1);
 	int quarters;
 	/* cos(x + q pi/2): cos, -sin, -cos, sin; sin(x + ...) is one quarter behind */
@@ -114,9 +107,7 @@ struct form *collect_wave(struct collector *c, bool sine, mpq_srcptr frequency, 
 	} else {
 		constant_value(c, phase, p);
 	}
-	struct form *form = any_wave(c, sign, 0, zero, frequency, p, sine);
-	mpq_clears(zero, p, sign, NULL);
-	return form;
+	return any_wave(c, sign, 0, zero, frequency, p, sine);
 }
 
 /* factor times the product of two waves: cos x cos y = (cos(x-y) + cos(x+y))/2, sin x cos y = (sin(x-y) + sin(x+y))/2,
@@ -127,8 +118,7 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 		return wave_product(c, y, x, factor);
 	if (x->power + y->power > LIMIT_LOAD_POWER)
 		error(c->term->start, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
-	mpq_t a, w, p, half;
-	mpq_inits(a, w, p, half, NULL);
+	RATIONAL a = ZERO, w = ZERO, p = ZERO, half = ZERO;
 	mpq_add(a, x->wave->a, y->wave->a);
 	mpq_div_2exp(half, factor, 1);
 	mpq_sub(w, x->wave->w, y->wave->w);
@@ -142,7 +132,6 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 	struct form *sum = any_wave(c, half, x->power + y->power, a, w, p, sine);
 	form_add_to(sum, difference, NULL);
 	form_free(difference);
-	mpq_clears(a, w, p, half, NULL);
 	return sum;
 }
 
@@ -150,8 +139,7 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 struct form *load_product(struct collector *c, const struct form *a, const struct form *b)
 {
 	struct form *sum = NEW(struct form);
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < a->terms; i++)
 		for (int j = 0; j < b->terms; j++) {
 			const struct form_term *x = &a->term[i], *y = &b->term[j];
@@ -166,7 +154,6 @@ struct form *load_product(struct collector *c, const struct form *a, const struc
 				form_add_to(sum, p, NULL);
 			}
 		}
-	mpq_clear(factor);
 	return sum;
 }
 

@@ -64,10 +64,9 @@ long magnitude_log(struct magnitude a)
 
 struct magnitude magnitude_of_rational(mpq_srcptr q)
 {
-	mpz_t quotient;
 	if (mpq_sgn(q) == 0)
 		return (struct magnitude){ 0, 0 };
-	mpz_init(quotient);
+	INTEGER quotient = INTEGER_ZERO;
 	long shift = (long)mpz_sizeinbase(mpq_denref(q), 2) - (long)mpz_sizeinbase(mpq_numref(q), 2) + 40;
 	if (shift >= 0) {
 		mpz_mul_2exp(quotient, mpq_numref(q), (mp_bitcnt_t)shift);
@@ -77,7 +76,6 @@ struct magnitude magnitude_of_rational(mpq_srcptr q)
 		mpz_tdiv_q(quotient, mpq_numref(q), quotient);
 	}
 	struct magnitude result = magnitude(mpz_get_ui(quotient) + 1, -shift);      /* the quotient has 40 or 41 bits */
-	mpz_clear(quotient);
 	return result;
 }
 
@@ -142,14 +140,13 @@ void ball_update_size(struct balls *x, size_t at)
 
 void ball_set_rational(struct balls *x, size_t at, mpq_srcptr q, long halvings)
 {
-	mpz_t middle, scaled;
 	x->sign[at] = (signed char)mpq_sgn(q);
 	x->radius[at] = (struct magnitude){ 0, 0 };
 	if (x->sign[at] == 0) {
 		ball_update_size(x, at);
 		return;
 	}
-	mpz_inits(middle, scaled, NULL);
+	INTEGER middle = INTEGER_ZERO, scaled = INTEGER_ZERO;
 	/* |x| < 2^bits */
 	long bits = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1 - halvings;
 	long exponent = bits >= 0 ? (bits + LIMB - 1) / LIMB : -(-bits / LIMB);
@@ -170,7 +167,6 @@ void ball_set_rational(struct balls *x, size_t at, mpq_srcptr q, long halvings)
 	if (!exact)
 		x->radius[at] = magnitude(1, LIMB * (exponent - x->limbs));
 	ball_update_size(x, at);
-	mpz_clears(middle, scaled, NULL);
 }
 
 /* ---- a row of sums of products: the one operation ---- */

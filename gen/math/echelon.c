@@ -9,9 +9,8 @@ struct echelon echelon_new(int width)
 
 void echelon_add(struct echelon *e, mpq_t *row)
 {
-	mpq_t factor;
 	int pivot = 0;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int r = 0; r < e->rank; r++) {
 		mpq_set(factor, row[e->pivot[r]]);
 		if (mpq_sgn(factor) != 0)
@@ -31,7 +30,6 @@ void echelon_add(struct echelon *e, mpq_t *row)
 		e->row[e->rank] = row;
 		e->pivot[e->rank++] = pivot;
 	}
-	mpq_clear(factor);
 }
 
 int echelon_null_space(const struct echelon *e, mpq_t ***basis)

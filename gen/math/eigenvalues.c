@@ -33,21 +33,18 @@ static bool find(int n, const double *A, double *re, double *im)
 
 bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
 {
-	double *rounded = ARRAY(double, (size_t)n * (size_t)n);
+	SCRATCH double *rounded = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		rounded[i] = nearest_double(A[i]);
-	bool found = find(n, rounded, re, im);
-	discard(rounded);
-	return found;
+	return find(n, rounded, re, im);
 }
 
 double spectral_radius(int n, const double *A)
 {
-	double *re = ARRAY(double, (size_t)n), *im = ARRAY(double, (size_t)n), radius = 0;
+	SCRATCH double *re = ARRAY(double, (size_t)n), *im = ARRAY(double, (size_t)n);
+	double radius = 0;
 	bool found = find(n, A, re, im);
 	for (int i = 0; i < n; i++)
 		radius = hypot(re[i], im[i]) > radius ? hypot(re[i], im[i]) : radius;
-	discard(re);
-	discard(im);
 	return found ? radius : HUGE_VAL;
 }

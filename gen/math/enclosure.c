@@ -10,6 +10,13 @@ void rectangle_init(struct rectangle *z, int precision)
 	mpfi_set_ui(z->im, 0);
 }
 
+struct rectangle new_rectangle(int precision)
+{
+	struct rectangle z;
+	rectangle_init(&z, precision);
+	return z;
+}
+
 void rectangle_clear(struct rectangle *z)
 {
 	mpfi_clear(z->re);
@@ -72,22 +79,17 @@ void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct 
 /* Re a b; may be a part of a */
 void rectangle_real_product(mpfi_ptr re, const struct rectangle *a, const struct rectangle *b)
 {
-	mpfi_t other;
-	mpfi_init2(other, mpfi_get_prec(re));
+	INTERVAL other = OVER_BITS(mpfi_get_prec(re));
 	product(other, a->im, b->im);
 	product(re, a->re, b->re);
 	mpfi_sub(re, re, other);
-	mpfi_clear(other);
 }
 
 void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
 {
-	struct rectangle conjugate;
-	mpfi_t square, norm;
 	int precision = (int)mpfi_get_prec(z->re);
-	rectangle_init(&conjugate, precision);
-	mpfi_init2(square, precision);
-	mpfi_init2(norm, precision);
+	RECTANGLE conjugate = new_rectangle(precision);
+	INTERVAL square = OVER_BITS(precision), norm = OVER_BITS(precision);
 	mpfi_sqr(norm, b->re);
 	mpfi_sqr(square, b->im);
 	mpfi_add(norm, norm, square);
@@ -96,9 +98,6 @@ void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct 
 	rectangle_mul(z, a, &conjugate);
 	mpfi_div(z->re, z->re, norm);
 	mpfi_div(z->im, z->im, norm);
-	rectangle_clear(&conjugate);
-	mpfi_clear(square);
-	mpfi_clear(norm);
 }
 
 void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
@@ -110,10 +109,8 @@ void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct 
 /* e^{a tau} */
 void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr tau)
 {
-	mpfi_t size, angle;
 	int precision = (int)mpfi_get_prec(z->re);
-	mpfi_init2(size, precision);
-	mpfi_init2(angle, precision);
+	INTERVAL size = OVER_BITS(precision), angle = OVER_BITS(precision);
 	mpfi_mul_q(size, a->re, tau);
 	mpfi_exp(size, size);
 	mpfi_mul_q(angle, a->im, tau);
@@ -121,8 +118,6 @@ void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr ta
 	mpfi_sin(z->im, angle);
 	product(z->re, z->re, size);
 	product(z->im, z->im, size);
-	mpfi_clear(size);
-	mpfi_clear(angle);
 }
 
 /* p(a) by Horner's rule */

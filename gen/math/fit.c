@@ -30,8 +30,7 @@ mpq_t *scattered_values(int params, int number)
 /* near + 2^-40 |near| v in the place of v: what has a sign there, or an order, keeps it */
 static void draw_near(int params, const mpq_t *near, mpq_t *values)
 {
-	mpq_t unit;
-	mpq_init(unit);
+	RATIONAL unit = ZERO;
 	for (int k = 0; k < params && near; k++) {
 		mpq_abs(unit, near[k]);
 		if (mpq_sgn(unit) == 0)
@@ -40,7 +39,6 @@ static void draw_near(int params, const mpq_t *near, mpq_t *values)
 		mpq_mul(values[k], values[k], unit);
 		mpq_add(values[k], values[k], near[k]);
 	}
-	mpq_clear(unit);
 }
 
 mpq_t *scattered_near(int params, int number, const mpq_t *near)
@@ -58,13 +56,12 @@ static mpq_t *scattered(const struct fit *f, int number)
 /* The base with `up` added to param k and `other` to param j */
 static mpq_t *near_base(const struct fit *f, int k, int up, int j, int other)
 {
-	mpq_t *values = scattered_values(f->params, 0), shift;
-	mpq_init(shift);
+	mpq_t *values = scattered_values(f->params, 0);
+	RATIONAL shift = ZERO;
 	mpq_set_si(shift, up, 1);
 	mpq_add(values[k], values[k], shift);
 	mpq_set_si(shift, other, 1);
 	mpq_add(values[j], values[j], shift);
-	mpq_clear(shift);
 	draw_near(f->params, f->near, values);
 	return values;
 }
@@ -160,14 +157,12 @@ static bool list_products(struct fit *f, signed char *power, int k)
 
 static void product_at(const struct fit *f, int product, const mpq_t *values, mpq_ptr result)
 {
-	mpq_t power;
-	mpq_init(power);
+	RATIONAL power = ZERO;
 	mpq_set_ui(result, 1, 1);
 	for (int k = 0; k < f->params; k++) {
 		power_of(values[k], f->power[product][k], power);
 		mpq_mul(result, result, power);
 	}
-	mpq_clear(power);
 }
 
 /* Factors from as many points as there are products; two more points check them. */

@@ -190,7 +190,7 @@ static int by_size(const void *a, const void *b)
 
 static void find_parts(struct invariants *of, bool symmetric)
 {
-	int *parent = ARRAY(int, (size_t)of->n);
+	SCRATCH int *parent = ARRAY(int, (size_t)of->n);
 	double largest = 0;
 	of->part = ARRAY(struct invariant, (size_t)of->n);
 	of->member = ARRAY(int, (size_t)of->n);
@@ -207,7 +207,6 @@ static void find_parts(struct invariants *of, bool symmetric)
 		if (root_of(parent, i) == i)
 			add_part(of, parent, i);
 	qsort(of->part, (size_t)of->parts, sizeof *of->part, by_size);
-	discard(parent);
 }
 
 /* ---- a basis of each part ---- */
@@ -342,7 +341,8 @@ static bool conjugate_column(struct invariants *of, int j, bool *taken)
 
 static bool find_bases(struct invariants *of, int leading)
 {
-	bool *taken = ARRAY(bool, (size_t)of->n), good = true;
+	SCRATCH bool *taken = ARRAY(bool, (size_t)of->n);
+	bool good = true;
 	for (int i = 0; i < of->n; i++)
 		taken[i] = of->im[i] >= 0;      /* not one of those that are nobody's */
 	for (int p = 0; p < of->parts && good; p++) {
@@ -354,13 +354,11 @@ static bool find_bases(struct invariants *of, int leading)
 		else
 			scale_to_largest(of, of->member[part->first], leading);
 	}
-	bool *nobody = ARRAY(bool, (size_t)of->n);
+	SCRATCH bool *nobody = ARRAY(bool, (size_t)of->n);
 	for (int i = 0; i < of->n; i++)
 		nobody[i] = of->im[i] < 0 && !taken[i];
 	for (int i = 0; i < of->n && good; i++)
 		good = !nobody[i] || conjugate_column(of, i, taken);
-	discard(taken);
-	discard(nobody);
 	return good && complete_inverse(of);
 }
 

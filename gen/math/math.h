@@ -126,6 +126,8 @@ void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj);
 
 struct rectangle { mpfi_t re, im; };
 void rectangle_init(struct rectangle *z, int precision);    /* 0 */
+struct rectangle new_rectangle(int precision);             /* 0 */
+#define RECTANGLE __attribute__((cleanup(rectangle_clear))) struct rectangle /* RECTANGLE z = new_rectangle(64); */
 void rectangle_clear(struct rectangle *z);
 void rectangle_set(struct rectangle *z, const struct rectangle *a);
 void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);

@@ -13,7 +13,8 @@ static int root_of(int *parent, int i)
 
 int matrix_blocks(int n, const bool *filled, int *block)
 {
-	int count = 0, *parent = ARRAY(int, 2 * (size_t)n);
+	SCRATCH int *parent = ARRAY(int, 2 * (size_t)n);
+	int count = 0;
 	for (int i = 0; i < 2 * n; i++)
 		parent[i] = i;
 	for (int cell = 0; cell < n * n; cell++)
@@ -26,7 +27,6 @@ int matrix_blocks(int n, const bool *filled, int *block)
 			block[root_of(parent, n + j)] = count++;
 	for (int i = 0; i < 2 * n; i++)
 		block[i] = block[root_of(parent, i)];
-	discard(parent);
 	return count;
 }
 
@@ -80,9 +80,9 @@ static void bareiss_row(int from, int width, mpz_t *row, const mpz_t *pivot_row,
 bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column)
 {
 	int sign = 1, k = 0;
-	mpz_t previous, factor;
-	mpz_init_set_ui(previous, 1);
-	mpz_init(factor);
+	INTEGER previous = INTEGER_ZERO;
+	mpz_set_ui(previous, 1);
+	INTEGER factor = INTEGER_ZERO;
 	for (; k < n; k++) {
 		int row = k;
 		while (row < n && mpz_sgn(W[row * width + k]) == 0)
@@ -103,7 +103,6 @@ bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column)
 	(sign < 0 ? mpz_neg : mpz_set)(det, previous);
 	for (int i = 0; i < n * width && sign < 0; i++)
 		mpz_neg(W[i], W[i]);
-	mpz_clears(previous, factor, NULL);
 	*column = k;
 	return k == n;
 }
@@ -129,9 +128,9 @@ static struct members members_of(int n, const int *block, int which)
 static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t *inverse, int *free)
 {
 	int size = m->columns, width = 2 * size, dependent;
-	mpz_t *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size), det;
-	mpq_t *row = rationals((size_t)size);
-	mpz_init(det);
+	mpz_t *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size);
+	RATIONALS *row = rationals((size_t)size);
+	INTEGER det = INTEGER_ZERO;
 	for (int i = 0; i < size; i++) {
 		for (int j = 0; j < size && i < m->rows; j++)
 			mpq_set(row[j], A[m->row[i] * n + m->column[j]]);
@@ -148,16 +147,15 @@ static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t 
 			mpz_set(mpq_denref(cell), det);
 			mpq_canonicalize(cell);
 		}
-	mpz_clear(det);
 	integers_free(W, (size_t)size * (size_t)width);
 	integers_free(scale, (size_t)size);
-	rationals_free(row, (size_t)size);
 }
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 {
-	bool *filled = ARRAY(bool, (size_t)n * (size_t)n);
-	int *block = ARRAY(int, 2 * (size_t)n), first = n;
+	SCRATCH bool *filled = ARRAY(bool, (size_t)n * (size_t)n);
+	SCRATCH int *block = ARRAY(int, 2 * (size_t)n);
+	int first = n;
 	for (int i = 0; i < n * n; i++) {
 		filled[i] = mpq_sgn(A[i]) != 0;
 		mpq_set_ui(inverse[i], 0, 1);
@@ -172,8 +170,6 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 		discard(m.row);
 		discard(m.column);
 	}
-	discard(filled);
-	discard(block);
 	if (first < n)
 		*column = first;
 	return first == n;
@@ -181,23 +177,21 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
 {
-	mpq_t product;
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	for (int j = 0; j < n; j++) {
 		if (mpq_sgn(row[j]) == 0)
 			continue;
 		mpq_mul(product, row[j], factor);
 		mpq_sub(target[j], target[j], product);
 	}
-	mpq_clear(product);
 }
 
 /* Rows of A and columns of B as integers */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
 	size_t wide = (size_t)inner * (size_t)columns;
-	mpz_t *row = integers((size_t)inner), *column = integers(wide), *scale = integers((size_t)columns), common;
-	mpz_init(common);
+	mpz_t *row = integers((size_t)inner), *column = integers(wide), *scale = integers((size_t)columns);
+	INTEGER common = INTEGER_ZERO;
 	for (int j = 0; j < columns; j++)
 		to_integers(inner, B + j, columns, scale[j], column + j * inner);
 	for (int i = 0; i < rows; i++) {
@@ -211,7 +205,6 @@ void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const m
 			mpz_mul(mpq_denref(sum), common, scale[j]);
 		}
 	}
-	mpz_clear(common);
 	integers_free(row, (size_t)inner);
 	integers_free(column, wide);
 	integers_free(scale, (size_t)columns);

@@ -96,12 +96,10 @@ static void start_by_newton_polygon(struct poly g, struct iteration *it)
 		for (int i = from; i < to; i++, found++) {
 			double angle = 6.283185307179586 * (i - from + 0.27) / (to - from) + from;
 			mpc_set_d_d(it->z[found], cos(angle), sin(angle), MPC_RNDNN);
-			mpfr_t radius;
-			mpfr_init2(radius, 53);
+			REAL radius = WITH_BITS(53);
 			mpfr_set_d(radius, -steepest, MPFR_RNDN);
 			mpfr_exp2(radius, radius, MPFR_RNDN);
 			mpc_mul_fr(it->z[found], it->z[found], radius, MPC_RNDNN);
-			mpfr_clear(radius);
 		}
 	}
 }
@@ -167,9 +165,8 @@ static bool is_finite(mpc_srcptr z)
 static void find_repulsion(const struct iteration *it, int i, mpc_ptr sum)
 {
 	mpc_t difference;
-	mpfr_t norm, square;
 	mpc_init2(difference, REPULSION_BITS);
-	mpfr_inits2(REPULSION_BITS, norm, square, NULL);
+	REAL norm = WITH_BITS(REPULSION_BITS), square = WITH_BITS(REPULSION_BITS);
 	mpc_set_ui(sum, 0, MPC_RNDNN);
 	for (int j = 0; j < it->degree; j++) {
 		if (j == i)
@@ -182,7 +179,6 @@ static void find_repulsion(const struct iteration *it, int i, mpc_ptr sum)
 		mpc_div_fr(difference, difference, norm, MPC_RNDNN);
 		mpc_add(sum, sum, difference, MPC_RNDNN);
 	}
-	mpfr_clears(norm, square, NULL);
 	mpc_clear(difference);
 }
 
@@ -191,12 +187,11 @@ static long sweep(struct poly g, struct iteration *it)
 {
 	enum { MANY = 32 };
 	mpc_t w, repulsion, product;
-	mpfr_t size;
 	long largest = -it->bits;
 	mpc_init2(w, it->bits);
 	mpc_init2(repulsion, REPULSION_BITS);
 	mpc_init2(product, it->bits);
-	mpfr_init2(size, 53);
+	REAL size = WITH_BITS(53);
 	for (int i = 0; i < it->degree; i++) {
 		if (it->degree > MANY)
 			progress("poles", i, it->degree);
@@ -216,7 +211,6 @@ static long sweep(struct poly g, struct iteration *it)
 	mpc_clear(w);
 	mpc_clear(repulsion);
 	mpc_clear(product);
-	mpfr_clear(size);
 	return largest;
 }
 
@@ -253,18 +247,14 @@ static void taylor_at(struct poly g, mpc_srcptr z, int last, mpc_t *c)
 static bool stick_together(mpc_srcptr a, mpc_srcptr b, int bits)
 {
 	mpc_t difference;
-	mpfr_t size, scale;
 	mpc_init2(difference, mpfr_get_prec(mpc_realref(a)));
-	mpfr_init2(size, 53);
-	mpfr_init2(scale, 53);
+	REAL size = WITH_BITS(53), scale = WITH_BITS(53);
 	mpc_sub(difference, a, b, MPC_RNDNN);
 	mpc_abs(size, difference, MPFR_RNDN);
 	mpc_abs(scale, a, MPFR_RNDN);
 	mpfr_mul_2si(scale, scale, -bits / 5, MPFR_RNDN);
 	bool close = mpfr_lessequal_p(size, scale);
 	mpc_clear(difference);
-	mpfr_clear(size);
-	mpfr_clear(scale);
 	return close;
 }
 
@@ -273,11 +263,11 @@ static bool stick_together(mpc_srcptr a, mpc_srcptr b, int bits)
  * than two bits each. */
 static void part_cluster(struct poly g, struct iteration *it, const int *member, int m, int bits)
 {
-	mpc_t mean, step, *c = ARRAY(mpc_t, (size_t)m + 1);
-	mpfr_t radius;
+	SCRATCH mpc_t *c = ARRAY(mpc_t, (size_t)m + 1);
+	mpc_t mean, step;
 	mpc_init2(mean, bits);
 	mpc_init2(step, bits);
-	mpfr_init2(radius, 53);
+	REAL radius = WITH_BITS(53);
 	for (int j = 0; j <= m; j++)
 		mpc_init2(c[j], bits);
 	mpc_set(mean, it->z[member[0]], MPC_RNDNN);
@@ -302,17 +292,15 @@ static void part_cluster(struct poly g, struct iteration *it, const int *member,
 	}
 	for (int j = 0; j <= m; j++)
 		mpc_clear(c[j]);
-	discard(c);
 	mpc_clear(mean);
 	mpc_clear(step);
-	mpfr_clear(radius);
 }
 
 /* Before a round with more bits: roots that those so far did not part */
 static void part_clusters(struct poly g, struct iteration *it, int bits)
 {
-	int *member = ARRAY(int, (size_t)it->degree);
-	bool *done = ARRAY(bool, (size_t)it->degree);
+	SCRATCH int *member = ARRAY(int, (size_t)it->degree);
+	SCRATCH bool *done = ARRAY(bool, (size_t)it->degree);
 	for (int i = 0; i < it->degree; i++) {
 		int m = 0;
 		for (int j = i; j < it->degree && !done[i]; j++)
@@ -323,19 +311,15 @@ static void part_clusters(struct poly g, struct iteration *it, int bits)
 		if (m > 1)
 			part_cluster(g, it, member, m, bits);
 	}
-	discard(member);
-	discard(done);
 }
 
 /* ---- discs ---- */
 
 static void distance(mpfi_ptr value, const struct rectangle *a, const struct rectangle *b)
 {
-	struct rectangle difference;
-	rectangle_init(&difference, (int)mpfi_get_prec(value));
+	RECTANGLE difference = new_rectangle((int)mpfi_get_prec(value));
 	rectangle_sub(&difference, a, b);
 	mpfi_hypot(value, difference.re, difference.im);
-	rectangle_clear(&difference);
 }
 
 /* |a - b|^2 for points: the differences to all their bits, their squares to few */
@@ -352,10 +336,7 @@ static void squared_distance(mpfi_ptr value, const struct rectangle *a, const st
 /* prod |z_i - z_j| */
 static void product_of_distances(const struct iteration *it, int i, mpfi_ptr product)
 {
-	mpfi_t difference, square, gap;
-	mpfi_init2(difference, it->bits);
-	mpfi_init2(square, RADIUS_BITS);
-	mpfi_init2(gap, RADIUS_BITS);
+	INTERVAL difference = OVER_BITS(it->bits), square = OVER_BITS(RADIUS_BITS), gap = OVER_BITS(RADIUS_BITS);
 	mpfi_set_ui(product, 1);
 	for (int j = 0; j < it->degree; j++) {
 		if (j == i)
@@ -364,18 +345,12 @@ static void product_of_distances(const struct iteration *it, int i, mpfi_ptr pro
 		mpfi_mul(product, product, gap);
 	}
 	mpfi_sqrt(product, product);
-	mpfi_clear(difference);
-	mpfi_clear(square);
-	mpfi_clear(gap);
 }
 
 static void find_discs(struct poly g, struct iteration *it)
 {
-	struct rectangle value;
-	mpfi_t radius, gaps;
-	rectangle_init(&value, it->bits);
-	mpfi_init2(radius, RADIUS_BITS);
-	mpfi_init2(gaps, RADIUS_BITS);
+	RECTANGLE value = new_rectangle(it->bits);
+	INTERVAL radius = OVER_BITS(RADIUS_BITS), gaps = OVER_BITS(RADIUS_BITS);
 	for (int i = 0; i < it->degree; i++) {
 		mpfi_set_prec(it->center[i].re, it->bits);
 		mpfi_set_prec(it->center[i].im, it->bits);
@@ -392,59 +367,42 @@ static void find_discs(struct poly g, struct iteration *it)
 		mpfi_get_right(it->radius[i], radius);
 		mpfr_abs(it->radius[i], it->radius[i], MPFR_RNDU);
 	}
-	rectangle_clear(&value);
-	mpfi_clear(radius);
-	mpfi_clear(gaps);
 }
 
 static bool small_enough(const struct iteration *it, int i, int precision)
 {
-	mpfr_t limit;
-	mpfr_init2(limit, 53);
+	REAL limit = WITH_BITS(53);
 	mpc_abs(limit, it->z[i], MPFR_RNDD);
 	mpfr_mul_2si(limit, limit, -precision, MPFR_RNDD);
-	bool small = mpfr_number_p(it->radius[i]) && mpfr_lessequal_p(it->radius[i], limit);
-	mpfr_clear(limit);
-	return small;
+	return mpfr_number_p(it->radius[i]) && mpfr_lessequal_p(it->radius[i], limit);
 }
 
 /* Are a and b or -b (`mirrored`) further apart than that? Rounded down, so that true is certain. */
 static bool apart(mpfr_srcptr a, mpfr_srcptr b, bool mirrored, mpfr_srcptr than)
 {
-	mpfr_t gap;
-	mpfr_init2(gap, RADIUS_BITS);
+	REAL gap = WITH_BITS(RADIUS_BITS);
 	(mirrored ? mpfr_add : mpfr_sub)(gap, a, b, MPFR_RNDZ);
-	bool further = mpfr_cmpabs(gap, than) > 0;
-	mpfr_clear(gap);
-	return further;
+	return mpfr_cmpabs(gap, than) > 0;
 }
 
 /* Does disc i, mirrored in the real axis (flip_im) or the imaginary one (flip_re), meet disc j? */
 static bool discs_meet(const struct iteration *it, int i, int j, bool flip_re, bool flip_im)
 {
-	struct rectangle mirrored;
-	mpfi_t gap;
-	mpfr_t sum;
-	mpfr_init2(sum, RADIUS_BITS);
+	REAL sum = WITH_BITS(RADIUS_BITS);
 	mpfr_add(sum, it->radius[i], it->radius[j], MPFR_RNDU);
 	if (apart(mpc_realref(it->z[i]), mpc_realref(it->z[j]), flip_re, sum) ||
 	    apart(mpc_imagref(it->z[i]), mpc_imagref(it->z[j]), flip_im, sum)) {
-		mpfr_clear(sum);
 		return false;
 	}
-	rectangle_init(&mirrored, it->bits);
-	mpfi_init2(gap, it->bits);
+	RECTANGLE mirrored = new_rectangle(it->bits);
+	INTERVAL gap = OVER_BITS(it->bits);
 	rectangle_set(&mirrored, &it->center[i]);
 	if (flip_re)
 		mpfi_neg(mirrored.re, mirrored.re);
 	if (flip_im)
 		mpfi_neg(mirrored.im, mirrored.im);
 	distance(gap, &mirrored, &it->center[j]);
-	bool meet = !mpfr_greater_p(&gap->left, sum);
-	rectangle_clear(&mirrored);
-	mpfi_clear(gap);
-	mpfr_clear(sum);
-	return meet;
+	return !mpfr_greater_p(&gap->left, sum);
 }
 
 /* The set of roots is its own mirror image: a disc whose image meets it and no other holds a root on the axis. */
@@ -614,10 +572,8 @@ struct spectrum *spectrum_of(struct poly D)
 
 struct spectrum *spectrum_of_product(int count, const struct poly *part)
 {
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct poly D = poly_primitive(poly_product(count, part), content);
-	mpz_clear(content);
 	return find_spectrum(D, count, part);
 }
 
@@ -628,7 +584,7 @@ void spectrum_expect(struct spectrum *spectrum, int count, const double *re, con
 	    spectrum->iteration->degree + spectrum->zero != count)
 		return;
 	struct iteration *it = spectrum->iteration;
-	bool *zero = ARRAY(bool, (size_t)count);
+	SCRATCH bool *zero = ARRAY(bool, (size_t)count);
 	for (int k = 0; k < spectrum->zero; k++) {
 		int least = -1;
 		for (int i = 0; i < count; i++)
@@ -642,5 +598,4 @@ void spectrum_expect(struct spectrum *spectrum, int count, const double *re, con
 			it->expected = it->expected && (re[i] != 0 || im[i] != 0);
 			mpc_set_d_d(it->z[found++], re[i], im[i], MPC_RNDNN);
 		}
-	discard(zero);
 }

@@ -89,13 +89,11 @@ struct poly poly_hasse(struct poly a, int k)
 	if (a.length <= k)
 		return poly_new(0);
 	struct poly taylor = poly_new(a.length - k);
-	mpz_t binomial;
-	mpz_init(binomial);
+	INTEGER binomial = INTEGER_ZERO;
 	for (int i = k; i < a.length; i++) {
 		mpz_bin_uiui(binomial, (unsigned long)i, (unsigned long)k);
 		mpz_mul(taylor.c[i - k], a.c[i], binomial);
 	}
-	mpz_clear(binomial);
 	return taylor;
 }
 
@@ -124,11 +122,8 @@ struct poly poly_primitive(struct poly a, mpz_ptr content)
 
 static struct poly primitive_part(struct poly a)
 {
-	mpz_t content;
-	mpz_init(content);
-	struct poly primitive = poly_primitive(a, content);
-	mpz_clear(content);
-	return primitive;
+	INTEGER content = INTEGER_ZERO;
+	return poly_primitive(a, content);
 }
 
 int poly_valuation(struct poly a)
@@ -160,8 +155,7 @@ static struct poly pseudo_remainder(struct poly a, struct poly b)
 {
 	struct poly r = poly_add(a, poly_new(0));
 	mpz_srcptr lead = b.c[b.length - 1];
-	mpz_t top;
-	mpz_init(top);
+	INTEGER top = INTEGER_ZERO;
 	while (r.length >= b.length) {
 		int shift = r.length - b.length;
 		mpz_set(top, r.c[r.length - 1]);
@@ -171,7 +165,6 @@ static struct poly pseudo_remainder(struct poly a, struct poly b)
 			mpz_submul(r.c[i + shift], top, b.c[i]);
 		poly_trim(&r);
 	}
-	mpz_clear(top);
 	return r;
 }
 

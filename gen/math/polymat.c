@@ -51,8 +51,8 @@ static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 /* Newton's divided differences, over Q, then the powers of s; the result is integral. */
 static struct poly interpolate(int count, const long *point, const mpz_t *value)
 {
-	mpq_t *difference = rationals((size_t)count), *c = rationals((size_t)count), factor;
-	mpq_init(factor);
+	mpq_t *difference = rationals((size_t)count), *c = rationals((size_t)count);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < count; i++)
 		mpq_set_z(difference[i], value[i]);
 	for (int k = 1; k < count; k++)
@@ -75,7 +75,6 @@ static struct poly interpolate(int count, const long *point, const mpz_t *value)
 		mpz_set(p.c[i], mpq_numref(c[i]));
 		mpq_clears(c[i], difference[i], NULL);
 	}
-	mpq_clear(factor);
 	poly_trim(&p);
 	return p;
 }
@@ -84,12 +83,10 @@ static struct poly interpolate(int count, const long *point, const mpz_t *value)
 
 static int find_blocks(struct polymat P, int *block)
 {
-	bool *filled = ARRAY(bool, (size_t)P.n * (size_t)P.n);
+	SCRATCH bool *filled = ARRAY(bool, (size_t)P.n * (size_t)P.n);
 	for (int cell = 0; cell < P.n * P.n; cell++)
 		filled[cell] = P.cell[cell].length > 0;
-	int count = matrix_blocks(P.n, filled, block);
-	discard(filled);
-	return count;
+	return matrix_blocks(P.n, filled, block);
 }
 
 /* The rows and columns of one block; false: it is not square, so that P is singular */

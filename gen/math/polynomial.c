@@ -46,9 +46,9 @@ static int walked_states(const struct taylor *t, int i, int j, int *state, bool 
 /* A modulo a prime of 62 bits that divides no denominator */
 static uint64_t reduce(const struct taylor *t, uint64_t *residue)
 {
-	mpz_t prime, inverse;
-	mpz_init_set_ui(prime, 1);
-	mpz_init(inverse);
+	INTEGER prime = INTEGER_ZERO;
+	mpz_set_ui(prime, 1);
+	INTEGER inverse = INTEGER_ZERO;
 	mpz_mul_2exp(prime, prime, 61);
 	int cells = t->n * t->n, done = 0;
 	while (done < cells) {
@@ -59,9 +59,7 @@ static uint64_t reduce(const struct taylor *t, uint64_t *residue)
 			residue[done] = mpz_get_ui(inverse);
 		}
 	}
-	uint64_t result = mpz_get_ui(prime);
-	mpz_clears(prime, inverse, NULL);
-	return result;
+	return mpz_get_ui(prime);
 }
 
 /* row <- x A modulo the prime; eight products of 62-bit factors fit into 127 bits */
@@ -88,7 +86,7 @@ static void modular_power(int n, uint64_t prime, const uint64_t *A, int exponent
 			  uint64_t *power)
 {
 	size_t cells = (size_t)n * (size_t)n;
-	uint64_t *next = ARRAY(uint64_t, cells);
+	SCRATCH uint64_t *next = ARRAY(uint64_t, cells);
 	memset(power, 0, cells * sizeof *power);
 	for (int i = 0; i < n; i++)
 		power[i * n + i] = 1;
@@ -104,7 +102,6 @@ static void modular_power(int n, uint64_t prime, const uint64_t *A, int exponent
 		else
 			memcpy(power, next, cells * sizeof *power);
 	}
-	discard(next);
 }
 
 static bool *find_survivors(const struct taylor *t)
@@ -112,9 +109,10 @@ static bool *find_survivors(const struct taylor *t)
 	int n = t->n;
 	size_t cells = (size_t)n * (size_t)n;
 	bool *survivor = ARRAY(bool, cells);
-	uint64_t *A = ARRAY(uint64_t, cells), *power = ARRAY(uint64_t, cells), *row = ARRAY(uint64_t, (size_t)n);
-	unsigned __int128 *sum = ARRAY(unsigned __int128, (size_t)n);
-	int *state = ARRAY(int, (size_t)n);
+	SCRATCH uint64_t *A = ARRAY(uint64_t, cells), *power = ARRAY(uint64_t, cells),
+			 *row = ARRAY(uint64_t, (size_t)n);
+	SCRATCH unsigned __int128 *sum = ARRAY(unsigned __int128, (size_t)n);
+	SCRATCH int *state = ARRAY(int, (size_t)n);
 	uint64_t prime = reduce(t, A);
 	modular_power(n, prime, A, n, sum, power);
 	for (int i = 0; i < n; i++) {
@@ -136,11 +134,6 @@ static bool *find_survivors(const struct taylor *t)
 				}
 		}
 	}
-	discard(A);
-	discard(power);
-	discard(row);
-	discard(sum);
-	discard(state);
 	return survivor;
 }
 
@@ -190,29 +183,25 @@ struct exact_row {
 
 static void add_power(struct exact_row *found, mpz_t *row, mpq_srcptr weight)
 {
-	mpq_t term;
-	mpq_init(term);
+	RATIONAL term = ZERO;
 	for (int a = 0; a < found->N; a++)
 		if (found->polynomial[a] && mpz_sgn(row[a])) {
 			mpq_set_z(term, row[a]);
 			mpq_mul(term, term, weight);
 			mpq_add(found->value[a], found->value[a], term);
 		}
-	mpq_clear(term);
 }
 
 /* weight <- weight tau/(k denominator) */
 static void next_weight(mpq_ptr weight, mpq_srcptr tau, int k, mpz_srcptr denominator)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_set_z(factor, denominator);
 	mpq_inv(factor, factor);
 	mpq_mul(weight, weight, factor);
 	mpq_set_ui(factor, 1, (unsigned long)k);
 	mpq_mul(weight, weight, factor);
 	mpq_mul(weight, weight, tau);
-	mpq_clear(factor);
 }
 
 /* Drops the entries whose power is not 0; returns how many are left. */
@@ -229,10 +218,9 @@ static int keep_zeros(struct exact_row *found, mpz_t *row)
 static void find_row(const struct taylor *t, struct exact_row *found)
 {
 	int N = found->N, left = 1;
-	mpz_t denominator, *block, *row = integers((size_t)N), *next = integers((size_t)N);
-	mpq_t weight;
-	mpz_init(denominator);
-	mpq_init(weight);
+	mpz_t *block, *row = integers((size_t)N), *next = integers((size_t)N);
+	INTEGER denominator = INTEGER_ZERO;
+	RATIONAL weight = ZERO;
 	mpq_set_ui(weight, 1, 1);
 	block = integer_block(t, N, found->state, denominator);
 	for (int a = 0; a < N; a++)
@@ -251,8 +239,6 @@ static void find_row(const struct taylor *t, struct exact_row *found)
 	integers_free(block, (size_t)N * (size_t)N);
 	integers_free(row, (size_t)N);
 	integers_free(next, (size_t)N);
-	mpz_clear(denominator);
-	mpq_clear(weight);
 }
 
 static struct exact_row *exact_row_of(const struct taylor *t, int i, int N, const int *state, bool cycle)
@@ -302,12 +288,10 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact)
 	struct taylor *first = shortest_time(t);
 	if (!t->cyclic)
 		t->cyclic = first->cyclic = first->cyclic ? first->cyclic : find_cyclic(first);
-	int *state = ARRAY(int, (size_t)t->n);
+	SCRATCH int *state = ARRAY(int, (size_t)t->n);
 	bool cycle;
 	int N = walked_states(t, i, j, state, &cycle);
 	if (cycle && !t->survivor)
 		t->survivor = first->survivor = first->survivor ? first->survivor : find_survivors(first);
-	bool polynomial = (!cycle || t->survivor[i * t->n + j]) && polynomial_entry(t, i, j, N, state, cycle, exact);
-	discard(state);
-	return polynomial;
+	return (!cycle || t->survivor[i * t->n + j]) && polynomial_entry(t, i, j, N, state, cycle, exact);
 }

@@ -20,12 +20,11 @@ struct bounding {
 
 static void begin(struct bounding *b)
 {
-	mpfr_t size;
 	mpfi_ptr all[] = { b->value, b->slope, b->at, b->power, b->lower, b->wave, b->turn, b->part };
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		mpfi_init2(all[i], BITS);
 	mpfr_init2(b->tiny, BITS);
-	mpfr_init2(size, BITS);
+	REAL size = WITH_BITS(BITS);
 	mpfr_set_zero(b->tiny, 1);
 	for (int i = 0; i < b->summands; i++) {
 		mpfr_set_q(size, b->summand[i].factor, MPFR_RNDU);
@@ -34,7 +33,6 @@ static void begin(struct bounding *b)
 	}
 	mpfr_div_2ui(b->tiny, b->tiny, SMALL, MPFR_RNDU);
 	mpfr_neg(b->tiny, b->tiny, MPFR_RNDU);
-	mpfr_clear(size);
 }
 
 static void end(struct bounding *b)
@@ -100,21 +98,17 @@ static bool above_at(struct bounding *b, mpfr_srcptr time)
 /* By the value at the middle and the range of the slope, which stands in b->slope */
 static bool above_by_slope(struct bounding *b, mpfr_srcptr from, mpfr_srcptr to, mpfr_srcptr middle)
 {
-	mpfr_t reach, rise;
-	mpfr_inits2(BITS, reach, rise, NULL);
+	REAL reach = WITH_BITS(BITS), rise = WITH_BITS(BITS);
 	mpfi_mag(rise, b->slope);
 	mpfr_sub(reach, to, from, MPFR_RNDU);
 	mpfr_mul(rise, rise, reach, MPFR_RNDU);
 	value_over(b, middle, middle);
 	mpfr_sub(rise, &b->value->left, rise, MPFR_RNDD);
-	bool is = above(b, rise);
-	mpfr_clears(reach, rise, NULL);
-	return is;
+	return above(b, rise);
 }
 
 static bool above_between(struct bounding *b, mpfr_srcptr from, mpfr_srcptr to)
 {
-	mpfr_t middle;
 	if (++b->nodes > MOST_NODES)
 		return false;
 	value_over(b, from, to);
@@ -126,14 +120,12 @@ static bool above_between(struct bounding *b, mpfr_srcptr from, mpfr_srcptr to)
 		return above_at(b, from);
 	if (mpfr_sgn(&b->slope->right) <= 0)
 		return above_at(b, to);
-	mpfr_init2(middle, BITS);
+	REAL middle = WITH_BITS(BITS);
 	mpfr_add(middle, from, to, MPFR_RNDN);
 	mpfr_div_2ui(middle, middle, 1, MPFR_RNDN);
 	bool halves = mpfr_cmp(from, middle) < 0 && mpfr_cmp(middle, to) < 0;
-	bool is = above_by_slope(b, from, to, middle) ||
-		  (halves && above_at(b, middle) && above_between(b, from, middle) && above_between(b, middle, to));
-	mpfr_clear(middle);
-	return is;
+	return above_by_slope(b, from, to, middle) ||
+	       (halves && above_at(b, middle) && above_between(b, from, middle) && above_between(b, middle, to));
 }
 
 /* ---- to no end ---- */
@@ -141,8 +133,7 @@ static bool above_between(struct bounding *b, mpfr_srcptr from, mpfr_srcptr to)
 /* The k-th derivative of t^n at `time`, times a factor, onto sum */
 static void add_power(mpq_ptr sum, mpq_srcptr factor, int n, int k, mpq_srcptr time)
 {
-	mpq_t part, by;
-	mpq_inits(part, by, NULL);
+	RATIONAL part = ZERO, by = ZERO;
 	mpq_set(part, factor);
 	for (int i = 0; i < k; i++) {
 		mpq_set_si(by, n - i, 1);
@@ -151,7 +142,6 @@ static void add_power(mpq_ptr sum, mpq_srcptr factor, int n, int k, mpq_srcptr t
 	for (int i = k; i < n; i++)
 		mpq_mul(part, part, time);
 	mpq_add(sum, sum, part);
-	mpq_clears(part, by, NULL);
 }
 
 /* What the summand is at least from `time` on, if a power of t: its factor; false: by no power */
@@ -169,16 +159,14 @@ static bool least_factor(const struct summand *s, mpq_ptr factor)
  * grows there, or grows for good */
 static bool least_decay(struct bounding *b, const struct summand *s, mpq_srcptr time, mpfr_ptr loss)
 {
-	mpq_t turns;
 	if (mpq_sgn(s->w) == 0 && mpq_sgn(s->factor) > 0)
 		return true;
 	if (mpq_sgn(s->a) > 0)
 		return false;
-	mpq_init(turns);
+	RATIONAL turns = ZERO;
 	mpq_set_si(turns, -s->power, 1);
 	mpq_div(turns, turns, s->a);                    /* t^n e^{a t} falls from there on */
 	bool falls = mpq_cmp(turns, time) <= 0;
-	mpq_clear(turns);
 	mpfi_set_q(b->at, time);
 	mpfi_mul_q(b->part, b->at, s->a);
 	mpfi_exp(b->part, b->part);
@@ -194,11 +182,9 @@ static bool least_decay(struct bounding *b, const struct summand *s, mpq_srcptr 
 static bool above_from(struct bounding *b, mpq_srcptr time)
 {
 	enum { MOST_POWER = 64 };
-	mpq_t sum, factor;
-	mpfr_t loss, least;
 	bool is = true;
-	mpq_inits(sum, factor, NULL);
-	mpfr_inits2(BITS, loss, least, NULL);
+	RATIONAL sum = ZERO, factor = ZERO;
+	REAL loss = WITH_BITS(BITS), least = WITH_BITS(BITS);
 	mpfr_set_zero(loss, 1);
 	for (int k = MOST_POWER; k >= 0 && is; k--) {
 		mpq_set_ui(sum, 0, 1);
@@ -213,19 +199,15 @@ static bool above_from(struct bounding *b, mpq_srcptr time)
 	mpfr_set_q(least, sum, MPFR_RNDD);
 	mpfr_sub(least, least, loss, MPFR_RNDD);
 	is = is && above(b, least);
-	mpq_clears(sum, factor, NULL);
-	mpfr_clears(loss, least, NULL);
 	return is;
 }
 
 bool sum_stays_positive(int summands, const struct summand *summand, mpq_srcptr from, mpq_srcptr to)
 {
 	struct bounding b = { .summands = summands, .summand = summand };
-	mpq_t time, step;
-	mpfr_t low, high;
 	begin(&b);
-	mpq_inits(time, step, NULL);
-	mpfr_inits2(BITS, low, high, NULL);
+	RATIONAL time = ZERO, step = ZERO;
+	REAL low = WITH_BITS(BITS), high = WITH_BITS(BITS);
 	mpq_set(time, to ? to : from);
 	mpq_set_ui(step, 1, 1);
 	bool known = to || above_from(&b, time);
@@ -237,8 +219,6 @@ bool sum_stays_positive(int summands, const struct summand *summand, mpq_srcptr 
 	mpfr_set_q(low, from, MPFR_RNDD);
 	mpfr_set_q(high, time, MPFR_RNDU);
 	bool is = known && above_between(&b, low, high);
-	mpq_clears(time, step, NULL);
-	mpfr_clears(low, high, NULL);
 	end(&b);
 	return is;
 }

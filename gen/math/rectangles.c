@@ -36,27 +36,23 @@ long rectangle_size(const struct rectangle *z)
 
 void rectangle_add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
 {
-	struct rectangle product;
 	if (rectangle_is_zero(a) || rectangle_is_zero(b))
 		return;
-	rectangle_init(&product, (int)mpfi_get_prec(z->re));
+	RECTANGLE product = new_rectangle((int)mpfi_get_prec(z->re));
 	rectangle_mul(&product, a, b);
 	mpfi_add(z->re, z->re, product.re);
 	mpfi_add(z->im, z->im, product.im);
-	rectangle_clear(&product);
 }
 
 void rectangle_add_scaled(struct rectangle *z, const struct rectangle *a, mpq_srcptr factor)
 {
-	mpfi_t part;
 	if (mpq_sgn(factor) == 0)
 		return;
-	mpfi_init2(part, mpfi_get_prec(z->re));
+	INTERVAL part = OVER_BITS(mpfi_get_prec(z->re));
 	mpfi_mul_q(part, a->re, factor);
 	mpfi_add(z->re, z->re, part);
 	mpfi_mul_q(part, a->im, factor);
 	mpfi_add(z->im, z->im, part);
-	mpfi_clear(part);
 }
 
 /* ---- null vectors ---- */
@@ -89,8 +85,7 @@ static bool bring_pivot(int n, struct rectangle *P, int k, int *column)
 
 static void eliminate(int n, struct rectangle *P, int k)
 {
-	struct rectangle factor;
-	rectangle_init(&factor, (int)mpfi_get_prec(P->re));
+	RECTANGLE factor = new_rectangle((int)mpfi_get_prec(P->re));
 	for (int i = k + 1; i < n; i++) {
 		if (rectangle_is_zero(&P[i * n + k]))
 			continue;
@@ -100,12 +95,11 @@ static void eliminate(int n, struct rectangle *P, int k)
 		for (int j = k + 1; j < n; j++)
 			rectangle_add_product(&P[i * n + j], &factor, &P[k * n + j]);
 	}
-	rectangle_clear(&factor);
 }
 
 bool null_rectangles(int n, struct rectangle *P, struct rectangle *v)
 {
-	int *column = ARRAY(int, (size_t)n);
+	SCRATCH int *column = ARRAY(int, (size_t)n);
 	bool good = true;
 	for (int i = 0; i < n; i++)
 		column[i] = i;
@@ -126,21 +120,18 @@ bool null_rectangles(int n, struct rectangle *P, struct rectangle *v)
 		mpfi_neg(sum->re, sum->re);
 		mpfi_neg(sum->im, sum->im);
 	}
-	discard(column);
 	return good;
 }
 
 void scale_rectangles(int n, struct rectangle *v)
 {
-	struct rectangle largest;
 	int at = 0;
 	for (int i = 1; i < n; i++)
 		at = rectangle_size(&v[i]) > rectangle_size(&v[at]) ? i : at;
-	rectangle_init(&largest, (int)mpfi_get_prec(v->re));
+	RECTANGLE largest = new_rectangle((int)mpfi_get_prec(v->re));
 	rectangle_set(&largest, &v[at]);
 	for (int i = 0; i < n; i++)
 		rectangle_div(&v[i], &v[i], &largest);
 	mpfi_set_ui(v[at].re, 1);
 	mpfi_set_ui(v[at].im, 0);
-	rectangle_clear(&largest);
 }

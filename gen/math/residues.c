@@ -32,8 +32,7 @@ struct growth {                     /* what all responses with one denominator s
 /* a = n/v as power series of `count` terms */
 static void series_quotient(int count, const mpq_t *n, const mpq_t *v, mpq_t *a)
 {
-	mpq_t product;
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	for (int k = 0; k < count; k++) {
 		mpq_set(a[k], n[k]);
 		for (int j = 1; j <= k; j++) {
@@ -42,7 +41,6 @@ static void series_quotient(int count, const mpq_t *n, const mpq_t *v, mpq_t *a)
 		}
 		mpq_div(a[k], a[k], v[0]);
 	}
-	mpq_clear(product);
 }
 
 static void set_coefficient(mpq_ptr q, struct poly p, int k)
@@ -68,8 +66,7 @@ static void residue_at_zero(struct response *response)
 /* sum_k at_zero_k tau^k/k! */
 static void value_at_zero(const struct response *response, mpq_srcptr tau, mpq_ptr sum)
 {
-	mpq_t power, term;
-	mpq_inits(power, term, NULL);
+	RATIONAL power = ZERO, term = ZERO;
 	mpq_set_ui(power, 1, 1);
 	mpq_set_ui(sum, 0, 1);
 	for (int k = 0; k < response->spectrum->zero; k++) {
@@ -79,14 +76,13 @@ static void value_at_zero(const struct response *response, mpq_srcptr tau, mpq_p
 		mpq_mul(power, power, tau);
 		mpq_div(power, power, term);
 	}
-	mpq_clears(power, term, NULL);
 }
 
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 {
 	struct response *response = NEW(struct response);
-	mpq_t content;
-	mpq_inits(content, response->scale, response->last, NULL);
+	RATIONAL content = ZERO;
+	mpq_inits(response->scale, response->last, NULL);
 	if (N.length > 0) {
 		struct poly common = poly_gcd(N, D);
 		N = poly_primitive(poly_divide(N, common), mpq_numref(content));
@@ -97,7 +93,6 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 		D = poly_new(1);
 		mpz_set_ui(D.c[0], 1);
 	}
-	mpq_clear(content);
 	response->N = N;
 	response->spectrum = spectrum_of(D);
 	residue_at_zero(response);
@@ -120,8 +115,7 @@ static bool residue_vanishes(const struct response *response, const struct facto
 		for (int j = 1; j <= k; j++)
 			w[k] = poly_sub(w[k], poly_mul(poly_mul(v[j], v0[j - 1]), w[k - j]));
 	}
-	mpz_t weight, scale;
-	mpz_inits(weight, scale, NULL);
+	INTEGER weight = INTEGER_ZERO, scale = INTEGER_ZERO;
 	struct poly sum = poly_new(0);
 	for (int k = 0; k < m; k++) {           /* common denominator den(tau)^{m-1} (m-1)! */
 		mpz_pow_ui(weight, mpq_numref(tau), (unsigned long)k);
@@ -131,7 +125,6 @@ static bool residue_vanishes(const struct response *response, const struct facto
 			mpz_mul_ui(weight, weight, (unsigned long)i);
 		sum = poly_add(sum, poly_scale(poly_mul(w[m - 1 - k], v0[k]), weight));
 	}
-	mpz_clears(weight, scale, NULL);
 	return poly_divides(factor->g, sum);
 }
 
@@ -243,8 +236,7 @@ static struct course *new_course(const struct spectrum *spectrum, struct growth 
 /* False: this is another stride than the last */
 static bool same_stride(const struct spectrum *spectrum, struct growth *growth, mpq_srcptr from, mpq_srcptr to)
 {
-	mpq_t stride;
-	mpq_init(stride);
+	RATIONAL stride = ZERO;
 	mpq_sub(stride, to, from);
 	bool same = mpq_equal(stride, growth->stride);
 	if (!same) {
@@ -252,7 +244,6 @@ static bool same_stride(const struct spectrum *spectrum, struct growth *growth, 
 		growth->over_stride = NULL;
 		mpq_set(growth->stride, stride);
 	}
-	mpq_clear(stride);
 	return same;
 }
 
@@ -295,8 +286,8 @@ static struct rectangle *residue_series(const struct response *response, int f, 
 	const struct spectrum *spectrum = response->spectrum;
 	int m = spectrum->factor[f].multiplicity;
 	const struct rectangle *v = spectrum->growth->series[f][i], *p = &spectrum->pole[f][i].at;
-	struct rectangle *a = rectangles(m, precision + GUARD_BITS), product;
-	rectangle_init(&product, precision + GUARD_BITS);
+	struct rectangle *a = rectangles(m, precision + GUARD_BITS);
+	RECTANGLE product = new_rectangle(precision + GUARD_BITS);
 	for (int k = 0; k < m; k++) {
 		struct rectangle *at = &a[m - 1 - k];
 		rectangle_evaluate(at, poly_hasse(response->N, k), p);
@@ -306,7 +297,6 @@ static struct rectangle *residue_series(const struct response *response, int f, 
 		}
 		rectangle_div(at, at, &v[0]);
 	}
-	rectangle_clear(&product);
 	return a;
 }
 
@@ -329,10 +319,8 @@ static void add_residue(const struct pole *pole, int m, const struct rectangle *
 			mpq_srcptr tau, mpfi_ptr sum)
 {
 	int precision = (int)mpfi_get_prec(sum);
-	struct rectangle total;
-	mpq_t power;
-	rectangle_init(&total, precision);
-	mpq_init(power);
+	RECTANGLE total = new_rectangle(precision);
+	RATIONAL power = ZERO;
 	rectangle_set(&total, &a[m - 1]);
 	for (int k = m - 2; k >= 0; k--) {      /* Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
 		mpq_set_ui(power, 1, (unsigned long)k + 1);
@@ -346,8 +334,6 @@ static void add_residue(const struct pole *pole, int m, const struct rectangle *
 	if (!pole->real)
 		mpfi_mul_2ui(total.re, total.re, 1);
 	mpfi_add(sum, sum, total.re);
-	rectangle_clear(&total);
-	mpq_clear(power);
 }
 
 bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value)
@@ -359,8 +345,7 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 	struct rectangle **exponential = exponentials_of(spectrum, growth, response->last, tau);
 	mpq_set(response->last, tau);
 	find_residues(response, precision);
-	mpq_t exact;
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	value_at_zero(response, tau, exact);
 	mpfi_set_prec(value, precision + GUARD_BITS);
 	mpfi_set_q(value, exact);
@@ -369,6 +354,5 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 			add_residue(&spectrum->pole[f][i], spectrum->factor[f].multiplicity, response->residue[f][i],
 				    &exponential[f][i], tau, value);
 	mpfi_mul_q(value, value, response->scale);
-	mpq_clear(exact);
 	return true;
 }

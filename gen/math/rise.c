@@ -45,8 +45,7 @@ static void value_over(struct rising *r, mpfr_srcptr a, mpfr_srcptr b)
 /* at = [a, b] holds one root, and the slope is above 0 there */
 static void enclose_root(struct rising *r, mpfi_ptr at)
 {
-	mpfr_t width, old;
-	mpfr_inits2(64, width, old, NULL);
+	REAL width = WITH_BITS(64), old = WITH_BITS(64);
 	mpfi_diam_abs(old, at);
 	for (int round = 0; round < 64; round++) {
 		mpfi_mid(r->middle, at);
@@ -69,7 +68,6 @@ static void enclose_root(struct rising *r, mpfi_ptr at)
 			break;
 		mpfr_set(old, width, MPFR_RNDU);
 	}
-	mpfr_clears(width, old, NULL);
 }
 
 /* On [a, b], where nothing has risen before a */
@@ -91,8 +89,7 @@ static enum rise look(struct rising *r, mpfr_srcptr a, mpfr_srcptr b, int depth,
 	}
 	if (depth == r->deepest)
 		return RISE_UNKNOWN;
-	mpfr_t split;
-	mpfr_init2(split, mpfr_get_prec(r->middle));
+	REAL split = WITH_BITS(mpfr_get_prec(r->middle));
 	mpfr_sub(split, b, a, MPFR_RNDN);
 	mpfr_mul_ui(split, split, 499, MPFR_RNDN);      /* not the middle, where a root may be */
 	mpfr_div_2ui(split, split, 10, MPFR_RNDN);
@@ -100,7 +97,6 @@ static enum rise look(struct rising *r, mpfr_srcptr a, mpfr_srcptr b, int depth,
 	found = look(r, a, split, depth + 1, at);
 	if (found == RISE_NONE)
 		found = look(r, split, b, depth + 1, at);
-	mpfr_clear(split);
 	return found;
 }
 
@@ -108,8 +104,7 @@ enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_
 {
 	int precision = (int)mpfi_get_prec(value[0]);
 	struct rising r = { .degree = degree, .value = value, .slope = slope, .deepest = precision / 2 };
-	mpfr_t start;
-	mpfr_init2(start, precision);
+	REAL start = WITH_BITS(precision);
 	mpfr_set_zero(start, 1);
 	mpfi_init2(r.s, precision);
 	mpfi_init2(r.g, precision);
@@ -119,6 +114,6 @@ enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_
 	mpfi_clear(r.s);
 	mpfi_clear(r.g);
 	mpfi_clear(r.d);
-	mpfr_clears(r.middle, start, NULL);
+	mpfr_clear(r.middle);
 	return found;
 }

@@ -116,21 +116,18 @@ void stream_free(struct stream *f)
 /* ||D^-1 x||, rounded up */
 static void scaled_size(const struct stream *f, const mpfi_t *x, mpfr_ptr size)
 {
-	mpfr_t one;
-	mpfr_init2(one, 64);
+	REAL one = WITH_BITS(64);
 	mpfr_set_zero(size, 1);
 	for (int i = 0; i < f->n; i++) {
 		mpfi_mag(one, x[i]);
 		mpfr_div_d(one, one, f->scale[i], MPFR_RNDU);
 		mpfr_max(size, size, one, MPFR_RNDU);
 	}
-	mpfr_clear(one);
 }
 
 static void product(const struct stream *f, const mpfi_t *x, mpfi_t *y)
 {
-	mpfi_t part;
-	mpfi_init2(part, f->precision);
+	INTERVAL part = OVER_BITS(f->precision);
 	for (int i = 0; i < f->n; i++) {
 		mpfi_set_ui(y[i], 0);
 		for (int k = f->first[i]; k < f->first[i + 1]; k++) {
@@ -138,7 +135,6 @@ static void product(const struct stream *f, const mpfi_t *x, mpfi_t *y)
 			mpfi_add(y[i], y[i], part);
 		}
 	}
-	mpfi_clear(part);
 }
 
 static void widen(mpfi_ptr x, mpfr_srcptr radius)
@@ -149,13 +145,11 @@ static void widen(mpfi_ptr x, mpfr_srcptr radius)
 
 static void widen_all(const struct stream *f, mpfi_t *x, mpfr_srcptr size)
 {
-	mpfr_t radius;
-	mpfr_init2(radius, 64);
+	REAL radius = WITH_BITS(64);
 	for (int i = 0; i < f->n && !mpfr_zero_p(size); i++) {
 		mpfr_mul_d(radius, size, f->scale[i], MPFR_RNDU);
 		widen(x[i], radius);
 	}
-	mpfr_clear(radius);
 }
 
 struct taylor_terms {
@@ -229,11 +223,12 @@ void stream_sum(const struct stream *f, const struct series_room *room, int degr
  * both give x the same derivative but for its own width, nothing of first order is lost. */
 bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x)
 {
-	mpfr_t size, angle;
-	mpfi_t *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision), time;
+	mpfr_t size;
+	SCRATCH mpfi_t *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision);
 	const double rates = (before->rate + (after ? largest_row(before, after->size) : 0)) * (1 + 1e-9);
-	mpfr_inits2(64, size, angle, NULL);
-	mpfi_init2(time, 64);
+	REAL angle = WITH_BITS(64);
+	mpfr_init2(size, 64);
+	INTERVAL time = OVER_BITS(64);
 	mpfr_neg(&time->left, delta, MPFR_RNDD);
 	mpfr_set(&time->right, delta, MPFR_RNDU);
 	mpfr_mul_d(angle, delta, rates, MPFR_RNDU);
@@ -255,10 +250,7 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 		mpfi_clear(old[i]);
 		mpfi_clear(new[i]);
 	}
-	discard(old);
-	discard(new);
-	mpfr_clears(size, angle, NULL);
-	mpfi_clear(time);
+	mpfr_clear(size);
 	return short_enough;
 }
 
@@ -269,8 +261,7 @@ static void first_power(struct stream *f, mpfi_t *E)
 	int n = f->n;
 	struct series_room room = { 0 };
 	mpfi_t *x = enclosures(n, f->precision);
-	mpfr_t one;
-	mpfr_init2(one, 2);
+	REAL one = WITH_BITS(2);
 	mpfr_set_ui(one, 1, MPFR_RNDN);
 	for (int j = 0; j < n; j++) {
 		for (int i = 0; i < n; i++)
@@ -283,13 +274,11 @@ static void first_power(struct stream *f, mpfi_t *E)
 	series_room_free(f->n, &room);
 	for (int i = 0; i < n; i++)
 		mpfi_clear(x[i]);
-	mpfr_clear(one);
 }
 
 static void times(int n, const mpfi_t *E, const mpfi_t *x, int stride, mpfi_t *y)
 {
-	mpfi_t part;
-	mpfi_init2(part, mpfi_get_prec(y[0]));
+	INTERVAL part = OVER_BITS(mpfi_get_prec(y[0]));
 	for (int i = 0; i < n; i++) {
 		mpfi_set_ui(y[i * stride], 0);
 		for (int k = 0; k < n; k++) {
@@ -299,7 +288,6 @@ static void times(int n, const mpfi_t *E, const mpfi_t *x, int stride, mpfi_t *y
 			mpfi_add(y[i * stride], y[i * stride], part);
 		}
 	}
-	mpfi_clear(part);
 }
 
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y)

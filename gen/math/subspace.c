@@ -187,9 +187,10 @@ static void correct(const struct correcting *w, bool transposed, mpfr_t *X, mpfr
 {
 	const struct invariants *of = w->of;
 	const int n = of->n, step = w->part->real ? 1 : 2, k = w->k;
-	double *r = ARRAY(double, 4 * (size_t)n), *r_im = r + n, *e = r + 2 * n, *e_im = r + 3 * n;
+	SCRATCH double *r = ARRAY(double, 4 * (size_t)n);
+	double *r_im = r + n, *e = r + 2 * n, *e_im = r + 3 * n;
 	const double sign = transposed ? -1 : 1;        /* y = y1 - i y2 */
-	bool *own = ARRAY(bool, (size_t)n);
+	SCRATCH bool *own = ARRAY(bool, (size_t)n);
 	for (int a = 0; a < w->part->members; a++)
 		own[of->member[w->part->first + a]] = true;
 	for (int a = 0; a < w->part->members; a++) {
@@ -220,8 +221,6 @@ static void correct(const struct correcting *w, bool transposed, mpfr_t *X, mpfr
 				add_double(w, X[i * k + a * step + 1], sign * scale * e_im[i], exponent);
 		}
 	}
-	discard(own);
-	discard(r);
 }
 
 /* false: it does not get better */
@@ -344,8 +343,7 @@ static bool scale_basis(const struct correcting *w)
 static void round_all(const struct correcting *w, mpfr_t *X, bool dual, int bits, mpq_t *rounded)
 {
 	const int n = w->of->n, k = w->k;
-	mpfr_t most, largest;
-	mpfr_inits2(mpfr_get_prec(X[0]), most, largest, NULL);
+	REAL most = WITH_BITS(mpfr_get_prec(X[0])), largest = WITH_BITS(mpfr_get_prec(X[0]));
 	for (int a = 0; a < k; a++) {
 		mpfr_set_zero(largest, 1);
 		for (int i = 0; i < n; i++) {
@@ -361,7 +359,6 @@ static void round_all(const struct correcting *w, mpfr_t *X, bool dual, int bits
 				mpfr_get_q(rounded[dual ? a * n + i : i * k + a], X[i * k + a]);
 		}
 	}
-	mpfr_clears(most, largest, NULL);
 }
 
 static void round_block(const struct correcting *w, int bits, mpq_t *block)
@@ -379,7 +376,7 @@ bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, m
 	const int n = of->n, precision = bits + GUARD_BITS;
 	struct correcting w = { .of = of, .part = &of->part[part], .k = of->part[part].columns };
 	const size_t cells = (size_t)n * (size_t)w.k, square = (size_t)w.k * (size_t)w.k + 1;
-	double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
+	SCRATCH double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
 	prepare_cells(of, precision);
 	mpfr_init2(w.x, precision);
 	mpfr_t **all[] = { &w.X, &w.Y, &w.R, &w.S };
@@ -403,7 +400,5 @@ bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, m
 	reals_free(w.T, square);
 	reals_free(w.G, square);
 	mpfr_clear(w.x);
-	discard(X);
-	discard(Y);
 	return good;
 }

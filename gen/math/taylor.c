@@ -97,8 +97,8 @@ static void next_power(const struct taylor *t, struct magnitude *power, struct m
 static void find_distances(struct taylor *t)
 {
 	int n = t->n;
-	struct magnitude *power = ARRAY(struct magnitude, (size_t)(n * n)),
-			 *next = ARRAY(struct magnitude, (size_t)(n * n));
+	SCRATCH struct magnitude *power = ARRAY(struct magnitude, (size_t)(n * n)),
+				 *next = ARRAY(struct magnitude, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		t->distance[i] = -1;
 	for (int i = 0; i < n; i++)
@@ -127,8 +127,6 @@ static void find_distances(struct taylor *t)
 			for (int q = k; q <= LARGEST_BLOCK; q++)    /* later powers: as this one, until known */
 				t->density[q] = count;
 	}
-	discard(power);
-	discard(next);
 }
 
 struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau)
@@ -249,10 +247,9 @@ static void scale(struct row *row, struct balls *z, const struct balls *c, size_
 /* c_r = (q j)!/(q j + r)!, r = 0 .. q */
 static void block_factors(struct balls *c, int q, int j)
 {
-	mpq_t factor;
-	mpz_t divisor;
-	mpq_init(factor);
-	mpz_init_set_ui(divisor, 1);
+	RATIONAL factor = ZERO;
+	INTEGER divisor = INTEGER_ZERO;
+	mpz_set_ui(divisor, 1);
 	for (int r = 0; r <= q; r++) {
 		if (r > 0)
 			mpz_mul_ui(divisor, divisor, (unsigned long)q * (unsigned long)j + (unsigned long)r);
@@ -260,8 +257,6 @@ static void block_factors(struct balls *c, int q, int j)
 		mpz_set(mpq_denref(factor), divisor);
 		ball_set_rational(c, (size_t)r, factor, 0);
 	}
-	mpq_clear(factor);
-	mpz_clear(divisor);
 }
 
 /* U_j = sum_{r<q} c_r B^r + c_q B^q U_{j+1}; `leading` is c_q B^q, `after` is U_{j+1}, both NULL in the last block */
@@ -456,8 +451,8 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 {
 	const struct balls *U = &t->value;
 	size_t at = (size_t)(i * t->n + j);
-	mpz_t left, right, radius;
-	mpz_inits(left, right, NULL);
+	mpz_t radius;
+	INTEGER left = INTEGER_ZERO, right = INTEGER_ZERO;
 	mpfi_set_prec(value, LIMB * (U->limbs + 1));
 	struct magnitude bound = U->radius[at];
 	long last = LIMB * (U->exponent[at] - U->limbs);        /* of the middle's last digit */
@@ -477,5 +472,5 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 	mpz_add(right, left, radius);
 	mpz_sub(left, left, radius);
 	set_interval(value, left, right, last);
-	mpz_clears(left, right, radius, NULL);
+	mpz_clear(radius);
 }

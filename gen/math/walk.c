@@ -79,7 +79,8 @@ static double largest_row_sum(int n, const double *A)
 /* Of `count` powers of A, from A^0 on; *last is the one after them. Ends early where the rest is nothing beside I. */
 static void add_powers(int n, const double *A, long count, double *sum, double *most, double **last)
 {
-	double *power = identity(n), *next = ARRAY(double, (size_t)(n * n));
+	SCRATCH double *next = ARRAY(double, (size_t)(n * n));
+	double *power = identity(n);
 	for (long m = 0; m < count; m++) {
 		for (int i = 0; i < n * n; i++) {
 			sum[i] += fabs(power[i]);
@@ -102,7 +103,6 @@ static void add_powers(int n, const double *A, long count, double *sum, double *
 		*last = power;
 	else
 		discard(power);
-	discard(next);
 }
 
 struct spread spread_of(int n, const double *A, long steps)
@@ -199,7 +199,8 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 	enum { LOOKS = 64, WALKED = 30000000, HEAD = 2000000 }; /* products: of all steps, else of the first */
 	const int n = s->n;
 	const long last = s->steps <= WALKED / (n * n) ? s->steps : HEAD / (n * n) + 1;
-	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), *tail = ARRAY(double, (size_t)n);
+	SCRATCH double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n),
+		       *tail = ARRAY(double, (size_t)n);
 	const struct sparse matrix = sparse_of(n, n, A);
 	double largest = 0;
 	long m = 0;
@@ -230,8 +231,5 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 	find_tail(n, s->most, x, columns, tail);
 	for (int i = 0; i < n; i++)
 		most[i] = WIDER * (fmax(most[i], ends ? 0 : tail[i]) + s->slack * largest);
-	discard(x);
-	discard(next);
-	discard(tail);
 	sparse_free(&matrix);
 }

@@ -66,8 +66,7 @@ static bool same_breakpoints(const struct switching *a, const struct switching *
 static bool change_alike(const struct switching *a, const struct switching *b)
 {
 	bool alike = true;
-	mpq_t first, other;
-	mpq_inits(first, other, NULL);
+	RATIONAL first = ZERO, other = ZERO;
 	for (int l = 0; a->systems > 0 && l < a->system->loads; l++) {
 		const struct wave *wave = a->system->load[l].wave;
 		const bool constant = mpq_sgn(wave->a) == 0 && !oscillates(wave);
@@ -79,7 +78,6 @@ static bool change_alike(const struct switching *a, const struct switching *b)
 				alike = mpq_equal(first, other);
 			}
 	}
-	mpq_clears(first, other, NULL);
 	return alike;
 }
 

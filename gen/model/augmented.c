@@ -128,14 +128,13 @@ static void fill_load(mpq_t *A, const struct layout *x, const struct linear *sys
 mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int segment)
 {
 	int n = system->n, size = x->size, states = system->states, column;
-	mpq_t *A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)),
-	      *unit = rationals((size_t)n);
-	mpq_t *own = state_matrix(system, false);
+	RATIONALS *inverse = rationals((size_t)(n * n));
+	mpq_t *A = rationals((size_t)size * (size_t)size), *unit = rationals((size_t)n);
+	RATIONALS *own = state_matrix(system, false);
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < states; i++)
 		for (int j = 0; j < states; j++)
 			mpq_set(A[i * size + j], own[i * states + j]);
-	rationals_free(own, (size_t)states * (size_t)states);
 	for (int i = 0; i < n && x->held >= 0; i++) {
 		mpq_set_ui(unit[i], 1, 1);
 		fill_force(A, size, x->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
@@ -160,6 +159,5 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 		for (int m = 1; m < x->powers; m++)
 			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
 	}
-	rationals_free(inverse, (size_t)(n * n));
 	return A;
 }

@@ -34,11 +34,9 @@ static void add_drag(struct building *b, const struct atom *a)
 			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 			      "the velocity of friction is linear in velocities");
 	}
-	mpq_t start;
-	mpq_init(start);
+	RATIONAL start = ZERO;
 	for (int i = 1; i < a->operands; i++)
 		check_force(a->node->child[i], a->operand[i], start, NULL);
-	mpq_clear(start);
 	ENLARGE(model->drag, (size_t)model->drags + 1);
 	model->drag[model->drags++] =
 		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1] };

@@ -56,10 +56,9 @@ static void evaluate_one(void *context)
 /* Parts of the step of which all delays are multiples */
 static void find_parts(struct delays *delays, const mpq_t *d)
 {
-	mpq_t ratio;
-	mpz_t parts;
-	mpq_init(ratio);
-	mpz_init_set_ui(parts, 1);
+	RATIONAL ratio = ZERO;
+	INTEGER parts = INTEGER_ZERO;
+	mpz_set_ui(parts, 1);
 	for (int i = 0; i < delays->count; i++) {
 		mpq_div(ratio, d[i], delays->h);
 		mpz_lcm(parts, parts, mpq_denref(ratio));
@@ -80,8 +79,6 @@ static void find_parts(struct delays *delays, const mpq_t *d)
 		delays->delay[i].back = (int)mpz_get_si(parts);
 		delays->most = delays->delay[i].back > delays->most ? delays->delay[i].back : delays->most;
 	}
-	mpz_clear(parts);
-	mpq_clear(ratio);
 }
 
 static void check_request(const struct building *b, const struct symbol *s)
@@ -127,11 +124,9 @@ static void build_delays(void *context)
 	delays->inputs = spec->inputs - delays->count;
 	b->model->delays = delays;
 	b->model->name = format("%s_core", delays->name);
-	mpq_t parts;
-	mpq_init(parts);
+	RATIONAL parts = ZERO;
 	mpq_set_si(parts, delays->parts, 1);
 	mpq_div(b->model->h, b->model->h, parts);
-	mpq_clear(parts);
 }
 
 void find_delays(struct building *b)

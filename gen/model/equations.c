@@ -336,9 +336,8 @@ void check_mass(const struct building *b)
 {
 	const struct model *model = b->model;
 	int n = model->n, column;
-	mpq_t *inverse = rationals((size_t)n * (size_t)n);
+	RATIONALS *inverse = rationals((size_t)n * (size_t)n);
 	bool regular = leading_inverse(&model->system, inverse, &column);
-	rationals_free(inverse, (size_t)n * (size_t)n);
 	if (regular)
 		return;
 	for (int j = n - 1; j >= 0; j--)

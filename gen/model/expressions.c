@@ -29,8 +29,7 @@ static int input_hold(const struct building *b, int index)
 struct form *rate_of_form(struct building *b, const struct form *form)
 {
 	struct form *rate = NEW(struct form);
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < form->terms; i++) {
 		struct basis basis = form->term[i].basis;
 		mpq_srcptr given = form->term[i].factor;
@@ -59,7 +58,6 @@ struct form *rate_of_form(struct building *b, const struct form *form)
 			basis = (struct basis){ .kind = BASIS_ONE };
 		form_add_basis(rate, basis, factor);
 	}
-	mpq_clear(factor);
 	return rate;
 }
 
@@ -79,12 +77,10 @@ bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
 bool share_expression(const struct switching *a, const struct switching *b)
 {
 	bool shared = false;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < a->expressions; i++)
 		for (int k = 0; k < b->expressions && !shared; k++)
 			shared = is_form_multiple(a->expression[i].form, b->expression[k].form, factor);
-	mpq_clear(factor);
 	return shared;
 }
 
@@ -161,13 +157,11 @@ static void find_at(const struct expression *e, int segment, const struct compar
 static void follow(struct expression *e, const struct comparing *term, int segment, const struct compared *what,
 		   mpq_srcptr of)
 {
-	mpq_t at, scale;
-	mpq_inits(at, scale, NULL);
+	RATIONAL at = ZERO, scale = ZERO;
 	find_at(e, segment, what, of, at);
 	mpq_sub(e->shift[segment], term->first, at);
 	mpq_inv(scale, of);
 	e->in[segment] = form_scale(what->form, scale);
-	mpq_clears(at, scale, NULL);
 }
 
 /* ---- which expression it is ---- */
@@ -185,8 +179,7 @@ static int met_before(const struct switching *s, int segment, const struct compa
 /* By a term of another segment */
 static int met_elsewhere(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
 {
-	mpq_t at;
-	mpq_init(at);
+	RATIONAL at = ZERO;
 	int found = -1;
 	bool torn = false;
 	for (int i = 0; i < s->expressions && found < 0; i++) {
@@ -206,15 +199,13 @@ static int met_elsewhere(struct switching *s, int segment, const struct compared
 	}
 	if (found < 0 && torn)
 		tear(s, what->node);
-	mpq_clear(at);
 	return found;
 }
 
 /* That of another term */
 static int met_by_others(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
 {
-	mpq_t at;
-	mpq_init(at);
+	RATIONAL at = ZERO;
 	int found = -1;
 	for (int i = 0; i < s->expressions && found < 0 && !is_apart(s, what->node); i++) {
 		struct expression *e = &s->expression[i];
@@ -226,14 +217,12 @@ static int met_by_others(struct switching *s, int segment, const struct compared
 		add_term(s, e, segment, what, at);
 		found = i;
 	}
-	mpq_clear(at);
 	return found;
 }
 
 static int new_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
 {
-	mpq_t at;
-	mpq_init(at);
+	RATIONAL at = ZERO;
 	mpq_set_ui(of, 1, 1);
 	ENLARGE(s->expression, (size_t)s->expressions + 1);
 	struct expression *e = &s->expression[s->expressions];
@@ -246,7 +235,6 @@ static int new_expression(struct switching *s, int segment, const struct compare
 	e->in[segment] = what->form;
 	find_at(e, segment, what, of, at);
 	add_term(s, e, segment, what, at);
-	mpq_clear(at);
 	return s->expressions++;
 }
 

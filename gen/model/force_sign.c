@@ -67,11 +67,8 @@ static bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcp
 
 bool never_falls_below(const struct form *force)
 {
-	mpq_t start;
-	mpq_init(start);
-	bool never = stays_above_zero(force, start, NULL);
-	mpq_clear(start);
-	return never;
+	RATIONAL start = ZERO;
+	return stays_above_zero(force, start, NULL);
 }
 
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to)

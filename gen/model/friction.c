@@ -62,11 +62,9 @@ struct form *less_in_velocity(const struct form *rest, const struct form *force,
 	const struct form_term *term = last ? form_find(more, &last->basis) : NULL;
 	if (!term)
 		return more;
-	mpq_t ratio;
-	mpq_init(ratio);
+	RATIONAL ratio = ZERO;
 	mpq_div(ratio, term->factor, last->factor);
 	more = form_difference(more, form_scale(velocity, ratio));
-	mpq_clear(ratio);
 	return more;
 }
 
@@ -108,8 +106,7 @@ static mpq_srcptr factor_of_friction(const struct form *residual, const struct f
 static void put_in(const struct switching *s, struct region *region, const struct friction *f, mpq_srcptr factor)
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = f->atom->index, .atom = f->atom };
-	mpq_t size, minus;
-	mpq_inits(size, minus, NULL);
+	RATIONAL size = ZERO, minus = ZERO;
 	for (int k = 0; k < s->rows; k++) {
 		struct form *residual = region->residual[s->row[k]], *sum = NEW(struct form);
 		mpq_srcptr stands = factor_of_friction(residual, f);
@@ -122,14 +119,12 @@ static void put_in(const struct switching *s, struct region *region, const struc
 		form_add_to(sum, region->force[f->atom->index], size);
 		region->residual[s->row[k]] = sum;
 	}
-	mpq_clears(size, minus, NULL);
 }
 
 static void slip(const struct switching *s, int index)
 {
 	struct region *region = &s->region[index];
-	mpq_t sign;
-	mpq_init(sign);
+	RATIONAL sign = ZERO;
 	for (int i = 0; i < s->frictions; i++) {
 		const struct friction *f = &s->friction[i];
 		if (f->segment != segment_of_region(s, index))
@@ -142,7 +137,6 @@ static void slip(const struct switching *s, int index)
 			region->carried[f->atom->index] = force ? form_scale(force, sign) : form_number(0);
 		}
 	}
-	mpq_clear(sign);
 }
 
 /* ---- constraints of what sticks ---- */
@@ -174,8 +168,7 @@ static bool is_ratio(const struct form *a, const struct form *b, mpq_ptr ratio)
 static void add_direction(const struct switching *s, const struct region *region, const struct friction *f,
 			  mpq_srcptr ratio, struct stuck *stuck)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int k = 0; k < s->rows; k++) {
 		mpq_srcptr factor = factor_of_friction(region->residual[s->row[k]], f);
 		if (!factor)
@@ -183,7 +176,6 @@ static void add_direction(const struct switching *s, const struct region *region
 		mpq_mul(part, factor, ratio);
 		(mpq_sgn(f->factor) > 0 ? mpq_add : mpq_sub)(stuck->direction[k], stuck->direction[k], part);
 	}
-	mpq_clear(part);
 }
 
 static bool acts(const struct switching *s, const struct region *region, const struct friction *f)
@@ -198,8 +190,7 @@ static bool acts(const struct switching *s, const struct region *region, const s
 static void find_direction(const struct switching *s, int index, int expression, struct stuck *stuck)
 {
 	const struct region *region = &s->region[index];
-	mpq_t ratio;
-	mpq_init(ratio);
+	RATIONAL ratio = ZERO;
 	for (int i = 0; i < s->frictions; i++) {
 		const struct friction *f = &s->friction[i];
 		if (f->segment != segment_of_region(s, index) || f->expression != expression ||
@@ -221,15 +212,13 @@ static void find_direction(const struct switching *s, int index, int expression,
 		if (mpq_sgn(f->factor) < 0)
 			mpq_neg(stuck->share[i], ratio);
 	}
-	mpq_clear(ratio);
 }
 
 /* What rests is held in place, along the direction of its impacts. */
 static void find_rest(struct building *b, const struct switching *s, int index, struct stuck *stuck)
 {
 	const struct region *region = &s->region[index];
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	stuck->place = stuck->velocity;
 	stuck->velocity = rate_of_form(b, stuck->place);
 	stuck->rate = rate_of_form(b, stuck->velocity);
@@ -242,7 +231,6 @@ static void find_rest(struct building *b, const struct switching *s, int index, 
 			mpq_mul(part, mass->factor, stuck->strike->direction[j]);
 			mpq_add(stuck->direction[k], stuck->direction[k], part);
 		}
-	mpq_clear(part);
 }
 
 static bool is_borne(const struct stuck *stuck)
@@ -361,15 +349,13 @@ static bool find_holds(const struct building *b, const struct switching *s, int 
 static void subtract_row(const struct switching *s, struct region *region, struct stuck *stuck, int count, int from,
 			 int to, mpq_srcptr factor)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int k = 0; k < count; k++) {
 		mpq_mul(part, factor, stuck[k].direction[from]);
 		mpq_sub(stuck[k].direction[to], stuck[k].direction[to], part);
 	}
 	region->residual[s->row[to]] = form_difference(region->residual[s->row[to]],
 						       form_scale(region->residual[s->row[from]], factor));
-	mpq_clear(part);
 }
 
 /* The row with the force of stuck[k] alone; others without it. The force is then what the row leaves. */
@@ -377,8 +363,7 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 {
 	bool taken = true;
 	int pivot = -1;
-	mpq_t factor, one;
-	mpq_inits(factor, one, NULL);
+	RATIONAL factor = ZERO, one = ZERO;
 	while (taken && ++pivot < s->rows) {
 		taken = mpq_sgn(stuck[k].direction[pivot]) == 0;
 		for (int i = 0; i < k; i++)
@@ -398,7 +383,6 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 		subtract_row(s, region, stuck, count, pivot, i, factor);
 	}
 	stuck[k].pivot = pivot;
-	mpq_clears(factor, one, NULL);
 }
 
 /* The force may be as large as it is at rest, on either side where sliding would begin. */
@@ -477,9 +461,9 @@ static void check_answer(struct building *b, const struct switching *s, const st
 	const struct model *model = b->model;
 	const struct linear *system = &model->system;
 	int n = model->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), answer, part;
+	mpq_t *inverse = rationals((size_t)(n * n));
 	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
-	mpq_inits(answer, part, NULL);
+	RATIONAL answer = ZERO, part = ZERO;
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++) {
 		mpq_srcptr acts = factor_of_friction(b->snapshot[f->segment].residual[i].form, f);
@@ -493,7 +477,6 @@ static void check_answer(struct building *b, const struct switching *s, const st
 		}
 	}
 	int sign = mpq_sgn(answer) * mpq_sgn(f->factor);
-	mpq_clears(answer, part, NULL);
 	if (sign < 0)
 		error(f->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
 		      "this friction drives what slides instead of holding it");

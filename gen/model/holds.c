@@ -26,9 +26,8 @@ const struct form *free_of_holds(const struct holding *h, const struct form *for
 void hold_state(struct holding *h, const struct form *v, int at)
 {
 	struct region *region = h->region;
-	mpq_t factor;
 	struct basis basis = v->term[at].basis;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_inv(factor, v->term[at].factor);
 	mpq_neg(factor, factor);
 	struct form *held = form_scale(replaced(v, &basis, NEW(struct form)), factor);
@@ -37,7 +36,6 @@ void hold_state(struct holding *h, const struct form *v, int at)
 	h->of[region->holds] = basis;
 	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
 	region->hold[region->holds++].form = held;
-	mpq_clear(factor);
 }
 
 void add_release(struct region *region, int expression, bool upward, struct form *form)

@@ -248,8 +248,7 @@ static _Noreturn void tell_again(const struct when *when, const char *why)
 /* Behind its own jump a guard may not stand where it is true, nor go on to there. */
 static void check_jump(struct building *b, const struct when *when, const struct strike *strike)
 {
-	mpq_t ratio, rest;
-	mpq_inits(ratio, rest, NULL);
+	RATIONAL ratio = ZERO, rest = ZERO;
 	bool known = is_along(b, behind(b, strike, strike->guard), strike->guard, ratio, rest);
 	if (known && mpq_sgn(rest) > 0)
 		tell_again(when, "behind it the guard is true, by a constant");
@@ -258,7 +257,6 @@ static void check_jump(struct building *b, const struct when *when, const struct
 	    is_along(b, behind(b, strike, strike->speed), strike->speed, ratio, rest) && mpq_sgn(rest) == 0 &&
 	    mpq_sgn(ratio) > 0)
 		tell_again(when, "behind it the guard goes on as it came");
-	mpq_clears(ratio, rest, NULL);
 }
 
 /* ---- bounces ---- */
@@ -267,9 +265,9 @@ static void check_jump(struct building *b, const struct when *when, const struct
 static bool find_bounce(struct building *b, struct strike *strike)
 {
 	const struct linear *system = &b->model->system;
-	mpq_t *part = rationals((size_t)b->model->n), turned, product, rest;
+	mpq_t *part = rationals((size_t)b->model->n);
 	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
-	mpq_inits(turned, product, rest, NULL);
+	RATIONAL turned = ZERO, product = ZERO, rest = ZERO;
 	for (int i = 0; i < strike->jumps && bounce; i++) {
 		int state = strike->jump[i].state, coord = system->coord[state];
 		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
@@ -290,7 +288,6 @@ static bool find_bounce(struct building *b, struct strike *strike)
 	if (bounce)
 		mpq_sub(strike->restitution, turned, rest);
 	strike->direction = bounce ? part : NULL;
-	mpq_clears(turned, product, rest, NULL);
 	return bounce;
 }
 
@@ -311,8 +308,7 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 static int velocity_jumps(const struct building *b, const struct strike *strike, mpq_srcptr e, struct jump *jump)
 {
 	int jumps = 0;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int j = 0; j < b->model->n; j++) {
 		if (mpq_sgn(strike->direction[j]) == 0)
 			continue;
@@ -325,7 +321,6 @@ static int velocity_jumps(const struct building *b, const struct strike *strike,
 			.form = form_sum(form_unit(basis), form_scale(strike->speed, factor), false)
 		};
 	}
-	mpq_clear(factor);
 	return jumps;
 }
 
@@ -353,8 +348,8 @@ static mpq_t *inverse_masses(const struct building *b)
 static void find_jumps(struct building *b, const struct when *when, struct strike *strike)
 {
 	int n = b->model->n;
-	mpq_t *inverse = inverse_masses(b), *force = rationals((size_t)n), *d = rationals((size_t)n), speed, factor;
-	mpq_inits(speed, factor, NULL);
+	mpq_t *inverse = inverse_masses(b), *force = rationals((size_t)n), *d = rationals((size_t)n);
+	RATIONAL speed = ZERO, factor = ZERO;
 	add_row(b, when->from, 1, force);
 	add_row(b, when->to, -1, force);
 	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)force, d);
@@ -372,19 +367,16 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 	mpq_set(strike->answer, speed);
 	strike->direction = d;
 	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
-	mpq_clears(speed, factor, NULL);
 }
 
 /* What is left where nothing comes back */
 static void still_jumps(struct building *b, struct strike *strike)
 {
-	mpq_t none;
-	mpq_init(none);
+	RATIONAL none = ZERO;
 	strike->still = ARRAY(struct jump, (size_t)b->model->n);
 	strike->jump = ARRAY(struct jump, (size_t)b->model->n);
 	velocity_jumps(b, strike, none, strike->still);
 	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
-	mpq_clear(none);
 }
 
 struct indexed {
@@ -398,15 +390,13 @@ static void check_alike(void *context)
 	struct indexed *work = context;
 	struct building *b = work->b;
 	const struct impact *all = b->model->impact, *impact = &all[work->index];
-	mpq_t ratio, rest;
-	mpq_inits(ratio, rest, NULL);
+	RATIONAL ratio = ZERO, rest = ZERO;
 	for (int i = 0; i < work->index; i++)
 		for (int s = 0; s < b->model->system.segments; s++)
 			if (is_along(b, impact->in[s].guard, all[i].in[s].guard, ratio, rest) && mpq_sgn(rest) == 0)
 				error(impact->when->guard->start,
 				      "all that jumps there belongs into one 'when', with commas",
 				      "another 'when' or stop has this guard already");
-	mpq_clears(ratio, rest, NULL);
 }
 
 /* A contact that rests stays what it is when a load changes its formula. */

@@ -80,12 +80,11 @@ static int ascending(const void *left, const void *right)
 /* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
 static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
 {
-	double *im = ARRAY(double, (size_t)n);
+	SCRATCH double *im = ARRAY(double, (size_t)n);
 	bool found = eigenvalues(n, A, value, im);
 	for (int i = 0; i < n && found && sizes; i++)
 		value[i] = hypot(value[i], im[i]);
 	qsort(value, (size_t)n, sizeof *value, ascending);
-	discard(im);
 	return found;
 }
 
@@ -93,14 +92,11 @@ static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
 bool squared_frequencies(const struct linear *system, double *value)
 {
 	int n = system->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
+	RATIONALS *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
 	if (!leading_inverse(system, inverse, &column))
 		return false;
 	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
-	bool found = sorted_eigenvalues(n, (const mpq_t *)product, false, value);
-	rationals_free(inverse, (size_t)(n * n));
-	rationals_free(product, (size_t)(n * n));
-	return found;
+	return sorted_eigenvalues(n, (const mpq_t *)product, false, value);
 }
 
 double fastest_pole(const struct linear *system)

@@ -92,20 +92,20 @@ static mpq_srcptr factor_of_state(const struct linear *system, int row, int stat
 void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool held, mpq_t *row)
 {
 	int n = system->n, states = system->states;
-	mpq_t *lower = rationals((size_t)n * (size_t)states);
+	RATIONALS *lower = rationals((size_t)n * (size_t)states);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < states; j++)
 			mpq_neg(lower[i * states + j], factor_of_state(system, i, j, held));
 	rational_product(n, n, states, inverse, (const mpq_t *)lower, row);
-	rationals_free(lower, (size_t)n * (size_t)states);
 }
 
 /* x' = A x over the states (held terms: those that a scheme holds, alone) */
 mpq_t *state_matrix(const struct linear *system, bool held)
 {
 	int n = system->n, states = system->states, column;
-	mpq_t *A = rationals((size_t)states * (size_t)states), *inverse = rationals((size_t)n * (size_t)n);
-	mpq_t *highest = rationals((size_t)n * (size_t)states);
+	RATIONALS *inverse = rationals((size_t)n * (size_t)n);
+	mpq_t *A = rationals((size_t)states * (size_t)states);
+	RATIONALS *highest = rationals((size_t)n * (size_t)states);
 	leading_inverse(system, inverse, &column);
 	highest_derivatives(system, (const mpq_t *)inverse, held, highest);
 	for (int i = 0; i < n; i++) {
@@ -115,8 +115,6 @@ mpq_t *state_matrix(const struct linear *system, bool held)
 		if (system->velocity[i] >= 0 && !held)
 			mpq_set_ui(A[i * states + system->velocity[i]], 1, 1);
 	}
-	rationals_free(inverse, (size_t)n * (size_t)n);
-	rationals_free(highest, (size_t)n * (size_t)states);
 	return A;
 }
 

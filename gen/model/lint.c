@@ -87,8 +87,7 @@ static void check_elements(struct lint *lint)
 {
 	struct building *b = lint->b;
 	static const char *const what[] = { "mass", "stiffness", "damping" };
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
 		if (element->kind == ELEMENT_FORCE || !constant_of_node(b, element->value, value) ||
@@ -98,7 +97,6 @@ static void check_elements(struct lint *lint)
 			    readable_text(value));
 		lint->negative = lint->negative.source ? lint->negative : element->value->start;
 	}
-	mpq_clear(value);
 }
 
 /* Walks go through lets, as often as they are read: `left` nodes are looked at, and then no more is found. */
@@ -114,11 +112,9 @@ static const struct symbol *negative_param(const struct node *node, int *left)
 		return negative_param(symbol->value, left);
 	if (symbol && symbol->kind == SYMBOL_PARAM && symbol->progress == COLLECTED && symbol->collected->rows == 1 &&
 	    symbol->collected->columns == 1) {
-		mpq_t value;
-		mpq_init(value);
+		RATIONAL value = ZERO;
 		param_value(symbol, value);
 		found = mpq_sgn(value) < 0 ? symbol : NULL;
-		mpq_clear(value);
 	}
 	for (int i = 0; i < node->children && !found; i++)
 		found = negative_param(node->child[i], left);
@@ -308,7 +304,7 @@ static double largest_solution(int n, struct phasor *P)
 static double amplitude(const struct linear *s, const struct load *load, double w)
 {
 	int n = s->n, width = n + 1, segment = s->segments - 1;
-	struct phasor *P = ARRAY(struct phasor, (size_t)n * (size_t)width);
+	SCRATCH struct phasor *P = ARRAY(struct phasor, (size_t)n * (size_t)width);
 	bool acts = false;
 	for (; !acts && segment >= 0; segment--)
 		for (int i = 0; i < n; i++)
@@ -322,9 +318,7 @@ static double amplitude(const struct linear *s, const struct load *load, double 
 			P[i * width + j] = (struct phasor){ nearest_double(s->K[i * n + j]) -
 								    w * w * nearest_double(s->M[i * n + j]),
 							    w * nearest_double(s->C[i * n + j]) };
-	double largest = largest_solution(n, P);
-	discard(P);
-	return largest;
+	return largest_solution(n, P);
 }
 
 /* cos or sin in an expression, through lets; or NULL */
@@ -476,8 +470,7 @@ static void check_symmetry(const struct lint *lint)
 static int unopposed_row(int n, int width, mpq_t *A)
 {
 	int *row = ARRAY(int, (size_t)n), rank = 0, listed = 0;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int with = 0; with < 2; with++)    /* what has a force comes last, so that it is what is left */
 		for (int i = 0; i < n; i++)
 			if ((mpq_sgn(A[i * width + width - 1]) != 0) == with)
@@ -499,7 +492,6 @@ static int unopposed_row(int n, int width, mpq_t *A)
 		}
 		rank++;
 	}
-	mpq_clear(factor);
 	for (int i = rank; i < n; i++)
 		if (mpq_sgn(A[row[i] * width + width - 1]) != 0)
 			return row[i];
@@ -524,7 +516,7 @@ static void check_drift(const struct lint *lint)
 	if (n > MOST_RANK || !may_have_zero(lint))
 		return;
 	size_t cells = (size_t)n * (size_t)width;
-	mpq_t *A = rationals(cells);
+	RATIONALS *A = rationals(cells);
 	for (int i = 0; i < n; i++) {
 		for (int j = 0; j < n; j++) {
 			mpq_set(A[i * width + j], s->K[i * n + j]);
@@ -536,7 +528,6 @@ static void check_drift(const struct lint *lint)
 					s->load[l].force[0][(s->segments - 1) * n + i]);
 	}
 	int row = unopposed_row(n, width, A);
-	rationals_free(A, cells);
 	if (row >= 0)
 		say_warning(model->residual[row].at, NULL,
 			    "a constant load drives %s off: neither stiffness nor damping holds what moves as a whole "

@@ -142,14 +142,12 @@ static struct node *asked_or_written(struct building *b, const char *asked, stru
 
 static int whole_number(struct building *b, struct node *node, int low, int high, const char *what)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	collect_constant(&b->collector, node, value);
 	if (mpz_cmp_ui(mpq_denref(value), 1) != 0 || mpq_cmp_si(value, low, 1) < 0 || mpq_cmp_si(value, high, 1) > 0)
 		error(node->start, NULL, "%s is a whole number from %d to %d, found %s", what, low, high,
 		      readable_text(value));
 	int number = (int)mpz_get_si(mpq_numref(value));
-	mpq_clear(value);
 	return number;
 }
 
@@ -157,8 +155,7 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 {
 	struct truncation *truncation = &b->model->truncation;
 	const bool single = b->request->single;
-	mpq_t least;
-	mpq_init(least);
+	RATIONAL least = ZERO;
 	mpq_set_ui(least, 1, single ? 1000000 : 1000000000000000);
 	collect_constant(&b->collector, node, truncation->tolerance);
 	if (mpq_sgn(truncation->tolerance) <= 0 || mpq_cmp_ui(truncation->tolerance, 1, 1) >= 0)
@@ -167,21 +164,18 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 	if (mpq_cmp(truncation->tolerance, least) < 0)
 		error(at, NULL, "a tolerance below %s is below the rounding of %s", single ? "1e-6" : "1e-15",
 		      target_name());
-	mpq_clear(least);
 }
 
 static int stages_of(struct building *b, struct node *node)
 {
 	int stages = LEAST_STAGES;
-	mpq_t asked;
-	mpq_init(asked);
+	RATIONAL asked = ZERO;
 	collect_constant(&b->collector, node, asked);
 	while (stages <= MOST_STAGES && mpq_cmp_ui(asked, (unsigned long)stages, 1) != 0)
 		stages += 2;
 	if (stages > MOST_STAGES)
 		error(node->start, NULL, "the number of stages of scheme %s is 3, 5, 7 or 9, found %s",
 		      scheme_name(b->model->scheme), readable_text(asked));
-	mpq_clear(asked);
 	return stages;
 }
 

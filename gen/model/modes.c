@@ -71,14 +71,12 @@ static bool is_zero(size_t count, const mpq_t *A)
 static bool commute(int n, const mpq_t *A, const mpq_t *B)
 {
 	const size_t cells = (size_t)n * (size_t)n;
-	mpq_t *AB = rationals(cells), *BA = rationals(cells);
+	RATIONALS *AB = rationals(cells), *BA = rationals(cells);
 	rational_product(n, n, n, A, B, AB);
 	rational_product(n, n, n, B, A, BA);
 	bool same = true;
 	for (size_t i = 0; i < cells && same; i++)
 		same = mpq_equal(AB[i], BA[i]);
-	rationals_free(AB, cells);
-	rationals_free(BA, cells);
 	return same;
 }
 
@@ -185,11 +183,9 @@ static double largest_eigenvalue(const struct mode_basis *basis)
 /* To the nearest of so many bits */
 static void round_to_bits(mpq_ptr q, int bits)
 {
-	mpfr_t x;
-	mpfr_init2(x, bits);
+	REAL x = WITH_BITS(bits);
 	mpfr_set_q(x, q, MPFR_RNDN);
 	mpfr_get_q(q, x);
-	mpfr_clear(x);
 }
 
 static void clear_small(int count, mpq_t *x, int stride)
@@ -207,9 +203,8 @@ static void clear_small(int count, mpq_t *x, int stride)
 /* Of two poles 0: 1 in the largest coordinate, in which the second state has no part */
 static void make_unit(int states, int coords, mpq_t *left, mpq_t *right)
 {
-	mpq_t scale, part, product;
 	int at = 0;
-	mpq_inits(scale, part, product, NULL);
+	RATIONAL scale = ZERO, part = ZERO, product = ZERO;
 	for (int i = 1; i < coords; i++)
 		if (fabs(nearest_double(right[2 * i])) > fabs(nearest_double(right[2 * at])) * (1 + 1e-9))
 			at = i;
@@ -229,15 +224,14 @@ static void make_unit(int states, int coords, mpq_t *left, mpq_t *right)
 		clear_small(states, right + i, 2);
 		clear_small(states, left + i * states, 1);
 	}
-	mpq_clears(scale, part, product, NULL);
 }
 
 /* Two poles 0 with one eigenvector: z becomes (z_i, row i of the block times z), i the larger row, whose derivatives
  * are exactly the second and 0. */
 static void straighten(struct mode *mode, int states, int coords)
 {
-	mpq_t *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
-	      *right = rationals(2 * (size_t)states);
+	RATIONALS *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
+		  *right = rationals(2 * (size_t)states);
 	const mpq_t *T = (const mpq_t *)mode->block;
 	int column;
 	const bool second = fabs(nearest_double(T[2])) + fabs(nearest_double(T[3])) >
@@ -256,22 +250,17 @@ static void straighten(struct mode *mode, int states, int coords)
 		for (int i = 0; i < 4; i++)
 			mpq_set_ui(mode->block[i], i == 1, 1);
 	}
-	rationals_free(S, 4);
-	rationals_free(inverse, 4);
-	rationals_free(left, 2 * (size_t)states);
-	rationals_free(right, 2 * (size_t)states);
 }
 
 /* T^2 = 0, as far as its digits tell, or of one state T = 0 */
 static bool is_nilpotent(const struct mode *mode, double largest)
 {
 	const int k = mode->states;
-	mpq_t *square = rationals((size_t)k * (size_t)k);
+	RATIONALS *square = rationals((size_t)k * (size_t)k);
 	double most = 0;
 	rational_product(k, k, k, (const mpq_t *)mode->block, (const mpq_t *)mode->block, square);
 	for (int i = 0; i < k * k; i++)
 		most = fmax(most, fabs(nearest_double(square[i])));
-	rationals_free(square, (size_t)k * (size_t)k);
 	return most <= 1e-25 * largest * largest;
 }
 
@@ -358,7 +347,7 @@ static void lift_exactly(const struct modes *modes, struct mode *mode, const mpq
 {
 	const int n = modes->model->n, c = mode->columns, k = mode->states, states = 2 * n;
 	const int *velocity = modes->model->system.velocity;
-	mpq_t *DX = rationals((size_t)n * (size_t)c), *damping = rationals((size_t)c * (size_t)c);
+	RATIONALS *DX = rationals((size_t)n * (size_t)c), *damping = rationals((size_t)c * (size_t)c);
 	rational_product(n, n, c, (const mpq_t *)modes->basis->D, X, DX);
 	rational_product(c, n, c, Y, (const mpq_t *)DX, damping);
 	for (int i = 0; i < c; i++) {
@@ -375,8 +364,6 @@ static void lift_exactly(const struct modes *modes, struct mode *mode, const mpq
 			mpq_set(mode->left[(c + i) * states + velocity[j]], Y[i * n + j]);
 		}
 	}
-	rationals_free(DX, (size_t)n * (size_t)c);
-	rationals_free(damping, (size_t)c * (size_t)c);
 }
 
 bool mode_refine(struct modes *modes, int index)

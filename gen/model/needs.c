@@ -155,11 +155,9 @@ static void find_requirement(void *context)
 	if (mpq_sgn(r->bound) <= 0)
 		error(f->need->bound->start, NULL, "a need is above 0, found %s", readable_text(r->bound));
 	if (f->need->percent) {
-		mpq_t hundred;
-		mpq_init(hundred);
+		RATIONAL hundred = ZERO;
 		mpq_set_ui(hundred, 100, 1);
 		mpq_div(r->bound, r->bound, hundred);
-		mpq_clear(hundred);
 	}
 	constant(f->need->until, r->until);
 	if (mpq_sgn(r->until) < 0)
@@ -173,8 +171,7 @@ static void find_budget(void *context)
 {
 	struct model *model = context;
 	const struct budget *budget = &model->spec->budget;
-	mpq_t instructions;
-	mpq_init(instructions);
+	RATIONAL instructions = ZERO;
 	if (model->requirements == 0)
 		error(budget->at, "need OUTPUT within BOUND until END",
 		      "a budget stands beside a need: there is none");
@@ -188,7 +185,6 @@ static void find_budget(void *context)
 	if (mpq_sgn(instructions) <= 0)
 		error(budget->instructions->start, NULL, "a budget is above 0, found %s", readable_text(instructions));
 	model->budget = nearest_double(instructions);
-	mpq_clear(instructions);
 }
 
 bool find_requirements(struct model *model)

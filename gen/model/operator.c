@@ -145,12 +145,10 @@ struct bank_work {
 
 static void nearest_root(mpq_ptr value)
 {
-	mpfr_t root;
-	mpfr_init2(root, 53);
+	REAL root = WITH_BITS(53);
 	mpfr_set_q(root, value, MPFR_RNDN);
 	mpfr_sqrt(root, root, MPFR_RNDN);
 	mpfr_get_q(value, root);
-	mpfr_clear(root);
 }
 
 /* Parts of equal length in the square of the value, as stiffness and mass terms of a turning frame follow it. Each
@@ -163,8 +161,9 @@ static void divide_range(void *context)
 	if (!w->b->spec->operator_count)
 		return;
 	size_t count = (size_t)w->operators;
-	mpq_t limit[2], length, part;
-	mpq_inits(limit[0], limit[1], length, part, NULL);
+	mpq_t limit[2];
+	RATIONAL length = ZERO, part = ZERO;
+	mpq_inits(limit[0], limit[1], NULL);
 	for (int k = 0; k < 2; k++)
 		collect_constant(&w->b->collector, w->bank->value[k], limit[k]);
 	if (mpq_sgn(limit[0]) < 0 || mpq_cmp(limit[0], limit[1]) >= 0)
@@ -181,7 +180,7 @@ static void divide_range(void *context)
 		mpq_add(w->value[k], limit[0], part);
 		nearest_root(w->value[k]);
 	}
-	mpq_clears(limit[0], limit[1], length, part, NULL);
+	mpq_clears(limit[0], limit[1], NULL);
 }
 
 static void check_rising(const struct building *b, const struct fixed *bank)
@@ -457,8 +456,7 @@ static mpq_ptr of_coordinates(const struct building *b, const mpq_t *matrix, int
 /* matrix <- its symmetric part */
 static void keep_symmetric(const struct building *b, mpq_t *matrix)
 {
-	mpq_t mean;
-	mpq_init(mean);
+	RATIONAL mean = ZERO;
 	for (int i = 0; i < b->model->n; i++)
 		for (int j = 0; j < i; j++) {
 			mpq_ptr lower = of_coordinates(b, matrix, i, j), upper = of_coordinates(b, matrix, j, i);
@@ -467,7 +465,6 @@ static void keep_symmetric(const struct building *b, mpq_t *matrix)
 			mpq_set(lower, mean);
 			mpq_set(upper, mean);
 		}
-	mpq_clear(mean);
 }
 
 /* Has M q'' + C q' + K q real modes, all of them symmetric? C M^-1 K = K M^-1 C (Caughey and O'Kelly 1965) */

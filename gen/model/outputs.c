@@ -8,8 +8,7 @@
 static void add_highest(const struct model *model, const struct linear *system, const mpq_t *inverse,
 			const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
 {
-	mpq_t weight, product;
-	mpq_inits(weight, product, NULL);
+	RATIONAL weight = ZERO, product = ZERO;
 	for (int j = 0; j < system->states; j++) {
 		mpq_mul(product, factor, highest[coord * system->states + j]);
 		mpq_add(output->state[j], output->state[j], product);
@@ -33,7 +32,6 @@ static void add_highest(const struct model *model, const struct linear *system, 
 				mpq_add(output->input[k][j], output->input[k][j], product);
 			}
 	}
-	mpq_clears(weight, product, NULL);
 }
 
 /* The state that is the `order`-th derivative of a coordinate; -1: it is the highest derivative, and no state. */
@@ -341,8 +339,7 @@ static void place_output_waves(struct building *b, bool *seen, const struct form
 static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
 {
 	struct model *model = b->model;
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	model->highest = ARRAY(struct output *, (size_t)model->n);
 	for (int i = 0; i < model->outputs; i++) {
@@ -361,7 +358,6 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 			add_highest(model, &model->system, inverse, highest, k, one, model->highest[k]);
 		}
 	}
-	mpq_clear(one);
 }
 
 /* A written state, as the output that it is by itself */

@@ -34,10 +34,9 @@ static int *components_of_equations(const struct building *b)
 	for (int i = 0; i < 2 * n; i++)
 		parent[i] = i;
 	for (int row = 0; row < n; row++) {
-		bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 		for (int s = 0; s < b->model->system.segments; s++)
 			join_form(b, parent, seen, row, b->snapshot[s].residual[row].form);
-		discard(seen);
 	}
 	return parent;
 }

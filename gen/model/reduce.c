@@ -23,8 +23,7 @@ struct observable {
 /* row = sum of coefficient_i basis_i; false: it is independent, and what is left of it stays in `rest` */
 static bool express(const struct observable *o, const mpq_t *row, mpq_t *rest, mpq_t *coefficient)
 {
-	mpq_t factor, product;
-	mpq_inits(factor, product, NULL);
+	RATIONAL factor = ZERO, product = ZERO;
 	for (int j = 0; j < o->states; j++) {
 		mpq_set(rest[j], row[j]);
 		mpq_set_ui(coefficient[j], 0, 1);
@@ -41,19 +40,18 @@ static bool express(const struct observable *o, const mpq_t *row, mpq_t *rest, m
 	bool zero = true;
 	for (int j = 0; j < o->states; j++)
 		zero = zero && mpq_sgn(rest[j]) == 0;
-	mpq_clears(factor, product, NULL);
 	return zero;
 }
 
 static void add_row(struct observable *o, const mpq_t *row, const char *name)
 {
 	int n = o->states, r = o->rank, pivot = 0;
-	mpq_t *rest = rationals((size_t)n), *coefficient = rationals((size_t)n), scale;
+	mpq_t *rest = rationals((size_t)n), *coefficient = rationals((size_t)n);
 	if (express(o, row, rest, coefficient))
 		return;
 	while (mpq_sgn(rest[pivot]) == 0)
 		pivot++;
-	mpq_init(scale);
+	RATIONAL scale = ZERO;
 	mpq_inv(scale, rest[pivot]);
 	for (int j = 0; j < n; j++) {
 		mpq_mul(o->echelon[r * n + j], rest[j], scale);
@@ -67,7 +65,6 @@ static void add_row(struct observable *o, const mpq_t *row, const char *name)
 		mpq_set(o->basis[r].row[j], row[j]);
 	o->basis[r].name = name;
 	o->rank++;
-	mpq_clear(scale);
 }
 
 /* ---- rows to see ---- */

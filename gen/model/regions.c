@@ -121,13 +121,11 @@ static int expression_here(struct looking *l, const struct node *node, const str
 		note_sign(l->b, l->s, at, false);
 		return -1;
 	}
-	mpq_t constant;
-	mpq_init(constant);
+	RATIONAL constant = ZERO;
 	mpq_set(constant, at);
 	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
 	int e = find_expression(l->s, l->segment, &what, factor, at);
 	note_sign(l->b, l->s, factor, false);
-	mpq_clear(constant);
 	return e;
 }
 
@@ -137,13 +135,11 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 {
 	bool turned = is_constant(a) && !is_constant(b);
 	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
-	mpq_t factor, at;
-	mpq_inits(factor, at, NULL);
+	RATIONAL factor = ZERO, at = ZERO;
 	refuse_force(node, form);
 	int e = expression_here(l, node, form, factor, at), sign = mpq_sgn(at);
 	if (e >= 0)
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
-	mpq_clears(factor, at, NULL);
 	form_free(form);
 	return turned ? -sign : sign;
 }
@@ -153,8 +149,7 @@ static struct form *form_here(struct looking *l, const struct form *form);
 static struct form *table_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	int piece = 1;
-	mpq_t slope, width;
-	mpq_inits(slope, width, NULL);
+	RATIONAL slope = ZERO, width = ZERO;
 	for (int k = 3; k + 2 < a->operands; k += 2)
 		if (sign_here(l, a->node, x[0], x[k]) > 0)
 			piece = k;
@@ -162,9 +157,7 @@ static struct form *table_here(struct looking *l, const struct atom *a, struct f
 	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
 	constant_value(c, form_difference(x[piece + 2], x[piece]), width);
 	mpq_div(slope, slope, width);
-	struct form *form = form_sum(x[piece + 1], form_scale(form_difference(x[0], x[piece]), slope), false);
-	mpq_clears(slope, width, NULL);
-	return form;
+	return form_sum(x[piece + 1], form_scale(form_difference(x[0], x[piece]), slope), false);
 }
 
 static struct form *extreme_here(struct looking *l, const struct atom *a, struct form *const *x)
@@ -202,8 +195,7 @@ static mpq_srcptr segment_end(const struct looking *l)
 /* As far as its size tells, which params may change; *least: by what it was decided; *bounded: that is known */
 static bool is_positive_by_size(const struct form *form, mpq_ptr least, bool *bounded)
 {
-	mpq_t size;
-	mpq_init(size);
+	RATIONAL size = ZERO;
 	*bounded = true;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
@@ -215,22 +207,19 @@ static bool is_positive_by_size(const struct form *form, mpq_ptr least, bool *bo
 		*bounded = *bounded && (basis->kind == BASIS_ONE || (basis->kind == BASIS_WAVE && !basis->power &&
 								     mpq_sgn(basis->wave->a) <= 0));
 	}
-	mpq_clear(size);
 	return *bounded && mpq_sgn(least) >= 0;
 }
 
 /* Never below 0 in this segment of time: it needs no breakpoint there */
 static bool is_positive_here(struct looking *l, const struct form *form)
 {
-	mpq_t least, zero;
 	bool bounded;
-	mpq_inits(least, zero, NULL);
+	RATIONAL least = ZERO, zero = ZERO;
 	bool positive = is_positive_by_size(form, least, &bounded);
 	if (bounded)
 		note_sign(l->b, l->s, least, positive);
 	if (!positive && !l->b->factor)
 		positive = stays_above_zero(form, segment_start(l, zero), segment_end(l));
-	mpq_clears(least, zero, NULL);
 	return positive;
 }
 
@@ -272,13 +261,11 @@ static int add_friction(struct looking *l, const struct atom *a)
 /* As written, in this segment of time */
 static void check_forces_here(const struct looking *l, const struct atom *a)
 {
-	mpq_t zero;
 	if (l->b->factor)
 		return;
-	mpq_init(zero);
+	RATIONAL zero = ZERO;
 	for (int i = 1; i < a->operands; i++)
 		check_force(a->node->child[i], a->operand[i], segment_start(l, zero), segment_end(l));
-	mpq_clear(zero);
 }
 
 /* It stands for itself: what it is depends on the whole region */
@@ -305,15 +292,13 @@ static bool exceeds(struct looking *l, const struct node *node, const struct for
 		    struct slide *slide, int side)
 {
 	struct form *form = form_difference(a, b);
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	refuse_force(node, form);
 	int e = expression_here(l, node, form, factor, slide->at[side]);
 	if (e < 0)
 		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
 	slide->expression[side] = e;
 	slide->upward[side] = mpq_sgn(factor) > 0;
-	mpq_clear(factor);
 	return is_above(l, e, slide->at[side]) == slide->upward[side];
 }
 
@@ -477,11 +462,9 @@ static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr 
 static void meet_impacts(struct looking *l)
 {
 	const struct model *model = l->b->model;
-	mpq_t constant;
-	mpq_init(constant);
+	RATIONAL constant = ZERO;
 	for (int i = 0; i < model->impacts; i++)
 		meet_impact(l, &model->impact[i], constant);
-	mpq_clear(constant);
 }
 
 /* What a look has left that was not the last */
@@ -560,14 +543,13 @@ static void add_inequality(struct inequalities *set, mpq_t *a)
 /* upper and lower bound on variable v combined, so that it drops out */
 static mpq_t *combined(int size, int v, const mpq_t *upper, const mpq_t *lower)
 {
-	mpq_t *a = rationals((size_t)size + 1), product, factor;
-	mpq_inits(product, factor, NULL);
+	mpq_t *a = rationals((size_t)size + 1);
+	RATIONAL product = ZERO, factor = ZERO;
 	for (int i = 0; i <= size; i++) {
 		mpq_div(product, upper[i], upper[v]);
 		mpq_div(factor, lower[i], lower[v]);
 		mpq_sub(a[i], product, factor); /* v + ... < ., and -v - ... < -. */
 	}
-	mpq_clears(product, factor, NULL);
 	return a;
 }
 
@@ -689,8 +671,7 @@ static bool vanishes_on(struct collector *c, const struct form *form, const stru
 			mpq_srcptr at)
 {
 	const struct form *here = e->in[segment];
-	mpq_t factor, constant;
-	mpq_inits(factor, constant, NULL);
+	RATIONAL factor = ZERO, constant = ZERO;
 	for (int i = 0; i < form->terms; i++)
 		if (basis_order(&form->term[i].basis, &here->term[0].basis) == 0)
 			mpq_div(factor, form->term[i].factor, here->term[0].factor);
@@ -701,7 +682,6 @@ static bool vanishes_on(struct collector *c, const struct form *form, const stru
 	if (gone)
 		constant_value(c, rest, constant);
 	gone = gone && mpq_sgn(constant) == 0;
-	mpq_clears(factor, constant, NULL);
 	return gone;
 }
 

@@ -188,15 +188,14 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 static mpq_t *weights_of(const struct model *model, const mpq_t *u)
 {
 	int n = model->n;
-	mpq_t *w = rationals((size_t)n), product;
-	mpq_init(product);
+	mpq_t *w = rationals((size_t)n);
+	RATIONAL product = ZERO;
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
 			mpq_mul(product, u[i],
 				(model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j]);
 			mpq_add(w[j], w[j], product);
 		}
-	mpq_clear(product);
 	return w;
 }
 
@@ -205,8 +204,7 @@ static bool retunes(const struct model *model, const mpq_t *w, const mpq_t *othe
 {
 	int first = 0;
 	bool differ = false;
-	mpq_t a, b;
-	mpq_inits(a, b, NULL);
+	RATIONAL a = ZERO, b = ZERO;
 	while (first < model->n && mpq_sgn(w[first]) == 0)
 		first++;
 	for (int j = 0; j < model->n && first < model->n; j++) {
@@ -214,7 +212,6 @@ static bool retunes(const struct model *model, const mpq_t *w, const mpq_t *othe
 		mpq_mul(b, w[j], other[first]);
 		differ = differ || !mpq_equal(a, b);
 	}
-	mpq_clears(a, b, NULL);
 	return differ;
 }
 
@@ -398,10 +395,9 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 {
 	const struct model *model = l->model;
 	int n = model->n;
-	mpq_t sum, product;
 	*g = (struct group){ .n = n, .motion = motion, .split = is_mixed(model, motion, motion) };
 	g->root = root_in(l, motion, g->split);
-	mpq_inits(sum, product, NULL);
+	RATIONAL sum = ZERO, product = ZERO;
 	for (int j = 0; j < n && weight; j++) {
 		mpq_mul(product, weight[j], motion[j]);
 		mpq_add(sum, sum, product);
@@ -411,7 +407,6 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 		scale(n, weight, sum);
 		g->weight = weight;
 	}
-	mpq_clears(sum, product, NULL);
 	if (support(n, motion) <= 1 && !g->weight)
 		return false;
 	if (!fixed_in_part(model, g))
@@ -530,11 +525,9 @@ static struct form *rate_of(const struct relative *r, int coord)
 	}
 	if (!lead || model->system.segments > 1)
 		return NULL;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_inv(factor, lead);
 	rate = form_scale(rate, factor);
-	mpq_clear(factor);
 	return rate;
 }
 
@@ -659,12 +652,9 @@ static mpq_t *leading_factors(const struct model *model)
 
 static struct form *divided(const struct relative *r, int coord, struct form *const *equation, mpq_srcptr times)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_div(factor, times, r->solved[coord]);
-	struct form *form = form_scale(equation[coord], factor);
-	mpq_clear(factor);
-	return form;
+	return form_scale(equation[coord], factor);
 }
 
 static bool same_order(const struct model *model, int a, int b)
@@ -676,12 +666,11 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 {
 	const struct link *link = &r->link[coord];
 	struct form *form = NEW(struct form);
-	mpq_t one;
 	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
 		return equation[coord];
 	if (link->kind == LINK_PARENT && !same_order(r->written, coord, link->from))
 		return equation[coord];
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (link->kind == LINK_PARENT) {
 		struct form *own = divided(r, coord, equation, one),
@@ -691,7 +680,6 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 	for (int j = 0; j < r->written->n && link->kind == LINK_CENTRE; j++)
 		if (mpq_sgn(link->weight[j]) != 0)
 			form = form_sum(form, divided(r, j, equation, link->weight[j]), false);
-	mpq_clear(one);
 	return form;
 }
 
@@ -782,8 +770,7 @@ struct relative *relative_of(const struct model *model)
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept)
 {
 	const struct link *link = &r->link[coord];
-	mpq_t product;
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	if (link->kind == LINK_NONE) {
 		mpq_set(kept, *value[coord]);
 	} else if (link->kind == LINK_PARENT) {
@@ -801,14 +788,13 @@ void relative_value(const struct relative *r, int coord, mpq_t *const *value, mp
 			mpq_add(kept, kept, product);
 		}
 	}
-	mpq_clear(product);
 }
 
 /* The rate that a link is measured from, at written values */
 static mpq_t *rate_value(const struct link *link, mpq_t *written)
 {
-	mpq_t *sum = rationals(1), product;
-	mpq_init(product);
+	mpq_t *sum = rationals(1);
+	RATIONAL product = ZERO;
 	for (int i = 0; i < link->rate->terms; i++) {
 		const struct form_term *term = &link->rate->term[i];
 		mpq_set(product, term->factor);
@@ -816,7 +802,6 @@ static mpq_t *rate_value(const struct link *link, mpq_t *written)
 			mpq_mul(product, product, written[term->basis.index]);
 		mpq_add(*sum, *sum, product);
 	}
-	mpq_clear(product);
 	return sum;
 }
 

@@ -8,13 +8,12 @@
 void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
 {
 	const int size = x->size;
-	mpq_t *A = augmented_matrix(x, system, 0);
+	RATIONALS *A = augmented_matrix(x, system, 0);
 	for (int i = 0; i < system->n; i++) {
 		mpq_t *from = A + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
 		for (int j = 0; j < size; j++)
 			mpq_swap(row[i * size + j], from[j]);
 	}
-	rationals_free(A, (size_t)size * (size_t)size);
 }
 
 void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
@@ -34,15 +33,13 @@ void row_of_output(const struct layout *x, const struct linear *system, const st
 
 static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *row)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int j = 0; j < size && mpq_sgn(factor) != 0; j++) {
 		if (mpq_sgn(from[j]) == 0)
 			continue;
 		mpq_mul(part, factor, from[j]);
 		mpq_add(row[j], row[j], part);
 	}
-	mpq_clear(part);
 }
 
 void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
@@ -199,8 +196,7 @@ static void list_signs(struct listing *l)
 {
 	const struct switching *s = l->model->switching;
 	int count = 0;
-	mpq_t difference;
-	mpq_init(difference);
+	RATIONAL difference = ZERO;
 	for (int e = 0; e < s->expressions; e++)
 		for (int k = 1; k < s->expression[e].breaks; k++) {
 			mpq_sub(difference, s->expression[e].at[k], s->expression[e].at[k - 1]);
@@ -209,7 +205,6 @@ static void list_signs(struct listing *l)
 		}
 	for (int i = 0; i < s->signs; i++)
 		add_number(l, s->sign[i].least ? RETUNED_LEAST : RETUNED_SIGN, count++, 1, s->sign[i].number);
-	mpq_clear(difference);
 }
 
 struct listing list_rows(const struct model *model, const struct layout *x, bool signs)

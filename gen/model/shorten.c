@@ -74,11 +74,11 @@ static void fill_block(const struct selection *s, int index, struct linear *syst
 static mpq_t *force_column(const struct modes *modes, const mpq_t *inverse, const mpq_t *force)
 {
 	const struct linear *system = &modes->model->system;
-	mpq_t *highest = rationals((size_t)system->n), *column = rationals((size_t)system->states);
+	RATIONALS *highest = rationals((size_t)system->n);
+	mpq_t *column = rationals((size_t)system->states);
 	rational_product(system->n, system->n, 1, inverse, force, highest);
 	for (int i = 0; i < system->n; i++)
 		mpq_swap(column[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
-	rationals_free(highest, (size_t)system->n);
 	return column;
 }
 
@@ -92,19 +92,17 @@ static void drive(const struct modes *modes, const struct mode *mode, const mpq_
 static void project_force(const struct selection *s, const mpq_t *inverse, const mpq_t *force, mpq_t *to)
 {
 	const struct modes *modes = s->modes;
-	mpq_t *column = force_column(modes, inverse, force);
+	RATIONALS *column = force_column(modes, inverse, force);
 	for (int i = 0; i < modes->count; i++) {
 		const struct mode *mode = &modes->mode[i];
 		if (!s->of[i])
 			continue;
-		mpq_t *b = rationals((size_t)mode->states);
+		RATIONALS *b = rationals((size_t)mode->states);
 		drive(modes, mode, (const mpq_t *)column, b);
 		const int from = mode->moves ? mode->columns : 0;
 		for (int j = from; j < mode->states; j++)
 			mpq_set(to[s->first[i] + j - from], b[j]);
-		rationals_free(b, (size_t)mode->states);
 	}
-	rationals_free(column, (size_t)modes->model->system.states);
 }
 
 static void project_loads(const struct selection *s, const mpq_t *inverse, struct linear *system)
@@ -150,10 +148,9 @@ struct following {
 
 static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_ptr to)
 {
-	mpq_t *sum = rationals(1);
+	RATIONALS *sum = rationals(1);
 	rational_product(1, f->mode->states, 1, (const mpq_t *)f->c[output], x, sum);
 	(f->minus ? mpq_sub : mpq_add)(to, to, sum[0]);
-	rationals_free(sum, 1);
 }
 
 /* [a - T, w; -w, a - T] of a load, its inverse; false: singular */
@@ -161,7 +158,7 @@ static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int 
 {
 	const int k = mode->states, size = trig * k;
 	int column;
-	mpq_t *F = rationals((size_t)size * (size_t)size);
+	RATIONALS *F = rationals((size_t)size * (size_t)size);
 	for (int r = 0; r < size; r++)
 		for (int c = 0; c < size; c++) {
 			mpq_ptr cell = F[r * size + c];
@@ -173,22 +170,19 @@ static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int 
 				(r < c ? mpq_set : mpq_neg)(cell, w);
 		}
 	const bool regular = rational_inverse(size, (const mpq_t *)F, inverse, &column);
-	rationals_free(F, (size_t)size * (size_t)size);
 	return regular;
 }
 
 /* x = inverse (b - (power + 1) above), of one power of t of a load; above NULL: 0 */
 static void forced_power(int size, const mpq_t *inverse, mpq_t *b, const mpq_t *above, int power, mpq_t *x)
 {
-	mpq_t factor, product;
-	mpq_inits(factor, product, NULL);
+	RATIONAL factor = ZERO, product = ZERO;
 	mpq_set_si(factor, power + 1, 1);
 	for (int i = 0; i < size && above; i++) {
 		mpq_mul(product, factor, above[i]);
 		mpq_sub(b[i], b[i], product);
 	}
 	rational_product(size, size, 1, inverse, (const mpq_t *)b, x);
-	mpq_clears(factor, product, NULL);
 }
 
 static void follow_load(const struct following *f, int l, int segment)
@@ -197,16 +191,16 @@ static void follow_load(const struct following *f, int l, int segment)
 	const struct load *load = &system->load[l];
 	const int trig = oscillates(load->wave) ? 2 : 1, k = f->mode->states, size = trig * k;
 	const size_t cells = (size_t)size * (size_t)size;
-	mpq_t *inverse = rationals(cells), *b = rationals((size_t)size), *x = NULL;
+	RATIONALS *inverse = rationals(cells), *b = rationals((size_t)size);
+	mpq_t *x = NULL;
 	const bool regular = inverse_of(f->mode, load->wave->a, load->wave->w, trig, inverse);
 	for (int power = load->powers - 1; power >= 0 && regular; power--) {
 		mpq_t *above = x;
 		x = rationals((size_t)size);
 		for (int t = 0; t < trig; t++) {
 			const mpq_t *force = (const mpq_t *)load->force[power * trig + t] + segment * system->n;
-			mpq_t *column = force_column(f->modes, f->inverse, force);
+			RATIONALS *column = force_column(f->modes, f->inverse, force);
 			drive(f->modes, f->mode, (const mpq_t *)column, b + t * k);
-			rationals_free(column, (size_t)system->states);
 		}
 		forced_power(size, (const mpq_t *)inverse, b, (const mpq_t *)above, power, x);
 		for (int o = 0; o < f->modes->model->outputs; o++)
@@ -218,29 +212,23 @@ static void follow_load(const struct following *f, int l, int segment)
 	}
 	if (x)
 		rationals_free(x, (size_t)size);
-	rationals_free(b, (size_t)size);
-	rationals_free(inverse, cells);
 }
 
 /* -T^-1 B */
 static void follow_input(const struct following *f, int input)
 {
 	const int k = f->mode->states;
-	mpq_t *inverse = rationals((size_t)k * (size_t)k), *b = rationals((size_t)k), *x = rationals((size_t)k);
+	RATIONALS *inverse = rationals((size_t)k * (size_t)k), *b = rationals((size_t)k), *x = rationals((size_t)k);
 	mpq_srcptr zero = rationals(1)[0];
 	const bool regular = inverse_of(f->mode, zero, zero, 1, inverse);
 	for (int order = 0; order < 2 && regular; order++) {
 		const mpq_t *force = (const mpq_t *)f->modes->model->system.input[input].force[order];
-		mpq_t *column = force_column(f->modes, f->inverse, force);
+		RATIONALS *column = force_column(f->modes, f->inverse, force);
 		drive(f->modes, f->mode, (const mpq_t *)column, b);
 		rational_product(k, k, 1, (const mpq_t *)inverse, (const mpq_t *)b, x);
 		for (int o = 0; o < f->modes->model->outputs; o++)
 			add_rows(f, o, (const mpq_t *)x, f->output[o].input[order][input]);
-		rationals_free(column, (size_t)f->modes->model->system.states);
 	}
-	rationals_free(inverse, (size_t)k * (size_t)k);
-	rationals_free(b, (size_t)k);
-	rationals_free(x, (size_t)k);
 }
 
 static mpq_t *row_over(const struct modes *modes, const struct mode *mode, const struct output *output)
@@ -289,10 +277,9 @@ static struct output *rows_over(const struct selection *s, bool direct)
 		for (int i = 0; i < s->modes->count; i++) {
 			if (!s->of[i])
 				continue;
-			mpq_t *c = row_over(s->modes, &s->modes->mode[i], of);
+			RATIONALS *c = row_over(s->modes, &s->modes->mode[i], of);
 			for (int j = 0; j < s->modes->mode[i].states; j++)
 				mpq_swap(output[o].state[place_of(s, i, j)], c[j]);
-			rationals_free(c, (size_t)s->modes->mode[i].states);
 		}
 		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
 		for (int l = 0; l < system->loads; l++) {
@@ -330,11 +317,10 @@ static void project_start(const struct selection *s, mpq_t *initial)
 		const struct mode *mode = &s->modes->mode[i];
 		if (!s->of[i])
 			continue;
-		mpq_t *z = rationals((size_t)mode->states);
+		RATIONALS *z = rationals((size_t)mode->states);
 		drive(s->modes, mode, (const mpq_t *)model->initial, z);
 		for (int j = 0; j < mode->states; j++)
 			mpq_swap(initial[place_of(s, i, j)], z[j]);
-		rationals_free(z, (size_t)mode->states);
 	}
 }
 
@@ -393,12 +379,11 @@ static bool follow_dropped(struct modes *modes, const bool *kept, struct output 
 {
 	const struct model *model = modes->model;
 	int column;
-	mpq_t *inverse = rationals((size_t)model->n * (size_t)model->n);
+	RATIONALS *inverse = rationals((size_t)model->n * (size_t)model->n);
 	bool good = true;
 	leading_inverse(&model->system, inverse, &column);
 	for (int i = 0; i < modes->count && good; i++)
 		good = kept[i] || follow(modes, i, (const mpq_t *)inverse, output, minus);
-	rationals_free(inverse, (size_t)model->n * (size_t)model->n);
 	return good;
 }
 

@@ -79,14 +79,11 @@ static mpq_srcptr rate_factor(const struct form *form, int coord)
 
 static struct form *scaled_form(const struct form *form, mpq_srcptr by, bool inverse, bool minus)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	inverse ? mpq_inv(factor, by) : mpq_set(factor, by);
 	if (minus)
 		mpq_neg(factor, factor);
-	struct form *scaled = form_scale(form, factor);
-	mpq_clear(factor);
-	return scaled;
+	return form_scale(form, factor);
 }
 
 /* In other equations the friction is what it bears, and in outputs. */
@@ -136,10 +133,8 @@ static void slide_alone(const struct slider_row *r, const struct form *rest)
 static const struct form *force_beside_damper(const struct slider_row *r)
 {
 	struct form *force[] = { form_alias(r->force), form_number(0) };
-	mpq_t start;
-	mpq_init(start);
+	RATIONAL start = ZERO;
 	check_force(r->atom->node->child[1], r->force, start, NULL);
-	mpq_clear(start);
 	return never_falls_below(r->force) ? r->force : kept_call(&r->b->collector, r->atom->node, FN_MAX, 2, force);
 }
 
@@ -170,8 +165,7 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 {
 	mpq_srcptr along = rate_factor(r->velocity, r->coord);
 	struct basis rate = { .kind = BASIS_COORD, .index = r->coord, .order = 1 };
-	mpq_t ratio, k;
-	mpq_inits(ratio, k, NULL);
+	RATIONAL ratio = ZERO, k = ZERO;
 	mpq_div(ratio, along, damping);
 	mpq_mul(k, ratio, r->factor);
 	if (mpq_sgn(k) < 0)
@@ -183,7 +177,6 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 	divide_drive(r, drive, k, &slides, &borne);
 	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
 	put_in_others(r, scaled_form(borne, k, true, false));
-	mpq_clears(ratio, k, NULL);
 }
 
 static void slide(struct building *b, struct snapshot *snapshot, int row, const struct form_term *term)

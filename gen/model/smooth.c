@@ -135,11 +135,9 @@ static void add_surface(void *context, const struct form *d)
 	const struct atom *a = f->atom;
 	if (!moves_in_a_step(s->b->model, d))
 		return;
-	mpq_t scale;
-	mpq_init(scale);
+	RATIONAL scale = ZERO;
 	mpq_inv(scale, first_factor(d));
 	const struct form *g = form_scale(d, scale);
-	mpq_clear(scale);
 	int at = 0;
 	while (at < s->surfaces && !same_form(s->surface[at].g, g))
 		at++;
@@ -189,12 +187,9 @@ static int multiple_of(const struct form *d, const struct form *g)
 {
 	if (d->terms != g->terms)
 		return 0;
-	mpq_t ratio;
-	mpq_init(ratio);
+	RATIONAL ratio = ZERO;
 	mpq_div(ratio, d->term[0].factor, g->term[0].factor);
-	int sign = same_form(d, form_scale(g, ratio)) ? mpq_sgn(ratio) : 0;
-	mpq_clear(ratio);
-	return sign;
+	return same_form(d, form_scale(g, ratio)) ? mpq_sgn(ratio) : 0;
 }
 
 struct looking_for { const struct form *g; bool found; };
@@ -470,8 +465,8 @@ static void measure(struct sample *sample, struct spot *p, const struct form *fo
 static bool find_zero(struct sample *sample, struct spot *p, const struct form *g, mpfr_ptr root)
 {
 	enum { CELLS = 48 };
-	mpfr_t a, b, low, high, middle, value;
-	mpfr_inits2(PRECISION, a, b, low, high, middle, value, NULL);
+	REAL a = WITH_BITS(PRECISION), b = WITH_BITS(PRECISION), low = WITH_BITS(PRECISION),
+	     high = WITH_BITS(PRECISION), middle = WITH_BITS(PRECISION), value = WITH_BITS(PRECISION);
 	mpfr_set_ui(low, 0, MPFR_RNDN);
 	mpfr_set_ui(high, 1, MPFR_RNDN);
 	measure(sample, p, g, low, a);
@@ -501,7 +496,6 @@ static bool find_zero(struct sample *sample, struct spot *p, const struct form *
 		/* not at a pole */
 		found = mpfr_number_p(value) && (mpfr_zero_p(value) || mpfr_get_exp(value) < GONE);
 	}
-	mpfr_clears(a, b, low, high, middle, value, NULL);
 	return found;
 }
 
@@ -524,9 +518,8 @@ static int order_of_sizes(long first, long second)
 static int order_of_growth(struct sample *sample, struct spot *p, const struct form *side, mpfr_srcptr root,
 			   int direction)
 {
-	mpfr_t at, here, there;
 	long size[2];
-	mpfr_inits2(PRECISION, at, here, there, NULL);
+	REAL at = WITH_BITS(PRECISION), here = WITH_BITS(PRECISION), there = WITH_BITS(PRECISION);
 	measure(sample, p, side, root, here);
 	for (int k = 0; k < 2; k++) {
 		mpfr_set_si_2exp(at, direction, -NEAR * (k + 1), MPFR_RNDN);
@@ -535,7 +528,6 @@ static int order_of_growth(struct sample *sample, struct spot *p, const struct f
 		mpfr_sub(there, there, here, MPFR_RNDN);
 		size[k] = mpfr_number_p(there) ? size_of(there) : GONE;
 	}
-	mpfr_clears(at, here, there, NULL);
 	return order_of_sizes(size[0], size[1]);
 }
 
@@ -544,9 +536,8 @@ struct sides { const struct form *g, *above, *below, *difference, *isolated; };
 /* The order that a crossing at this point leaves; -1: nothing is defined there */
 static int order_at(struct sample *sample, struct spot *p, const struct sides *f)
 {
-	mpfr_t root, at, value;
 	long size[2] = { 0, 0 };
-	mpfr_inits2(PRECISION, root, at, value, NULL);
+	REAL root = WITH_BITS(PRECISION), at = WITH_BITS(PRECISION), value = WITH_BITS(PRECISION);
 	int order = -1;
 	bool found = find_zero(sample, p, f->g, root);
 	for (int direction = 1; direction >= -1 && found && order < 0; direction -= 2) {
@@ -572,7 +563,6 @@ static int order_at(struct sample *sample, struct spot *p, const struct sides *f
 		if (mpfr_number_p(value) && size_of(value) > GONE)
 			order = JUMP;
 	}
-	mpfr_clears(root, at, value, NULL);
 	return order;
 }
 
@@ -665,13 +655,11 @@ bool reads_velocity(const struct model *model, const struct form *form)
 static const char *surface_text(const struct model *model, const struct form *g)
 {
 	mpq_srcptr one = factor_of(g, BASIS_ONE);
-	mpq_t at;
-	mpq_init(at);
+	RATIONAL at = ZERO;
 	if (one)
 		mpq_neg(at, one);
 	const char *text =
 		format("%s passes %s", form_text(model, form_sum(g, form_constant(at), false)), readable_text(at));
-	mpq_clear(at);
 	return text;
 }
 
@@ -689,10 +677,9 @@ static bool is_harmless_time(const struct model *model, const struct form *g, in
 {
 	struct form phase;
 	mpq_srcptr factor, constant;
-	mpq_t t;
 	if (!linear_in_time(g, &factor, &phase) || factor_of(&phase, BASIS_PI))
 		return false;
-	mpq_init(t);
+	RATIONAL t = ZERO;
 	constant = factor_of(&phase, BASIS_ONE);
 	if (constant)
 		mpq_div(t, constant, factor);
@@ -700,7 +687,6 @@ static bool is_harmless_time(const struct model *model, const struct form *g, in
 	bool harmless = mpq_sgn(t) <= 0;
 	mpq_div(t, t, model->h);
 	harmless = harmless || (order > JUMP && mpz_cmp_ui(mpq_denref(t), 1) == 0);
-	mpq_clear(t);
 	return harmless;
 }
 

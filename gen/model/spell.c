@@ -25,14 +25,12 @@ const char *column_text(const struct load *load, int column)
 	if (mpq_sgn(wave->a) != 0)
 		text = joined(text, format("exp(%s)", times_t(wave->a)));
 	if (turns) {
-		mpq_t size;
-		mpq_init(size);
+		RATIONAL size = ZERO;
 		mpq_abs(size, wave->p);
 		const char *phase = mpq_sgn(size) == 0
 					    ? ""
 					    : format(" %c %s", mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
 		text = joined(text, format("%s(%s%s)", column % 2 ? "sin" : "cos", times_t(wave->w), phase));
-		mpq_clear(size);
 	}
 	return *text ? text : "1";
 }
@@ -141,13 +139,11 @@ static const char *basis_text(struct spelling *s, const struct basis *basis)
 
 static const char *add_term(struct spelling *s, const char *text, const struct form_term *term, bool negate)
 {
-	mpq_t size;
-	mpq_init(size);
+	RATIONAL size = ZERO;
 	mpq_abs(size, term->factor);
 	bool minus = (mpq_sgn(term->factor) < 0) != negate;
 	const char *what = basis_text(s, &term->basis);
 	const char *factor = *what && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
-	mpq_clear(size);
 	return format("%s%s%s%s%s", text,
 		      *text   ? (minus ? " - " : " + ")
 		      : minus ? "-"

@@ -38,15 +38,13 @@ static void add_state(struct split_work *w, const struct form *function, const s
 {
 	const struct linear *system = &w->b->model->system;
 	size_t cells = (size_t)system->n * (size_t)system->n;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_set(factor, by);
 	int k = number_of_function(w->split, function, factor);         /* the array may move */
 	struct time_function *f = &w->split->function[k];
 	mpq_t *matrix = zeros_if_none(state->order ? &f->velocity : &f->position, cells);
 	mpq_ptr entry = matrix[w->coord * system->n + state->index];
 	mpq_add(entry, entry, factor);
-	mpq_clear(factor);
 }
 
 static bool is_of_states(const struct form *form)
@@ -84,13 +82,11 @@ static int linear_factor(const struct atom *a)
 static void add_product(struct split_work *w, const struct atom *a, int k, mpq_srcptr by)
 {
 	const struct form *others = kept_others(&w->b->collector, a->node, a, k), *states = a->operand[k];
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < states->terms; i++) {
 		mpq_mul(factor, by, states->term[i].factor);
 		add_state(w, others, &states->term[i].basis, factor);
 	}
-	mpq_clear(factor);
 }
 
 /* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known */
@@ -147,25 +143,21 @@ static const struct form *plain_form(struct split_work *w, const struct basis *b
 
 static void add_waves(struct split_work *w, const struct form *plain, mpq_srcptr by)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	place_loads(w->b, plain);
 	for (int i = 0; i < plain->terms; i++) {
 		mpq_mul(factor, by, plain->term[i].factor);
 		add_wave(w, &plain->term[i].basis, factor);
 	}
-	mpq_clear(factor);
 }
 
 static void add_force(struct split_work *w, const struct basis *basis, mpq_srcptr by)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_set(factor, by);
 	int k = number_of_function(w->split, form_unit(*basis), factor);
 	mpq_t *force = zeros_if_none(&w->split->function[k].force, (size_t)w->b->model->n);
 	mpq_add(force[w->coord], force[w->coord], factor);
-	mpq_clear(factor);
 }
 
 /* By a product's factor of time alone: they are one (atom.c), or none */
@@ -183,8 +175,7 @@ static void add_rest(struct split_work *w, const struct basis *basis, mpq_srcptr
 	const struct atom *a = basis->atom;
 	const struct form *states = form_unit(*basis), *function = s->function[0].form;
 	int k = a ? time_factor(a) : -1, r = 0;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_set(factor, by);
 	if (k >= 0) {
 		states = kept_others(&w->b->collector, a->node, a, k);
@@ -201,7 +192,6 @@ static void add_rest(struct split_work *w, const struct basis *basis, mpq_srcptr
 		s->rest[s->rests++] = (struct rest_force){ w->coord, k, NEW(struct form) };
 	}
 	form_add_to(s->rest[r].form, states, factor);
-	mpq_clear(factor);
 }
 
 static void add_term(struct split_work *w, const struct form_term *term)
@@ -281,11 +271,9 @@ void split_leftover(struct building *b)
 	struct model *model = b->model;
 	struct splitting *s = NEW(struct splitting);
 	struct split_work w = { .b = b, .split = s };
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	number_of_function(s, form_unit((struct basis){ .kind = BASIS_ONE }), one);
-	mpq_clear(one);
 	for (int c = 0; c < model->channels; c++) {
 		const struct form *left = model->operator[0].left[c];
 		w.coord = coordinate_of_row(model, model->channel_row[c]);

@@ -68,7 +68,7 @@ static struct picture picture_of(const struct survey *s, const struct mode *mode
 	const int states = s->model->system.states, n = s->basis->moves ? s->model->n : states;
 	struct picture p = { .k = mode->states, .columns = mode->columns, .moves = mode->moves };
 	const size_t cells = (size_t)n * (size_t)p.columns, all = (size_t)states * (size_t)p.k;
-	double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
+	SCRATCH double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
 	invariant_start(s->basis->invariants, mode->first, X, Y);
 	p.right = ARRAY(double, all);
 	p.left = ARRAY(double, all);
@@ -84,8 +84,6 @@ static struct picture picture_of(const struct survey *s, const struct mode *mode
 				p.left[j * n + i] = Y[i * p.k + j];
 			}
 	}
-	discard(X);
-	discard(Y);
 	return p;
 }
 
@@ -170,7 +168,7 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 {
 	const struct linear *system = &s->model->system;
 	const int n = system->n;
-	double *column = ARRAY(double, (size_t)n);
+	SCRATCH double *column = ARRAY(double, (size_t)n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			if (mpq_sgn(force[j]) != 0)
@@ -184,7 +182,6 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 		}
 		b[r] = fabs(sum) <= UNSEEN * size ? 0 : sum;
 	}
-	discard(column);
 }
 
 /* x of F x = b, n x n, both destroyed; false: singular, as far as double precision tells */
@@ -226,7 +223,7 @@ static bool forced(const struct picture *p, const struct load *load, const doubl
 {
 	const int k = p->k, trig = oscillates(load->wave) ? 2 : 1, size = trig * k;
 	const double a = nearest_double(load->wave->a), w = nearest_double(load->wave->w);
-	double *F = ARRAY(double, (size_t)size * (size_t)size);
+	SCRATCH double *F = ARRAY(double, (size_t)size * (size_t)size);
 	bool good = true;
 	for (int power = load->powers - 1; power >= 0 && good; power--) {
 		double *x = P + power * size;
@@ -238,7 +235,6 @@ static bool forced(const struct picture *p, const struct load *load, const doubl
 						: r % k == c % k ? (r < c ? w : -w) : 0;
 		good = solve(size, F, x);
 	}
-	discard(F);
 	return good;
 }
 
@@ -284,7 +280,8 @@ static bool survey_loads(const struct survey *s, const struct picture *p, int se
 	for (int l = 0; l < system->loads && good; l++) {
 		const struct load *load = &system->load[l];
 		const size_t cells = (size_t)load->columns * (size_t)p->k;
-		double *B = ARRAY(double, cells), *P = ARRAY(double, cells), *q = ARRAY(double, (size_t)load->columns);
+		SCRATCH double *B = ARRAY(double, cells), *P = ARRAY(double, cells),
+			       *q = ARRAY(double, (size_t)load->columns);
 		bool any = false;
 		for (int c = 0; c < load->columns; c++)
 			drive(s, p, (const mpq_t *)load->force[c] + segment * system->n, B + c * p->k);
@@ -297,9 +294,6 @@ static bool survey_loads(const struct survey *s, const struct picture *p, int se
 				jump[i] += sign * P[c * p->k + i] * q[c];
 		if (good && any && sum)
 			*sum += forced_peak(p, load, P, end);
-		discard(B);
-		discard(P);
-		discard(q);
 	}
 	return good;
 }
@@ -309,7 +303,8 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 			  double *transient)
 {
 	const struct linear *system = &s->model->system;
-	double *jump = ARRAY(double, (size_t)p->k), most = 0;
+	SCRATCH double *jump = ARRAY(double, (size_t)p->k);
+	double most = 0;
 	bool good = true;
 	*transient = 0;
 	for (int segment = 0; segment < system->segments && good; segment++) {
@@ -324,14 +319,14 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 	}
 	*size = good ? *transient + most : HUGE_VAL;
 	*transient = good ? *transient : HUGE_VAL;
-	discard(jump);
 }
 
 /* A step of an input: |c T^-1 B| that it comes to, and the way there; a jump of u' likewise */
 static double survey_input(const struct survey *s, const struct picture *p, const struct input *input)
 {
 	const int k = p->k;
-	double *B = ARRAY(double, (size_t)k), *F = ARRAY(double, (size_t)k * (size_t)k), sum = 0;
+	SCRATCH double *B = ARRAY(double, (size_t)k), *F = ARRAY(double, (size_t)k * (size_t)k);
+	double sum = 0;
 	bool any = false;
 	for (int i = 0; i < k * k; i++)
 		F[i] = -p->T[i];
@@ -342,8 +337,6 @@ static double survey_input(const struct survey *s, const struct picture *p, cons
 		sum = solve(k, F, B) ? fabs(along(p, B)) + peak_of(p, B) : HUGE_VAL;
 	drive(s, p, (const mpq_t *)input->force[1], B);
 	sum += peak_of(p, B);
-	discard(B);
-	discard(F);
 	return sum;
 }
 
@@ -369,7 +362,7 @@ void survey_mode(const struct survey *s, struct mode *mode)
 	const struct model *model = s->model;
 	const int states = model->system.states, inputs = model->system.inputs;
 	struct picture p = picture_of(s, mode);
-	double *start = ARRAY(double, (size_t)p.k);
+	SCRATCH double *start = ARRAY(double, (size_t)p.k);
 	for (int r = 0; r < p.k; r++) {
 		double size = 0;
 		for (int i = 0; i < states; i++) {
@@ -392,7 +385,6 @@ void survey_mode(const struct survey *s, struct mode *mode)
 			mode->seen = mode->seen || mode->by_input[o * inputs + i] > 0;
 		}
 	}
-	discard(start);
 	picture_free(&p);
 }
 

@@ -58,8 +58,7 @@ void spread_loads(struct building *b, const struct form *form,
 		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context)
 {
 	struct linear *system = &b->model->system;
-	mpq_t constant;
-	mpq_init(constant);
+	RATIONAL constant = ZERO;
 	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
@@ -72,7 +71,6 @@ void spread_loads(struct building *b, const struct form *form,
 			spread(context, (int)(load_of_wave(b->model, basis->wave) - system->load), load_column(basis),
 			       form->term[i].factor);
 	}
-	mpq_clear(constant);
 }
 
 struct force_row {

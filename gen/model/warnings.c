@@ -67,12 +67,10 @@ static void choose_operator(void *context)
 	const struct form *now = form_at(point, model->selector);
 	if (!is_constant(now))
 		abandon();
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	constant_value(c, now, value);
 	while (work->which + 1 < model->operators && mpq_cmp(value, model->operator[work->which].at) > 0)
 		work->which++;
-	mpq_clear(value);
 }
 
 struct softness {
@@ -287,8 +285,7 @@ static void check_softness(struct jacobian *j)
 	struct building *b = j->b;
 	const struct model *model = b->model;
 	struct softness worst = { 0, 0, "" };
-	mpq_t end;
-	mpq_init(end);
+	RATIONAL end = ZERO;
 	int changes = model->system.segments - 1;
 	if (changes > 0 && mpq_sgn(model->system.change[changes - 1]) > 0)
 		mpq_set(end, model->system.change[changes - 1]);
@@ -313,7 +310,6 @@ static void check_softness(struct jacobian *j)
 		compare(j, true, "at the initial values ", &worst);
 		compare_excursions(j, nearest_double(end), &worst);
 	}
-	mpq_clear(end);
 	if (worst.here <= worst.operator)
 		return;
 	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b),

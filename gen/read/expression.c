@@ -263,8 +263,7 @@ int read_component(struct parser *p, int *primes, bool declared)
 		error(opening, "q[1]' is the velocity of a component", "a component stands before the primes");
 	if (p->token.kind != TOKEN_NUMBER)
 		unexpected(p, declared ? "the number of components" : "the number of a component");
-	mpq_t number;
-	mpq_init(number);
+	RATIONAL number = ZERO;
 	struct token token = take(p);
 	lex_number(token, number);
 	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0)
@@ -275,7 +274,6 @@ int read_component(struct parser *p, int *primes, bool declared)
 		error(token.at, NULL, "more states than the limit of %d", LIMIT_STATES);
 	int component =
 		mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
-	mpq_clear(number);
 	expect_op(p, "]", "']'");
 	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
 		*primes = (int)take(p).length;

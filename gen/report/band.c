@@ -50,9 +50,7 @@ double frequency_of(const struct band *band, int row)
 {
 	if (row == 0 || row == band->count - 1)
 		return row ? band->to : band->from;
-	mpfr_t f, ratio;
-	mpfr_init2(f, 128);
-	mpfr_init2(ratio, 128);
+	REAL f = WITH_BITS(128), ratio = WITH_BITS(128);
 	mpfr_set_d(ratio, band->to, MPFR_RNDN);
 	mpfr_div_d(ratio, ratio, band->from, MPFR_RNDN);
 	mpfr_log(ratio, ratio, MPFR_RNDN);
@@ -60,10 +58,7 @@ double frequency_of(const struct band *band, int row)
 	mpfr_div_ui(ratio, ratio, (unsigned long)(band->count - 1), MPFR_RNDN);
 	mpfr_exp(ratio, ratio, MPFR_RNDN);
 	mpfr_mul_d(f, ratio, band->from, MPFR_RNDN);
-	double value = mpfr_get_d(f, MPFR_RNDN);
-	mpfr_clear(f);
-	mpfr_clear(ratio);
-	return value;
+	return mpfr_get_d(f, MPFR_RNDN);
 }
 
 double amplitude_of(const char *text)

@@ -65,13 +65,11 @@ static void person_held(FILE *to, const struct step *step)
 	for (int i = 0; i < n; i++)
 		for (int k = 0; k < 2; k++)
 			for (int j = 0; j < n; j++) {
-				mpq_t factor;
-				mpq_init(factor);
+				RATIONAL factor = ZERO;
 				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
 				if (mpq_sgn(factor) != 0)
 					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord_name[i],
 						readable_text(factor), step->model->coord_name[j], k ? "'" : "");
-				mpq_clear(factor);
 			}
 	fprintf(to,
 		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
@@ -292,8 +290,7 @@ static void person_split(FILE *to, const struct step *step)
 static const char *combination_text(const struct model *written, const mpq_t *row)
 {
 	const char *text = "";
-	mpq_t size;
-	mpq_init(size);
+	RATIONAL size = ZERO;
 	for (int j = 0; j < written->system.states; j++) {
 		int sign = mpq_sgn(row[j]);
 		if (sign == 0)
@@ -303,7 +300,6 @@ static const char *combination_text(const struct model *written, const mpq_t *ro
 			      mpq_cmp_ui(size, 1, 1) == 0 ? "" : format("%s*", readable_text(size)),
 			      written->state_name[j]);
 	}
-	mpq_clear(size);
 	return text;
 }
 

@@ -55,9 +55,9 @@ static double *matrix_of(const struct linear *system, const struct drive *drive,
 {
 	int n = system->n, states = system->states, size = states + OVER, column;
 	double *A = ARRAY(double, (size_t)size * (size_t)size);
-	mpq_t *free = state_matrix(system, false), *inverse = rationals((size_t)n * (size_t)n);
-	mpq_t *over = rationals((size_t)(OVER * n)), *row = rationals(OVER), term;
-	mpq_init(term);
+	RATIONALS *free = state_matrix(system, false), *inverse = rationals((size_t)n * (size_t)n);
+	RATIONALS *over = rationals((size_t)(OVER * n)), *row = rationals(OVER);
+	RATIONAL term = ZERO;
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++)
 		forces_on(system, drive, input, i, over + OVER * i);
@@ -75,11 +75,6 @@ static double *matrix_of(const struct linear *system, const struct drive *drive,
 			A[state * size + states + k] = mpq_get_d(row[k]);
 		}
 	}
-	mpq_clear(term);
-	rationals_free(free, (size_t)states * (size_t)states);
-	rationals_free(inverse, (size_t)n * (size_t)n);
-	rationals_free(over, (size_t)(OVER * n));
-	rationals_free(row, OVER);
 	return A;
 }
 

@@ -350,14 +350,12 @@ static double span_of(const struct step *step)
 static unsigned long interval_of_samples(const struct model *model, double span, mpq_ptr interval)
 {
 	double h = mpq_get_d(model->h), steps = span / h;
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	if (steps >= POINTS)
 		mpq_set_d(factor, fmin(ceil(steps / POINTS), 1e15));
 	else
 		mpq_set_ui(factor, 1, (unsigned long)fmin(ceil(POINTS / steps), 1e9));
 	mpq_mul(interval, model->h, factor);
-	mpq_clear(factor);
 	return (unsigned long)fmin(ceil(span / mpq_get_d(interval)), 4 * POINTS);
 }
 
@@ -389,8 +387,7 @@ static void print_samples(struct picture *p, int count, const int *output)
 	struct resolvent *r = resolvent_of(&model->system);
 	struct started **form = ARRAY(struct started *, (size_t)count);
 	int *forms = ARRAY(int, (size_t)count);
-	mpq_t t, interval;
-	mpq_inits(t, interval, NULL);
+	RATIONAL t = ZERO, interval = ZERO;
 	unsigned long last = interval_of_samples(model, span_of(p->step), interval);
 	for (int i = 0; i < count; i++)
 		forms[i] = responses_of_output(r, &model->system, (const mpq_t *)model->initial,
@@ -407,7 +404,6 @@ static void print_samples(struct picture *p, int count, const int *output)
 	}
 	progress_end();
 	fputs("END\n", p->data);
-	mpq_clears(t, interval, NULL);
 }
 
 static void plot_response(struct picture *p)

@@ -19,8 +19,7 @@ static const char *powers_text(const struct kernel_part *part)
 {
 	static const char *const power[PART_POWERS] = { "", " s/h", " (s/h)^2" };
 	const char *text = "";
-	mpq_t size;
-	mpq_init(size);
+	RATIONAL size = ZERO;
 	for (int m = 0; m < part->powers; m++) {
 		int sign = mpq_sgn(part->power[m]);
 		mpq_abs(size, part->power[m]);
@@ -31,7 +30,6 @@ static const char *powers_text(const struct kernel_part *part)
 					       : "",
 				      exact_text(size), power[m]);
 	}
-	mpq_clear(size);
 	return text;
 }
 

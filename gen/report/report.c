@@ -36,8 +36,7 @@ const char *polynomial_text(int length, const mpq_t *c)
 		if (mpq_sgn(c[k]) == 0)
 			continue;
 		bool negative = mpq_sgn(c[k]) < 0, first = *text == 0;
-		mpq_t size;
-		mpq_init(size);
+		RATIONAL size = ZERO;
 		mpq_abs(size, c[k]);
 		const char *factor = k > 0 && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
 		const char *power = k == 0 ? "" : k == 1 ? "s" : format("s^%d", k);
@@ -46,7 +45,6 @@ const char *polynomial_text(int length, const mpq_t *c)
 			      : negative ? " - "
 					 : " + ",
 			      factor, *factor && k ? " " : "", power);
-		mpq_clear(size);
 	}
 	return text;
 }

@@ -33,14 +33,12 @@ static void multiply(struct number *z, const struct number *a, const struct numb
 /* z <- a / b; z is neither */
 static void divide(struct number *z, const struct number *a, const struct number *b)
 {
-	mpfr_t norm;
-	mpfr_init2(norm, SHAPE_BITS);
+	REAL norm = WITH_BITS(SHAPE_BITS);
 	mpfr_fmma(norm, b->re, b->re, b->im, b->im, MPFR_RNDN);
 	mpfr_fmma(z->re, a->re, b->re, a->im, b->im, MPFR_RNDN);
 	mpfr_fmms(z->im, a->im, b->re, a->re, b->im, MPFR_RNDN);
 	mpfr_div(z->re, z->re, norm, MPFR_RNDN);
 	mpfr_div(z->im, z->im, norm, MPFR_RNDN);
-	mpfr_clear(norm);
 }
 
 /* Order of size, of numbers that are not 0 */
@@ -53,13 +51,10 @@ static long order_of(const struct number *x)
 
 static bool is_larger(const struct number *a, const struct number *b)
 {
-	mpfr_t x, y;
-	mpfr_inits2(64, x, y, NULL);
+	REAL x = WITH_BITS(64), y = WITH_BITS(64);
 	mpfr_hypot(x, a->re, a->im, MPFR_RNDN);
 	mpfr_hypot(y, b->re, b->im, MPFR_RNDN);
-	bool larger = mpfr_greater_p(x, y);
-	mpfr_clears(x, y, NULL);
-	return larger;
+	return mpfr_greater_p(x, y);
 }
 
 /* M p^2 + C p + K; rows scaled to one size, which leaves v */
@@ -89,8 +84,7 @@ static void fill(struct elimination *e, const struct linear *system, const struc
 /* What each row's terms are of, before they cancel: a row that is smaller by 2^GONE is 0 */
 static void scale_rows(struct elimination *e, const struct linear *system, const struct pole_report *pole)
 {
-	mpfr_t size, term, p;
-	mpfr_inits2(64, size, term, p, NULL);
+	REAL size = WITH_BITS(64), term = WITH_BITS(64), p = WITH_BITS(64);
 	mpfr_hypot(p, pole->re, pole->im, MPFR_RNDN);
 	for (int i = 0; i < e->n; i++) {
 		mpfr_set_zero(size, 1);
@@ -110,7 +104,6 @@ static void scale_rows(struct elimination *e, const struct linear *system, const
 			mpfr_div(x->im, x->im, size, MPFR_RNDN);
 		}
 	}
-	mpfr_clears(size, term, p, NULL);
 }
 
 static void swap_rows(struct elimination *e, int a, int b)

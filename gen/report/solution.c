@@ -35,17 +35,13 @@ static void check_outputs(const struct model *model)
 
 static unsigned long last_step(const struct model *model, mpq_srcptr end)
 {
-	mpq_t steps;
-	mpz_t last;
-	mpq_init(steps);
-	mpz_init(last);
+	RATIONAL steps = ZERO;
+	INTEGER last = INTEGER_ZERO;
 	mpq_div(steps, end, model->h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	if (mpz_cmp_ui(last, LIMIT_ROWS) >= 0)
 		error(model->asked.end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
 	unsigned long rows = mpz_get_ui(last);
-	mpq_clear(steps);
-	mpz_clear(last);
 	return rows;
 }
 
@@ -109,7 +105,7 @@ static bool print_passed(struct printing *p, const struct through *t)
 static bool print_row(struct printing *p, const struct through *t, mpq_srcptr time)
 {
 	const struct model *model = p->model;
-	double *value = ARRAY(double, (size_t)model->outputs);
+	SCRATCH double *value = ARRAY(double, (size_t)model->outputs);
 	mpfi_t x;
 	mpfi_init(x);
 	for (int j = 0; j < model->outputs; j++) {
@@ -127,7 +123,6 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 	for (int j = 0; j < model->outputs; j++)
 		fprintf(p->to, ",%.17g", value[j]);
 	fputc('\n', p->to);
-	discard(value);
 	mpfi_clear(x);
 	return true;
 }
@@ -137,8 +132,7 @@ static bool print_with(struct printing *p, int precision)
 {
 	struct through *t = through_start(p->model, NULL, (const mpq_t *)p->model->initial, precision);
 	bool told = true;
-	mpq_t time;
-	mpq_init(time);
+	RATIONAL time = ZERO;
 	for (; p->rows <= p->last && told; p->rows += told) {
 		mpq_set_ui(time, p->rows, 1);
 		mpq_mul(time, time, p->model->h);
@@ -148,7 +142,6 @@ static bool print_with(struct printing *p, int precision)
 			p->why = through_undecided(t);
 		told = told && print_passed(p, t) && print_row(p, t, time);
 	}
-	mpq_clear(time);
 	through_free(t);
 	return told;
 }
@@ -194,8 +187,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		fprintf(to, ",%s", model->output[j].name);
 	}
 	fputc('\n', to);
-	mpq_t t;
-	mpq_init(t);
+	RATIONAL t = ZERO;
 	for (unsigned long k = 0; k <= last; k++) {
 		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", nearest_double(t));
@@ -211,5 +203,4 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		mpq_add(t, t, model->h);
 	}
 	progress_end();
-	mpq_clear(t);
 }

@@ -32,11 +32,10 @@ static void fill_column(const struct space *s, const mpq_t *inverse, const mpq_t
 {
 	const struct linear *system = &s->model->system;
 	int n = system->n;
-	mpq_t *highest = rationals((size_t)n);
+	RATIONALS *highest = rationals((size_t)n);
 	rational_product(n, n, 1, inverse, force, highest);
 	for (int i = 0; i < n; i++)
 		mpq_set(B[(system->velocity[i] >= 0 ? system->velocity[i] : i) * s->drives + drive], highest[i]);
-	rationals_free(highest, (size_t)n);
 }
 
 static void fill_inputs(struct space *s)
@@ -100,25 +99,21 @@ static struct space space_of(const struct model *model)
 static double *held_matrix(const struct space *s)
 {
 	int size = s->states + s->drives;
-	mpq_t *whole = rationals((size_t)(size * size)), exact;
+	RATIONALS *whole = rationals((size_t)(size * size));
 	double *held = ARRAY(double, (size_t)(size * size));
 	for (int i = 0; i < s->states; i++)
 		for (int j = 0; j < size; j++)
 			mpq_set(whole[i * size + j], j < s->states ? s->A[i * s->states + j]
 								   : s->B[i * s->drives + j - s->states]);
 	struct taylor *t = taylor_of(size, (const mpq_t *)whole, s->model->h);
-	rationals_free(whole, (size_t)(size * size));
 	if (!taylor_enclose(t, 128))
 		return NULL;
-	mpfi_t value;
-	mpfi_init2(value, 192);
-	mpq_init(exact);
+	INTERVAL value = OVER_BITS(192);
+	RATIONAL exact = ZERO;
 	for (int i = 0; i < size * size; i++) {
 		taylor_entry(t, i / size, i % size, value);
 		held[i] = taylor_exact(t, i / size, i % size, exact) ? nearest_double(exact) : mpfi_get_d(value);
 	}
-	mpq_clear(exact);
-	mpfi_clear(value);
 	return held;
 }
 
@@ -143,11 +138,10 @@ static void json_rows(FILE *to, const char *key, int rows, int columns, int stri
 
 static void json_exact(FILE *to, const char *key, int rows, int columns, mpq_t *const value)
 {
-	double *rounded = ARRAY(double, (size_t)(rows * columns) + 1);
+	SCRATCH double *rounded = ARRAY(double, (size_t)(rows * columns) + 1);
 	for (int i = 0; i < rows * columns; i++)
 		rounded[i] = nearest_double(value[i]);
 	json_rows(to, key, rows, columns, columns, rounded);
-	discard(rounded);
 }
 
 static void json_discrete(FILE *to, const struct space *s)
@@ -227,8 +221,7 @@ static void json_zero_list(FILE *to, const struct model *model, const struct tra
 /* Per output over each drive: its static gain, null where a pole is at 0; its zeros, null where it is 0 for all s */
 static void json_transfers(FILE *to, const struct model *model, int count, const struct transfer *t)
 {
-	mpq_t gain;
-	mpq_init(gain);
+	RATIONAL gain = ZERO;
 	fputs("  \"zeros\": [", to);
 	for (int k = 0; k < count; k++) {
 		fprintf(to, "%s\n    {\"output\": \"%s\", \"input\": \"%s\", \"static_gain\": %s,\n     \"zeros\": ",
@@ -243,7 +236,6 @@ static void json_transfers(FILE *to, const struct model *model, int count, const
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
-	mpq_clear(gain);
 }
 
 int shapes_of_step(const struct step *step, struct mode_shape **shape, const struct model **of)
@@ -295,11 +287,8 @@ const char *zeros_text(const struct model *model, const struct transfer *t)
 
 const char *static_gain_text(const struct transfer *t)
 {
-	mpq_t gain;
-	mpq_init(gain);
-	const char *text = static_gain(t, gain) ? format("%.8g", nearest_double(gain)) : "infinite";
-	mpq_clear(gain);
-	return text;
+	RATIONAL gain = ZERO;
+	return static_gain(t, gain) ? format("%.8g", nearest_double(gain)) : "infinite";
 }
 
 static void person_shapes(FILE *to, const struct model *of, int count, const struct mode_shape *shape)

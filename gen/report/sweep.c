@@ -109,7 +109,8 @@ static double period_of_trial(struct course_of_mover *c)
 static bool find_near(struct course_of_mover *c)
 {
 	int n = c->m->states;
-	double *d = ARRAY(double, (size_t)n), moved = 0;
+	SCRATCH double *d = ARRAY(double, (size_t)n);
+	double moved = 0;
 	bool found = false, leapt = false;
 	memcpy(c->trial, c->y, sizeof(double) * (size_t)n);
 	for (int k = 0; k < STEPS; k++) {
@@ -132,7 +133,6 @@ static bool find_near(struct course_of_mover *c)
 	}
 	if (found)
 		memcpy(c->y, c->trial, sizeof(double) * (size_t)n);
-	discard(d);
 	return found;
 }
 
@@ -140,7 +140,7 @@ static bool find_near(struct course_of_mover *c)
 static void take_means(struct course_of_mover *c)
 {
 	int n = c->m->states;
-	double *sum = ARRAY(double, 2 * (size_t)n);
+	SCRATCH double *sum = ARRAY(double, 2 * (size_t)n);
 	for (int k = 0; k < MEANS; k++) {
 		mover_period(c->m, c->y, NULL, c->scale);
 		for (int i = 0; i < 2 * n; i++)
@@ -148,7 +148,6 @@ static void take_means(struct course_of_mover *c)
 	}
 	for (int i = 0; i < 2 * n; i++)
 		c->m->integral[i / n][i % n] = sum[i];
-	discard(sum);
 }
 
 /* At the frequency that the mover is tuned to, in time */

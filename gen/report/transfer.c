@@ -75,14 +75,12 @@ static struct transfer transfer_of(struct resolvent *r, const struct model *mode
 {
 	const struct output *read = &model->output[output];
 	struct transfer t = { .output = read->name, .drive = drive->name };
-	mpq_t zero, one;
-	mpq_inits(zero, one, NULL);
+	RATIONAL zero = ZERO, one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (drive->input >= 0)
 		multiply_by_s(&t, output_of_input(r, &model->system, read, drive->input, zero, one), 2);
 	else
 		multiply_by_s(&t, image_of_load(r, model, read, drive), 1);
-	mpq_clears(zero, one, NULL);
 	return t;
 }
 
@@ -106,25 +104,22 @@ int transfers_of(struct resolvent *r, const struct model *model, struct transfer
 
 bool static_gain(const struct transfer *t, mpq_ptr gain)
 {
-	mpq_t over;
 	mpq_set_ui(gain, 0, 1);
 	if (t->N.length == 0)
 		return true;
 	if (mpz_sgn(t->D.c[0]) == 0)
 		return false;
-	mpq_init(over);
+	RATIONAL over = ZERO;
 	mpq_set_z(gain, t->N.c[0]);
 	mpq_set_z(over, t->D.c[0]);
 	mpq_div(gain, gain, over);
 	mpq_mul(gain, gain, t->scale);
-	mpq_clear(over);
 	return true;
 }
 
 static void add_zero(struct zero *zero, const struct rectangle *at, int multiplicity, bool pair)
 {
-	mpfr_t middle;
-	mpfr_init2(middle, 128);
+	REAL middle = WITH_BITS(128);
 	*zero = (struct zero){ 0, 0, multiplicity, pair };
 	if (at) {
 		mpfi_mid(middle, at->re);
@@ -132,7 +127,6 @@ static void add_zero(struct zero *zero, const struct rectangle *at, int multipli
 		mpfi_mid(middle, at->im);
 		zero->im = mpfr_get_d(middle, MPFR_RNDN);
 	}
-	mpfr_clear(middle);
 }
 
 static int roots_of(const struct model *model, const struct transfer *t, struct poly p, struct zero **list)
@@ -141,10 +135,8 @@ static int roots_of(const struct model *model, const struct transfer *t, struct 
 	*list = ARRAY(struct zero, (size_t)p.length + 1);
 	if (p.length < 2)
 		return 0;
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
-	mpz_clear(content);
 	if (!spectrum_refine(spectrum, 128))
 		error(model->asked.step_at, NULL, "two zeros or poles of %s over %s are too close to each other to be "
 						  "told apart", t->output, t->drive);
@@ -167,17 +159,13 @@ int zeros_of_transfer(const struct model *model, const struct transfer *t, struc
 /* N(s)/D(s) there */
 static void enclose_quotient(const struct transfer *t, double hertz, struct rectangle *z, int precision)
 {
-	struct rectangle s, D;
-	rectangle_init(&s, precision);
-	rectangle_init(&D, precision);
+	RECTANGLE s = new_rectangle(precision), D = new_rectangle(precision);
 	mpfi_const_pi(s.im);
 	mpfi_mul_2ui(s.im, s.im, 1);
 	mpfi_mul_d(s.im, s.im, hertz);
 	rectangle_evaluate(z, t->N, &s);
 	rectangle_evaluate(&D, t->D, &s);
 	rectangle_div(z, z, &D);
-	rectangle_clear(&s);
-	rectangle_clear(&D);
 }
 
 /* The nearest double, whatever the target; false: its ends have not the same */
@@ -191,9 +179,7 @@ static bool round_double(mpfi_srcptr x, double *d)
 static bool round_polar(const struct transfer *t, const struct rectangle *z, double *size, double *angle)
 {
 	int precision = (int)mpfi_get_prec(z->re);
-	mpfi_t x, pi;
-	mpfi_init2(x, precision);
-	mpfi_init2(pi, precision);
+	INTERVAL x = OVER_BITS(precision), pi = OVER_BITS(precision);
 	mpfi_hypot(x, z->re, z->im);
 	mpfi_mul_q(x, x, t->scale);
 	mpfi_abs(x, x);
@@ -201,9 +187,7 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 	if (found && mpfi_is_zero(z->im)) {
 		*angle = mpfi_is_neg(z->re) != negative ? -180 : 0;
 	} else if (found) {
-		mpfi_t re, im;
-		mpfi_init2(re, precision);
-		mpfi_init2(im, precision);
+		INTERVAL re = OVER_BITS(precision), im = OVER_BITS(precision);
 		mpfi_set(re, z->re);
 		mpfi_set(im, z->im);
 		if (negative) {
@@ -215,11 +199,7 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 		mpfi_mul_ui(x, x, 180);
 		mpfi_div(x, x, pi);
 		found = round_double(x, angle);
-		mpfi_clear(re);
-		mpfi_clear(im);
 	}
-	mpfi_clear(x);
-	mpfi_clear(pi);
 	return found;
 }
 
@@ -230,11 +210,9 @@ void transfer_at(const struct transfer *t, double hertz, double *size, double *a
 		return;
 	bool found = false;
 	for (int precision = 128; !found && precision <= LIMIT_PRECISION; precision *= 2) {
-		struct rectangle z;
-		rectangle_init(&z, precision);
+		RECTANGLE z = new_rectangle(precision);
 		enclose_quotient(t, hertz, &z, precision);
 		found = round_polar(t, &z, size, angle);
-		rectangle_clear(&z);
 	}
 	if (!found)                     /* no frequency but 0 is a pole: others are rational multiples of pi */
 		*size = HUGE_VAL;

@@ -184,15 +184,13 @@ struct turn {                       /* e^{a tau} cos(w tau) and sin */
 /* e^{a tau} cos(w tau) and sin; kept, since all states that the load moves ask for it */
 static void enclose_turn(const struct wave *wave, struct turn *turn, int precision)
 {
-	mpq_t product;
-	mpfi_t x;
 	if (turn->precision == precision)
 		return;
 	turn->precision = precision;
 	mpfi_set_prec(turn->z[0], precision);
 	mpfi_set_prec(turn->z[1], precision);
-	mpq_init(product);
-	mpfi_init2(x, precision);
+	RATIONAL product = ZERO;
+	INTERVAL x = OVER_BITS(precision);
 	mpq_mul(product, wave->w, turn->tau);
 	mpfi_set_q(x, product);
 	mpfi_cos(turn->z[0], x);
@@ -202,8 +200,6 @@ static void enclose_turn(const struct wave *wave, struct turn *turn, int precisi
 	mpfi_exp(x, x);
 	mpfi_mul(turn->z[0], turn->z[0], x);
 	mpfi_mul(turn->z[1], turn->z[1], x);
-	mpfi_clear(x);
-	mpq_clear(product);
 }
 
 /* Over 0, 1, ... steps */
@@ -224,13 +220,11 @@ static struct turn *turns_of(const struct step *step)
 /* binomial(k, j) tau^(k-j) */
 static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
 {
-	mpz_t binomial;
-	mpz_init(binomial);
+	INTEGER binomial = INTEGER_ZERO;
 	mpz_bin_uiui(binomial, (unsigned long)k, (unsigned long)j);
 	mpq_set_z(value, binomial);
 	for (int i = j; i < k; i++)
 		mpq_mul(value, value, tau);
-	mpz_clear(binomial);
 }
 
 /* ---- L: a load's columns of the step, enclosed ---- */
@@ -267,16 +261,14 @@ static struct block_source source_of_block(const struct step *step, const struct
 
 static bool enclose_by_residues(struct row *row, int k, int precision)
 {
-	mpq_t exact;
 	struct column *column = &row->column[k];
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	if (!column->response)
 		column->response = response_of_load(row->source->resolvent, row->source->system, 0, row->state,
 						    row->load, k);
 	bool rational = response_exact(column->response, row->h, exact);
 	if (rational)
 		mpfi_set_q(column->value, exact);
-	mpq_clear(exact);
 	return rational || response_enclose(column->response, row->h, precision, column->value);
 }
 
@@ -307,11 +299,9 @@ static bool enclose_turned(struct row *row, struct turn *turn, int from, int pre
 {
 	const struct wave *wave = row->source->system->load[row->load].wave;
 	int trig = oscillates(wave) ? 2 : 1;
-	mpfi_t value;
-	mpq_t power;
 	bool good = true;
-	mpfi_init2(value, precision);
-	mpq_init(power);
+	INTERVAL value = OVER_BITS(precision);
+	RATIONAL power = ZERO;
 	enclose_turn(wave, turn, precision);
 	mpfi_set_prec(sum, precision);
 	mpfi_set_ui(sum, 0);
@@ -323,22 +313,18 @@ static bool enclose_turned(struct row *row, struct turn *turn, int from, int pre
 		mpfi_mul_q(value, value, power);
 		(same || to % trig ? mpfi_add : mpfi_sub)(sum, sum, value);
 	}
-	mpfi_clear(value);
-	mpq_clear(power);
 	return good;
 }
 
 /* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
 static bool round_turned(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
 {
-	mpfi_t x;
-	mpfi_init2(x, precision);
+	INTERVAL x = OVER_BITS(precision);
 	bool decided = enclose_turned(row, turn, from, precision, x) && round_enclosure(x, &c->value);
 	if (decided && isfinite(c->value)) {
 		mpfi_sub_d(x, x, c->value);
 		decided = round_enclosure(x, &c->low);
 	}
-	mpfi_clear(x);
 	return decided;
 }
 

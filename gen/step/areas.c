@@ -13,8 +13,7 @@ void through_row(const struct through *t, const struct output *output, mpq_t *ro
 
 void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)
 {
-	mpfi_t part;
-	mpfi_init2(part, t->precision);
+	INTERVAL part = OVER_BITS(t->precision);
 	mpfi_set_ui(sum, 0);
 	for (int i = 0; i < t->n; i++) {
 		if (mpq_sgn(row[i]) == 0)
@@ -22,16 +21,14 @@ void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpf
 		mpfi_mul_q(part, x[i], row[i]);
 		mpfi_add(sum, sum, part);
 	}
-	mpfi_clear(part);
 }
 
 void through_value(const struct through *t, const struct output *output, mpfi_ptr value)
 {
-	mpq_t *row = rationals((size_t)t->n);
+	RATIONALS *row = rationals((size_t)t->n);
 	mpfi_set_prec(value, t->precision);
 	through_row(t, output, row);
 	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
-	rationals_free(row, (size_t)t->n);
 }
 
 void through_state(const struct through *t, int state, mpfi_ptr value)
@@ -52,8 +49,8 @@ static double *doubles(int n, const mpq_t *row)
 
 mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 {
-	mpq_t *product = rationals((size_t)t->n), part;
-	mpq_init(part);
+	mpq_t *product = rationals((size_t)t->n);
+	RATIONAL part = ZERO;
 	for (int i = 0; i < t->n; i++)
 		for (int j = 0; j < t->n && mpq_sgn(row[i]) != 0; j++) {
 			if (mpq_sgn(A[i * t->n + j]) == 0)
@@ -61,7 +58,6 @@ mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 			mpq_mul(part, row[i], A[i * t->n + j]);
 			mpq_add(product[j], product[j], part);
 		}
-	mpq_clear(part);
 	return product;
 }
 
@@ -69,7 +65,8 @@ mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 static double *fourth_of(const struct through *t, const double *row, const mpq_t *A)
 {
 	int n = t->n;
-	double *now = ARRAY(double, (size_t)n), *size = ARRAY(double, (size_t)n), *a = doubles(n * n, A);
+	SCRATCH double *a = doubles(n * n, A);
+	double *now = ARRAY(double, (size_t)n), *size = ARRAY(double, (size_t)n);
 	for (int i = 0; i < n; i++)
 		size[i] = fabs(now[i] = row[i]);
 	for (int k = 0; k < 4; k++) {
@@ -84,7 +81,6 @@ static double *fourth_of(const struct through *t, const double *row, const mpq_t
 	}
 	for (int j = 0; j < n; j++)
 		now[j] = fabs(now[j]) + 1e-12 * size[j];
-	discard(a);
 	return now;
 }
 
@@ -107,8 +103,7 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 {
 	const struct expression *e = &t->s->expression[expression];
 	int interval = interval_of(t->s, region, expression), segment = segment_of_region(t->s, region);
-	mpq_t limit;
-	mpq_init(limit);
+	RATIONAL limit = ZERO;
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
 		if (breakpoint < 0 || breakpoint == e->breaks ||
@@ -130,7 +125,6 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 					.impact = impact, .leads = leads },
 			 row, limit);
 	}
-	mpq_clear(limit);
 }
 
 /* e^{|A| piece}, rounded up: entry by entry it bounds how far states grow in a piece */
@@ -173,8 +167,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 {
 	const struct region *r = &t->s->region[region];
 	int stride = t->s->expression[expression].stride, interval = interval_of(t->s, region, expression);
-	mpq_t zero;
-	mpq_init(zero);
+	RATIONAL zero = ZERO;
 	for (int k = 0; k < r->releases; k++) {
 		const struct release *release = &r->release[k];
 		if (release->expression != expression)
@@ -187,7 +180,6 @@ static void add_releases(const struct through *t, struct area *area, int region,
 					.leads = release->upward ? stride : -stride },
 			 row, zero);
 	}
-	mpq_clear(zero);
 }
 
 /* Regions that cannot be are passed through where two expressions cross at once; the equations stay those before. */
@@ -229,10 +221,8 @@ static void wave_at(const struct through *t, const struct load *load, int column
 {
 	const struct wave *wave = load->wave;
 	bool turns = oscillates(wave);
-	mpq_t argument;
-	mpfi_t factor;
-	mpq_init(argument);
-	mpfi_init2(factor, t->precision);
+	RATIONAL argument = ZERO;
+	INTERVAL factor = OVER_BITS(t->precision);
 	mpq_mul(argument, wave->a, time);
 	mpfi_set_q(factor, argument);
 	mpfi_exp(z, factor);
@@ -248,8 +238,6 @@ static void wave_at(const struct through *t, const struct load *load, int column
 			(column % 2 ? mpfi_sin : mpfi_cos)(factor, factor);
 		mpfi_mul(z, z, factor);
 	}
-	mpq_clear(argument);
-	mpfi_clear(factor);
 }
 
 void through_loads(struct through *t)
@@ -262,20 +250,18 @@ void through_loads(struct through *t)
 /* Whether one row is a positive multiple of the other */
 static bool is_multiple(int n, const mpq_t *a, const mpq_t *b)
 {
-	mpq_t ratio, part;
 	int first = 0;
 	while (first < n && mpq_sgn(a[first]) == 0)
 		first++;
 	if (first == n || mpq_sgn(b[first]) != mpq_sgn(a[first]))
 		return false;
 	bool same = true;
-	mpq_inits(ratio, part, NULL);
+	RATIONAL ratio = ZERO, part = ZERO;
 	mpq_div(ratio, b[first], a[first]);
 	for (int i = 0; i < n && same; i++) {
 		mpq_mul(part, a[i], ratio);
 		same = mpq_equal(part, b[i]) != 0;
 	}
-	mpq_clears(ratio, part, NULL);
 	return same;
 }
 

@@ -7,9 +7,8 @@
 /* Of a row over x at the start: its sign, exactly where the start is rational */
 static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
-	mpq_t sum, part;
 	int sign;
-	mpq_inits(sum, part, NULL);
+	RATIONAL sum = ZERO, part = ZERO;
 	*known = true;
 	if (t->exact) {
 		for (int i = 0; i < t->n; i++) {
@@ -18,31 +17,27 @@ static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, b
 		}
 		sign = mpq_cmp(sum, less);
 	} else {
-		mpfi_t value;
-		mpfi_init2(value, t->precision);
+		INTERVAL value = OVER_BITS(t->precision);
 		through_dot(t, row, (const mpfi_t *)t->x, value);
 		mpfi_sub_q(value, value, less);
 		sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 		*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right));
-		mpfi_clear(value);
 	}
-	mpq_clears(sum, part, NULL);
 	return sign;
 }
 
 /* Where an expression that stands on a breakpoint is heading: the sign of its first derivative that is not 0 */
 static int heading(struct through *t, int expression, bool *known)
 {
-	mpq_t *row = rationals((size_t)t->n), zero;
+	mpq_t *row = rationals((size_t)t->n);
 	int sign = 0;
-	mpq_init(zero);
+	RATIONAL zero = ZERO;
 	*known = true;
 	through_row(t, t->s->expression[expression].row, row);
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
 		row = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
 		sign = sign_at_start(t, (const mpq_t *)row, zero, known);
 	}
-	mpq_clear(zero);
 	return sign;
 }
 
@@ -79,15 +74,13 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	if (!*on || !is_stick(e, interval + 1))
 		return interval;
 	int impact = impact_resting(t->s, t->segment, expression, interval + 1), speed = 0;
-	mpq_t *row = rationals((size_t)t->n), zero;
-	mpq_init(zero);
+	RATIONALS *row = rationals((size_t)t->n);
+	RATIONAL zero = ZERO;
 	if (impact >= 0) {
 		through_row(t, t->s->impact[impact].in[t->segment].speed_row, row);
 		speed = sign_at_start(t, (const mpq_t *)row, zero, known);
 	}
 	*on = false;
-	mpq_clear(zero);
-	rationals_free(row, (size_t)t->n);
 	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->segment].upward ? interval : interval + 2;
 }
 

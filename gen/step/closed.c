@@ -54,8 +54,7 @@ static bool fill_row(const struct step *step, const struct closed_form *form, mp
 
 static void fill_rows(const struct step *step, const struct closed_form *form, struct reference *r)
 {
-	mpq_t t;
-	mpq_init(t);
+	RATIONAL t = ZERO;
 	for (r->rows = 0; r->rows < ROWS; r->rows++) {
 		mpq_set_ui(t, steps[r->rows], 1);
 		mpq_mul(t, t, step->model->h);
@@ -65,7 +64,6 @@ static void fill_rows(const struct step *step, const struct closed_form *form, s
 	mpq_div_2exp(t, step->model->h, 1);
 	if (step->series.emitted)
 		fill_row(step, form, t, r->between);
-	mpq_clear(t);
 }
 
 static void fill_units(struct reference *r, bool single)

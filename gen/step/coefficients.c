@@ -52,18 +52,14 @@ static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 	int segment = f->layout.segments > 1 ? 0 : f->segment;
 	if (here->segment[segment])
 		return here->segment[segment];
-	mpq_t half;
-	mpq_init(half);
+	RATIONAL half = ZERO;
 	mpq_div_2exp(half, tau, 1);
 	if (mpq_sgn(half) > 0 && exponential_at(f, half)) {
 		here->segment[segment] = taylor_doubled(taylor_at(f, half));
 	} else {
-		size_t cells = (size_t)f->layout.size * (size_t)f->layout.size;
-		mpq_t *A = augmented_matrix(&f->layout, f->system, segment);
+		RATIONALS *A = augmented_matrix(&f->layout, f->system, segment);
 		here->segment[segment] = taylor_of(f->layout.size, (const mpq_t *)A, tau);
-		rationals_free(A, cells);
 	}
-	mpq_clear(half);
 	return here->segment[segment];
 }
 
@@ -128,10 +124,8 @@ static struct coefficient number_of(struct filling *f, bool two_words, enum soug
 
 static void by_residues_from(struct filling *f, struct response *response)
 {
-	mpq_t start;
-	mpq_init(start);
+	RATIONAL start = ZERO;
 	add_response(f, response, start);
-	mpq_clear(start);
 }
 
 static void state_by_residues(struct filling *f, int state, int unused)
@@ -146,8 +140,7 @@ static void state_by_taylor(struct filling *f, int state, int unused)
 	(void)unused;
 	const struct linear *system = f->system;
 	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
-	mpq_t weight;
-	mpq_init(weight);
+	RATIONAL weight = ZERO;
 	mpq_set_ui(weight, 1, 1);
 	add_entry(f, f->tau, state, weight);
 	for (int i = 0; i < system->n && held; i++) {
@@ -155,7 +148,6 @@ static void state_by_taylor(struct filling *f, int state, int unused)
 		if (mpq_sgn(weight) != 0)
 			add_entry(f, f->tau, f->layout.held + i, weight);
 	}
-	mpq_clear(weight);
 }
 
 /* ---- forms other than direct ---- */
@@ -163,13 +155,11 @@ static void state_by_taylor(struct filling *f, int state, int unused)
 /* Phi - I, rounded as it is and not as Phi */
 static struct coefficient increment_entry(struct filling *f, int j, bool two_words)
 {
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	f->less = f->row == j ? one : NULL;
 	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	f->less = NULL;
-	mpq_clear(one);
 	return c;
 }
 
@@ -181,14 +171,12 @@ static mpq_srcptr mass_of(const struct filling *f, int coord)
 /* S = Phi_12 M^-1 */
 static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 {
-	mpq_t inverse;
-	mpq_init(inverse);
+	RATIONAL inverse = ZERO;
 	mpq_inv(inverse, mass_of(f, j));
 	f->scale = inverse;
 	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, f->system->velocity[j], 0,
 					 f->state_name[f->system->velocity[j]]);
 	f->scale = NULL;
-	mpq_clear(inverse);
 	return c;
 }
 
@@ -202,10 +190,8 @@ static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_p
 /* X <- S^-1 R, all n x n, in intervals, by elimination; S is symmetric and positive definite, S and R are destroyed. */
 static bool solve_enclosed(int n, mpfi_t *S, mpfi_t *R, int precision)
 {
-	mpfi_t factor, product;
 	bool regular = true;
-	mpfi_init2(factor, precision);
-	mpfi_init2(product, precision);
+	INTERVAL factor = OVER_BITS(precision), product = OVER_BITS(precision);
 	for (int k = 0; k < n && regular; k++) {
 		regular = !mpfi_has_zero(S[k * n + k]);
 		for (int i = 0; i < n && regular; i++) {
@@ -223,8 +209,6 @@ static bool solve_enclosed(int n, mpfi_t *S, mpfi_t *R, int precision)
 	for (int i = 0; i < n && regular; i++)
 		for (int j = 0; j < n; j++)
 			mpfi_div(R[i * n + j], R[i * n + j], S[i * n + i]);
-	mpfi_clear(factor);
-	mpfi_clear(product);
 	return regular;
 }
 
@@ -294,14 +278,12 @@ static void input_by_residues(struct filling *f, int input, int column)
 static void input_by_taylor(struct filling *f, int input, int column)
 {
 	int at = f->layout.input[input], hold = f->system->input[input].hold;
-	mpq_t weight;
-	mpq_init(weight);
+	RATIONAL weight = ZERO;
 	for (int m = 0; m <= hold; m++) {
 		tap_derivative(hold, m, column, f->model->h, weight);
 		if (mpq_sgn(weight) != 0)
 			add_entry(f, f->tau, at + m, weight);
 	}
-	mpq_clear(weight);
 }
 
 static void load_by_residues(struct filling *f, int load, int column)
@@ -311,21 +293,18 @@ static void load_by_residues(struct filling *f, int load, int column)
 
 static void load_by_taylor(struct filling *f, int load, int column)
 {
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (f->layout.load[load] >= 0)
 		add_entry(f, f->tau,
 			  f->layout.load[load] + column + (f->layout.segments > 1 ? f->segment * f->layout.loads : 0),
 			  one);
-	mpq_clear(one);
 }
 
 /* (s/h)^m from u_m of a chain u_0' = u_1, u_1' = u_2 ..., u_0 the force: s^m/m! */
 static void add_powers(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
 {
-	mpq_t weight, scale;
-	mpq_inits(weight, scale, NULL);
+	RATIONAL weight = ZERO, scale = ZERO;
 	mpq_set_ui(scale, 1, 1);
 	for (int m = 0; m < part->powers; m++) {
 		if (m > 0) {
@@ -337,7 +316,6 @@ static void add_powers(struct filling *f, const struct kernel_part *part, mpq_sr
 		if (mpq_sgn(weight) != 0)
 			add_entry(f, tau, f->layout.channel + channel * f->layout.powers + m, weight);
 	}
-	mpq_clears(weight, scale, NULL);
 }
 
 /* impulse e^{A tau} B: B are the highest derivatives that the force gives */
@@ -345,35 +323,30 @@ static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_s
 {
 	const struct linear *system = f->system;
 	const mpq_t *B = impulse_of(f, channel);
-	mpq_t weight;
-	mpq_init(weight);
+	RATIONAL weight = ZERO;
 	for (int i = 0; i < system->states; i++) {
 		mpq_mul(weight, B[i], part->impulse);
 		if (mpq_sgn(weight) != 0)
 			add_entry(f, tau, i, weight);
 	}
-	mpq_clear(weight);
 }
 
 static void kernel_by_residues(struct filling *f, int index, int channel)
 {
 	const struct kernel *kernel = &f->wanted->kernel[index];
-	mpq_t start;
-	mpq_init(start);
+	RATIONAL start = ZERO;
 	for (int k = 0; k < kernel->parts; k++) {
 		const struct kernel_part *part = &kernel->part[k];
 		mpq_mul(start, part->fraction, f->model->h);
 		mpq_sub(start, f->tau, start);
 		add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
 	}
-	mpq_clear(start);
 }
 
 static void kernel_by_taylor(struct filling *f, int index, int channel)
 {
 	const struct kernel *kernel = &f->wanted->kernel[index];
-	mpq_t tau;
-	mpq_init(tau);
+	RATIONAL tau = ZERO;
 	for (int k = 0; k < kernel->parts; k++) {
 		const struct kernel_part *part = &kernel->part[k];
 		mpq_mul(tau, part->fraction, f->model->h);
@@ -381,7 +354,6 @@ static void kernel_by_taylor(struct filling *f, int index, int channel)
 		if (mpq_sgn(part->impulse) != 0)
 			add_impulse(f, part, tau, channel);
 	}
-	mpq_clear(tau);
 }
 
 /* At tau = 0 an impulse is what it is. */
@@ -392,12 +364,10 @@ static bool is_immediate(const struct kernel *kernel)
 
 static struct coefficient immediate(struct filling *f, const struct kernel *kernel, int channel)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	mpq_mul(value, impulse_of(f, channel)[f->row], kernel->part[0].impulse);
 	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
 	check_range(f->model, &c, 0, NULL, "a factor of the leftover");
-	mpq_clear(value);
 	return c;
 }
 

@@ -43,8 +43,7 @@ static double rounded(const struct step *step, mpfi_srcptr x)
 /* sign (-1)^s times the Legendre polynomial of degree n on 0 .. 1 */
 static void add_legendre(mpz_t *c, int n, long sign)
 {
-	mpz_t term, other;
-	mpz_inits(term, other, NULL);
+	INTEGER term = INTEGER_ZERO, other = INTEGER_ZERO;
 	for (int k = 0; k <= n; k++) {
 		mpz_bin_uiui(term, (unsigned long)n, (unsigned long)k);
 		mpz_bin_uiui(other, (unsigned long)(n + k), (unsigned long)k);
@@ -52,7 +51,6 @@ static void add_legendre(mpz_t *c, int n, long sign)
 		mpz_mul_si(term, term, (n + k) % 2 ? -sign : sign);
 		mpz_add(c[k], c[k], term);
 	}
-	mpz_clears(term, other, NULL);
 }
 
 /* P_s - P_{s-1}: its zeros are the nodes, 1 among them */
@@ -71,13 +69,11 @@ static struct poly polynomial_of_nodes(int stages)
 static struct poly polynomial_of_modes(struct poly nodes)
 {
 	struct poly p = poly_new(nodes.length);
-	mpz_t factorial;
-	mpz_init(factorial);
+	INTEGER factorial = INTEGER_ZERO;
 	for (int k = 0; k < nodes.length; k++) {
 		mpz_fac_ui(factorial, (unsigned long)k);
 		mpz_mul(p.c[k], nodes.c[k], factorial);
 	}
-	mpz_clear(factorial);
 	poly_trim(&p);
 	return p;
 }
@@ -85,10 +81,8 @@ static struct poly polynomial_of_modes(struct poly nodes)
 /* Every zero once, of pairs the one above the real axis */
 static int zeros_of(const struct step *step, struct poly p, struct rectangle *zero, int most)
 {
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
-	mpz_clear(content);
 	int count = 0;
 	if (!spectrum_refine(spectrum, BITS))
 		internal_error(step, "the zeros of a polynomial of the collocation are not found");
@@ -121,8 +115,8 @@ static void put_real_first(struct rectangle *zero, int count)
 /* W: [power][node], from N over x - c, synthetic division, over its value at c */
 static void lagrange(struct poly nodes, const struct rectangle *c, int stages, mpfi_t *W)
 {
-	mpfi_t *quotient = intervals((size_t)stages), value;
-	mpfi_init2(value, BITS);
+	mpfi_t *quotient = intervals((size_t)stages);
+	INTERVAL value = OVER_BITS(BITS);
 	for (int j = 0; j < stages; j++) {
 		mpfi_set_z(quotient[stages - 1], nodes.c[stages]);
 		for (int m = stages - 1; m > 0; m--) {
@@ -137,16 +131,13 @@ static void lagrange(struct poly nodes, const struct rectangle *c, int stages, m
 		for (int m = 0; m < stages; m++)
 			mpfi_div(W[m * stages + j], quotient[m], value);
 	}
-	mpfi_clear(value);
 	intervals_free(quotient, (size_t)stages);
 }
 
 /* A: [node][node], integrals from 0 to a node */
 static void integrate(const struct rectangle *c, int stages, mpfi_t *W, mpfi_t *A)
 {
-	mpfi_t power, part;
-	mpfi_init2(power, BITS);
-	mpfi_init2(part, BITS);
+	INTERVAL power = OVER_BITS(BITS), part = OVER_BITS(BITS);
 	for (int i = 0; i < stages; i++) {
 		mpfi_set_ui(power, 1);
 		for (int m = 0; m < stages; m++) {
@@ -158,21 +149,17 @@ static void integrate(const struct rectangle *c, int stages, mpfi_t *W, mpfi_t *
 			}
 		}
 	}
-	mpfi_clear(power);
-	mpfi_clear(part);
 }
 
 static void square(int stages, mpfi_t *A, mpfi_t *twice)
 {
-	mpfi_t part;
-	mpfi_init2(part, BITS);
+	INTERVAL part = OVER_BITS(BITS);
 	for (int i = 0; i < stages; i++)
 		for (int j = 0; j < stages; j++)
 			for (int k = 0; k < stages; k++) {
 				mpfi_mul(part, A[i * stages + k], A[k * stages + j]);
 				mpfi_add(twice[i * stages + j], twice[i * stages + j], part);
 			}
-	mpfi_clear(part);
 }
 
 /* ---- its modes ---- */
@@ -181,9 +168,7 @@ static void square(int stages, mpfi_t *A, mpfi_t *twice)
 static void right_of_mode(struct poly nodes, const struct rectangle *z, const struct rectangle *c,
 			  struct rectangle *value)
 {
-	struct rectangle power, part;
-	rectangle_init(&power, BITS);
-	rectangle_init(&part, BITS);
+	RECTANGLE power = new_rectangle(BITS), part = new_rectangle(BITS);
 	rectangle_init(value, BITS);
 	mpfi_set_ui(power.re, 1);
 	for (struct poly p = poly_derivative(nodes); p.length; p = poly_derivative(p)) {
@@ -193,18 +178,14 @@ static void right_of_mode(struct poly nodes, const struct rectangle *z, const st
 		mpfi_add(value->im, value->im, part.im);
 		rectangle_mul(&power, &power, z);
 	}
-	rectangle_clear(&power);
-	rectangle_clear(&part);
 }
 
 /* u_j = sum over m of m! z^m W_mj: in powers of time A shifts, x^m to x^(m+1)/(m+1) */
 static void left_of_mode(int stages, mpfi_t *W, const struct rectangle *z, int j, struct rectangle *value)
 {
-	struct rectangle power;
-	mpfi_t part;
-	rectangle_init(&power, BITS);
+	RECTANGLE power = new_rectangle(BITS);
 	rectangle_init(value, BITS);
-	mpfi_init2(part, BITS);
+	INTERVAL part = OVER_BITS(BITS);
 	mpfi_set_ui(power.re, 1);
 	for (int m = 0; m < stages; m++) {
 		mpfi_mul(part, power.re, W[m * stages + j]);
@@ -215,8 +196,6 @@ static void left_of_mode(int stages, mpfi_t *W, const struct rectangle *z, int j
 		mpfi_mul_ui(power.re, power.re, (unsigned long)m + 1);
 		mpfi_mul_ui(power.im, power.im, (unsigned long)m + 1);
 	}
-	mpfi_clear(part);
-	rectangle_clear(&power);
 }
 
 /* Both, their product 1; of a pair the right one twice, since the other half of it is the conjugate */
@@ -227,12 +206,10 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 	bool pair = !mpfi_is_zero(z->im);
 	struct rectangle *left = ARRAY(struct rectangle, (size_t)stages), *right = ARRAY(struct rectangle,
 											 (size_t)stages);
-	struct rectangle product, part;
 	struct stage_mode mode = { .pair = pair, .re = rounded(step, z->re), .im = pair ? rounded(step, z->im) : 0 };
 	mode.left = ARRAY(double, 2 * (size_t)stages);
 	mode.right = ARRAY(double, 2 * (size_t)stages);
-	rectangle_init(&product, BITS);
-	rectangle_init(&part, BITS);
+	RECTANGLE product = new_rectangle(BITS), part = new_rectangle(BITS);
 	for (int i = 0; i < stages; i++) {
 		left_of_mode(stages, W, z, i, &left[i]);
 		right_of_mode(nodes, z, &c[i], &right[i]);
@@ -251,8 +228,6 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 		rectangle_clear(&left[i]);
 		rectangle_clear(&right[i]);
 	}
-	rectangle_clear(&product);
-	rectangle_clear(&part);
 	return mode;
 }
 

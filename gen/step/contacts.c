@@ -64,8 +64,7 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 {
 	const struct model *model = w->step->model;
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int e = 0; e < w->system->channels; e++) {
 		const struct form_term *term = form_find(model->operator[0].left[e], &basis);
 		for (int i = 0; i < w->system->states && term; i++) {
@@ -73,7 +72,6 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 			mpq_add(h->push[i], h->push[i], part);
 		}
 	}
-	mpq_clear(part);
 }
 
 static void push_of_contact(const struct sequencing *w, struct holder *h, const struct impact *impact)
@@ -116,8 +114,7 @@ static void find_holders(struct holders *all)
 
 static void find_answer(struct holders *all, const struct holder *h, const struct holder *of, mpq_ptr answer)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int i = 0; i < h->rate->terms; i++) {
 		int state = rate_state(all->w, &h->rate->term[i].basis);
 		if (state == NONE)
@@ -125,7 +122,6 @@ static void find_answer(struct holders *all, const struct holder *h, const struc
 		mpq_mul(part, h->rate->term[i].factor, of->push[state]);
 		mpq_add(answer, answer, part);
 	}
-	mpq_clear(part);
 }
 
 static void find_answers(struct holders *all)
@@ -182,8 +178,7 @@ static int bare_slope(struct sequencing *w, int state)
 static int bare_rate(struct sequencing *w, const struct form *rate)
 {
 	struct sum sum = { 0 };
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	for (int i = 0; i < rate->terms; i++) {
 		const struct form_term *term = &rate->term[i];
@@ -194,7 +189,6 @@ static int bare_rate(struct sequencing *w, const struct form *rate)
 		else
 			sum_add(&sum, TERM_SEQUENCE, bare_slope(w, state), 0, term->factor);
 	}
-	mpq_clear(one);
 	return sequence_of_sum(w, &sum);
 }
 
@@ -210,12 +204,10 @@ static void make_hold(struct holders *all, int index)
 	const struct holder *h = &all->holder[index];
 	const struct model *model = w->step->model;
 	struct series_hold *hold = &all->c->hold[index];
-	mpq_t factor;
 	*hold = (struct series_hold){ .impact = h->impact, .pull = { NONE, NONE } };
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	struct division d = h->node ? divide_made(w, h->velocity, factor)
 				    : divide_guard(w, &model->impact[h->impact], factor);
-	mpq_clear(factor);
 	for (int i = 0; i < index; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
 			tell_held_twice(h->node ? h->node->at : model->impact[h->impact].when->at);
@@ -241,13 +233,11 @@ static int rest_sequence(struct sequencing *w, const struct drag *drag)
 		return rest;
 	const struct form *less = form_difference(form_number(0), more);
 	struct sum sum = { 0 };
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, more, rest), 0, one);
 	int force = force_sequence(w, drag->force);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, less, force), 0, one);
-	mpq_clear(one);
 	return sum_sequence(w, &sum);
 }
 
@@ -336,13 +326,13 @@ static int force_together(const struct together *t)
 	for (int i = 0; i < t->members; i++)
 		if (t->holds[i])
 			which[count++] = t->member[i];
-	mpq_t *inverse = rationals((size_t)(count * count)), part;
+	mpq_t *inverse = rationals((size_t)(count * count));
 	struct sum sum = { 0 };
 	if (!invert(t, count, which, inverse)) {
 		note_conflict(t->all, count, which);
 		return t->all->none;
 	}
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int i = 0; i < count; i++) {
 		const struct holder *h = &t->all->holder[which[i]];
 		mpq_neg(part, inverse[i]);
@@ -356,7 +346,6 @@ static int force_together(const struct together *t)
 			sum_add(&sum, TERM_SEQUENCE, other->slips, 0, part);
 		}
 	}
-	mpq_clear(part);
 	return sum_sequence(w, &sum);
 }
 
@@ -410,8 +399,7 @@ static struct sum needed_force(const struct holders *all, int index, long sign)
 {
 	const struct holder *h = &all->holder[index];
 	struct sum sum = { 0 };
-	mpq_t factor, part;
-	mpq_inits(factor, part, NULL);
+	RATIONAL factor = ZERO, part = ZERO;
 	mpq_set_si(factor, -sign, 1);
 	mpq_div(factor, factor, h->answer[index]);
 	sum_add(&sum, TERM_SEQUENCE, h->bare, 0, factor);
@@ -421,7 +409,6 @@ static struct sum needed_force(const struct holders *all, int index, long sign)
 		mpq_mul(part, factor, h->answer[j]);
 		sum_add(&sum, TERM_SEQUENCE, all->holder[j].force, 0, part);
 	}
-	mpq_clears(factor, part, NULL);
 	return sum;
 }
 
@@ -430,13 +417,11 @@ static double *row_of_back(const struct holders *all, int index)
 	const struct holder *h = &all->holder[index];
 	int states = all->w->system->states;
 	double *back = ARRAY(double, (size_t)states);
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int i = 0; i < states; i++) {
 		mpq_div(part, h->push[i], h->answer[index]);
 		back[i] = round_rational(part);
 	}
-	mpq_clear(part);
 	return back;
 }
 
@@ -446,8 +431,7 @@ static void watch_hold(struct holders *all, int index)
 	struct sequencing *w = all->w;
 	const struct holder *h = &all->holder[index];
 	struct series_hold *hold = &all->c->hold[index];
-	mpq_t minus;
-	mpq_init(minus);
+	RATIONAL minus = ZERO;
 	mpq_set_si(minus, -1, 1);
 	hold->velocity = watch(w, sequence_of_form(w, h->velocity), false);
 	hold->back = row_of_back(all, index);
@@ -461,7 +445,6 @@ static void watch_hold(struct holders *all, int index)
 		sum_add(&pull, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
 		hold->pull[up] = watch(w, sum_sequence(w, &pull), true);
 	}
-	mpq_clear(minus);
 }
 
 static void assign(struct holders *all, const struct jump *jump, int jumps)
@@ -480,8 +463,7 @@ static void watch_impact(struct holders *all, int index)
 	struct sequencing *w = all->w;
 	const struct impact *impact = &w->step->model->impact[index];
 	struct series_strike *strike = &all->c->strike[index];
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	struct division d = divide_guard(w, impact, factor);
 	for (int i = 0; i < all->c->holds && !impact->bounces; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
@@ -492,7 +474,6 @@ static void watch_impact(struct holders *all, int index)
 				   .restitution = round_rational(impact->in->restitution) };
 	mpq_inv(factor, factor);
 	strike->per = round_rational(factor);
-	mpq_clear(factor);
 	for (int i = 0; i < all->holders; i++)
 		if (all->holder[i].impact == index)
 			strike->hold = i;
@@ -529,12 +510,11 @@ struct sum held_slope(struct sequencing *w, int state)
 {
 	const struct contacts *c = w->x->contacts;
 	struct sum slope = { 0 };
-	mpq_t one;
 	if (!c)
 		return slope_of_state(w, state);
 	if (c->bare[state] == NONE)
 		slope = slope_of_state(w, state);
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (c->bare[state] != NONE)
 		sum_add(&slope, TERM_SEQUENCE, c->bare[state], 0, one);
@@ -548,7 +528,6 @@ struct sum held_slope(struct sequencing *w, int state)
 		slope = (struct sum){ 0 };
 		sum_add(&slope, TERM_SEQUENCE, hold_choice(w, &c->hold[i], c->none, moves), 0, one);
 	}
-	mpq_clear(one);
 	return slope;
 }
 

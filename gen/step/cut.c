@@ -15,14 +15,13 @@ enum { LOOKED = 2, TURN = 2 };
 static double *slopes_in(const struct step *step, const struct layout *layout, int segment)
 {
 	size_t cells = (size_t)layout->size * (size_t)layout->size;
-	mpq_t *exact = augmented_matrix(layout, &step->branch->system, segment);
+	RATIONALS *exact = augmented_matrix(layout, &step->branch->system, segment);
 	double *A = ARRAY(double, cells);
 	for (size_t i = 0; i < cells; i++) {
 		A[i] = round_rational(exact[i]);
 		if (!isfinite(A[i]))
 			tell_range(step);
 	}
-	rationals_free(exact, cells);
 	return A;
 }
 

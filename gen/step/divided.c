@@ -69,8 +69,7 @@ static int constant_terms(const struct form *form)
 
 static void value_of_constants(const struct form *form, int count, mpq_ptr value)
 {
-	mpq_t part, pi;
-	mpq_inits(part, pi, NULL);
+	RATIONAL part = ZERO, pi = ZERO;
 	constant_pi(pi);
 	mpq_set_ui(value, 0, 1);
 	for (int i = 0; i < count; i++) {
@@ -79,7 +78,6 @@ static void value_of_constants(const struct form *form, int count, mpq_ptr value
 			mpq_mul(part, part, pi);
 		mpq_add(value, value, part);
 	}
-	mpq_clears(part, pi, NULL);
 }
 
 /* a - b, or what stands beside a constant as it was written: b - a */
@@ -96,8 +94,7 @@ struct division divide_forms(struct sequencing *w, const struct form *a, const s
 	int constants = constant_terms(d);
 	struct form plain = { constants, d->term, 0 };
 	struct division division = { .expression = NONE };
-	mpq_t value, factor;
-	mpq_inits(value, factor, NULL);
+	RATIONAL value = ZERO, factor = ZERO;
 	value_of_constants(d, constants, value);
 	division.above = (mpq_sgn(value) > 0) != turned;
 	if (constants < d->terms) {
@@ -107,7 +104,6 @@ struct division divide_forms(struct sequencing *w, const struct form *a, const s
 		division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
 		division.above = (mpq_sgn(factor) > 0) != turned;
 	}
-	mpq_clears(value, factor, NULL);
 	return division;
 }
 
@@ -117,8 +113,7 @@ bool find_division(const struct expansion *x, const struct form *a, const struct
 	const struct form *d = difference_of(a, b, &turned);
 	int constants = constant_terms(d);
 	struct form plain = { constants, d->term, 0 };
-	mpq_t value, factor;
-	mpq_inits(value, factor, NULL);
+	RATIONAL value = ZERO, factor = ZERO;
 	value_of_constants(d, constants, value);
 	*division = (struct division){ .expression = NONE, .breakpoint = 0, .above = (mpq_sgn(value) > 0) != turned };
 	if (constants < d->terms) {
@@ -130,7 +125,6 @@ bool find_division(const struct expansion *x, const struct form *a, const struct
 			division->above = (mpq_sgn(factor) > 0) != turned;
 		}
 	}
-	mpq_clears(value, factor, NULL);
 	return constants == d->terms || (division->expression != NONE && division->breakpoint != NONE);
 }
 
@@ -139,15 +133,13 @@ struct division divide_form(struct sequencing *w, const struct form *form, mpq_p
 	int constants = constant_terms(form);
 	struct form plain = { constants, form->term, 0 };
 	struct division division = { .expression = NONE };
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	value_of_constants(form, constants, value);
 	division.expression = find_divided(w, form_sum(form, &plain, true), factor);
 	mpq_div(value, value, factor);
 	mpq_neg(value, value);
 	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
 	division.above = mpq_sgn(factor) > 0;
-	mpq_clear(value);
 	return division;
 }
 

@@ -8,8 +8,7 @@ enum { DRIFT_BITS = 256 };
 
 static void add_product(mpq_ptr sum, const struct product *p, bool second_word, const mpq_t *state)
 {
-	mpq_t factor, value;
-	mpq_inits(factor, value, NULL);
+	RATIONAL factor = ZERO, value = ZERO;
 	mpq_set_d(factor, p->factor->value);
 	if (second_word) {
 		mpq_set_d(value, p->factor->low);
@@ -18,7 +17,6 @@ static void add_product(mpq_ptr sum, const struct product *p, bool second_word, 
 	mpq_set(value, state[p->operand.index]);
 	mpq_mul(value, value, factor);
 	mpq_add(sum, sum, value);
-	mpq_clears(factor, value, NULL);
 }
 
 /* One step from `state`, loads and inputs left out */
@@ -26,8 +24,8 @@ static void run_program(const struct step *step, mpq_t *state)
 {
 	const struct program *program = step->program;
 	int n = step->branch->system.states;
-	mpq_t *old = rationals((size_t)n), sum;
-	mpq_init(sum);
+	mpq_t *old = rationals((size_t)n);
+	RATIONAL sum = ZERO;
 	for (int i = 0; i < n; i++)
 		mpq_set(old[i], state[i]);
 	for (int i = 0; i < program->assignments; i++) {
@@ -41,7 +39,6 @@ static void run_program(const struct step *step, mpq_t *state)
 			mpq_add(sum, sum, from[a->target]);
 		mpq_set(state[a->target], sum);
 	}
-	mpq_clear(sum);
 }
 
 /* det(z D - D E), D the common denominator of the entries of E: powers of 2, since they are sums of products of
@@ -51,9 +48,9 @@ static struct poly characteristic(const struct step *step)
 	int n = step->branch->system.states;
 	struct polymat P = { n, ARRAY(struct poly, (size_t)(n * n)) };
 	mpq_t *E = rationals((size_t)(n * n)), *column = rationals((size_t)n);
-	mpz_t common, content;
-	mpz_init_set_ui(common, 1);
-	mpz_init(content);
+	INTEGER common = INTEGER_ZERO;
+	mpz_set_ui(common, 1);
+	INTEGER content = INTEGER_ZERO;
 	for (int j = 0; j < n; j++) {
 		for (int i = 0; i < n; i++)
 			mpq_set_ui(column[i], i == j, 1);
@@ -76,7 +73,6 @@ static struct poly characteristic(const struct step *step)
 	struct poly det;
 	polymat_adjugate(P, &det, NULL);
 	det = poly_primitive(det, content);
-	mpz_clears(common, content, NULL);
 	return det;
 }
 
@@ -92,23 +88,20 @@ static struct ringing mode_new(void)
 static struct ringing mode_of_eigenvalue(const struct rectangle *z)
 {
 	struct ringing m = mode_new();
-	mpfr_t re, im;
-	mpfr_inits2(DRIFT_BITS, re, im, NULL);
+	REAL re = WITH_BITS(DRIFT_BITS), im = WITH_BITS(DRIFT_BITS);
 	mpfi_mid(re, z->re);
 	mpfi_mid(im, z->im);
 	mpfr_atan2(m.angle, im, re, MPFR_RNDN);
 	mpfr_abs(m.angle, m.angle, MPFR_RNDN);
 	mpfr_hypot(m.size, re, im, MPFR_RNDN);
 	mpfr_log(m.size, m.size, MPFR_RNDN);
-	mpfr_clears(re, im, NULL);
 	return m;
 }
 
 static struct ringing mode_of_pole(const struct rectangle *p, mpq_srcptr h)
 {
 	struct ringing m = mode_new();
-	mpfr_t turn;
-	mpfr_init2(turn, DRIFT_BITS);
+	REAL turn = WITH_BITS(DRIFT_BITS);
 	mpfi_mid(m.size, p->re);
 	mpfi_mid(m.angle, p->im);
 	mpfr_mul_q(m.size, m.size, h, MPFR_RNDN);
@@ -117,7 +110,6 @@ static struct ringing mode_of_pole(const struct rectangle *p, mpq_srcptr h)
 	mpfr_mul_2ui(turn, turn, 1, MPFR_RNDN);
 	mpfr_remainder(m.angle, m.angle, turn, MPFR_RNDN);
 	mpfr_abs(m.angle, m.angle, MPFR_RNDN);
-	mpfr_clear(turn);
 	return m;
 }
 
@@ -149,8 +141,7 @@ static int ringing_of(const struct spectrum *spectrum, mpq_srcptr h, struct ring
 static void compare(const struct ringing *z, int poles, const struct ringing *pole, struct drift *drift)
 {
 	double nearest = -1, size = 0, angle = 0;
-	mpfr_t difference;
-	mpfr_init2(difference, DRIFT_BITS);
+	REAL difference = WITH_BITS(DRIFT_BITS);
 	for (int i = 0; i < poles; i++) {
 		mpfr_sub(difference, z->size, pole[i].size, MPFR_RNDN);
 		double d_size = mpfr_get_d(difference, MPFR_RNDN);
@@ -162,7 +153,6 @@ static void compare(const struct ringing *z, int poles, const struct ringing *po
 		size = d_size;
 		angle = d_angle < 0 ? -d_angle : d_angle;
 	}
-	mpfr_clear(difference);
 	size = size > 1e-60 || size < -1e-60 ? size : 0;        /* what an enclosure of 256 bits leaves */
 	if ((size < 0 ? -size : size) > (drift->amplitude < 0 ? -drift->amplitude : drift->amplitude))
 		drift->amplitude = size;
@@ -173,16 +163,14 @@ struct drift drift_of(const struct step *step)
 {
 	struct drift drift = { 0, 0, false };
 	struct ringing *eigenvalue, *pole;
-	mpz_t content;
 	if (step->modal)
 		return step->modal->drift;
 	if (step->program->loops || has_leftover(step) || step->model->switching ||
 	    scheme_row(step->model->scheme)->holds_coupling)
 		return drift;
 	struct spectrum *map = spectrum_of(characteristic(step));
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct spectrum *exact = spectrum_of(poly_primitive(*resolvent_determinant(step->branch->resolvent), content));
-	mpz_clear(content);
 	if (!spectrum_refine(map, DRIFT_BITS) || !spectrum_refine(exact, DRIFT_BITS))
 		return drift;
 	int eigenvalues = ringing_of(map, NULL, &eigenvalue), poles = ringing_of(exact, step->model->h, &pole);

@@ -11,12 +11,9 @@ struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 
 double time_in_step(const struct model *model, mpq_srcptr fraction)
 {
-	mpq_t tau;
-	mpq_init(tau);
+	RATIONAL tau = ZERO;
 	mpq_mul(tau, fraction, model->h);
-	double seconds = round_rational(tau);
-	mpq_clear(tau);
-	return seconds;
+	return round_rational(tau);
 }
 
 struct slopes state_slopes(const struct step *step, int operator)
@@ -25,15 +22,13 @@ struct slopes state_slopes(const struct step *step, int operator)
 	int states = system->states, channels = system->channels;
 	struct slopes slopes = { ARRAY(struct coefficient, (size_t)(states * states)),
 				 ARRAY(struct coefficient, (size_t)(states * channels)) };
-	mpq_t *A = state_matrix(system, false);
+	RATIONALS *A = state_matrix(system, false);
 	for (int i = 0; i < states * states; i++)
 		slopes.A[i] = equation_number(step->model, A[i]);
-	rationals_free(A, (size_t)(states * states));
 	for (int c = 0; c < channels; c++) {
-		mpq_t *force = impulse_of_channel(system, c);
+		RATIONALS *force = impulse_of_channel(system, c);
 		for (int i = 0; i < states; i++)
 			slopes.B[i * channels + c] = equation_number(step->model, force[i]);
-		rationals_free(force, (size_t)states);
 	}
 	return slopes;
 }

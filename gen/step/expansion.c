@@ -7,14 +7,13 @@
 
 static void expand_state(struct sequencing *w, int state)
 {
-	mpq_t *scale = integral_scale(w, true);
+	RATIONALS *scale = integral_scale(w, true);
 	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
 	struct sequence made = w->x->sequence[state];
 	sum_numbers(w, &made, &sum, (const mpq_t *)scale);
 	if (w->system->segments > 1)
 		add_changing_loads(w, &made, state, (const mpq_t *)scale);
 	w->x->sequence[state] = made;
-	rationals_free(scale, (size_t)w->x->order + 1);
 }
 
 /* ---- which coefficients there are, and are read ---- */

@@ -104,13 +104,11 @@ static int first_column(const struct linear *system, int load)
 static struct coefficient rounded(mpq_srcptr q)
 {
 	struct coefficient c = { .value = round_rational(q), .zero = mpq_sgn(q) == 0 };
-	mpq_t rest;
-	mpq_init(rest);
+	RATIONAL rest = ZERO;
 	if (!beyond_range(q))
 		mpq_set_d(rest, c.value);
 	mpq_sub(rest, q, rest);
 	c.low = nearest_double(rest);
-	mpq_clear(rest);
 	return c;
 }
 
@@ -162,17 +160,15 @@ static bool make_flow(const struct step *step, const struct layout *place, int s
 	int size = place->size;
 	struct taylor *taylor =
 		taylor_of(size, (const mpq_t *)augmented_matrix(place, &step->branch->system, segment), step->model->h);
-	mpfi_t value;
 	if (!taylor_enclose(taylor, BITS))
 		return false;
 	flow->E = ARRAY(mpfr_t, (size_t)(size * size));
-	mpfi_init2(value, BITS);
+	INTERVAL value = OVER_BITS(BITS);
 	for (int i = 0; i < size * size; i++) {
 		mpfr_init2(flow->E[i], BITS);
 		taylor_entry(taylor, i / size, i % size, value);
 		mpfi_mid(flow->E[i], value);
 	}
-	mpfi_clear(value);
 	return true;
 }
 
@@ -231,8 +227,7 @@ static bool follow(const struct step *step, const struct layout *place, struct c
 	int size = place->size;
 	mpfr_t *x = ARRAY(mpfr_t, (size_t)size), *next = ARRAY(mpfr_t, (size_t)size);
 	struct flow *flow = ARRAY(struct flow, (size_t)step->branch->system.segments);
-	mpq_t t, value;
-	mpq_inits(t, value, NULL);
+	RATIONAL t = ZERO, value = ZERO;
 	for (int i = 0; i < size; i++) {
 		mpfr_inits2(BITS, x[i], next[i], NULL);
 		mpfr_set_zero(x[i], 1);
@@ -260,7 +255,6 @@ static bool follow(const struct step *step, const struct layout *place, struct c
 	for (int s = 0; s < step->branch->system.segments; s++)
 		for (int i = 0; flow[s].E && i < size * size; i++)
 			mpfr_clear(flow[s].E[i]);
-	mpq_clears(t, value, NULL);
 	return good;
 }
 

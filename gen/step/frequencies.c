@@ -8,8 +8,8 @@ enum { REPORT_BITS = 256 };
 
 static void add_report(struct pole_report *r, const struct rectangle *at, int multiplicity, bool pair)
 {
-	mpfr_t size;
-	mpfr_inits2(REPORT_BITS, r->re, r->im, r->hertz, r->damping_ratio, size, NULL);
+	REAL size = WITH_BITS(REPORT_BITS);
+	mpfr_inits2(REPORT_BITS, r->re, r->im, r->hertz, r->damping_ratio, NULL);
 	r->multiplicity = multiplicity;
 	r->pair = pair;
 	mpfr_set_zero(r->re, 1);
@@ -27,7 +27,6 @@ static void add_report(struct pole_report *r, const struct rectangle *at, int mu
 	mpfr_const_pi(r->hertz, MPFR_RNDN);
 	mpfr_mul_ui(r->hertz, r->hertz, 2, MPFR_RNDN);
 	mpfr_div(r->hertz, size, r->hertz, MPFR_RNDN);
-	mpfr_clear(size);
 }
 
 /* by |p|, then real part, then imaginary part */

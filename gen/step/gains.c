@@ -102,12 +102,10 @@ double *gain_of(const struct step *step, const struct table *table, int halvings
 	if (!step->model->asked.compensated)
 		return NULL;
 	double *first = ARRAY(double, 2 * cells), *second = first + cells;
-	mpq_t d;
-	mpq_init(d);
+	RATIONAL d = ZERO;
 	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)halvings);
 	fill_gain_of_states(step, table, first, second);
 	fill_gain_of_loads(step, d, first, second);
 	fill_gain_of_inputs(step, d, first, second);
-	mpq_clear(d);
 	return first;
 }

@@ -146,8 +146,7 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, segment * s->impacts + number);
 	new.speed = ARRAY(double, (size_t)step->layout.size);
 	new.back = ARRAY(double, (size_t)step->layout.size);
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	if (impact->bounces) {
 		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL,
 					 segment * s->impacts + number);
@@ -158,7 +157,6 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 		}
 	}
 	new.play = size_of_bounded(step, new.speed);
-	mpq_clear(part);
 	return new;
 }
 
@@ -167,13 +165,12 @@ static void add_reach(const struct step *step, const struct pieces *pieces, stru
 {
 	int branch = g->branch[row], size = step->layout.size, rungs = step->branch[branch].rungs;
 	int room = step->model->retuned ? room_for_rungs(step) : rungs;
-	double *reach = reach_of_rows(step, branch, pieces->piece[branch].slopes, 1, g->row + row * size);
+	SCRATCH double *reach = reach_of_rows(step, branch, pieces->piece[branch].slopes, 1, g->row + row * size);
 	ENLARGE(g->reach, (size_t)((g->reaches + room) * size));
 	for (int i = 0; i < room * size; i++)
 		g->reach[g->reaches * size + i] = i < rungs * size ? reach[i] : 0;
 	g->reach_at[row] = g->reaches;
 	g->reaches += room;
-	discard(reach);
 }
 
 static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)

@@ -66,14 +66,12 @@ struct linear modified_equation(const struct linear *written, const struct linea
 	int states = split->states;
 	mpq_t *L = state_matrix(written, false), *R = state_matrix(split, true),
 	      *RL = rationals((size_t)(states * states));
-	mpq_t half;
 	rational_product(states, states, states, (const mpq_t *)R, (const mpq_t *)L, RL);
-	mpq_init(half);
+	RATIONAL half = ZERO;
 	mpq_div_2exp(half, h, 1);
 	for (int i = 0; i < states * states; i++) {
 		mpq_mul(RL[i], RL[i], half);
 		mpq_sub(L[i], L[i], RL[i]);
 	}
-	mpq_clear(half);
 	return first_order_system(states, (const mpq_t *)L);
 }

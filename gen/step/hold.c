@@ -8,8 +8,8 @@
 void tap_weight(int hold, int power, int tap, mpq_ptr weight)
 {
 	int before = hold > 0 ? (hold - 1) / 2 : 0;
-	mpq_t *factor = rationals((size_t)hold + 2), lower;
-	mpq_init(lower);
+	RATIONALS *factor = rationals((size_t)hold + 2);
+	RATIONAL lower = ZERO;
 	mpq_set_ui(factor[0], 1, 1);
 	for (int c = 0, degree = 0; c <= hold; c++) {
 		if (c == tap)
@@ -24,45 +24,37 @@ void tap_weight(int hold, int power, int tap, mpq_ptr weight)
 		}
 	}
 	mpq_set(weight, factor[power]);
-	mpq_clear(lower);
-	rationals_free(factor, (size_t)hold + 2);
 }
 
 /* d^power u / d s^power at the step's start, per tap: power! h^-power times its factor */
 void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative)
 {
-	mpq_t times;
-	mpq_init(times);
+	RATIONAL times = ZERO;
 	tap_weight(hold, power, tap, derivative);
 	for (int k = 1; k <= power; k++) {
 		mpq_set_si(times, k, 1);
 		mpq_mul(derivative, derivative, times);
 		mpq_div(derivative, derivative, h);
 	}
-	mpq_clear(times);
 }
 
 /* What |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
 double tap_reach(int hold, int power)
 {
-	mpq_t one, derivative, sum;
-	mpq_inits(one, derivative, sum, NULL);
+	RATIONAL one = ZERO, derivative = ZERO, sum = ZERO;
 	mpq_set_ui(one, 1, 1);
 	for (int c = 0; c <= hold; c++) {
 		tap_derivative(hold, power, c, one, derivative);
 		mpq_abs(derivative, derivative);
 		mpq_add(sum, sum, derivative);
 	}
-	double reach = round_rational(sum);
-	mpq_clears(one, derivative, sum, NULL);
-	return reach;
+	return round_rational(sum);
 }
 
 /* h u' at the step's end, per tap */
 void tap_slope(int hold, int tap, mpq_ptr slope)
 {
-	mpq_t weight, times;
-	mpq_inits(weight, times, NULL);
+	RATIONAL weight = ZERO, times = ZERO;
 	mpq_set_ui(slope, 0, 1);
 	for (int m = 1; m <= hold; m++) {
 		tap_weight(hold, m, tap, weight);
@@ -70,7 +62,6 @@ void tap_slope(int hold, int tap, mpq_ptr slope)
 		mpq_mul(weight, weight, times);
 		mpq_add(slope, slope, weight);
 	}
-	mpq_clears(weight, times, NULL);
 }
 
 /* first, third, ... */

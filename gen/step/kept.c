@@ -210,8 +210,9 @@ static double slack_of_output(const struct kept *k, const struct spread *spread,
 struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace)
 {
 	const struct sparse Phi = sparse_of(k->n, k->n, k->Phi), load = sparse_of(k->n, k->columns, k->load);
-	double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n),
-	       *z = ARRAY(double, (size_t)k->columns), largest = 0;
+	SCRATCH double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n),
+		       *z = ARRAY(double, (size_t)k->columns);
+	double largest = 0;
 	struct extent found = { 0 };
 	for (int i = 0; i < k->n; i++)
 		x[i] = k->start[i];
@@ -237,9 +238,6 @@ struct extent walk_loads(long steps, double h, const struct spread *spread, stru
 	for (int i = 0; i < k->n; i++)
 		k->size[i] = k->size[i] * (1 + 1e-9) + spread->slack * largest;
 	found.slack = slack_of_output(k, spread, largest);
-	discard(x);
-	discard(next);
-	discard(z);
 	sparse_free(&Phi);
 	sparse_free(&load);
 	return found;
@@ -248,8 +246,8 @@ struct extent walk_loads(long steps, double h, const struct spread *spread, stru
 /* What inputs within their bounds can do to the states at most */
 static void add_inputs(const struct spread *spread, struct kept *k)
 {
-	double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n),
-	       *column = ARRAY(double, (size_t)k->n);
+	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n),
+		       *column = ARRAY(double, (size_t)k->n);
 	for (int c = 0; c < k->inputs; c++) {
 		for (int i = 0; i < k->n; i++)
 			column[i] = k->input[i * k->inputs + c];
@@ -257,9 +255,6 @@ static void add_inputs(const struct spread *spread, struct kept *k)
 		for (int i = 0; i < k->n; i++)
 			k->size[i] += sum[i] * k->most[c];
 	}
-	discard(sum);
-	discard(most);
-	discard(column);
 }
 
 /* What a sample of an input does to the output m steps after it is given: to states by column `first` and on, one for
@@ -270,7 +265,8 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 {
 	const int taps = system->input[input].hold + 1, n = k->n;
 	const struct sparse Phi = sparse_of(n, n, k->Phi);
-	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), sum = 0;
+	SCRATCH double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n);
+	double sum = 0;
 	for (long m = 0; m < steps; m++) {
 		const int tap = m < taps ? taps - 1 - (int)m : -1;
 		double out = m == (taps - 1) / 2 ? k->feed[0][input] : 0;  /* that at the step's end */
@@ -286,8 +282,6 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 		x = next;
 		next = swap;
 	}
-	discard(x);
-	discard(next);
 	sparse_free(&Phi);
 	return sum * k->most[first];
 }

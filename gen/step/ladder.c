@@ -73,14 +73,12 @@ static void fill_state_rows(const struct step *step, const struct table *table, 
 double *Phi_over(const struct step *step, const struct table *table, int halvings)
 {
 	double *Phi = ARRAY(double, (size_t)step->layout.size * (size_t)step->layout.size);
-	mpq_t d;
-	mpq_init(d);
+	RATIONAL d = ZERO;
 	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)halvings);
 	fill_state_rows(step, table, Phi);
 	fill_inputs(step, table, Phi);
 	fill_load_states(step, d, Phi);
 	fill_input_states(step, d, Phi);
-	mpq_clear(d);
 	return Phi;
 }
 
@@ -125,7 +123,8 @@ static double *rung_of(const struct step *step, const struct table *table, int h
 	int size = step->layout.size, states = table->states;
 	if (step->model->asked.compensated)
 		return gain_of(step, table, halvings);
-	double *rung = ARRAY(double, (size_t)(size + 1) * (size_t)size), *Phi = Phi_over(step, table, halvings);
+	SCRATCH double *Phi = Phi_over(step, table, halvings);
+	double *rung = ARRAY(double, (size_t)(size + 1) * (size_t)size);
 	for (int i = 0; i < size * size; i++)
 		rung[i] = Phi[i];
 	for (int i = 0; i < states; i++)
@@ -133,7 +132,6 @@ static double *rung_of(const struct step *step, const struct table *table, int h
 			rung[i * (size + 1)] = table->increment[i * (states + 1)].value;
 			rung[size * size + i] = 1;
 		}
-	discard(Phi);
 	return rung;
 }
 
@@ -152,12 +150,12 @@ double *reach_of_rows(const struct step *step, int branch, const double *A, int 
 {
 	const struct branch *b = &step->branch[branch];
 	int size = step->layout.size, cells = rows * b->rungs * size;
-	double *reach = ARRAY(double, (size_t)cells), *work = ARRAY(double, (size_t)PL_REACH_WORK(size, rows));
+	SCRATCH double *work = ARRAY(double, (size_t)PL_REACH_WORK(size, rows));
+	double *reach = ARRAY(double, (size_t)cells);
 	if (b->rungs > 0)
 		pl_region_reach(size, round_rational(step->model->h), b->halvings, b->spacing, A, rows, row, reach,
 				work);
 	for (int i = 0; i < cells && step->model->asked.single; i++)
 		reach[i] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
-	discard(work);
 	return reach;
 }

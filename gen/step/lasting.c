@@ -74,8 +74,9 @@ static bool sustained(const struct kept *k, int column, double h, double complex
 	const int n = k->n;
 	const size_t cells = (size_t)n * (size_t)n;
 	const double complex root = root_of_wave(wave, h), turn = wave->turns ? cexp(I * wave->p) : 1;
-	double complex *A = ARRAY(double complex, cells), *b = ARRAY(double complex, (size_t)n);
-	double *own = ARRAY(double, (size_t)n), largest = 0;
+	SCRATCH double complex *A = ARRAY(double complex, cells), *b = ARRAY(double complex, (size_t)n);
+	SCRATCH double *own = ARRAY(double, (size_t)n);
+	double largest = 0;
 	for (int i = 0; i < n; i++) {
 		b[i] = turn * (k->load[i * k->columns + column] -
 			       (wave->turns ? I * k->load[i * k->columns + column + 1] : 0));
@@ -90,9 +91,6 @@ static bool sustained(const struct kept *k, int column, double h, double complex
 	const bool good = wave->power == 0 && isfinite(largest);
 	for (int i = 0; i < n && good; i++)
 		defect[i] += own[i] * k->amplitude[column];
-	discard(A);
-	discard(b);
-	discard(own);
 	return good;
 }
 
@@ -118,8 +116,8 @@ static struct lasting lasting_of(const struct kept *k, double h)
 {
 	const size_t n = (size_t)k->n, columns = (size_t)k->columns;
 	struct lasting l = { k, ARRAY(double, n), ARRAY(double, n), ARRAY(double complex, columns), ARRAY(double, n) };
-	double complex *p = ARRAY(double complex, n);
-	double *start = ARRAY(double, n);
+	SCRATCH double complex *p = ARRAY(double complex, n);
+	SCRATCH double *start = ARRAY(double, n);
 	for (int i = 0; i < k->n; i++)
 		start[i] = k->start[i];
 	for (int c = 0, pair; c < k->columns; c += pair) {
@@ -139,8 +137,6 @@ static struct lasting lasting_of(const struct kept *k, double h)
 	}
 	for (int i = 0; i < k->n; i++)
 		l.ringing[i] = fabs(start[i]) * (1 + 1e-12) + l.size[i] * 1e-14;
-	discard(p);
-	discard(start);
 	return l;
 }
 
@@ -155,15 +151,14 @@ static void lasting_free(const struct lasting *l)
 double lasting_output(const struct kept *k, const struct spread *spread, double h)
 {
 	const struct lasting l = lasting_of(k, h);
-	double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n), out = 0;
+	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n);
+	double out = 0;
 	reach_of_row(spread, k->Phi, k->row, false, sum, most);
 	for (int c = 0; c < k->columns; c++)
 		out += cabs(l.row[c]) * k->amplitude[c];
 	for (int i = 0; i < k->n; i++)
 		out += most[i] * l.ringing[i] + sum[i] * l.steady[i];
 	lasting_free(&l);
-	discard(sum);
-	discard(most);
 	return out * (1 + 1e-9);
 }
 
@@ -183,13 +178,11 @@ double lasting_input(const struct linear *system, const struct spread *spread, c
 		     int first)
 {
 	const int taps = system->input[input].hold + 1;
-	double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n),
-	       out = fabs(k->feed[0][input]);
+	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n);
+	double out = fabs(k->feed[0][input]);
 	reach_of_row(spread, k->Phi, k->row, false, sum, most);
 	for (int i = 0; i < k->n; i++)
 		for (int c = first; c < first + taps; c++)
 			out += sum[i] * fabs(k->input[i * k->inputs + c]);
-	discard(sum);
-	discard(most);
 	return out * k->most[first] * (1 + 1e-9);
 }

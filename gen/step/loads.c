@@ -24,22 +24,19 @@ static struct transition transition_of(const struct load *load, int to, int from
 
 static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, unsigned long binomial)
 {
-	mpq_t scaled, multiple;
-	mpq_inits(scaled, multiple, NULL);
+	RATIONAL scaled = ZERO, multiple = ZERO;
 	mpq_set_ui(multiple, binomial, 1);
 	mpq_set_si(scaled, factor, 1);
 	mpq_mul(scaled, scaled, multiple);
 	mpq_mul(scaled, scaled, q);
 	mpq_add(sum, sum, scaled);
-	mpq_clears(scaled, multiple, NULL);
 }
 
 /* e += weight * (the load's force and direct factors in one segment, as they follow from load state `from` = 1) */
 static void add_load(struct excitation *e, const struct linear *system, int segment, const struct load *load,
 		     const mpq_t *direct, int from, mpq_srcptr weight)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	for (int to = 0; to < load->columns; to++) {
 		struct transition t = transition_of(load, to, from);
 		if (t.m < 0)
@@ -55,7 +52,6 @@ static void add_load(struct excitation *e, const struct linear *system, int segm
 			add_scaled(e->direct[2 * t.m + 1], value, t.sine, t.binomial);
 		}
 	}
-	mpq_clear(value);
 }
 
 static const mpq_t *unit(int count, int index)
@@ -94,11 +90,9 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	if (*kept)
 		return *kept;
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	add_load(&e, system, segment, load, NULL, column, one);
-	mpq_clear(one);
 	return *kept = image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
@@ -117,8 +111,7 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 	const struct input *input = &system->input[index];
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, input->hold + 1);
-	mpq_t weight, part;
-	mpq_inits(weight, part, NULL);
+	RATIONAL weight = ZERO, part = ZERO;
 	for (int m = 0; m <= input->hold; m++) {
 		power_weight(input->hold, m, column, h, weight);
 		for (int k = 0; k < n; k++)
@@ -133,7 +126,6 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 			mpq_add(e.force[2 * m * n + k], e.force[2 * m * n + k], part);
 		}
 	}
-	mpq_clears(weight, part, NULL);
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
@@ -155,8 +147,8 @@ struct response *response_of_kernel(struct resolvent *r, const struct linear *sy
 {
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, part->powers);
-	mpq_t scale, *start = impulse_of_channel(system, channel);
-	mpq_init(scale);
+	mpq_t *start = impulse_of_channel(system, channel);
+	RATIONAL scale = ZERO;
 	for (int m = 0; m < part->powers; m++) {
 		mpq_set(scale, part->power[m]);
 		for (int k = 0; k < m; k++)
@@ -166,7 +158,6 @@ struct response *response_of_kernel(struct resolvent *r, const struct linear *sy
 	}
 	for (int k = 0; k < system->states; k++)
 		mpq_mul(start[k], start[k], part->impulse);
-	mpq_clear(scale);
 	return image_of(r, &(struct question){ (const mpq_t *)start, part->powers > 0, &e, unit(system->states, i) });
 }
 
@@ -179,14 +170,12 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 	struct linear scalar = first_order_system(1, (const mpq_t *)rationals(1));
 	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
 	struct transition t = transition_of(load, to, from);
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	if (t.m >= 0) {
 		add_scaled(e.direct[2 * t.m], one, t.cosine, t.binomial);
 		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
 	}
-	mpq_clear(one);
 	struct question question = { NULL, 1, &e, (const mpq_t *)rationals(1) };
 	struct response *response = image_of(resolvent_of(&scalar), &question);
 	struct kept_response *first = NEW(struct kept_response);
@@ -202,8 +191,7 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 	struct place nowhere = { 0 };
 	const struct wave *wave = load->wave;
 	bool turns = oscillates(wave);
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_mul(factor, wave->a, t);
 	constant_function(nowhere, FN_EXP, factor, z);
 	for (int k = 0; k < (turns ? column / 2 : column); k++)
@@ -214,7 +202,6 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 		constant_function(nowhere, column % 2 ? FN_SIN : FN_COS, factor, factor);
 		mpq_mul(z, z, factor);
 	}
-	mpq_clear(factor);
 }
 
 /* ---- an output after some time, from what there is at its start ---- */
@@ -242,11 +229,9 @@ struct response *output_of_load(struct resolvent *r, const struct linear *system
 {
 	const struct load *load = &system->load[l];
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	add_load(&e, system, 0, load, (const mpq_t *)output->load[l], column, one);
-	mpq_clear(one);
 	return image_of(r, &(struct question){ initial, 1, &e, (const mpq_t *)output->state });
 }
 
@@ -257,8 +242,7 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	const struct input *input = &system->input[index];
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, 2);
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int k = 0; k < n; k++) {
 		mpq_mul(e.force[k], input->force[0][k], value);
 		mpq_mul(e.force[2 * n + k], input->force[0][k], slope);
@@ -271,7 +255,6 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	mpq_mul(part, output->input[1][index], slope);
 	mpq_add(e.direct[0], e.direct[0], part);
 	mpq_mul(e.direct[2], output->input[0][index], slope);
-	mpq_clear(part);
 	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
 }
 
@@ -279,8 +262,7 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment,
 		      mpq_srcptr t, int sign)
 {
-	mpq_t z;
-	mpq_init(z);
+	RATIONAL z = ZERO;
 	for (int l = 0; l < system->loads; l++)
 		for (int column = 0; column < system->load[l].columns; column++) {
 			load_state(&system->load[l], column, t, z);
@@ -290,7 +272,6 @@ static void add_loads(struct excitation *e, const struct linear *system, const s
 				add_load(&e[l], system, segment, &system->load[l], (const mpq_t *)output->load[l],
 					 column, z);
 		}
-	mpq_clear(z);
 }
 
 static struct excitation *no_loads(const struct linear *system)

@@ -94,11 +94,10 @@ static void build_loss(void *context)
 /* What is lost with one mode, as a step in double; NULL: it is not found */
 static struct step *step_of_loss(struct modes *modes, int mode, bool statics)
 {
-	bool *kept = ARRAY(bool, (size_t)modes->count);
+	SCRATCH bool *kept = ARRAY(bool, (size_t)modes->count);
 	for (int i = 0; i < modes->count; i++)
 		kept[i] = i != mode;
 	struct building_loss b = { .error = modes_dropped(modes, kept, statics) };
-	discard(kept);
 	return b.error && silent_guard(build_loss, &b) ? b.step : NULL;
 }
 

@@ -20,11 +20,9 @@ enum {
 
 static bool simple_poles(const struct block *block)
 {
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct resolvent *resolvent = resolvent_of(&block->system);
 	const struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
-	mpz_clear(content);
 	bool simple = spectrum->zero <= 1;
 	for (int f = 0; f < spectrum->factors; f++)
 		simple = simple && spectrum->factor[f].multiplicity == 1;
@@ -75,8 +73,8 @@ static const char *modal_objection(const struct step *step)
 static struct rectangle *stiffness_at(const struct linear *system, const struct rectangle *p, bool transposed)
 {
 	const int n = system->n, precision = (int)mpfi_get_prec(p->re);
-	struct rectangle *P = rectangles(n * n, precision), square;
-	rectangle_init(&square, precision);
+	struct rectangle *P = rectangles(n * n, precision);
+	RECTANGLE square = new_rectangle(precision);
 	rectangle_mul(&square, p, p);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
@@ -85,7 +83,6 @@ static struct rectangle *stiffness_at(const struct linear *system, const struct 
 			rectangle_add_scaled(cell, p, system->C[i * n + j]);
 			rectangle_add_scaled(cell, &square, system->M[i * n + j]);
 		}
-	rectangle_clear(&square);
 	return P;
 }
 
@@ -143,8 +140,8 @@ static void weigh(const struct linear *system, const struct mode_vectors *m, con
 static bool complete_vectors(const struct linear *system, const struct mode_vectors *m)
 {
 	const int n = system->n, precision = m->precision;
-	struct rectangle *mass = rectangles(n, precision), *damping = rectangles(n, precision), d;
-	rectangle_init(&d, precision);
+	struct rectangle *mass = rectangles(n, precision), *damping = rectangles(n, precision);
+	RECTANGLE d = new_rectangle(precision);
 	weigh(system, m, (const mpq_t *)system->M, mass);
 	weigh(system, m, (const mpq_t *)system->C, damping);
 	for (int j = 0; j < n; j++) {
@@ -156,11 +153,9 @@ static bool complete_vectors(const struct linear *system, const struct mode_vect
 	}
 	/* d = (M p + C) v + M p v */
 	for (int j = 0; j < n; j++) {
-		struct rectangle again;
-		rectangle_init(&again, precision);
+		RECTANGLE again = new_rectangle(precision);
 		rectangle_mul(&again, &mass[j], &m->p);
 		rectangle_add_product(&d, &again, &m->v[j]);
-		rectangle_clear(&again);
 	}
 	const bool good = !mpfi_has_zero(d.re) || !mpfi_has_zero(d.im);
 	for (int j = 0; j < n && good; j++) {
@@ -173,7 +168,6 @@ static bool complete_vectors(const struct linear *system, const struct mode_vect
 	}
 	rectangles_free(mass, n);
 	rectangles_free(damping, n);
-	rectangle_clear(&d);
 	return good;
 }
 
@@ -205,8 +199,7 @@ static long driven(const struct linear *system, const struct mode_vectors *m, co
 /* integral over 0..h of e^{p (h-s)} e^{q s} ds = (e^{q h} - e^{p h}) / (q - p); false: q may be p */
 static bool convolve(const struct mode_vectors *m, mpq_srcptr h, const struct rectangle *q, struct rectangle *z)
 {
-	struct rectangle difference;
-	rectangle_init(&difference, m->precision);
+	RECTANGLE difference = new_rectangle(m->precision);
 	rectangle_sub(&difference, q, &m->p);
 	const bool good = !mpfi_has_zero(difference.re) || !mpfi_has_zero(difference.im);
 	if (good) {
@@ -214,7 +207,6 @@ static bool convolve(const struct mode_vectors *m, mpq_srcptr h, const struct re
 		rectangle_sub(z, z, &m->power);
 		rectangle_div(z, z, &difference);
 	}
-	rectangle_clear(&difference);
 	return good;
 }
 
@@ -302,12 +294,10 @@ static bool put_outputs(const struct filling *f, const struct mode_vectors *m)
 	const struct model *model = f->step->model;
 	bool good = true;
 	for (int o = 0; o < model->outputs && f->modal->output && good; o++) {
-		struct rectangle sum;
-		rectangle_init(&sum, m->precision);
+		RECTANGLE sum = new_rectangle(m->precision);
 		const long largest =
 			add_terms(m->states, m->v, (const mpq_t *)model->output[o].state, f->block->state, &sum);
 		good = put_columns(f, &sum, largest, &f->modal->output[o * f->modal->states]);
-		rectangle_clear(&sum);
 	}
 	return good;
 }
@@ -316,11 +306,10 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct linear *system = &f->block->system;
 	mpq_srcptr h = f->step->model->h;
-	mpq_t rate;
 	struct rectangle held, ramp, force, slope, z;
 	struct rectangle *all[] = { &held, &ramp, &force, &slope, &z };
 	bool good = true;
-	mpq_init(rate);
+	RATIONAL rate = ZERO;
 	mpq_inv(rate, h);
 	for (int i = 0; i < 5; i++)
 		rectangle_init(all[i], m->precision);
@@ -349,7 +338,6 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 	}
 	for (int i = 0; i < 5; i++)
 		rectangle_clear(all[i]);
-	mpq_clear(rate);
 	return good;
 }
 
@@ -432,8 +420,7 @@ static bool put_loads(const struct filling *f, const struct mode_vectors *m)
 static void measure_drift(const struct filling *f, const struct mode_vectors *m)
 {
 	struct drift *drift = &f->modal->drift;
-	struct rectangle z;
-	rectangle_init(&z, m->precision);
+	RECTANGLE z = new_rectangle(m->precision);
 	mpfi_set_d(z.re, f->modal->turn[f->re]);
 	mpfi_set_d(z.im, f->im < 0 ? 0 : f->modal->turn[f->im]);
 	if (!mpfi_has_zero(m->power.re) || !mpfi_has_zero(m->power.im)) {
@@ -444,7 +431,6 @@ static void measure_drift(const struct filling *f, const struct mode_vectors *m)
 		drift->phase = angle > drift->phase ? angle : drift->phase;
 	}
 	drift->known = true;
-	rectangle_clear(&z);
 }
 
 /* e^{p h} */
@@ -556,14 +542,12 @@ static struct modal *modal_of(const struct step *step)
 	struct filling f = { .step = step, .modal = modal };
 	int pair = 0, real = 0;
 	bool good = true;
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	for (int b = 0; b < blocks && good; b++) {
 		struct resolvent *resolvent = resolvent_of(&block[b].system);
 		spectrum[b] = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
 		good = spectrum_refine(spectrum[b], MODE_BITS);
 	}
-	mpz_clear(content);
 	if (good)
 		count_modes(modal, spectrum, blocks);
 	for (int b = 0; b < blocks && good; b++) {

@@ -83,8 +83,7 @@ static bool any_entry(size_t cells, const mpq_t *X)
 static void quadratic(const struct eigenpairs *pairs, const mpq_t *X, int j, mpfr_ptr value)
 {
 	int n = pairs->n;
-	mpfr_t part;
-	mpfr_init2(part, mpfr_get_prec(value));
+	REAL part = WITH_BITS(mpfr_get_prec(value));
 	mpfr_set_zero(value, 1);
 	for (int i = 0; i < n; i++)
 		for (int k = 0; k < n; k++) {
@@ -94,7 +93,6 @@ static void quadratic(const struct eigenpairs *pairs, const mpq_t *X, int j, mpf
 			mpfr_mul(part, part, pairs->vector[k * n + j], MPFR_RNDN);
 			mpfr_add(value, value, part, MPFR_RNDN);
 		}
-	mpfr_clear(part);
 }
 
 /* Modes of K, or with damping those of K + C h 7/5, which are those of both */
@@ -202,8 +200,8 @@ static void find_multistep(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	int width = normal->width, points = normal->points;
-	mpq_t *node = past_nodes(points + 1), one;
-	mpq_init(one);
+	mpq_t *node = past_nodes(points + 1);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	struct lagrange past = lagrange_of(points, (const mpq_t *)node);
 	mpfr_t *value = reals((size_t)points, NORMAL_BITS);
@@ -220,7 +218,6 @@ static void find_multistep(struct normal_work *w)
 		for (int i = 0; i < 2 * width; i++)
 			normal->correct[b * 2 * width + i] =
 				corrector.weight[(b * (points + 1) + points) * 2 * width + i];
-	mpq_clear(one);
 }
 
 static void find_stages(struct normal_work *w)
@@ -232,8 +229,7 @@ static void find_stages(struct normal_work *w)
 	for (int i = 0; i < normal->stages; i++)
 		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
 	mpfr_t *value = reals((size_t)l.nodes, NORMAL_BITS);
-	mpq_t later;
-	mpq_init(later);
+	RATIONAL later = ZERO;
 	normal->ahead = ARRAY(double, (size_t)(normal->stages * l.nodes));
 	for (int i = 0; i < normal->stages; i++) {
 		mpq_set_ui(later, 1, 1);
@@ -242,7 +238,6 @@ static void find_stages(struct normal_work *w)
 		for (int k = 0; k < l.nodes; k++)
 			normal->ahead[i * l.nodes + k] = round_real(value[k]);
 	}
-	mpq_clear(later);
 	reals_free(value, (size_t)l.nodes);
 }
 
@@ -295,8 +290,7 @@ static void check_changes(const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct linear *system = &model->system;
-	mpq_t steps;
-	mpq_init(steps);
+	RATIONAL steps = ZERO;
 	if (model->split->unknown)
 		error(model->split->unknown->node->start, "etdrk4 and taylor take it",
 		      "scheme %s starts anew where a formula in time changes: of '%s' it is not known when",
@@ -309,7 +303,6 @@ static void check_changes(const struct step *step)
 			      "scheme %s starts anew where a formula in time changes: t = %s is inside a step of %s s",
 			      name_of(step), readable_text(system->change[s]), readable_text(model->h));
 	}
-	mpq_clear(steps);
 }
 
 /* ---- which way a multistep method goes ---- */

@@ -9,12 +9,9 @@ enum { NOTHING = 160 };             /* below 2^-160 of the largest in its matrix
 
 double round_real(mpfr_srcptr x)
 {
-	mpq_t q;
-	mpq_init(q);
+	RATIONAL q = ZERO;
 	mpfr_get_q(q, x);
-	double d = round_rational(q);
-	mpq_clear(q);
-	return d;
+	return round_rational(q);
 }
 
 static bool any_entry(size_t cells, const mpq_t *X)
@@ -44,8 +41,8 @@ static void project(const struct normal_work *w, int bank, const mpq_t *X, doubl
 	size_t cells = (size_t)n * (size_t)n;
 	const struct eigenpairs *pairs = &w->pairs[bank];
 	int precision = (int)mpfr_get_prec(pairs->value[0]);
-	mpfr_t *XV = reals(cells, precision), *made = reals(cells, precision), part, largest;
-	mpfr_inits2(precision, part, largest, NULL);
+	mpfr_t *XV = reals(cells, precision), *made = reals(cells, precision);
+	REAL part = WITH_BITS(precision), largest = WITH_BITS(precision);
 	mpfr_set_zero(largest, 1);
 	for (int i = 0; i < n; i++)
 		for (int k = 0; k < n; k++)
@@ -67,7 +64,6 @@ static void project(const struct normal_work *w, int bank, const mpq_t *X, doubl
 		value[i] = mpfr_cmpabs(made[i], largest) <= 0 ? 0 : round_real(made[i]);
 	reals_free(XV, cells);
 	reals_free(made, cells);
-	mpfr_clears(part, largest, NULL);
 }
 
 void find_transforms(struct normal_work *w)
@@ -81,8 +77,7 @@ void find_transforms(struct normal_work *w)
 	normal->ratio = ARRAY(double, (size_t)(normal->banks * n));
 	for (int b = 0; b < normal->banks; b++) {
 		const struct eigenpairs *pairs = &w->pairs[b];
-		mpfr_t sum, part;
-		mpfr_inits2(mpfr_get_prec(pairs->value[0]), sum, part, NULL);
+		REAL sum = WITH_BITS(mpfr_get_prec(pairs->value[0])), part = WITH_BITS(mpfr_get_prec(pairs->value[0]));
 		for (int i = 0; i < n; i++)
 			for (int j = 0; j < n; j++) {
 				normal->from[(b * n + i) * n + j] = round_real(pairs->vector[i * n + j]);
@@ -100,7 +95,6 @@ void find_transforms(struct normal_work *w)
 			normal->ratio[b * n + j] =
 				lambda > 0 ? mpfr_get_d(mode->delta, MPFR_RNDN) / sqrt(lambda) : 0;
 		}
-		mpfr_clears(sum, part, NULL);
 	}
 }
 
@@ -110,8 +104,8 @@ void find_turns(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	int n = normal->modes, width = normal->width;
-	mpfr_t sum, part, *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
-	mpfr_inits2(NORMAL_BITS, sum, part, NULL);
+	mpfr_t *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
+	REAL sum = WITH_BITS(NORMAL_BITS), part = WITH_BITS(NORMAL_BITS);
 	normal->turn = ARRAY(double, (size_t)(normal->banks * width * width));
 	for (int b = 0; b + 1 < normal->banks; b++) {
 		for (int i = 0; i < n * n; i++) {
@@ -132,7 +126,6 @@ void find_turns(struct normal_work *w)
 					round_real(sum);
 		}
 	}
-	mpfr_clears(sum, part, NULL);
 	reals_free(MV, (size_t)n * (size_t)n);
 }
 
@@ -141,20 +134,18 @@ void find_turns(struct normal_work *w)
 /* X = ratio Y; false: it is no multiple */
 static bool is_multiple(size_t cells, const mpq_t *X, const mpq_t *Y, mpq_ptr ratio)
 {
-	mpq_t product;
 	size_t first = 0;
 	while (first < cells && mpq_sgn(Y[first]) == 0)
 		first++;
 	if (first == cells)
 		return false;
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	mpq_div(ratio, X[first], Y[first]);
 	bool multiple = true;
 	for (size_t i = 0; i < cells && multiple; i++) {
 		mpq_mul(product, ratio, Y[i]);
 		multiple = mpq_equal(product, X[i]);
 	}
-	mpq_clear(product);
 	return multiple;
 }
 
@@ -191,14 +182,12 @@ static double *multiples_of(const struct normal_work *w, const struct pattern *p
 {
 	size_t cells = (size_t)w->model->n * (size_t)w->model->n;
 	double *factor = ARRAY(double, (size_t)w->normal->banks);
-	mpq_t ratio;
-	mpq_init(ratio);
+	RATIONAL ratio = ZERO;
 	bool all = !pattern->own;
 	for (int b = 0; b < w->normal->banks && all; b++) {
 		all = is_multiple(cells, X[b], pattern->exact[b], ratio);
 		factor[b] = all ? round_rational(ratio) : 0;
 	}
-	mpq_clear(ratio);
 	return all ? factor : NULL;
 }
 
@@ -290,8 +279,8 @@ void find_forces(struct normal_work *w)
 		normal->force[f] = ARRAY(double, (size_t)(normal->banks * normal->width));
 		for (int b = 0; b < normal->banks; b++)
 			for (int j = 0; j < n; j++) {
-				mpfr_t sum, part;
-				mpfr_inits2(mpfr_get_prec(w->pairs[b].value[0]), sum, part, NULL);
+				REAL sum = WITH_BITS(mpfr_get_prec(w->pairs[b].value[0])),
+				     part = WITH_BITS(mpfr_get_prec(w->pairs[b].value[0]));
 				mpfr_set_zero(sum, 1);
 				for (int i = 0; i < n; i++) {
 					mpfr_mul_q(part, w->pairs[b].vector[i * n + j], split->function[f].force[i],
@@ -299,7 +288,6 @@ void find_forces(struct normal_work *w)
 					mpfr_add(sum, sum, part, MPFR_RNDN);
 				}
 				normal->force[f][b * normal->width + normal->place[j]] = round_real(sum);
-				mpfr_clears(sum, part, NULL);
 			}
 	}
 }

@@ -18,15 +18,13 @@ static struct passed *new_passed(struct through *t, int expression, int breakpoi
 void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
-	mpfi_t slope;
-	mpfi_init2(slope, t->precision);
+	INTERVAL slope = OVER_BITS(t->precision);
 	through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->x, slope);
 	p->speed = t->speed = fabs(mpfi_get_d(slope));
 	t->size = 0;
 	for (int i = 0; i < t->n; i++)
 		t->size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
 	p->size = t->size;
-	mpfi_clear(slope);
 }
 
 /* By an event that was noted, or by a load that jumps */
@@ -43,16 +41,12 @@ void through_note_plain(struct through *t, int expression, int breakpoint, bool 
 /* e - at, 1 above, -1 below; 0: not told apart */
 int through_side(const struct through *t, int expression, mpq_srcptr at)
 {
-	mpq_t *row = rationals((size_t)t->n);
-	mpfi_t value;
-	mpfi_init2(value, t->precision);
+	RATIONALS *row = rationals((size_t)t->n);
+	INTERVAL value = OVER_BITS(t->precision);
 	through_row(t, t->s->expression[expression].row, row);
 	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
 	mpfi_sub_q(value, value, at);
-	int side = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
-	mpfi_clear(value);
-	rationals_free(row, (size_t)t->n);
-	return side;
+	return mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 }
 
 /* ---- jumps ---- */
@@ -60,8 +54,7 @@ int through_side(const struct through *t, int expression, mpq_srcptr at)
 /* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
 bool through_follow(struct through *t)
 {
-	mpfr_t none;
-	mpfr_init2(none, 64);
+	REAL none = WITH_BITS(64);
 	mpfr_set_zero(none, 1);
 	for (int e = 0; e < t->s->expressions; e++) {
 		const struct expression *x = &t->s->expression[e];
@@ -75,6 +68,5 @@ bool through_follow(struct through *t)
 			through_enter(t, t->region + way * x->stride);
 		}
 	}
-	mpfr_clear(none);
 	return true;
 }

@@ -72,20 +72,16 @@ static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr 
 		mpfi_mul_q(value, value, entry->weight);
 		return true;
 	}
-	mpq_t tau;
-	mpq_init(tau);
+	RATIONAL tau = ZERO;
 	mpq_sub(tau, n->t, n->list[i].start);
 	*absent = mpq_sgn(tau) < 0;
-	bool good = *absent || response_enclose(n->list[i].response, tau, precision, value);
-	mpq_clear(tau);
-	return good;
+	return *absent || response_enclose(n->list[i].response, tau, precision, value);
 }
 
 bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
 {
-	mpfi_t value;
 	bool good = true, absent;
-	mpfi_init2(value, precision);
+	INTERVAL value = OVER_BITS(precision);
 	mpfi_set_prec(sum, precision + GUARD_BITS);
 	mpfi_set_ui(sum, 0);
 	for (int i = 0; i < n->count && good; i++) {
@@ -97,7 +93,6 @@ bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
 		mpfi_mul_q(sum, sum, n->scale);
 	if (n->less)
 		mpfi_sub_q(sum, sum, n->less);
-	mpfi_clear(value);
 	return good;
 }
 
@@ -108,20 +103,17 @@ static bool exact_term(const struct number *n, int i, mpq_ptr value)
 		mpq_mul(value, value, n->entry[i].weight);
 		return exact;
 	}
-	mpq_t tau;
-	mpq_init(tau);
+	RATIONAL tau = ZERO;
 	mpq_sub(tau, n->t, n->list[i].start);
 	mpq_set_ui(value, 0, 1);
 	bool exact = mpq_sgn(tau) < 0 || response_exact(n->list[i].response, tau, value);
-	mpq_clear(tau);
 	return exact;
 }
 
 static bool exact_number(const struct number *n, mpq_ptr sum)
 {
-	mpq_t value;
 	bool exact = true;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	mpq_set_ui(sum, 0, 1);
 	for (int i = 0; i < n->count && exact; i++) {
 		exact = exact_term(n, i, value);
@@ -131,7 +123,6 @@ static bool exact_number(const struct number *n, mpq_ptr sum)
 		mpq_mul(sum, sum, n->scale);
 	if (n->less)
 		mpq_sub(sum, sum, n->less);
-	mpq_clear(value);
 	return exact;
 }
 
@@ -147,8 +138,7 @@ struct enclosed {                   /* a number, to this precision; 0: not yet *
 static bool round_difference(const struct number *n, struct enclosed *known, double subtract, int limit, double *value,
 			     bool *isolated)
 {
-	mpfi_t difference;
-	mpfi_init2(difference, FIRST_PRECISION);
+	INTERVAL difference = OVER_BITS(FIRST_PRECISION);
 	bool decided = false;
 	*isolated = true;
 	int precision = known->precision > 0 ? known->precision : FIRST_PRECISION;
@@ -162,15 +152,13 @@ static bool round_difference(const struct number *n, struct enclosed *known, dou
 		mpfi_sub_d(difference, known->at, subtract);
 		decided = round_enclosure(difference, value);
 	}
-	mpfi_clear(difference);
 	return decided;
 }
 
 bool round_number(const struct number *n, bool two_words, int limit, struct coefficient *c, bool *isolated)
 {
-	mpq_t exact, low;
 	bool decided = true;
-	mpq_inits(exact, low, NULL);
+	RATIONAL exact = ZERO, low = ZERO;
 	*isolated = true;
 	*c = (struct coefficient){ 0 };
 	if (exact_number(n, exact)) {
@@ -189,7 +177,6 @@ bool round_number(const struct number *n, bool two_words, int limit, struct coef
 			decided = round_difference(n, &known, c->value, limit, &c->low, isolated);
 		mpfi_clear(known.at);
 	}
-	mpq_clears(exact, low, NULL);
 	return decided;
 }
 

@@ -82,9 +82,8 @@ static bool states_of(const struct ways *w, double *y, mpfr_ptr width)
 	const struct switching *s = regions_of(w->step);
 	bool known = true;
 	mpfi_t x;
-	mpfr_t here;
 	mpfi_init(x);
-	mpfr_init2(here, 53);
+	REAL here = WITH_BITS(53);
 	mpfr_set_zero(width, 1);
 	for (int p = 0; p < w->count; p++) {
 		int count = s->parts ? s->part[p].model->system.states : w->step->branch->system.states;
@@ -100,7 +99,6 @@ static bool states_of(const struct ways *w, double *y, mpfr_ptr width)
 		}
 	}
 	mpfi_clear(x);
-	mpfr_clear(here);
 	return known;
 }
 
@@ -178,10 +176,8 @@ static void take_crossing(const struct step *step, struct reference *r, const st
 	bool single = step->model->asked.single;
 	double h = mpq_get_d(step->model->h), speed = now->passed.jumped ? HUGE_VAL : now->passed.speed;
 	double size = now->passed.size + size_of_expression(step, r, now);
-	mpq_t time, whole;
-	mpz_t before;
-	mpq_inits(time, whole, NULL);
-	mpz_init(before);
+	RATIONAL time = ZERO, whole = ZERO;
+	INTEGER before = INTEGER_ZERO;
 	mpfr_get_q(time, &now->passed.at->left);
 	mpq_div(whole, time, step->model->h);
 	mpz_fdiv_q(before, mpq_numref(whole), mpq_denref(whole));
@@ -192,19 +188,16 @@ static void take_crossing(const struct step *step, struct reference *r, const st
 	mpq_sub(time, time, whole);
 	r->crossing[r->crossings].after = round_rational(time);
 	r->crossing[r->crossings++].unit = ulp_of(fmax(h, size / speed), single);
-	mpz_clear(before);
-	mpq_clears(time, whole, NULL);
 }
 
 static void take_crossings(struct reference *r, const struct ways *w)
 {
 	int count;
-	struct moment *all = all_crossings(w, &count);
+	SCRATCH struct moment *all = all_crossings(w, &count);
 	r->crossings = 0;
 	for (int k = 0; k < count; k++)
 		if (all[k].at > ldexp(mpq_get_d(w->step->model->h), -PASSED_AT_START))
 			take_crossing(w->step, r, &all[k]);
-	discard(all);
 }
 
 /* ---- a start, and beside it another ---- */
@@ -229,14 +222,13 @@ static void start_of(const struct step *step, int number, mpq_t *start)
 static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 {
 	int states = step->branch->system.states, bits = step->model->asked.single ? 18 : BESIDE;
-	mpq_t *beside = rationals((size_t)states), off;
-	mpq_init(off);
+	mpq_t *beside = rationals((size_t)states);
+	RATIONAL off = ZERO;
 	for (int i = 0; i < states; i++) {
 		mpq_abs(off, start[i]);
 		mpq_div_2exp(off, off, (mp_bitcnt_t)bits);
 		(i % 3 == 1 ? mpq_sub : mpq_add)(beside[i], start[i], off);
 	}
-	mpq_clear(off);
 	return beside;
 }
 
@@ -291,13 +283,12 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 /* The references from one start, with so many bits; false: these were too few */
 static bool try_start(const struct step *step, struct reference *r, const mpq_t *start, int bits)
 {
-	mpq_t *near = start_beside(step, start), time;
-	mpfr_t width, unused;
+	RATIONALS *near = start_beside(step, start);
 	double *other = ARRAY(double, (size_t)r->states);
 	struct ways a = ways_of(step, start, bits), b = ways_of(step, (const mpq_t *)near, bits);
 	bool known = true, goes = true;
-	mpq_init(time);
-	mpfr_inits2(53, width, unused, NULL);
+	RATIONAL time = ZERO;
+	REAL width = WITH_BITS(53), unused = WITH_BITS(53);
 	mpq_div_2exp(time, step->model->h, 1);
 	r->rows = r->crossings = 0;
 	for (int i = 0; i < r->states; i++)
@@ -319,9 +310,6 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 			take_crossings(r, &a);
 		}
 	}
-	mpq_clear(time);
-	mpfr_clears(width, unused, NULL);
-	rationals_free(near, (size_t)r->states);
 	free_ways(&a);
 	free_ways(&b);
 	return known || r->rows >= LEAST_ROWS;

@@ -16,8 +16,7 @@ static long bits_above(mpq_srcptr q)
 /* q / unit, enclosed with x's precision */
 static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
 {
-	mpfi_t divisor;
-	mpfi_init2(divisor, mpfi_get_prec(x));
+	INTERVAL divisor = OVER_BITS(mpfi_get_prec(x));
 	if (unit == TURN)
 		mpfi_const_pi(divisor);
 	else
@@ -26,7 +25,6 @@ static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
 		mpfi_mul_2ui(divisor, divisor, 1);
 	mpfi_set_q(x, q);
 	mpfi_div(x, x, divisor);
-	mpfi_clear(divisor);
 }
 
 static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum unit unit, long precision)
@@ -41,15 +39,13 @@ static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit un
 	long above = bits_above(q), precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
 	long limit = 2 * precision + LIMIT_PRECISION;
 	bool decided = false;
-	mpfi_t x;
-	mpfi_init2(x, precision);
+	INTERVAL x = OVER_BITS(precision);
 	for (; !decided && precision <= limit; precision *= 2) {
 		mpfi_set_prec(x, precision);
 		divide_by_unit(q, unit, x);
 		mpfi_mul_2ui(x, x, (unsigned long)fraction);
 		decided = round_integer(x, nearest);
 	}
-	mpfi_clear(x);
 	if (!decided)
 		undecided(step, q, unit, limit);
 }
@@ -57,21 +53,18 @@ static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit un
 /* An exponent beyond any number of the target is saturated, not wrapped. */
 static void saturate(mpz_ptr n, int bits)
 {
-	mpz_t most;
-	mpz_init(most);
+	INTEGER most = INTEGER_ZERO;
 	mpz_ui_pow_ui(most, 2, (unsigned long)bits - 1);
 	mpz_sub_ui(most, most, 1);
 	if (mpz_cmpabs(n, most) > 0)
 		mpz_mul_si(n, most, mpz_sgn(n));
-	mpz_clear(most);
 }
 
 /* q / unit as so many bits with `fraction` of them behind the point, wrapped */
 static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum unit unit, int bits, int fraction)
 {
-	mpz_t whole, part;
 	struct fixed_point x;
-	mpz_inits(whole, part, NULL);
+	INTEGER whole = INTEGER_ZERO, part = INTEGER_ZERO;
 	nearest_multiple(step, q, unit, fraction, whole);
 	if (unit == OCTAVE)
 		saturate(whole, bits);
@@ -80,7 +73,6 @@ static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum
 	x.low = mpz_get_ui(part);
 	mpz_fdiv_q_2exp(part, whole, 64);
 	x.high = mpz_get_ui(part);
-	mpz_clears(whole, part, NULL);
 	return x;
 }
 
@@ -102,8 +94,7 @@ static struct fixed_point turn_of(const struct step *step, mpq_srcptr angle)
 static struct advance advance_over(const struct step *step, const struct wave *wave, mpq_srcptr seconds)
 {
 	struct advance advance = { 0 };
-	mpq_t product;
-	mpq_init(product);
+	RATIONAL product = ZERO;
 	if (oscillates(wave)) {
 		mpq_mul(product, wave->w, seconds);
 		advance.turn = turn_of(step, product);
@@ -112,7 +103,6 @@ static struct advance advance_over(const struct step *step, const struct wave *w
 		mpq_mul(product, wave->a, seconds);
 		advance.growth = fixed_from(step, product, OCTAVE, phase_bits(step), growth_bits(step));
 	}
-	mpq_clear(product);
 	return advance;
 }
 
@@ -122,10 +112,8 @@ static struct rate rate_of(const struct step *step, mpq_srcptr q, enum unit unit
 	int bits = 64 * rate.words;
 	long precision = bits + GUARD_BITS, limit = 2 * precision + LIMIT_PRECISION;
 	bool decided = false;
-	mpz_t word, digits;
-	mpfi_t x;
-	mpz_inits(word, digits, NULL);
-	mpfi_init2(x, precision);
+	INTEGER word = INTEGER_ZERO, digits = INTEGER_ZERO;
+	INTERVAL x = OVER_BITS(precision);
 	for (; !decided && precision <= limit; precision *= 2) {
 		mpfi_set_prec(x, precision);
 		divide_by_unit(q, unit, x);
@@ -139,8 +127,6 @@ static struct rate rate_of(const struct step *step, mpq_srcptr q, enum unit unit
 		mpz_fdiv_r_2exp(word, word, 64);
 		rate.word[k] = mpz_get_ui(word);
 	}
-	mpz_clears(word, digits, NULL);
-	mpfi_clear(x);
 	return rate;
 }
 
@@ -153,14 +139,12 @@ static struct load_phase phase_of(const struct step *step, const struct wave *wa
 	}
 	if (mpq_sgn(wave->a) != 0)
 		phase.growth = rate_of(step, wave->a, OCTAVE);
-	mpq_t seconds;
-	mpq_init(seconds);
+	RATIONAL seconds = ZERO;
 	phase.node = ARRAY(struct advance, (size_t)step->program->nodes);
 	for (int i = 0; i < step->program->nodes; i++) {
 		mpq_mul(seconds, step->program->node[i], step->model->h);
 		phase.node[i] = advance_over(step, wave, seconds);
 	}
-	mpq_clear(seconds);
 	return phase;
 }
 

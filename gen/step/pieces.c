@@ -32,12 +32,11 @@ static double word_of(const struct step *step, mpq_srcptr number, bool second)
 static void fill_row(const struct step *step, const struct output *expression, int segment, bool second, double *row)
 {
 	const int size = step->layout.size;
-	mpq_t *exact = rationals((size_t)size);
+	RATIONALS *exact = rationals((size_t)size);
 	row_of_output(&step->layout, &step->branch->system, expression, step->shown->model->system.segments, segment,
 		      exact);
 	for (int i = 0; i < size; i++)
 		row[i] = word_of(step, exact[i], second);
-	rationals_free(exact, (size_t)size);
 }
 
 void row_over_x(const struct step *step, const struct output *expression, int segment, double *row)
@@ -103,7 +102,7 @@ static bool are_lost(int n, const double *term, const double *E)
 static void exponential(int n, const double *A, double tau, bool sizes, double *E)
 {
 	const double turn = norm_of(n, A) * tau;
-	double *term = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n));
+	SCRATCH double *term = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		E[i] = term[i] = i % n == i / n;
 	for (int k = 1; k < 60; k++) {
@@ -122,18 +121,15 @@ static void exponential(int n, const double *A, double tau, bool sizes, double *
 		if (k >= n && turn < 0.5 * k && are_lost(n, term, E))   /* what is 0 now, no power of A reaches */
 			break;
 	}
-	discard(term);
-	discard(next);
 }
 
 static void times_matrix(int n, double *row, const double *A)
 {
-	double *product = ARRAY(double, (size_t)n);
+	SCRATCH double *product = ARRAY(double, (size_t)n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			product[j] += row[i] * A[i * n + j];
 	memcpy(row, product, (size_t)n * sizeof *row);
-	discard(product);
 }
 
 enum { PARTS = 8 };                 /* of a piece: within one, a derivative grows by e^{|A| d / PARTS} at most */
@@ -182,7 +178,8 @@ static double *bound_rows(const struct step *step, const double *rows, const dou
 			  const struct growth *growth, int order, double factor)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
-	double *bound = ARRAY(double, (size_t)expressions * (size_t)size), *row = ARRAY(double, (size_t)size);
+	SCRATCH double *row = ARRAY(double, (size_t)size);
+	double *bound = ARRAY(double, (size_t)expressions * (size_t)size);
 	for (int i = 0; i < expressions; i++) {
 		memcpy(row, rows + i * size, (size_t)size * sizeof *row);
 		for (int k = 0; k < order; k++)
@@ -191,7 +188,6 @@ static double *bound_rows(const struct step *step, const double *rows, const dou
 	}
 	for (int j = 0; j < expressions * size && step->model->asked.single; j++)
 		bound[j] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
-	discard(row);
 	return bound;
 }
 
@@ -199,7 +195,7 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 {
 	int size = step->layout.size;
 	struct growth growth = growth_of(size, A, h);
-	double *second = ARRAY(double, (size_t)size);
+	SCRATCH double *second = ARRAY(double, (size_t)size);
 	memcpy(second, row, (size_t)size * sizeof *row);
 	times_matrix(size, second, A);
 	times_matrix(size, second, A);
@@ -208,7 +204,6 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 		bend[j] *= 1 + ldexp(1, -22);           /* still a bound when it is printed as a float */
 	discard(growth.E);
 	discard(growth.most);
-	discard(second);
 }
 
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
@@ -217,7 +212,7 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 	int size = step->layout.size;
 	const double *A = pieces->piece[branch].slopes;
 	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
-	double *gone = ARRAY(double, (size_t)size);
+	SCRATCH double *gone = ARRAY(double, (size_t)size);
 	struct growth growth = growth_of(size, A, d);
 	for (int i = 0; i < rows; i++) {
 		memcpy(gone, row + i * size, (size_t)size * sizeof *gone);
@@ -227,15 +222,14 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 				slope[i * size + j] = d / 3 * gone[j];
 			if (order % 2)
 				continue;
-			double *bound = (order == 2 ? second : fourth) + i * size, *lost = ARRAY(double, (size_t)size);
+			SCRATCH double *lost = ARRAY(double, (size_t)size);
+			double *bound = (order == 2 ? second : fourth) + i * size;
 			memcpy(lost, gone, (size_t)size * sizeof *lost);
 			bound_row(size, &growth, lost, order == 2 ? d * d / 8 : d * d * d * d / 384, bound);
 			for (int j = 0; j < size && step->model->asked.single; j++)
 				bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
-			discard(lost);
 		}
 	}
-	discard(gone);
 	discard(growth.E);
 	discard(growth.most);
 }
@@ -282,11 +276,10 @@ static bool *bounded_entries(const struct step *step)
 
 double size_of_bounded(const struct step *step, const double *row)
 {
-	bool *bounded = bounded_entries(step);
+	SCRATCH bool *bounded = bounded_entries(step);
 	double size = 0;
 	for (int j = 0; j < step->layout.size; j++)
 		size += bounded[j] ? fabs(row[j]) : 0;
-	discard(bounded);
 	return size;
 }
 
@@ -309,7 +302,7 @@ void fold_loads(const struct step *step, double *bound, double *still)
 static void add_slack(int size, const double *A, double h, int degree, double epsilon, double *term, double *slack)
 {
 	enum { FURTHER = 40 };
-	double *next = ARRAY(double, (size_t)size);
+	SCRATCH double *next = ARRAY(double, (size_t)size);
 	for (int k = 1; k <= degree + FURTHER; k++) {
 		for (int j = 0; j < size; j++) {
 			next[j] = 0;
@@ -322,7 +315,6 @@ static void add_slack(int size, const double *A, double h, int degree, double ep
 			term[j] = next[j];
 		}
 	}
-	discard(next);
 }
 
 /* That number at the first of their places */
@@ -340,7 +332,8 @@ static void gather_loads(const struct step *step, const bool *bounded, double *b
 static double *slack_rows(const struct step *step, const double *rows, const double *A, int degree)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
-	double *slack = ARRAY(double, (size_t)(expressions * size)), *term = ARRAY(double, (size_t)size);
+	SCRATCH double *term = ARRAY(double, (size_t)size);
+	double *slack = ARRAY(double, (size_t)(expressions * size));
 	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
 	for (int i = 0; i < expressions; i++) {
 		for (int j = 0; j < size; j++) {
@@ -349,7 +342,6 @@ static double *slack_rows(const struct step *step, const double *rows, const dou
 		}
 		add_slack(size, A, round_rational(step->model->h), degree, epsilon, term, slack + i * size);
 	}
-	discard(term);
 	return slack;
 }
 
@@ -357,13 +349,12 @@ static double *slack_rows(const struct step *step, const double *rows, const dou
 static double *turns_of(const struct step *step, int branch)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
-	mpq_t *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
+	RATIONALS *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
 	double *turns = ARRAY(double, cells);
 	for (size_t i = 0; i < cells; i++) {
 		mpq_mul(exact[i], exact[i], step->model->h);
 		turns[i] = round_rational(exact[i]);
 	}
-	rationals_free(exact, cells);
 	return turns;
 }
 
@@ -413,14 +404,12 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 static double *weights_of(const struct step *step)
 {
 	double *weight = ARRAY(double, (size_t)step->swift_degree + 1);
-	mpq_t factorial;
-	mpq_init(factorial);
+	RATIONAL factorial = ZERO;
 	for (int k = 0; k <= step->swift_degree; k++) {
 		mpz_fac_ui(mpq_denref(factorial), (unsigned long)k);
 		mpz_set_ui(mpq_numref(factorial), 1);
 		weight[k] = round_rational(factorial);
 	}
-	mpq_clear(factorial);
 	return weight;
 }
 

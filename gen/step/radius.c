@@ -29,11 +29,9 @@ static double column_at_start(const struct load *load, int column)
 
 static void set_param(const struct model *model, int held, mpfr_ptr value)
 {
-	mpq_t exact;
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	param_value(held_symbol(model, held), exact);
 	mpfr_set_q(value, exact, MPFR_RNDN);
-	mpq_clear(exact);
 }
 
 /* At t = 0; conditions on time as they are just after it */

@@ -79,8 +79,7 @@ int add_weighted(struct recipe *r, int table, const char *name, long p, unsigned
 int add_node(struct recipe *r, long p, unsigned long q)
 {
 	struct program *program = r->program;
-	mpq_t fraction;
-	mpq_init(fraction);
+	RATIONAL fraction = ZERO;
 	set(fraction, p, q);
 	for (int i = 0; i < program->nodes; i++)
 		if (mpq_equal(program->node[i], fraction))
@@ -90,7 +89,6 @@ int add_node(struct recipe *r, long p, unsigned long q)
 	mpq_init(program->node[program->nodes]);
 	mpq_set(program->node[program->nodes], fraction);
 	program->node_table[program->nodes] = NONE;
-	mpq_clear(fraction);
 	return program->nodes++;
 }
 

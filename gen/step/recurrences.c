@@ -355,11 +355,9 @@ static tape_ref early_root(struct recurrences *r, int sequence, const struct seq
 /* In the target's type */
 static double rounded_double(double value)
 {
-	mpq_t exact;
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	mpq_set_d(exact, value);
 	value = round_rational(exact);
-	mpq_clear(exact);
 	return value;
 }
 

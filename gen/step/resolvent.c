@@ -98,8 +98,8 @@ struct response **response_kept(struct resolvent *r, const struct linear *system
 
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient)
 {
-	mpz_t scale;
-	mpz_init_set_ui(scale, 1);
+	INTEGER scale = INTEGER_ZERO;
+	mpz_set_ui(scale, 1);
 	for (int i = 0; i < r->system->n; i++)
 		mpz_mul(scale, scale, r->row[i]);
 	for (int k = 0; k < r->B.length; k++) {
@@ -107,7 +107,6 @@ void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient)
 		mpz_set(mpq_denref(coefficient[k]), scale);
 		mpq_canonicalize(coefficient[k]);
 	}
-	mpz_clear(scale);
 }
 
 const struct poly *resolvent_determinant(const struct resolvent *r)
@@ -119,13 +118,10 @@ const struct poly *resolvent_determinant(const struct resolvent *r)
 static void expect_eigenvalues(const struct resolvent *r, struct spectrum *spectrum)
 {
 	size_t n = (size_t)r->system->states;
-	mpq_t *A = state_matrix(r->system, false);
-	double *re = ARRAY(double, n), *im = ARRAY(double, n);
+	RATIONALS *A = state_matrix(r->system, false);
+	SCRATCH double *re = ARRAY(double, n), *im = ARRAY(double, n);
 	if (eigenvalues((int)n, (const mpq_t *)A, re, im))
 		spectrum_expect(spectrum, (int)n, re, im);
-	rationals_free(A, n * n);
-	discard(re);
-	discard(im);
 }
 
 struct spectrum *resolvent_spectrum(const struct resolvent *r)
@@ -166,8 +162,7 @@ static struct oscillation oscillation_of(const struct excitation *e)
 static void transform(const struct oscillation *o, int m, struct poly *cosine, struct poly *sine)
 {
 	struct poly re = constant_poly(1), im = poly_new(0);
-	mpz_t factor;
-	mpz_init(factor);
+	INTEGER factor = INTEGER_ZERO;
 	mpz_fac_ui(factor, (unsigned long)m);
 	for (int k = 0; k <= m; k++) {
 		struct poly keep = re;
@@ -179,7 +174,6 @@ static void transform(const struct oscillation *o, int m, struct poly *cosine, s
 	}
 	*cosine = poly_scale(re, factor);
 	*sine = poly_scale(im, factor);
-	mpz_clear(factor);
 }
 
 /* scale * (numerator over D^powers) of sum_m factor[m][0] cos + factor[m][1] sin; `stride` apart in `factor` */
@@ -187,8 +181,7 @@ static struct poly excitation_image(const struct excitation *e, const struct osc
 				    int stride, mpz_srcptr scale)
 {
 	struct poly sum = poly_new(0), part[2];
-	mpz_t z;
-	mpz_init(z);
+	INTEGER z = INTEGER_ZERO;
 	for (int m = 0; m < e->powers; m++) {
 		transform(o, m, &part[0], &part[1]);
 		struct poly rest = poly_power(o->D, e->powers - 1 - m);
@@ -199,7 +192,6 @@ static struct poly excitation_image(const struct excitation *e, const struct osc
 			sum = poly_add(sum, poly_mul(poly_scale(part[k], z), rest));
 		}
 	}
-	mpz_clear(z);
 	return sum;
 }
 
@@ -267,8 +259,7 @@ static struct poly right_side(const struct resolvent *r, const struct question *
 			      mpz_srcptr scale, int k)
 {
 	struct poly start = poly_new(0), sum = poly_new(0);
-	mpz_t factor;
-	mpz_init(factor);
+	INTEGER factor = INTEGER_ZERO;
 	for (int j = 0; ask->initial && j < r->system->states; j++) {
 		if (mpq_sgn(ask->initial[j]) == 0)
 			continue;
@@ -280,7 +271,6 @@ static struct poly right_side(const struct resolvent *r, const struct question *
 		struct poly image = excitation_image(e, &p->o[l], (const mpq_t *)e->force + k, r->system->n, scale);
 		sum = poly_add(sum, poly_mul(poly_scale(image, r->row[k]), p->without[l]));
 	}
-	mpz_clear(factor);
 	return poly_add(sum, poly_mul(start, p->all));
 }
 
@@ -298,10 +288,9 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 {
 	const struct linear *system = r->system;
 	int n = system->n;
-	mpz_t scale, rows, factor;
 	need_adjugate(r);
-	mpz_inits(scale, factor, NULL);
-	mpz_init_set_ui(rows, 1);
+	INTEGER scale = INTEGER_ZERO, factor = INTEGER_ZERO, rows = INTEGER_ZERO;
+	mpz_set_ui(rows, 1);
 	question_scale(ask, system, scale);
 	common_denominator(rows, system->states, ask->row);
 	struct denominators p = find_denominators(ask);
@@ -329,12 +318,8 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 						   p.without[l]));
 	}
 	N = poly_add(N, poly_scale(poly_mul(direct, r->B), rows));
-	mpq_t unit;
-	mpq_init(unit);
+	RATIONAL unit = ZERO;
 	mpz_set_ui(mpq_numref(unit), 1);
 	mpz_mul(mpq_denref(unit), scale, rows);
-	struct response *response = response_of(unit, N, D);
-	mpz_clears(scale, rows, factor, NULL);
-	mpq_clear(unit);
-	return response;
+	return response_of(unit, N, D);
 }

@@ -44,11 +44,9 @@ void leave_out_lost(struct step *step)
 static bool decays(const struct linear *block)
 {
 	enum { BITS = 128 };
-	mpz_t content;
-	mpz_init(content);
+	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum =
 		spectrum_of(poly_primitive(*resolvent_determinant(resolvent_of(block)), content));
-	mpz_clear(content);
 	bool negative = spectrum->zero == 0 && spectrum_refine(spectrum, BITS);
 	for (int f = 0; f < spectrum->factors && negative; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)

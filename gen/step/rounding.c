@@ -261,15 +261,11 @@ const char *certificate_objection(const struct errors *e)
 
 long samples_until(const struct requirement *r, mpq_srcptr h)
 {
-	mpq_t steps;
-	mpz_t last;
-	mpq_init(steps);
-	mpz_init(last);
+	RATIONAL steps = ZERO;
+	INTEGER last = INTEGER_ZERO;
 	mpq_div(steps, r->until, h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	const long count = mpz_fits_slong_p(last) ? mpz_get_si(last) : -1;
-	mpq_clear(steps);
-	mpz_clear(last);
 	return count;
 }
 

@@ -45,14 +45,12 @@ static void add_input(struct share *share, const struct step *step, const struct
 		      long value, long slope)
 {
 	mpq_srcptr h = step->model->h;
-	mpq_t u, rate;
-	mpq_inits(u, rate, NULL);
+	RATIONAL u = ZERO, rate = ZERO;
 	mpq_set_si(u, value, 1);
 	mpq_set_si(rate, slope, 1);
 	mpq_div(rate, rate, h);
 	add_started(share, output_of_input(step->branch->resolvent, &step->branch->system, output, input, u, rate),
 		    start, h);
-	mpq_clears(u, rate, NULL);
 }
 
 /* A held sample lasts for its step; of ramps it is the top of a triangle over the step before it and the one after. */
@@ -111,13 +109,11 @@ static struct coefficient value_of(const struct step *step, const struct share *
 {
 	struct place at = step->model->asked.step_at;
 	struct coefficient c;
-	mpq_t t;
 	int count = share->count < steps ? share->count : steps;
-	mpq_init(t);
+	RATIONAL t = ZERO;
 	mpq_set_si(t, steps, 1);
 	mpq_mul(t, t, step->model->h);
 	c = started_value(count, share->list, t, two_words, at, "a number of a row");
-	mpq_clear(t);
 	if (!isfinite(c.value))
 		tell_range(step);
 	return c;

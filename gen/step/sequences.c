@@ -42,8 +42,7 @@ static bool is_friction(const struct atom *atom)
 
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale)
 {
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		mpq_mul(factor, form->term[i].factor, scale);
@@ -72,15 +71,13 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 			break;
 		}
 	}
-	mpq_clear(factor);
 }
 
 int sum_sequence(struct sequencing *w, const struct sum *sum)
 {
 	struct sequence s = { .kind = SEQUENCE_SUM, .state = NONE, .a = NONE, .b = NONE };
-	mpq_t *scale = plain_scale(w);
+	RATIONALS *scale = plain_scale(w);
 	sum_numbers(w, &s, sum, (const mpq_t *)scale);
-	rationals_free(scale, (size_t)w->x->order + 1);
 	return new_sequence(w, s);
 }
 
@@ -97,14 +94,12 @@ static int only_sequence(const struct sum *sum)
 int sequence_of_form(struct sequencing *w, const struct form *form)
 {
 	struct sum sum = { 0 };
-	mpq_t one;
 	for (int i = 0; i < w->operands; i++)
 		if (w->operand[i].form == form)
 			return w->operand[i].sequence;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	sum_add_form(w, &sum, form, one);
-	mpq_clear(one);
 	int only = only_sequence(&sum), made = only != NONE ? only : sum_sequence(w, &sum);
 	ENLARGE(w->operand, (size_t)w->operands + 1);
 	w->operand[w->operands].form = form;
@@ -121,11 +116,9 @@ int sequence_of_sum(struct sequencing *w, const struct sum *sum)
 static struct sum single_key(enum term_kind kind, int a, int b)
 {
 	struct sum sum = { 0 };
-	mpq_t one;
-	mpq_init(one);
+	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	sum_add(&sum, kind, a, b, one);
-	mpq_clear(one);
 	return sum;
 }
 
@@ -232,12 +225,11 @@ static int velocities_of(struct sequencing *w, int sequence)
 {
 	struct sum sum = { 0 };
 	const struct sequence *s = &w->x->sequence[sequence];
-	mpq_t factor;
 	if (s->state != NONE && s->state < w->system->n && w->system->velocity[s->state] >= 0)
 		return w->system->velocity[s->state];
 	if (s->kind != SEQUENCE_SUM)
 		return NONE;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	for (int i = 0; i < s->terms; i++) {
 		const struct sequence_term *t = &s->term[i];
 		bool coordinate = t->kind == TERM_SEQUENCE && t->a < w->system->n && w->system->velocity[t->a] >= 0;
@@ -248,7 +240,6 @@ static int velocities_of(struct sequencing *w, int sequence)
 		if (!coordinate && !constant)
 			return NONE;
 	}
-	mpq_clear(factor);
 	return sum.keys ? sum_sequence(w, &sum) : NONE;
 }
 
@@ -274,10 +265,9 @@ static int new_integral(struct sequencing *w, enum function function, int a, int
 static void set_integrand(struct sequencing *w, int sequence, const struct sum *sum)
 {
 	struct sequence made = w->x->sequence[sequence];
-	mpq_t *scale = integral_scale(w, false);
+	RATIONALS *scale = integral_scale(w, false);
 	sum_numbers(w, &made, sum, (const mpq_t *)scale);
 	w->x->sequence[sequence] = made;
-	rationals_free(scale, (size_t)w->x->order + 1);
 }
 
 /* c' = factor a' b */
@@ -294,13 +284,11 @@ static void set_product_integrand(struct sequencing *w, int sequence, int rate, 
 static int one_and_square(struct sequencing *w, int a, long sign)
 {
 	struct sum sum = { 0 };
-	mpq_t factor;
-	mpq_init(factor);
+	RATIONAL factor = ZERO;
 	mpq_set_ui(factor, 1, 1);
 	sum_add(&sum, TERM_TIME, 0, 0, factor);
 	mpq_set_si(factor, sign, 1);
 	sum_add(&sum, TERM_PRODUCT, a, a, factor);
-	mpq_clear(factor);
 	return sum_sequence(w, &sum);
 }
 
@@ -313,8 +301,7 @@ static int root_sequence(struct sequencing *w, int a)
 static int pair_sequence(struct sequencing *w, int a, enum function first, enum function second, long sign,
 			 bool want_second)
 {
-	mpq_t scale, turned;
-	mpq_inits(scale, turned, NULL);
+	RATIONAL scale = ZERO, turned = ZERO;
 	for (int i = 0; i < w->x->count; i++) {
 		const struct sequence *s = &w->x->sequence[i];
 		if (s->kind == SEQUENCE_INTEGRAL && s->state == NONE && s->function == first && s->a == a)
@@ -326,27 +313,23 @@ static int pair_sequence(struct sequencing *w, int a, enum function first, enum 
 	mpq_set_si(turned, sign, 1);
 	mpq_mul(scale, scale, turned);
 	set_product_integrand(w, c, rate, s, scale);
-	mpq_clears(scale, turned, NULL);
 	return want_second ? c : s;
 }
 
 /* c' = a' times what multiplies it: c itself, or 1 + sign c^2 */
 static int self_sequence(struct sequencing *w, enum function function, int a, long sign)
 {
-	mpq_t scale;
-	mpq_init(scale);
+	RATIONAL scale = ZERO;
 	int rate = derivative_of(w, a, scale), c = new_integral(w, function, a, NONE);
 	int other = sign ? one_and_square(w, c, sign) : c;
 	set_product_integrand(w, c, rate, other, scale);
-	mpq_clear(scale);
 	return c;
 }
 
 /* c' = sign a' / below */
 static int arc_sequence(struct sequencing *w, enum function function, int a, int below, long sign)
 {
-	mpq_t scale, turned;
-	mpq_inits(scale, turned, NULL);
+	RATIONAL scale = ZERO, turned = ZERO;
 	int rate = derivative_of(w, a, scale), quotient = quotient_sequence(w, rate, below);
 	int c = new_integral(w, function, a, NONE);
 	struct sum sum = { 0 };
@@ -354,15 +337,13 @@ static int arc_sequence(struct sequencing *w, enum function function, int a, int
 	mpq_mul(scale, scale, turned);
 	sum_add(&sum, TERM_SEQUENCE, quotient, 0, scale);
 	set_integrand(w, c, &sum);
-	mpq_clears(scale, turned, NULL);
 	return c;
 }
 
 /* atan2(y, x)' = (x y' - y x') / (x^2 + y^2) */
 static int angle_sequence(struct sequencing *w, int y, int x)
 {
-	mpq_t scale, one;
-	mpq_inits(scale, one, NULL);
+	RATIONAL scale = ZERO, one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	struct sum above = { 0 }, below = { 0 }, sum = { 0 };
 	int rate = derivative_of(w, y, scale);
@@ -376,7 +357,6 @@ static int angle_sequence(struct sequencing *w, int y, int x)
 	int quotient = quotient_sequence(w, numerator, denominator), c = new_integral(w, FN_ATAN2, y, x);
 	sum_add(&sum, TERM_SEQUENCE, quotient, 0, one);
 	set_integrand(w, c, &sum);
-	mpq_clears(scale, one, NULL);
 	return c;
 }
 
@@ -441,8 +421,7 @@ static int sequence_of_table(struct sequencing *w, const struct atom *a)
 {
 	struct straight *piece;
 	int pieces = pieces_of_atom(a, &piece), made = NONE;
-	mpq_t shift;
-	mpq_init(shift);
+	RATIONAL shift = ZERO;
 	for (int i = pieces - 1; i >= 0; i--) {
 		mpq_mul(shift, piece[i].slope, piece[i].x);
 		mpq_sub(shift, piece[i].y, shift);
@@ -451,7 +430,6 @@ static int sequence_of_table(struct sequencing *w, const struct atom *a)
 		made = made == NONE ? here
 				    : choice(w, a, a->operand[0], CMP_LT, form_constant(piece[i].end), here, made);
 	}
-	mpq_clear(shift);
 	return made;
 }
 
@@ -531,26 +509,22 @@ static int sequence_of_power(struct sequencing *w, const struct atom *atom)
 {
 	const struct form *exponent = atom->operand[1];
 	int base = sequence_of_form(w, atom->operand[0]);
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	if (!is_constant(exponent)) {           /* e^{b log a} */
 		int log = arc_sequence(w, FN_LOG, base, base, 1);
 		return self_sequence(w, FN_EXP, product_sequence(w, sequence_of_form(w, exponent), log), 0);
 	}
 	mpq_set_ui(value, 0, 1);
 	for (int i = 0; i < exponent->terms; i++) {
-		mpq_t part;
-		mpq_init(part);
+		RATIONAL part = ZERO;
 		mpq_set(part, exponent->term[i].factor);
 		if (exponent->term[i].basis.kind == BASIS_PI)
 			mpq_mul(part, part, w->pi);
 		mpq_add(value, value, part);
-		mpq_clear(part);
 	}
 	struct sequence made = { .kind = SEQUENCE_POWER, .state = NONE, .a = base, .b = NONE };
 	made.exponent = equation_number(w->step->model, value).value;
 	bool half = mpq_cmp_ui(value, 1, 2) == 0;
-	mpq_clear(value);
 	return half ? root_sequence(w, base) : new_sequence(w, made);
 }
 

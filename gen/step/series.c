@@ -7,26 +7,20 @@ enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64, P
 
 static void larger_pole(mpfr_ptr largest, const struct rectangle *at)
 {
-	mpfi_t size;
-	mpfr_t right;
-	mpfi_init2(size, BITS);
-	mpfr_init2(right, BITS);
+	INTERVAL size = OVER_BITS(BITS);
+	REAL right = WITH_BITS(BITS);
 	mpfi_hypot(size, at->re, at->im);
 	mpfi_get_right(right, size);
 	mpfr_max(largest, largest, right, MPFR_RNDU);
-	mpfi_clear(size);
-	mpfr_clear(right);
 }
 
 static void larger_wave(mpfr_ptr largest, const struct wave *wave)
 {
-	mpfr_t a, w;
-	mpfr_inits2(BITS, a, w, NULL);
+	REAL a = WITH_BITS(BITS), w = WITH_BITS(BITS);
 	mpfr_set_q(a, wave->a, MPFR_RNDA);
 	mpfr_set_q(w, wave->w, MPFR_RNDA);
 	mpfr_hypot(a, a, w, MPFR_RNDU);
 	mpfr_max(largest, largest, a, MPFR_RNDU);
-	mpfr_clears(a, w, NULL);
 }
 
 static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
@@ -57,14 +51,11 @@ static void largest_angle(const struct step *step, mpfr_ptr angle)
 
 double largest_pole_angle(const struct step *step)
 {
-	mpfr_t angle;
-	mpfr_init2(angle, BITS);
+	REAL angle = WITH_BITS(BITS);
 	mpfr_set_zero(angle, 1);
 	larger_poles(angle, step->branch->resolvent);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
-	double bound = mpfr_get_d(angle, MPFR_RNDU);
-	mpfr_clear(angle);
-	return bound;
+	return mpfr_get_d(angle, MPFR_RNDU);
 }
 
 static mpfr_t *positive_numbers(int count)
@@ -80,8 +71,7 @@ static mpfr_t *positive_numbers(int count)
 /* next = |A| dt term / k, entrywise: bounds the k-th term of the series by the (k-1)-th */
 static void next_term(int size, const mpfr_t *A, const mpfr_t *term, mpfr_t *next, int k)
 {
-	mpfr_t product;
-	mpfr_init2(product, BITS);
+	REAL product = WITH_BITS(BITS);
 	for (int i = 0; i < size * size; i++)
 		mpfr_set_zero(next[i], 1);
 	for (int i = 0; i < size; i++)
@@ -98,15 +88,13 @@ static void next_term(int size, const mpfr_t *A, const mpfr_t *term, mpfr_t *nex
 	for (int i = 0; i < size * size; i++)
 		if (!mpfr_zero_p(next[i]))
 			mpfr_div_ui(next[i], next[i], (unsigned long)k, MPFR_RNDU);
-	mpfr_clear(product);
 }
 
 /* Is every entry of the term below 2^-56 of the first term that its entry has? */
 static bool negligible(int cells, const mpfr_t *term, mpfr_t *first)
 {
 	bool small = true;
-	mpfr_t limit;
-	mpfr_init2(limit, BITS);
+	REAL limit = WITH_BITS(BITS);
 	for (int i = 0; i < cells; i++) {
 		if (mpfr_zero_p(first[i])) {
 			mpfr_set(first[i], term[i], MPFR_RNDD);
@@ -116,21 +104,18 @@ static bool negligible(int cells, const mpfr_t *term, mpfr_t *first)
 		mpfr_mul_2si(limit, first[i], -56, MPFR_RNDD);
 		small = small && mpfr_lessequal_p(term[i], limit);
 	}
-	mpfr_clear(limit);
 	return small;
 }
 
 /* The largest size that each entry has in any segment of time */
 static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 {
-	mpfr_t size;
-	mpfr_init2(size, BITS);
+	REAL size = WITH_BITS(BITS);
 	for (int i = 0; i < cells; i++) {
 		mpfr_set_q(size, segment[i], MPFR_RNDU);
 		mpfr_abs(size, size, MPFR_RNDU);
 		mpfr_max(A[i], A[i], size, MPFR_RNDU);
 	}
-	mpfr_clear(size);
 }
 
 /* The first degree after which two terms in a row are negligible, for any of the operators from `first` to before
@@ -142,9 +127,8 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 	       *first = positive_numbers(cells);
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
-			mpq_t *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);
+			RATIONALS *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);
 			add_envelope(A, cells, (const mpq_t *)matrix);
-			rationals_free(matrix, (size_t)cells);
 		}
 	for (int i = 0; i < cells; i++) {
 		mpfr_mul_q(A[i], A[i], step->model->h, MPFR_RNDN);
@@ -170,9 +154,8 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 
 int series_halvings(const struct step *step, int operator)
 {
-	mpfr_t angle;
 	int halvings = 0;
-	mpfr_init2(angle, BITS);
+	REAL angle = WITH_BITS(BITS);
 	mpfr_set_zero(angle, 1);
 	larger_poles(angle, step->branch[operator].resolvent);
 	for (int l = 0; l < step->branch->system.loads; l++)
@@ -181,7 +164,6 @@ int series_halvings(const struct step *step, int operator)
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 	for (; mpfr_cmp_ui(angle, 1) > 0 && halvings <= 30; halvings++)
 		mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
-	mpfr_clear(angle);
 	return halvings;
 }
 

@@ -11,13 +11,11 @@ enum { ENTRY_BITS = 640 };
 /* X += by Y */
 static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (size_t i = 0; i < cells && Y; i++) {
 		mpq_mul(part, by, Y[i]);
 		mpq_add(X[i], X[i], part);
 	}
-	mpq_clear(part);
 }
 
 int settled_size(const struct model *model)
@@ -29,8 +27,7 @@ int settled_size(const struct model *model)
 static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 {
 	int n = model->n, size = settled_size(model);
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	for (int k = 0; k < model->split->waves; k++) {
 		const struct wave_force *own = &model->split->wave[k];
 		int c = 2 * n + 1 + 2 * k, s = c + 1;
@@ -44,7 +41,6 @@ static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 			mpq_add(entry, entry, part);
 		}
 	}
-	mpq_clear(part);
 }
 
 /* A of [q, q', 1, waves], by the first operator and what it leaves over at the end */
@@ -54,8 +50,8 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 	size_t cells = (size_t)n * (size_t)n;
 	const struct splitting *split = model->split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals((size_t)n) };
-	mpq_t *A = rationals((size_t)size * (size_t)size), minus, part;
-	mpq_inits(minus, part, NULL);
+	mpq_t *A = rationals((size_t)size * (size_t)size);
+	RATIONAL minus = ZERO, part = ZERO;
 	mpq_set_si(minus, -1, 1);
 	add_multiple(cells, of[0], minus, K);
 	add_multiple(cells, of[1], minus, C);
@@ -79,15 +75,13 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 				}
 	}
 	add_waves(model, A, (const mpq_t *)inverse);
-	mpq_clears(minus, part, NULL);
 	return A;
 }
 
 /* Z <- X Y, of rows x inner and inner x columns */
 static void real_product(int rows, int inner, int columns, mpfr_t *X, mpfr_t *Y, mpfr_t *Z)
 {
-	mpfr_t part;
-	mpfr_init2(part, ENTRY_BITS);
+	REAL part = WITH_BITS(ENTRY_BITS);
 	for (int i = 0; i < rows; i++)
 		for (int j = 0; j < columns; j++) {
 			mpfr_set_zero(Z[i * columns + j], 1);
@@ -98,7 +92,6 @@ static void real_product(int rows, int inner, int columns, mpfr_t *X, mpfr_t *Y,
 				mpfr_add(Z[i * columns + j], Z[i * columns + j], part, MPFR_RNDN);
 			}
 		}
-	mpfr_clear(part);
 }
 
 /* [V^T M, 0, 0; 0, V^T M, 0; 0, 0, I], its first rows times omega; or what undoes that */
@@ -106,8 +99,8 @@ static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct
 			 bool back)
 {
 	int n = model->n, size = settled_size(model);
-	mpfr_t *T = reals((size_t)size * (size_t)size, ENTRY_BITS), part;
-	mpfr_init2(part, ENTRY_BITS);
+	mpfr_t *T = reals((size_t)size * (size_t)size, ENTRY_BITS);
+	REAL part = WITH_BITS(ENTRY_BITS);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
 			mpfr_ptr of_q = T[i * size + j], of_rate = T[(n + i) * size + n + j];
@@ -124,7 +117,6 @@ static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct
 		}
 	for (int i = 2 * n; i < size; i++)
 		mpfr_set_ui(T[i * size + i], 1, MPFR_RNDN);
-	mpfr_clear(part);
 	return T;
 }
 
@@ -135,8 +127,7 @@ mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C
 	size_t cells = (size_t)size * (size_t)size;
 	struct taylor *taylor = taylor_of(size, (const mpq_t *)last_matrix(model, M, C, K), model->h);
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);
-	mpfi_t entry;
-	mpfi_init2(entry, ENTRY_BITS);
+	INTERVAL entry = OVER_BITS(ENTRY_BITS);
 	if (!taylor_enclose(taylor, ENTRY_BITS))
 		error(model->asked.step_at, NULL, "the step is too long for the model's fastest mode");
 	for (int i = 0; i < size; i++)
@@ -144,7 +135,6 @@ mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C
 			taylor_entry(taylor, i, j, entry);
 			mpfi_get_fr(Phi[i * size + j], entry);
 		}
-	mpfi_clear(entry);
 	real_product(size, size, size, transform(model, M, pairs, omega, false), Phi, half);
 	real_product(size, size, size, half, transform(model, M, pairs, omega, true), Phi);
 	return Phi;

@@ -14,14 +14,12 @@ struct idle {                       /* an expression on a breakpoint that stands
 /* Of row . x - less: its sign, 0 where it is exactly 0; *known false: it is not told apart from 0 */
 int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
-	mpfi_t value;
-	mpfi_init2(value, t->precision);
+	INTERVAL value = OVER_BITS(t->precision);
 	through_dot(t, row, (const mpfi_t *)t->x, value);
 	if (less)
 		mpfi_sub_q(value, value, less);
 	int sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 	*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right));
-	mpfi_clear(value);
 	return sign;
 }
 
@@ -34,9 +32,8 @@ mpq_t *through_row_of(const struct through *t, const struct output *output)
 
 void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh)
 {
-	mpq_t *row = through_row_of(t, output);
+	RATIONALS *row = through_row_of(t, output);
 	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, fresh[state]);
-	rationals_free(row, (size_t)t->n);
 }
 
 void through_hold(struct through *t)
@@ -166,11 +163,9 @@ static int order_of(struct through *t, const struct gate *gate)
 	if (impact_resting(t->s, t->segment, gate->expression,
 			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
 		return 3;
-	mpq_t *row = through_row_of(t, t->s->expression[gate->expression].row);
-	mpq_t *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
+	RATIONALS *row = through_row_of(t, t->s->expression[gate->expression].row);
+	RATIONALS *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
 	int sign = through_sign(t, (const mpq_t *)slope, NULL, &known);
-	rationals_free(row, (size_t)t->n);
-	rationals_free(slope, (size_t)t->n);
 	return known && sign != 0 ? 0 : 2;
 }
 

@@ -12,13 +12,12 @@ void tell_range(const struct step *step)
 double *slopes_of(const struct step *step, int branch)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
-	mpq_t *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
+	RATIONALS *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
 	double *A = ARRAY(double, 2 * cells);
 	for (size_t i = 0; i < cells; i++) {
 		A[i] = round_rational(exact[i]);
 		A[cells + i] = isfinite(A[i]) ? rounding_rest(exact[i]) : 0;
 	}
-	rationals_free(exact, cells);
 	return A;
 }
 
@@ -52,12 +51,11 @@ static bool is_left_out(const struct step *step, int entry)
 static double *load_slopes_in(const struct step *step, const struct load_slopes *place, int segment)
 {
 	int states = step->branch->system.states, size = step->layout.size;
-	mpq_t *exact = augmented_matrix(&step->layout, &step->branch->system, segment);
+	RATIONALS *exact = augmented_matrix(&step->layout, &step->branch->system, segment);
 	double *value = ARRAY(double, (size_t)states * (size_t)place->columns);
 	for (int j = 0; j < place->columns; j++)
 		for (int i = 0; i < states && !is_left_out(step, place->first + j); i++)
 			value[i * place->columns + j] = round_rational(exact[i * size + place->first + j]);
-	rationals_free(exact, (size_t)size * (size_t)size);
 	return value;
 }
 

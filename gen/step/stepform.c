@@ -33,8 +33,7 @@ static bool has_mass_matrix(const struct linear *system)
 static bool spread_masses(int n, const mpq_t *a, int from, mpq_t *mass)
 {
 	bool good = true;
-	mpq_t other;
-	mpq_init(other);
+	RATIONAL other = ZERO;
 	for (int j = 0; j < n && good; j++) {
 		if (j == from || (mpq_sgn(a[from * n + j]) == 0 && mpq_sgn(a[j * n + from]) == 0))
 			continue;
@@ -50,7 +49,6 @@ static bool spread_masses(int n, const mpq_t *a, int from, mpq_t *mass)
 		mpq_set(mass[j], other);
 		good = spread_masses(n, a, j, mass);
 	}
-	mpq_clear(other);
 	return good;
 }
 

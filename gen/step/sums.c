@@ -36,8 +36,7 @@ static double rounded(const struct sequencing *w, mpq_srcptr q)
 /* binomial(m, k) D^k t^{m-k}, k = 0 .. m */
 static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcptr factor, const mpq_t *scale)
 {
-	mpq_t part, binomial;
-	mpq_inits(part, binomial, NULL);
+	RATIONAL part = ZERO, binomial = ZERO;
 	mpq_set(part, factor);
 	for (int k = 0; k <= m && k <= w->x->order; k++) {
 		ENLARGE(s->term, (size_t)s->terms + 1);
@@ -51,7 +50,6 @@ static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcp
 		mpq_mul(part, part, binomial);
 		mpq_mul(part, part, w->unit);
 	}
-	mpq_clears(part, binomial, NULL);
 }
 
 /* row (D S)^k / k!, S the load's own slopes: exact, times what the sum scales its k-th with */
@@ -59,8 +57,8 @@ static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
 {
 	const struct load *l = &w->system->load[load];
 	int n = l->columns, at = w->layout.load[load], size = w->layout.size;
-	mpq_t *next = rationals((size_t)n), part;
-	mpq_init(part);
+	RATIONALS *next = rationals((size_t)n);
+	RATIONAL part = ZERO;
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
 			mpq_mul(part, row[i], w->slopes[0][(at + i) * size + at + j]);
@@ -70,8 +68,6 @@ static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
 	mpq_mul(part, part, w->unit);
 	for (int j = 0; j < n; j++)
 		mpq_mul(row[j], next[j], part);
-	mpq_clear(part);
-	rationals_free(next, (size_t)n);
 }
 
 /* value[k][column] */
@@ -79,8 +75,7 @@ static double *load_numbers(const struct sequencing *w, int load, mpq_t *row, co
 {
 	int n = w->system->load[load].columns, order = w->x->order;
 	double *value = ARRAY(double, (size_t)((order + 1) * n));
-	mpq_t scaled;
-	mpq_init(scaled);
+	RATIONAL scaled = ZERO;
 	for (int k = 0; k <= order; k++) {
 		for (int j = 0; j < n; j++) {
 			mpq_mul(scaled, row[j], scale[k]);
@@ -88,7 +83,6 @@ static double *load_numbers(const struct sequencing *w, int load, mpq_t *row, co
 		}
 		next_row(w, load, k, row);
 	}
-	mpq_clear(scaled);
 	return value;
 }
 
@@ -112,7 +106,7 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 {
 	for (int l = 0; l < w->system->loads; l++) {
 		int first = column_of_load(w->system, l), n = w->system->load[l].columns;
-		mpq_t *row = rationals((size_t)n);
+		RATIONALS *row = rationals((size_t)n);
 		bool any = false;
 		for (int i = 0; i < sum->keys; i++) {
 			const struct key *key = &sum->key[i];
@@ -123,7 +117,6 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 		}
 		if (any)
 			add_load_numbers(w, s, l, row, scale);
-		rationals_free(row, (size_t)n);
 	}
 }
 
@@ -131,10 +124,9 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 static void add_input(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	bool ramps = w->system->input[key->a].hold > 0;
-	mpq_t number;
 	if (key->kind == TERM_SLOPE && !ramps)
 		return;
-	mpq_init(number);
+	RATIONAL number = ZERO;
 	for (int k = 0; k <= (key->kind == TERM_INPUT && ramps); k++) {
 		ENLARGE(s->term, (size_t)s->terms + 1);
 		struct sequence_term *term = &s->term[s->terms++];
@@ -146,13 +138,11 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 		term->factor[k] = rounded(w, number);
 		(term->kind == TERM_INPUT ? w->x->input : w->x->slope)[key->a] = true;
 	}
-	mpq_clear(number);
 }
 
 static void add_param(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
-	mpq_t number;
-	mpq_init(number);
+	RATIONAL number = ZERO;
 	ENLARGE(s->term, (size_t)s->terms + 1);
 	struct sequence_term *term = &s->term[s->terms++];
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
@@ -160,13 +150,11 @@ static void add_param(struct sequencing *w, struct sequence *s, const struct key
 	mpq_mul(number, key->factor, scale[0]);
 	term->factor[0] = rounded(w, number);
 	w->x->params = true;
-	mpq_clear(number);
 }
 
 static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
-	mpq_t number;
-	mpq_init(number);
+	RATIONAL number = ZERO;
 	ENLARGE(s->term, (size_t)s->terms + 1);
 	struct sequence_term *term = &s->term[s->terms++];
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .b = key->b, .slot = -1 };
@@ -175,7 +163,6 @@ static void add_plain(struct sequencing *w, struct sequence *s, const struct key
 		mpq_mul(number, key->factor, scale[k]);
 		term->factor[k] = rounded(w, number);
 	}
-	mpq_clear(number);
 }
 
 /* Its keys as terms, scaled by scale[k] at k */
@@ -241,14 +228,13 @@ void add_changing_loads(struct sequencing *w, struct sequence *s, int state, con
 		ENLARGE(x->slot_load, (size_t)(x->slots + n));
 		ENLARGE(x->changing, (size_t)((x->slots + n) * segments * stride));
 		for (int k = 0; k < segments; k++) {
-			mpq_t *row = rationals((size_t)n);
+			RATIONALS *row = rationals((size_t)n);
 			for (int j = 0; j < n; j++)
 				mpq_set(row[j], w->slopes[k][state * size + at + j]);
 			const double *value = load_numbers(w, l, row, scale);
 			for (int j = 0; j < n; j++)
 				for (int m = 0; m < stride; m++)
 					x->changing[((x->slots + j) * segments + k) * stride + m] = value[m * n + j];
-			rationals_free(row, (size_t)n);
 		}
 		for (int j = 0; j < n; j++)
 			x->slot_load[x->slots++] = first + j;

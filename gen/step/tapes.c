@@ -119,14 +119,12 @@ static tape_ref term_ref(const struct sums *s, const struct assignment *a, const
 /* `second`: of the factors' second words, where they have some */
 static tape_ref sum_ref(const struct sums *s, const struct assignment *a, bool second)
 {
-	tape_ref *term = ARRAY(tape_ref, (size_t)a->terms + 1);
+	SCRATCH tape_ref *term = ARRAY(tape_ref, (size_t)a->terms + 1);
 	int terms = 0;
 	for (int k = 0; k < a->terms; k++)
 		if (!second || has_second_word(&a->term[k], s->step))
 			term[terms++] = term_ref(s, a, &a->term[k], second);
-	tape_ref sum = tape_sum(s->t, terms, term);
-	discard(term);
-	return sum;
+	return tape_sum(s->t, terms, term);
 }
 
 static tape_ref assigned_ref(const struct sums *s, const struct assignment *a)

@@ -11,10 +11,8 @@
 static void piece_at(struct through *t, mpq_srcptr target, mpq_ptr tau, bool *whole)
 {
 	mpq_srcptr d = t->at->flow->piece;
-	mpq_t pieces, end;
-	mpz_t next;
-	mpq_inits(pieces, end, NULL);
-	mpz_init(next);
+	RATIONAL pieces = ZERO, end = ZERO;
+	INTEGER next = INTEGER_ZERO;
 	mpq_div(pieces, t->base, d);
 	*whole = mpz_cmp_ui(mpq_denref(pieces), 1) == 0;
 	mpz_fdiv_q(next, mpq_numref(pieces), mpq_denref(pieces));
@@ -26,8 +24,6 @@ static void piece_at(struct through *t, mpq_srcptr target, mpq_ptr tau, bool *wh
 		*whole = false;
 	}
 	mpq_sub(tau, end, t->base);
-	mpq_clears(pieces, end, NULL);
-	mpz_clear(next);
 }
 
 static void keep(const struct through *t, const mpfi_t *from, mpfi_t *to)
@@ -68,30 +64,24 @@ static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *
 static bool move(struct through *t, mpq_srcptr target)
 {
 	bool whole;
-	mpq_t tau;
-	mpfi_t at;
 	const struct gate *gate = NULL;
-	mpq_init(tau);
+	RATIONAL tau = ZERO;
 	piece_at(t, target, tau, &whole);
 	if (whole) {
 		step_on_grid(t, t->y);
 		if (through_clear(t, (const mpfi_t *)t->y, mpq_get_d(tau))) {
 			arrive(t, tau, true, (const mpfi_t *)t->y);
-			mpq_clear(tau);
 			return true;
 		}
 	}
-	mpfi_init2(at, t->precision);
+	INTERVAL at = OVER_BITS(t->precision);
 	int degree = stream_expand(t->at->flow, (const mpfi_t *)t->x, tau, &t->room);
 	int found = through_first(t, degree, tau, &gate, at);
 	if (found == 0 && !whole)
 		stream_sum(t->at->flow, &t->room, degree, t->one, t->y);
 	if (found == 0)
 		arrive(t, tau, whole, (const mpfi_t *)t->y);
-	bool known = found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
-	mpfi_clear(at);
-	mpq_clear(tau);
-	return known;
+	return found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
 }
 
 /* ---- changes of formula in time ---- */
@@ -109,13 +99,11 @@ static bool next_segment(struct through *t)
 		return false;
 	if (!has_events(t->s))
 		return true;
-	mpfr_t none;
-	mpfr_init2(none, 64);
+	REAL none = WITH_BITS(64);
 	mpfr_set_zero(none, 1);
 	through_hold(t);
 	bool known = through_settle(t, NULL, none);
 	through_hold(t);
-	mpfr_clear(none);
 	return known;
 }
 

@@ -49,8 +49,9 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 		     mpfr_t *response)
 {
 	struct waving z;
-	mpfr_t time, by, part[3];
-	mpfr_inits2(WAVE_BITS, z.a, z.w, z.lambda, z.twice, time, NULL);
+	mpfr_t part[3];
+	REAL time = WITH_BITS(WAVE_BITS);
+	mpfr_inits2(WAVE_BITS, z.a, z.w, z.lambda, z.twice, NULL);
 	mpfr_set_q(z.a, wave->a, MPFR_RNDN);
 	mpfr_set_q(z.w, wave->w, MPFR_RNDN);
 	mpfr_set(z.lambda, mode->lambda, MPFR_RNDN);
@@ -58,7 +59,8 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 	mpfr_set_q(time, h, MPFR_RNDN);
 	mpfr_mul_q(time, time, theta, MPFR_RNDN);
 	int terms = terms_of_waves(&z, time), bits = WAVE_BITS + terms;
-	mpfr_inits2(bits, by, part[0], part[1], part[2], NULL);
+	REAL by = WITH_BITS(bits);
+	mpfr_inits2(bits, part[0], part[1], part[2], NULL);
 	for (int d = 0; d < 2; d++) {
 		mpfr_inits2(bits, z.eta[d], z.rate[d], z.wave[d], NULL);
 		mpfr_set_zero(z.eta[d], 1);
@@ -79,7 +81,7 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 	}
 	for (int d = 0; d < 4; d++)
 		mpfr_set(response[d], sum[d], MPFR_RNDN);
-	mpfr_clears(sum[0], sum[1], sum[2], sum[3], time, by, part[0], part[1], part[2], NULL);
+	mpfr_clears(sum[0], sum[1], sum[2], sum[3], part[0], part[1], part[2], NULL);
 	mpfr_clears(z.eta[0], z.eta[1], z.rate[0], z.rate[1], z.wave[0], z.wave[1], z.a, z.w, z.lambda, z.twice, NULL);
 }
 
@@ -89,14 +91,12 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 static void project(const struct normal_work *w, int bank, const mpq_t *force, int j, mpfr_ptr sum)
 {
 	int n = w->normal->modes;
-	mpfr_t part;
-	mpfr_init2(part, mpfr_get_prec(sum));
+	REAL part = WITH_BITS(mpfr_get_prec(sum));
 	mpfr_set_zero(sum, 1);
 	for (int i = 0; i < n; i++) {
 		mpfr_mul_q(part, w->pairs[bank].vector[i * n + j], force[i], MPFR_RNDN);
 		mpfr_add(sum, sum, part, MPFR_RNDN);
 	}
-	mpfr_clear(part);
 }
 
 void check_turns(const struct step *step)
@@ -120,8 +120,7 @@ void find_waves(struct normal_work *w)
 	struct normal *normal = w->normal;
 	const struct splitting *split = w->model->split;
 	int waves = split->waves, width = normal->width;
-	mpfr_t force;
-	mpfr_init2(force, WAVE_BITS);
+	REAL force = WITH_BITS(WAVE_BITS);
 	normal->wave = ARRAY(double, (size_t)(normal->banks * waves * 2 * width));
 	for (int i = 0; i < normal->banks * waves * 2; i++)
 		for (int j = 0; j < normal->modes; j++) {
@@ -129,15 +128,15 @@ void find_waves(struct normal_work *w)
 			project(w, i / 2 / waves, own, j, force);
 			normal->wave[i * width + normal->place[j]] = round_real(force);
 		}
-	mpfr_clear(force);
 }
 
 /* Of mode j, to theta h: of cos at the start gc Rc + gs Rs, of sin gs Rc - gc Rs; eta and eta' of each */
 static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_srcptr theta, double *weight)
 {
 	const struct wave_force *own = &w->model->split->wave[k];
-	mpfr_t *R = reals(4, WAVE_BITS), of_cos, of_sin, sum, part;
-	mpfr_inits2(WAVE_BITS, of_cos, of_sin, sum, part, NULL);
+	mpfr_t *R = reals(4, WAVE_BITS);
+	REAL of_cos = WITH_BITS(WAVE_BITS), of_sin = WITH_BITS(WAVE_BITS), sum = WITH_BITS(WAVE_BITS),
+	     part = WITH_BITS(WAVE_BITS);
 	swing_of(&w->mode[bank * w->normal->modes + j], own->wave, w->model->h, theta, R);
 	project(w, bank, (const mpq_t *)own->force[0], j, of_cos);
 	project(w, bank, (const mpq_t *)own->force[1], j, of_sin);
@@ -151,7 +150,6 @@ static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_
 		mpfr_sub(sum, sum, part, MPFR_RNDN);
 		weight[(2 + d) * w->normal->width] = round_real(sum);
 	}
-	mpfr_clears(of_cos, of_sin, sum, part, NULL);
 	reals_free(R, 4);
 }
 

@@ -16,8 +16,7 @@ struct lagrange lagrange_of(int nodes, const mpq_t *node)
 {
 	size_t n = (size_t)nodes;
 	struct lagrange l = { nodes, reals(n, WEIGHT_BITS), reals(n * n, WEIGHT_BITS) };
-	mpfr_t gap, shifted;
-	mpfr_inits2(WEIGHT_BITS, gap, shifted, NULL);
+	REAL gap = WITH_BITS(WEIGHT_BITS), shifted = WITH_BITS(WEIGHT_BITS);
 	for (int i = 0; i < nodes; i++)
 		mpfr_set_q(l.node[i], node[i], MPFR_RNDN);
 	for (int i = 0; i < nodes; i++) {
@@ -37,7 +36,6 @@ struct lagrange lagrange_of(int nodes, const mpq_t *node)
 			}
 		}
 	}
-	mpfr_clears(gap, shifted, NULL);
 	return l;
 }
 
@@ -55,8 +53,9 @@ void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value)
 /* P_n(2 x - 1) and its first two derivatives in x, by the recurrence of Legendre's polynomials */
 static void legendre(int n, mpfr_srcptr x, mpfr_t *P)
 {
-	mpfr_t z, before[3], next[3], part;
-	mpfr_inits2(WEIGHT_BITS, z, before[0], before[1], before[2], next[0], next[1], next[2], part, NULL);
+	mpfr_t before[3], next[3];
+	REAL z = WITH_BITS(WEIGHT_BITS), part = WITH_BITS(WEIGHT_BITS);
+	mpfr_inits2(WEIGHT_BITS, before[0], before[1], before[2], next[0], next[1], next[2], NULL);
 	mpfr_mul_2ui(z, x, 1, MPFR_RNDN);
 	mpfr_sub_ui(z, z, 1, MPFR_RNDN);
 	for (int d = 0; d < 3; d++) {
@@ -78,7 +77,7 @@ static void legendre(int n, mpfr_srcptr x, mpfr_t *P)
 			mpfr_set(before[d], P[d], MPFR_RNDN);
 			mpfr_set(P[d], next[d], MPFR_RNDN);
 		}
-	mpfr_clears(z, before[0], before[1], before[2], next[0], next[1], next[2], part, NULL);
+	mpfr_clears(before[0], before[1], before[2], next[0], next[1], next[2], NULL);
 }
 
 /* Ends and roots of P_n', by Newton's method from the extremes of Chebyshev's polynomial (Hairer and Wanner 2010,
@@ -87,8 +86,8 @@ mpq_t *lobatto_nodes(int stages)
 {
 	enum { ITERATIONS = 12 };
 	mpq_t *node = rationals((size_t)stages + 1);
-	mpfr_t x, quotient, *P = reals(3, WEIGHT_BITS);
-	mpfr_inits2(WEIGHT_BITS, x, quotient, NULL);
+	mpfr_t *P = reals(3, WEIGHT_BITS);
+	REAL x = WITH_BITS(WEIGHT_BITS), quotient = WITH_BITS(WEIGHT_BITS);
 	mpq_set_ui(node[stages], 1, 1);
 	for (int i = 1; i < stages; i++) {
 		mpfr_const_pi(x, MPFR_RNDN);
@@ -106,7 +105,6 @@ mpq_t *lobatto_nodes(int stages)
 		mpfr_get_q(node[i], x);
 		mpfr_set_prec(x, WEIGHT_BITS);
 	}
-	mpfr_clears(x, quotient, NULL);
 	reals_free(P, 3);
 	return node;
 }
@@ -130,24 +128,21 @@ struct moments {
 /* Bits that the sum of the series loses: about e^{|p| theta h} */
 static int extra_bits(const struct moments *w)
 {
-	mpfr_t size, part;
-	mpfr_inits2(53, size, part, NULL);
+	REAL size = WITH_BITS(53), part = WITH_BITS(53);
 	mpfr_abs(size, w->square, MPFR_RNDU);
 	mpfr_sqrt(size, size, MPFR_RNDU);
 	mpfr_abs(part, w->twice, MPFR_RNDU);
 	mpfr_add(size, size, part, MPFR_RNDU);
 	mpfr_mul(size, size, w->theta, MPFR_RNDU);
-	int bits = 4 * (int)mpfr_get_d(size, MPFR_RNDU);
-	mpfr_clears(size, part, NULL);
-	return bits;
+	return 4 * (int)mpfr_get_d(size, MPFR_RNDU);
 }
 
 /* y'' + 2 delta h y' + lambda h^2 y = h^2 sigma^m, y = sum of c_j sigma^j; terms are c_j theta^j */
 static void highest_moment(struct moments *w)
 {
 	int m = w->powers - 1, bits = WEIGHT_BITS + extra_bits(w);
-	mpfr_t term, before, next, part, Q, V;
-	mpfr_inits2(bits, term, before, next, part, Q, V, NULL);
+	REAL term = WITH_BITS(bits), before = WITH_BITS(bits), next = WITH_BITS(bits), part = WITH_BITS(bits),
+	     Q = WITH_BITS(bits), V = WITH_BITS(bits);
 	mpfr_set_zero(before, 1);
 	mpfr_pow_ui(term, w->theta, (unsigned long)m + 2, MPFR_RNDN);
 	mpfr_mul(term, term, w->h, MPFR_RNDN);
@@ -181,21 +176,18 @@ static void highest_moment(struct moments *w)
 	mpfr_set(w->Q[m], Q, MPFR_RNDN);
 	mpfr_div(V, V, w->theta, MPFR_RNDN);
 	mpfr_div(w->V[m], V, w->h, MPFR_RNDN);
-	mpfr_clears(term, before, next, part, Q, V, NULL);
 }
 
 /* value <- theta^m - 2 delta V_m - lambda Q_m */
 static void acceleration(const struct moments *w, const struct normal_mode *mode, int m, mpfr_ptr value)
 {
-	mpfr_t part;
-	mpfr_init2(part, mpfr_get_prec(value));
+	REAL part = WITH_BITS(mpfr_get_prec(value));
 	mpfr_pow_ui(value, w->theta, (unsigned long)m, MPFR_RNDN);
 	mpfr_mul(part, mode->delta, w->V[m], MPFR_RNDN);
 	mpfr_mul_2ui(part, part, 1, MPFR_RNDN);
 	mpfr_sub(value, value, part, MPFR_RNDN);
 	mpfr_mul(part, mode->lambda, w->Q[m], MPFR_RNDN);
 	mpfr_sub(value, value, part, MPFR_RNDN);
-	mpfr_clear(part);
 }
 
 static void lower_moments(struct moments *w, const struct normal_mode *mode)
@@ -213,14 +205,12 @@ static void lower_moments(struct moments *w, const struct normal_mode *mode)
 
 static void weigh(const struct lagrange *l, mpfr_t *moment, mpfr_t *weight)
 {
-	mpfr_t part;
-	mpfr_init2(part, WEIGHT_BITS);
+	REAL part = WITH_BITS(WEIGHT_BITS);
 	for (int i = 0; i < l->nodes; i++)
 		for (int j = 0; j < l->nodes; j++) {
 			mpfr_mul(part, l->factor[i * l->nodes + j], moment[j], MPFR_RNDN);
 			mpfr_add(weight[i], weight[i], part, MPFR_RNDN);
 		}
-	mpfr_clear(part);
 }
 
 struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_srcptr theta, const struct lagrange *l)

@@ -20,13 +20,12 @@ struct coefficient *derivatives_of_residuals(const struct model *model)
 {
 	const struct linear *written = &model->written->system;
 	int n = written->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n));
+	RATIONALS *inverse = rationals((size_t)(n * n));
 	struct coefficient *factor = ARRAY(struct coefficient, (size_t)(n * n));
 	leading_inverse(written, inverse, &column);
 	for (int i = 0; i < n * n; i++) {
 		mpq_neg(inverse[i], inverse[i]);
 		factor[i] = equation_number(model, inverse[i]);
 	}
-	rationals_free(inverse, (size_t)(n * n));
 	return factor;
 }
