@@ -199,7 +199,7 @@ bool find_tuning(struct model *model, const struct request *request)
 {
 	static const struct difference difference[] = {
 		{ same_reduction, "--reduce would leave other states",
-		  "what is left out, and the outputs that become states, have to be the same for all values; without "
+		  "what is left out, and the sums that become states, have to be the same for all values; without "
 		  "--reduce all states are kept" },
 		{ same_shape, "the model has other loads",
 		  "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed" }

@@ -108,11 +108,6 @@ regions_of() {
 	fi
 }
 
-# rounding_of ID: what its banner says that rounding may take of the largest value of a state; 0: nothing
-rounding_of() {
-	sed -n 's/.*, loads counted, rounding takes at most \([^ ]*\) of the .*/\1/p; $s/.*/0/p' "$1.c" | head -n 1
-}
-
 # slopes ID: a function of one form around ID_rhs
 slopes() {
 	if grep -q "_rhs(double t, const double y\[\], double" "$1.h"; then
@@ -262,7 +257,7 @@ batch_add() {
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
 			"\"$impact\", $adds, $region, $(regions_of "$id"), $other," \
-			"$(rounding_of "$id"), $(ratio_of "$id")},"
+			"$(ratio_of "$id")},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

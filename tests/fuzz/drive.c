@@ -9,10 +9,9 @@
  *                                        spread
  *     the closed form                    1e-12 per step; of an output named inner... over its own largest value, or 1
  *     rhs, outputs against the second writing    1e-10, of the largest slope or output
- *     jump, set, retune                  1e-12 per step, a jump as run, too; at(h): 1e-12; at(0): get, to the last bit
+ *     jump, set, retune                  1e-12 per step; at(h): 1e-12; at(0): get, to the last bit
  *     another scheme of piecewise linear 1e-6
- *     run                                2 units in the last place per step, and what outputs, and products in a step
- *                                        of states that --reduce leaves, make of those of states;
+ *     run                                2 units in the last place per step, and what outputs make of those of states;
  *                                        restore: to the last bit
  *     a batch                            1e-12 per step of one that steps alone
  * selftest 100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
@@ -710,12 +709,9 @@ static bool same_bits(const double *a, const double *b, int n)
 	return true;
 }
 
-/* What one unit in the state may make in each output: a difference of large positions, many; or, after a step, in each
- * state: those that --reduce leaves may be such differences, whose products in a step are larger than what they sum to,
- * and each of these products is rounded. */
-static void find_gains(double *gain, bool steps)
+/* What one unit in the state may make in each output: a difference of large positions, many */
+static void find_gains(double *gain)
 {
-	const int to = steps ? states : outputs;
 	void *const s = fresh();
 	double y[MOST], still[MOST], moved[MOST];
 	memcpy(y, row[STEPS].y, sizeof y);
@@ -726,36 +722,13 @@ static void find_gains(double *gain, bool steps)
 			y[j] += 1e-3 * size;
 		model_init(s);
 		model_set(s, row[STEPS].t, y);
-		if (steps) {
-			double u[MOST];
-			samples(STEPS, u);
-			model_step(s, u);
-			model_get(s, j < 0 ? still : moved);
-		} else {
-			model_out(s, j < 0 ? still : moved);
-		}
+		model_out(s, j < 0 ? still : moved);
 		if (j >= 0)
 			y[j] = from;
-		for (int i = 0; i < to && j >= 0; i++)
+		for (int i = 0; i < outputs && j >= 0; i++)
 			gain[i] += fabs(moved[i] - still[i]) / (1e-3 * size);
 	}
 	free(s);
-}
-
-/* Of 1 */
-static double last_places(void)
-{
-	return 2 * of->adds * (in_float ? 0x1p-23 : 0x1p-52);
-}
-
-/* What a step may round, over the largest value of a state */
-static double rounding_of_step(void)
-{
-	double gain[MOST], most = 1;
-	find_gains(gain, true);
-	for (int i = 0; i < states && !whole() && is(of->class, "linear"); i++)
-		most = fmax(most, gain[i]);
-	return most * last_places();
 }
 
 static void judge_run(void)
@@ -765,9 +738,9 @@ static void judge_run(void)
 	double *const u = malloc(sizeof *u * (size_t)(STEPS * inputs + 1)), y[MOST];
 	float *const outf = malloc(sizeof *outf * (size_t)(STEPS * outputs + 1));
 	float *const uf = malloc(sizeof *uf * (size_t)(STEPS * inputs + 1));
-	const double ulps = rounding_of_step();
+	const double ulps = 2 * of->adds * (in_float ? 0x1p-23 : 0x1p-52);
 	double gain[MOST];
-	find_gains(gain, false);
+	find_gains(gain);
 	if (!out || !u || !outf || !uf)
 		exit(3);
 	for (int k = 0; k < STEPS; k++)
@@ -789,8 +762,8 @@ static void judge_run(void)
 		for (int k = 0; k < STEPS && rows; k++)
 			for (int i = 0; i < outputs; i++)
 				near(out[k * outputs + i], row[k + 1].out[i],
-				     (k + 1) * fmax(last_places() * out_size, fmax(gain[i], 1) * ulps * size),
-				     "run, a row", (k + 1) * h, output_name(i));
+				     (k + 1) * ulps * fmax(out_size, fmax(gain[i], 1) * size), "run, a row",
+				     (k + 1) * h, output_name(i));
         }
 	free(s), free(out), free(u), free(outf), free(uf);
 }
@@ -825,8 +798,6 @@ static void judge_jump(void)
 		free(s);
 		return;
 	}
-	/* a jump has no products of single steps, which are what rounds of a model reduced */
-	const double each = whole() ? 0 : rounding_of_step();
 	for (int i = 0; i < 4; i++) {
 		model_init(s);
 		if (of->model)
@@ -837,8 +808,8 @@ static void judge_jump(void)
                 near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h,
                      "t");
                 for (int j = 0; j < states; j++)
-                    near(y[j], row[lengths[i]].y[j], fmax(rounding(lengths[i]), lengths[i] * each) * size,
-                         "jump against steps", lengths[i] * h, state_name(j));
+                    near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h,
+                         state_name(j));
         }
 	free(s);
 }
@@ -1074,10 +1045,7 @@ int main(int argc, char **argv)
 	if (of->selftest) {
 		const double ulps = of->selftest();
 		const bool crosses = is(of->class, "piecewise") || is(of->class, "sticking");
-		/* no more than the model promises: of states that --reduce leaves, high derivatives of an output beside
-		 * fast poles, rounding may leave a few digits, and its banner says how many */
-		const double most = fmax((size > 1e3 || crosses ? 1000 : 100) * of->ratio,
-			whole() ? 0 : of->rounded * 0x1p53);
+		const double most = (size > 1e3 || crosses ? 1000 : 100) * of->ratio;
 		if (!(ulps <= most))
 			complain("selftest: %.17g units in the last place, at most %g", ulps, most);
 	}

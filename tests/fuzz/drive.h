@@ -29,7 +29,6 @@ struct subject {
 	int (*region)(const void *s);   /* NAME_region, or NULL */
 	double regions;             /* how many there may be */
 	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
-	double rounded;             /* of the largest value of a state, as its banner has it; 0: it says nothing */
 	double ratio;               /* what is kept of coordinates that move as a whole may be so much larger */
 };
 

@@ -58,6 +58,21 @@ sed -n '/^Reduced to/,/^Gone/p' explained >log
 grep -q ' 2 of 4 states' log && grep -q 'state state1 = a - b$' log && grep -q "state state1' = a' - b'\$" log
 result $? 'what is kept has no factor'
 
+cat >gear.spec <<'EOS'
+model gear
+param k = 50
+tunable k
+coord a, b
+output twist = k*(0.001*a - b)
+a'' + 0.001*k*(0.001*a - b) = cos(3*t)
+b'' + k*(b - 0.001*a) = 0
+step 1/64
+EOS
+"$plgen" --reduce --explain gear.spec >explained 2>log
+sed -n '/^Reduced to/,/^Gone/p' explained >>log
+grep -q "state state1 = -0.001\*a + b\$" log && grep -q "state state1' = -0.001\*a' + b'\$" log
+result $? 'what is kept has no large factor'
+
 for values in 'm=2 k=50 c=0.5 g=3' 'm=3 k=70 c=0.25 g=4' 'm=2.5 k=-20 c=1 g=-0.5'; do
 	options=
 	for value in $values; do
