@@ -298,7 +298,7 @@ static struct both regional(int depth)
         case 9:
             return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
         case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
-		fixed(0.11, 0.3));
+		fixed(0.16, 0.3));      /* the lower one may be 1/7 */
 	case 11: case 12: return JOIN("@*@", k, extreme_in_extreme(e));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
 	}
