@@ -98,8 +98,7 @@ static bool try_one(struct choosing *c, bool single, bool compensated, enum step
 		certify(c);
 	else if (a->model->shortened && !c->written->shortened)
 		return false;           /* as of all modes, which are tried too */
-	ENLARGE(c->choice->alternative, (size_t)c->choice->alternatives + 1);
-	c->choice->alternative[c->choice->alternatives++] = *a;
+	*MORE(c->choice->alternative, c->choice->alternatives) = *a;
 	return !a->refused && a->bound_excess <= 1;
 }
 

@@ -42,8 +42,7 @@ static void find_amplitudes(struct measuring *m, const struct alternative *a)
 		const struct step *there = built(m, &other, NULL);
 		if (!there || !differ_in_loads(here->model, there->model))
 			continue;
-		ENLARGE(m->amplitude, (size_t)m->amplitudes + 1);
-		m->amplitude[m->amplitudes++] = s;
+		*MORE(m->amplitude, m->amplitudes) = s;
 	}
 }
 

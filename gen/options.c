@@ -142,8 +142,7 @@ static void take_definition(struct options *options, const char *value)
 	const char *equals = strchr(value, '=');
 	if (!equals || equals == value || equals[1] == 0)
 		wrong_usage(format("-D takes NAME=EXPR, found '%s'", value));
-	ENLARGE(request->definition, (size_t)request->definitions + 1);
-	request->definition[request->definitions++] = value;
+	*MORE(request->definition, request->definitions) = value;
 	note_in_banner(options, format("-D %s", value));
 }
 

@@ -59,8 +59,7 @@ static const char *first_sign(const char *text, const char *signs)
 
 static void add_name(struct piece *p, const char *word, size_t length)
 {
-	ENLARGE(p->name, (size_t)p->names + 1);
-	p->name[p->names++] = format("%.*s", (int)length, word);
+	*MORE(p->name, p->names) = format("%.*s", (int)length, word);
 }
 
 /* The last word before `end` */
@@ -113,8 +112,7 @@ static void name_piece(struct piece *p)
 
 static void add_piece(struct runtime *r, const char *file, const char *comment, const char *text)
 {
-	ENLARGE(r->piece, (size_t)r->pieces + 1);
-	struct piece *p = &r->piece[r->pieces++];
+	struct piece *p = MORE(r->piece, r->pieces);
 	*p = (struct piece){ .file = file, .comment = comment, .text = text };
 	p->shared = strcmp(file, "plrt") == 0;
 	name_piece(p);
@@ -229,8 +227,7 @@ static bool take_directive(struct reader *f, const char *line)
 	struct runtime *r = f->runtime;
 	char name[64], other[64], end;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
-		ENLARGE(r->include, (size_t)r->includes + 1);
-		r->include[r->includes++] = (struct include){ f->file, without_ending(name) };
+		*MORE(r->include, r->includes) = (struct include){ f->file, without_ending(name) };
 		read_file(r, name);
 		return true;
 	}

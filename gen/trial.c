@@ -215,8 +215,7 @@ static struct course *kept_reference(struct measuring *m, struct roads *roads, i
 	struct course *course = road_of(roads, 0, NULL, why);
 	if (!course || course->samples * course->outputs > MOST_KEPT)
 		return course;
-	ENLARGE(m->keeps, (size_t)m->kept + 1);
-	m->keeps[m->kept++] = (struct kept_course){ roads->h, drive, course };
+	*MORE(m->keeps, m->kept) = (struct kept_course){ roads->h, drive, course };
 	return course;
 }
 
@@ -309,6 +308,5 @@ void try_alternative(struct measuring *m, struct alternative *a)
 	}
 	if (meets(a))
 		m->cheapest = fmin(m->cheapest, a->cost);
-	ENLARGE(m->choice->alternative, (size_t)m->choice->alternatives + 1);
-	m->choice->alternative[m->choice->alternatives++] = *a;
+	*MORE(m->choice->alternative, m->choice->alternatives) = *a;
 }

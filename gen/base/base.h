@@ -103,6 +103,8 @@ void  spend_terms(size_t count);
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
+/* One more element: where it is */
+#define MORE(array, count) (ENLARGE(array, (size_t)(count) + 1), &(array)[(count)++])
 
 /* ---- what belongs to one block: cleared where that is left, by `return` too; `error` leaves it to the end ---- */
 
@@ -226,8 +228,10 @@ const char *shortest(double d);
 const char *runtime_text(const char *name);                 /* plrt.h, turns.c, ...; NULL: there is none of this name */
 const char *runtime_name(int file);                         /* of all of them, from 0; NULL: there are no more */
 
-/* ---- rational.c: exact numbers as text ---- */
+/* ---- rational.c: exact numbers: a step of a sum of products, and as text ---- */
 
+void rational_addmul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum + a b */
+void rational_submul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum - a b */
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
 const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */
 

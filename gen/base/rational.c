@@ -1,8 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rationals as text: a decimal where there is one. */
+/* Rationals: a product added; as text, a decimal where there is one. */
 #include "base/base.h"
 
 #include <string.h>
+
+void rational_addmul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)
+{
+	RATIONAL product = ZERO;
+	mpq_mul(product, a, b);
+	mpq_add(sum, sum, product);
+}
+
+void rational_submul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)
+{
+	RATIONAL product = ZERO;
+	mpq_mul(product, a, b);
+	mpq_sub(sum, sum, product);
+}
 
 /* q = digits / 10^places if its denominator allows */
 static bool decimal_places(mpq_srcptr q, unsigned long *places)

@@ -43,9 +43,8 @@ static void say(struct place at, const char *severity, const char *note, const c
 		guard = NULL;                   /* the end */
 		note = NULL;
 	}
-	ENLARGE(said, (size_t)said_count + 1);
-	said[said_count] = (struct diagnostic){ at, severity, message, note ? note : context_note, said_count };
-	said_count++;
+	const int order = said_count;
+	*MORE(said, said_count) = (struct diagnostic){ at, severity, message, note ? note : context_note, order };
 }
 
 void say_error(struct place at, const char *note, const char *fmt, ...)

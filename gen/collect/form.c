@@ -61,7 +61,6 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 	struct form *sum = NEW(struct form);
 	sum->term = ARRAY(struct form_term, (size_t)(a->terms + b->terms));
 	spend_terms((size_t)(a->terms + b->terms));
-	RATIONAL scaled = ZERO;
 	for (int i = 0, j = 0; i < a->terms || j < b->terms;) {
 		int order = i == a->terms ? 1 : j == b->terms ? -1 : basis_order(&a->term[i].basis, &b->term[j].basis);
 		struct form_term *term = &sum->term[sum->terms];
@@ -69,10 +68,8 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 		mpq_init(term->factor);
 		if (order <= 0)
 			mpq_set(term->factor, a->term[i++].factor);
-		if (order >= 0) {
-			mpq_mul(scaled, b->term[j++].factor, factor);
-			mpq_add(term->factor, term->factor, scaled);
-		}
+		if (order >= 0)
+			rational_addmul(term->factor, b->term[j++].factor, factor);
 		if (mpq_sgn(term->factor) != 0)
 			sum->terms++;
 		else
@@ -116,9 +113,7 @@ static void add_factor(mpq_ptr sum, mpq_srcptr value, mpq_srcptr factor)
 		mpq_add(sum, sum, value);
 		return;
 	}
-	RATIONAL product = ZERO;
-	mpq_mul(product, value, factor);
-	mpq_add(sum, sum, product);
+	rational_addmul(sum, value, factor);
 }
 
 static void insert_term(struct form *sum, const struct form_term *term, mpq_srcptr factor)

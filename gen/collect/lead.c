@@ -95,8 +95,7 @@ static const struct symbol *lead_of(struct leads *leads, const struct form *rate
 				   .name = format("lead%d", leads->count + 1),
 				   .tunable = leads->params + leads->count + 1,
 				   .collected = none };
-	ENLARGE(leads->lead, (size_t)leads->count + 1);
-	leads->lead[leads->count++] = (struct lead){ rate, symbol };
+	*MORE(leads->lead, leads->count) = (struct lead){ rate, symbol };
 	return symbol;
 }
 

@@ -177,12 +177,10 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
 {
-	RATIONAL product = ZERO;
 	for (int j = 0; j < n; j++) {
 		if (mpq_sgn(row[j]) == 0)
 			continue;
-		mpq_mul(product, row[j], factor);
-		mpq_sub(target[j], target[j], product);
+		rational_submul(target[j], row[j], factor);
 	}
 }
 

@@ -391,9 +391,8 @@ static bool discs_meet(const struct iteration *it, int i, int j, bool flip_re, b
 	REAL sum = WITH_BITS(RADIUS_BITS);
 	mpfr_add(sum, it->radius[i], it->radius[j], MPFR_RNDU);
 	if (apart(mpc_realref(it->z[i]), mpc_realref(it->z[j]), flip_re, sum) ||
-	    apart(mpc_imagref(it->z[i]), mpc_imagref(it->z[j]), flip_im, sum)) {
+	    apart(mpc_imagref(it->z[i]), mpc_imagref(it->z[j]), flip_im, sum))
 		return false;
-	}
 	RECTANGLE mirrored = new_rectangle(it->bits);
 	INTERVAL gap = OVER_BITS(it->bits);
 	rectangle_set(&mirrored, &it->center[i]);

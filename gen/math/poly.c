@@ -278,8 +278,7 @@ static void add_factor(struct factor **factors, int *count, struct poly g, int m
 {
 	if (g.length < 2)
 		return;
-	ENLARGE(*factors, (size_t)*count + 1);
-	(*factors)[(*count)++] = (struct factor){ g, multiplicity, symmetric };
+	*MORE(*factors, *count) = (struct factor){ g, multiplicity, symmetric };
 }
 
 /* Roots that come with their negatives are set apart: among them, and only there, can roots be purely imaginary. */

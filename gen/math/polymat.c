@@ -40,9 +40,8 @@ static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 	int column;
 	bool regular = bareiss(n, width, W, det, &column);
 	for (int i = 0; i < n && regular && adj; i++)
-		for (int j = 0; j < n; j++) {
+		for (int j = 0; j < n; j++)
 			mpz_init_set(adj[i * n + j], W[i * width + n + j]);
-		}
 	for (int i = 0; i < n * width; i++)
 		mpz_clear(W[i]);
 	return regular;

@@ -32,13 +32,10 @@ struct growth {                     /* what all responses with one denominator s
 /* a = n/v as power series of `count` terms */
 static void series_quotient(int count, const mpq_t *n, const mpq_t *v, mpq_t *a)
 {
-	RATIONAL product = ZERO;
 	for (int k = 0; k < count; k++) {
 		mpq_set(a[k], n[k]);
-		for (int j = 1; j <= k; j++) {
-			mpq_mul(product, v[j], a[k - j]);
-			mpq_sub(a[k], a[k], product);
-		}
+		for (int j = 1; j <= k; j++)
+			rational_submul(a[k], v[j], a[k - j]);
 		mpq_div(a[k], a[k], v[0]);
 	}
 }

@@ -35,8 +35,7 @@ static struct state_range *range_of(struct model *model, int state)
 	for (int i = 0; i < model->ranges; i++)
 		if (model->range[i].state == state)
 			return &model->range[i];
-	ENLARGE(model->range, (size_t)model->ranges + 1);
-	struct state_range *range = &model->range[model->ranges++];
+	struct state_range *range = MORE(model->range, model->ranges);
 	range->state = state;
 	mpq_inits(range->low, range->high, NULL);
 	return range;

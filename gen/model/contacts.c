@@ -37,8 +37,7 @@ static void add_drag(struct building *b, const struct atom *a)
 	RATIONAL start = ZERO;
 	for (int i = 1; i < a->operands; i++)
 		check_force(a->node->child[i], a->operand[i], start, NULL);
-	ENLARGE(model->drag, (size_t)model->drags + 1);
-	model->drag[model->drags++] =
+	*MORE(model->drag, model->drags) =
 		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1] };
 }
 

@@ -189,15 +189,13 @@ static int monomial_of(struct tuning *t, signed char *power)
 	for (int m = 0; m < t->monomials; m++)
 		if (t->monomial[m].from == from && t->monomial[m].param == last && t->monomial[m].divides == divides)
 			return m + 1;
-	ENLARGE(t->monomial, (size_t)t->monomials + 1);
-	t->monomial[t->monomials] = (struct tuned_monomial){ from, last, divides };
-	return ++t->monomials;
+	*MORE(t->monomial, t->monomials) = (struct tuned_monomial){ from, last, divides };
+	return t->monomials;
 }
 
 static struct tuned_term *add_term(struct tuning *t, int row, int column, int monomial)
 {
-	ENLARGE(t->term, (size_t)t->terms + 1);
-	struct tuned_term *term = &t->term[t->terms++];
+	struct tuned_term *term = MORE(t->term, t->terms);
 	*term = (struct tuned_term){ .row = row, .column = column, .monomial = monomial };
 	mpq_init(term->factor);
 	return term;

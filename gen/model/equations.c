@@ -12,8 +12,7 @@ struct indexed {
 
 static void add_residual(struct snapshot *s, struct form *form, struct place at, struct place end)
 {
-	ENLARGE(s->residual, (size_t)s->residuals + 1);
-	s->residual[s->residuals++] = (struct residual){ form, at, end };
+	*MORE(s->residual, s->residuals) = (struct residual){ form, at, end };
 }
 
 /* Left side minus right side, cell by cell; a plain 0 fits any size. */

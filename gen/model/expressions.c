@@ -103,8 +103,7 @@ static struct comparing *term_of(const struct expression *e, const struct node *
 static void add_term(const struct switching *s, struct expression *e, int segment, const struct compared *what,
 		     mpq_srcptr at)
 {
-	ENLARGE(e->term, (size_t)e->terms + 1);
-	struct comparing *term = &e->term[e->terms++];
+	struct comparing *term = MORE(e->term, e->terms);
 	*term = (struct comparing){ .node = what->node, .seen = ARRAY(bool, (size_t)s->segments) };
 	term->seen[segment] = true;
 	mpq_init(term->first);
@@ -122,8 +121,7 @@ static bool is_apart(const struct switching *s, const struct node *node)
 /* Terms that were taken to compare one expression do so in no longer: all begins anew, with this one by itself. */
 static void tear(struct switching *s, const struct node *node)
 {
-	ENLARGE(s->apart, (size_t)s->aparts + 1);
-	s->apart[s->aparts++] = node;
+	*MORE(s->apart, s->aparts) = node;
 	s->torn = true;
 }
 

@@ -218,7 +218,6 @@ static void find_direction(const struct switching *s, int index, int expression,
 static void find_rest(struct building *b, const struct switching *s, int index, struct stuck *stuck)
 {
 	const struct region *region = &s->region[index];
-	RATIONAL part = ZERO;
 	stuck->place = stuck->velocity;
 	stuck->velocity = rate_of_form(b, stuck->place);
 	stuck->rate = rate_of_form(b, stuck->velocity);
@@ -228,8 +227,7 @@ static void find_rest(struct building *b, const struct switching *s, int index, 
 			const struct form_term *mass = form_find(region->residual[s->row[k]], &basis);
 			if (!mass)
 				continue;
-			mpq_mul(part, mass->factor, stuck->strike->direction[j]);
-			mpq_add(stuck->direction[k], stuck->direction[k], part);
+			rational_addmul(stuck->direction[k], mass->factor, stuck->strike->direction[j]);
 		}
 }
 
@@ -349,11 +347,8 @@ static bool find_holds(const struct building *b, const struct switching *s, int 
 static void subtract_row(const struct switching *s, struct region *region, struct stuck *stuck, int count, int from,
 			 int to, mpq_srcptr factor)
 {
-	RATIONAL part = ZERO;
-	for (int k = 0; k < count; k++) {
-		mpq_mul(part, factor, stuck[k].direction[from]);
-		mpq_sub(stuck[k].direction[to], stuck[k].direction[to], part);
-	}
+	for (int k = 0; k < count; k++)
+		rational_submul(stuck[k].direction[to], factor, stuck[k].direction[from]);
 	region->residual[s->row[to]] = form_difference(region->residual[s->row[to]],
 						       form_scale(region->residual[s->row[from]], factor));
 }
@@ -491,10 +486,8 @@ static void feel(struct switching *s, bool *seen, const struct form *form)
 			continue;
 		seen[a->index] = true;
 		bool friction = a->kind == ATOM_CALL && a->function >= FN_FRICTION;
-		if (friction) {
-			ENLARGE(s->felt, (size_t)s->felts + 1);
-			s->felt[s->felts++] = a;
-		}
+		if (friction)
+			*MORE(s->felt, s->felts) = a;
 		for (int k = 0; k < a->operands && !friction; k++)
 			feel(s, seen, a->operand[k]);
 	}

@@ -40,6 +40,5 @@ void hold_state(struct holding *h, const struct form *v, int at)
 
 void add_release(struct region *region, int expression, bool upward, struct form *form)
 {
-	ENLARGE(region->release, (size_t)region->releases + 1);
-	region->release[region->releases++] = (struct release){ expression, upward, form, NULL };
+	*MORE(region->release, region->releases) = (struct release){ expression, upward, form, NULL };
 }

@@ -204,7 +204,7 @@ static void clear_small(int count, mpq_t *x, int stride)
 static void make_unit(int states, int coords, mpq_t *left, mpq_t *right)
 {
 	int at = 0;
-	RATIONAL scale = ZERO, part = ZERO, product = ZERO;
+	RATIONAL scale = ZERO, part = ZERO;
 	for (int i = 1; i < coords; i++)
 		if (fabs(nearest_double(right[2 * i])) > fabs(nearest_double(right[2 * at])) * (1 + 1e-9))
 			at = i;
@@ -215,10 +215,8 @@ static void make_unit(int states, int coords, mpq_t *left, mpq_t *right)
 	}
 	mpq_set(part, right[2 * at + 1]);
 	for (int i = 0; i < states && mpq_sgn(scale) != 0; i++) {
-		mpq_mul(product, part, right[2 * i]);
-		mpq_sub(right[2 * i + 1], right[2 * i + 1], product);
-		mpq_mul(product, part, left[states + i]);
-		mpq_add(left[i], left[i], product);
+		rational_submul(right[2 * i + 1], part, right[2 * i]);
+		rational_addmul(left[i], part, left[states + i]);
 	}
 	for (int i = 0; i < 2; i++) {
 		clear_small(states, right + i, 2);

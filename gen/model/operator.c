@@ -16,8 +16,7 @@ struct point_work {
 
 static void add_fixing(struct point_work *work, const struct fixed *fixed, int coord, const struct form *value)
 {
-	ENLARGE(work->fixing, (size_t)work->fixings + 1);
-	struct fixing *f = &work->fixing[work->fixings++];
+	struct fixing *f = MORE(work->fixing, work->fixings);
 	*f = (struct fixing){ .at = fixed->at, .symbol = fixed->symbol, .coord = coord, .order = fixed->primes };
 	f->form = value;
 	mpq_init(f->value);

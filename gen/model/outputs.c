@@ -8,11 +8,9 @@
 static void add_highest(const struct model *model, const struct linear *system, const mpq_t *inverse,
 			const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
 {
-	RATIONAL weight = ZERO, product = ZERO;
-	for (int j = 0; j < system->states; j++) {
-		mpq_mul(product, factor, highest[coord * system->states + j]);
-		mpq_add(output->state[j], output->state[j], product);
-	}
+	RATIONAL weight = ZERO;
+	for (int j = 0; j < system->states; j++)
+		rational_addmul(output->state[j], factor, highest[coord * system->states + j]);
 	for (int i = 0; i < model->n; i++) {
 		mpq_mul(weight, inverse[coord * model->n + i], factor);
 		for (int c = 0; c < model->channels; c++)
@@ -23,14 +21,11 @@ static void add_highest(const struct model *model, const struct linear *system, 
 				for (int s = 0; s < model->system.segments; s++) {
 					mpq_ptr sum = output->load[l][k * model->system.segments + s];
 					int known = s < system->segments ? s : 0;
-					mpq_mul(product, weight, system->load[l].force[k][known * model->n + i]);
-					mpq_add(sum, sum, product);
+					rational_addmul(sum, weight, system->load[l].force[k][known * model->n + i]);
 				}
 		for (int j = 0; j < system->inputs; j++)
-			for (int k = 0; k < 2; k++) {
-				mpq_mul(product, weight, system->input[j].force[k][i]);
-				mpq_add(output->input[k][j], output->input[k][j], product);
-			}
+			for (int k = 0; k < 2; k++)
+				rational_addmul(output->input[k][j], weight, system->input[j].force[k][i]);
 	}
 }
 
@@ -113,8 +108,7 @@ static void collect_output(void *context)
 
 static void add_output(struct model *model, const char *name, struct node *value, struct form *form)
 {
-	ENLARGE(model->output, (size_t)model->outputs + 1);
-	model->output[model->outputs++] = (struct output){ .name = name, .value = value, .form = form };
+	*MORE(model->output, model->outputs) = (struct output){ .name = name, .value = value, .form = form };
 }
 
 /* q, q' as q[1], q[1]'; another vector v as v[1] */

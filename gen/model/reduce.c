@@ -27,12 +27,10 @@ static mpq_t *row_of(const struct observable *o, int r)
 static void clear_pivot(const struct observable *o, mpq_t *row, int by)
 {
 	const mpq_t *other = (const mpq_t *)row_of(o, by);
-	RATIONAL factor = ZERO, product = ZERO;
+	RATIONAL factor = ZERO;
 	mpq_set(factor, row[o->pivot[by]]);
-	for (int j = 0; j < o->states && mpq_sgn(factor) != 0; j++) {
-		mpq_mul(product, factor, other[j]);
-		mpq_sub(row[j], row[j], product);
-	}
+	for (int j = 0; j < o->states && mpq_sgn(factor) != 0; j++)
+		rational_submul(row[j], factor, other[j]);
 }
 
 static void set_pivot(struct observable *o, int r, int pivot)

@@ -89,8 +89,7 @@ static void note_sign(const struct building *b, struct switching *s, mpq_srcptr 
 	for (int i = 0; i < s->signs; i++)
 		if (mpq_equal(s->sign[i].number, number) && s->sign[i].least == least)
 			return;
-	ENLARGE(s->sign, (size_t)s->signs + 1);
-	struct sign *sign = &s->sign[s->signs++];
+	struct sign *sign = MORE(s->sign, s->signs);
 	sign->least = least;
 	mpq_init(sign->number);
 	mpq_set(sign->number, number);
@@ -251,8 +250,7 @@ static int add_friction(struct looking *l, const struct atom *a)
 	int known = friction_of(s, l->segment, a);
 	if (known >= 0)
 		return known;
-	ENLARGE(s->friction, (size_t)s->frictions + 1);
-	struct friction *f = &s->friction[s->frictions++];
+	struct friction *f = MORE(s->friction, s->frictions);
 	*f = (struct friction){ .atom = a, .segment = l->segment };
 	mpq_inits(f->at, f->factor, NULL);
 	return s->frictions - 1;
@@ -307,8 +305,7 @@ static struct slider *slider_of(struct switching *s, const struct atom *a)
 	for (int i = 0; i < s->sliders; i++)
 		if (s->slider[i].atom == a)
 			return &s->slider[i];
-	ENLARGE(s->slider, (size_t)s->sliders + 1);
-	struct slider *slider = &s->slider[s->sliders++];
+	struct slider *slider = MORE(s->slider, s->sliders);
 	*slider = (struct slider){ .atom = a };
 	return slider;
 }
@@ -536,8 +533,7 @@ struct inequalities {
 
 static void add_inequality(struct inequalities *set, mpq_t *a)
 {
-	ENLARGE(set->row, (size_t)set->count + 1);
-	set->row[set->count++].a = a;
+	MORE(set->row, set->count)->a = a;
 }
 
 /* upper and lower bound on variable v combined, so that it drops out */
@@ -587,8 +583,7 @@ static int find_bases(const struct switching *s, int segment, struct basis **bas
 				known = known || basis_order(&(*basis)[j], found) == 0;
 			if (known)
 				continue;
-			ENLARGE(*basis, (size_t)count + 1);
-			(*basis)[count++] = *found;
+			*MORE(*basis, count) = *found;
 		}
 	return count;
 }

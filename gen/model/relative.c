@@ -397,11 +397,9 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 	int n = model->n;
 	*g = (struct group){ .n = n, .motion = motion, .split = is_mixed(model, motion, motion) };
 	g->root = root_in(l, motion, g->split);
-	RATIONAL sum = ZERO, product = ZERO;
-	for (int j = 0; j < n && weight; j++) {
-		mpq_mul(product, weight[j], motion[j]);
-		mpq_add(sum, sum, product);
-	}
+	RATIONAL sum = ZERO;
+	for (int j = 0; j < n && weight; j++)
+		rational_addmul(sum, weight[j], motion[j]);
 	if (mpq_sgn(sum) != 0 && centres(l, g, (const mpq_t *)weight)) {
 		mpq_div(sum, sum, motion[g->root]);
 		scale(n, weight, sum);

@@ -191,8 +191,7 @@ static void add_block(struct search *s, int system)
 	*t = *s->model->held;
 	t->x = s->t->x;
 	t->solves = true;
-	ENLARGE(s->r->block, (size_t)s->r->blocks + 1);
-	s->r->block[s->r->blocks++] = (struct retuned_block){ t, s->t->rows };
+	*MORE(s->r->block, s->r->blocks) = (struct retuned_block){ t, s->t->rows };
 	for (int i = 0; i < s->r->rows; i++) {
 		struct retuned_row *row = &s->r->row[i];
 		if (!is_of_system(s, i, system))
@@ -226,8 +225,7 @@ static bool add_divided(struct search *s, int row)
 	t->x = s->t->x;
 	t->solves = true;
 	t->rows = 1;
-	ENLARGE(s->r->block, (size_t)s->r->blocks + 1);
-	s->r->block[s->r->blocks++] = (struct retuned_block){ t, s->t->rows };
+	*MORE(s->r->block, s->r->blocks) = (struct retuned_block){ t, s->t->rows };
 	r->place = s->t->rows++;
 	fit_row(s, t, row + 1, 0, 0, t->x.size);
 	fit_row(s, t, answer, 0, t->x.size, 1);

@@ -33,12 +33,10 @@ void row_of_output(const struct layout *x, const struct linear *system, const st
 
 static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *row)
 {
-	RATIONAL part = ZERO;
 	for (int j = 0; j < size && mpq_sgn(factor) != 0; j++) {
 		if (mpq_sgn(from[j]) == 0)
 			continue;
-		mpq_mul(part, factor, from[j]);
-		mpq_add(row[j], row[j], part);
+		rational_addmul(row[j], factor, from[j]);
 	}
 }
 

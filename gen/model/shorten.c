@@ -176,12 +176,10 @@ static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int 
 /* x = inverse (b - (power + 1) above), of one power of t of a load; above NULL: 0 */
 static void forced_power(int size, const mpq_t *inverse, mpq_t *b, const mpq_t *above, int power, mpq_t *x)
 {
-	RATIONAL factor = ZERO, product = ZERO;
+	RATIONAL factor = ZERO;
 	mpq_set_si(factor, power + 1, 1);
-	for (int i = 0; i < size && above; i++) {
-		mpq_mul(product, factor, above[i]);
-		mpq_sub(b[i], b[i], product);
-	}
+	for (int i = 0; i < size && above; i++)
+		rational_submul(b[i], factor, above[i]);
 	rational_product(size, size, 1, inverse, (const mpq_t *)b, x);
 }
 

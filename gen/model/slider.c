@@ -91,8 +91,7 @@ static void put_in_others(const struct slider_row *r, const struct form *borne)
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
 	struct model *model = r->b->model;
-	ENLARGE(model->bearing, (size_t)model->bearings + 1);
-	model->bearing[model->bearings++] = (struct bearing){ r->atom, borne };
+	*MORE(model->bearing, model->bearings) = (struct bearing){ r->atom, borne };
 	for (int i = 0; i < r->snapshot->residuals; i++) {
 		struct residual *residual = &r->snapshot->residual[i];
 		const struct form_term *term = form_find(residual->form, &basis);

@@ -39,8 +39,7 @@ int slides_of(const struct switching *s, int index, const struct slide ***slide)
 			known = same_slide((*slide)[k], here);
 		if (known)
 			continue;
-		ENLARGE(*slide, (size_t)count + 1);
-		(*slide)[count++] = here;
+		*MORE(*slide, count) = here;
 	}
 	return count;
 }

@@ -141,10 +141,8 @@ static void add_surface(void *context, const struct form *d)
 	int at = 0;
 	while (at < s->surfaces && !same_form(s->surface[at].g, g))
 		at++;
-	if (at == s->surfaces) {
-		ENLARGE(s->surface, (size_t)at + 1);
-		s->surface[s->surfaces++] = (struct surface){ .g = g, .whole = f->whole, .test = a->node };
-	}
+	if (at == s->surfaces)
+		*MORE(s->surface, s->surfaces) = (struct surface){ .g = g, .whole = f->whole, .test = a->node };
 	s->surface[at].equality |= (a->kind == ATOM_COMPARE && a->comparison >= CMP_EQ) || a->kind == ATOM_CHOOSE;
 	s->surface[at].abrupt |= a->kind != ATOM_CALL || a->function == FN_SGN;
 }

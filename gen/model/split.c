@@ -29,9 +29,8 @@ static int number_of_function(struct splitting *s, const struct form *form, mpq_
 	for (int i = 0; i < s->functions; i++)
 		if (same_form(s->function[i].form, form))
 			return i;
-	ENLARGE(s->function, (size_t)s->functions + 1);
-	s->function[s->functions] = (struct time_function){ .form = form };
-	return s->functions++;
+	*MORE(s->function, s->functions) = (struct time_function){ .form = form };
+	return s->functions - 1;
 }
 
 static void add_state(struct split_work *w, const struct form *function, const struct basis *state, mpq_srcptr by)
@@ -103,9 +102,9 @@ static void add_wave(struct split_work *w, const struct basis *basis, mpq_srcptr
 	while (k < s->waves && s->wave[k].wave != basis->wave)
 		k++;
 	if (k == s->waves) {
-		ENLARGE(s->wave, (size_t)s->waves + 1);
-		s->wave[s->waves++] = (struct wave_force){ basis->wave,
-							       { rationals((size_t)n), rationals((size_t)n) } };
+		*MORE(s->wave, s->waves) = (struct wave_force){
+			basis->wave, { rationals((size_t)n), rationals((size_t)n) }
+		};
 	}
 	mpq_ptr entry = s->wave[k].force[basis->sine][w->coord];
 	mpq_add(entry, entry, by);
@@ -187,10 +186,8 @@ static void add_rest(struct split_work *w, const struct basis *basis, mpq_srcptr
 	k = number_of_function(s, function, factor);
 	while (r < s->rests && (s->rest[r].coord != w->coord || s->rest[r].function != k))
 		r++;
-	if (r == s->rests) {
-		ENLARGE(s->rest, (size_t)s->rests + 1);
-		s->rest[s->rests++] = (struct rest_force){ w->coord, k, NEW(struct form) };
-	}
+	if (r == s->rests)
+		*MORE(s->rest, s->rests) = (struct rest_force){ w->coord, k, NEW(struct form) };
 	form_add_to(s->rest[r].form, states, factor);
 }
 

@@ -18,8 +18,7 @@ static struct load *load_of_wave(struct model *model, const struct wave *wave)
 	for (int i = 0; i < system->loads; i++)
 		if (system->load[i].wave == wave)
 			return &system->load[i];
-	ENLARGE(system->load, (size_t)system->loads + 1);
-	struct load *load = &system->load[system->loads++];
+	struct load *load = MORE(system->load, system->loads);
 	*load = (struct load){ .wave = wave };
 	return load;
 }

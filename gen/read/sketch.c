@@ -58,8 +58,7 @@ static void read_element(struct parser *p, int kind)
 	element.end = p->end;
 	if (kind == ELEMENT_FRICTION)
 		element.value = friction_between(&element);
-	ENLARGE(spec->element, (size_t)spec->elements + 1);
-	spec->element[spec->elements++] = element;
+	*MORE(spec->element, spec->elements) = element;
 }
 
 void read_mass(struct parser *p) { read_element(p, ELEMENT_MASS); }

@@ -113,8 +113,7 @@ void add_file(struct spec *spec, const char *path)
 	for (int i = 0; i < spec->files; i++)
 		if (strcmp(spec->file[i], path) == 0)
 			return;
-	ENLARGE(spec->file, (size_t)spec->files + 1);
-	spec->file[spec->files++] = path;
+	*MORE(spec->file, spec->files) = path;
 }
 
 /* A file that a text names stands beside it unless its path is absolute. */
@@ -251,8 +250,7 @@ void add_initial(struct parser *p, struct token name, struct symbol *coord, int 
 		    spec->initial[i].part == p->part &&
 		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
 			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
-	ENLARGE(spec->initial, (size_t)spec->initials + 1);
-	spec->initial[spec->initials++] =
+	*MORE(spec->initial, spec->initials) =
 		(struct initial){ name.at, p->part, p->statement, coord, name.primes, component, value };
 }
 
@@ -416,8 +414,7 @@ static struct state_bound read_bound_name(struct parser *p, int count, const str
 
 static void add_bound(struct state_bound **list, int *count, struct state_bound bound)
 {
-	ENLARGE(*list, (size_t)*count + 1);
-	(*list)[(*count)++] = bound;
+	*MORE(*list, *count) = bound;
 }
 
 /* range: range NAME [ ' ] in [ expression , expression ] { , ... } */
@@ -483,8 +480,7 @@ struct mode_list take_modes(struct parser *p)
 	do {
 		if (list.count > 0 && (p->token.kind == TOKEN_END || p->token.kind == TOKEN_NAME))
 			break;                  /* a comma at the end makes a list of one */
-		ENLARGE(list.number, (size_t)list.count + 1);
-		list.number[list.count++] = read_expression(p);
+		*MORE(list.number, list.count) = read_expression(p);
 		list.each = list.each || is_op(p, ",");
 	} while (take_op(p, ","));
 	list.without_static = take_word(p, "without");
@@ -539,8 +535,7 @@ static struct fixed *read_fixed_name(struct parser *p)
 		if (same)
 			error(token.at, NULL, "%s is fixed already", text_between(token.at, p->end));
 	}
-	ENLARGE(spec->fixed, (size_t)spec->fixeds + 1);
-	struct fixed *fixed = &spec->fixed[spec->fixeds++];
+	struct fixed *fixed = MORE(spec->fixed, spec->fixeds);
 	*fixed = (struct fixed){ .at = token.at, .end = p->end, .symbol = symbol };
 	fixed->primes = name ? name->primes : 0;
 	fixed->component = name ? name->component : 0;
@@ -565,8 +560,7 @@ void read_operator(struct parser *p)
 			fixed = read_fixed_name(p);
 			expect_op(p, "=", "'='");
 		}
-		ENLARGE(fixed->value, (size_t)fixed->values + 1);
-		fixed->value[fixed->values++] = read_expression(p);
+		*MORE(fixed->value, fixed->values) = read_expression(p);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -593,8 +587,7 @@ void read_tunable(struct parser *p)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
 		symbol->tuned = true;
 		symbol->tunable = spec->tunables + 1;
-		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
-		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
+		*MORE(spec->tunable, spec->tunables) = (struct tunable){ token.at, symbol };
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -644,13 +637,11 @@ void read_need(struct parser *p)
 			for (int i = 0; i < need.inputs; i++)
 				if (strcmp(need.input[i].name, input.name) == 0)
 					error(input.at, NULL, "'%s' is bounded already", input.name);
-			ENLARGE(need.input, (size_t)need.inputs + 1);
-			need.input[need.inputs++] = input;
+			*MORE(need.input, need.inputs) = input;
 		} while (take_op(p, ","));
 	}
 	expect_end(p);
-	ENLARGE(p->own->need, (size_t)p->own->needs + 1);
-	p->own->need[p->own->needs++] = need;
+	*MORE(p->own->need, p->own->needs) = need;
 }
 
 /* budget: budget expression instructions on TARGET; a target has hyphens in its name */

@@ -26,10 +26,8 @@ static void add_coordinates(struct sight *sight, const struct node *node, struct
 	bool fresh = symbol && sight->met[symbol->number] != sight->walk;
 	if (fresh)
 		sight->met[symbol->number] = sight->walk;
-	if (fresh && symbol->kind == SYMBOL_COORD) {
-		ENLARGE(list->coord, (size_t)list->count + 1);
-		list->coord[list->count++] = symbol;
-	}
+	if (fresh && symbol->kind == SYMBOL_COORD)
+		*MORE(list->coord, list->count) = symbol;
 	if (fresh && symbol->kind == SYMBOL_LET)
 		add_coordinates(sight, symbol->value, list);
 	for (int i = 0; i < node->children; i++)
@@ -170,8 +168,7 @@ static void name_unseen(struct spec *spec, const struct symbol *coord)
 	int count = coord->length ? coord->length : 1;
 	for (int k = 0; k < (has_velocity(spec, coord) ? 2 : 1) * count; k++) {
 		const char *prime = k < count ? "" : "'";
-		ENLARGE(spec->unseen_name, (size_t)spec->unseen + 1);
-		spec->unseen_name[spec->unseen++] =
+		*MORE(spec->unseen_name, spec->unseen) =
 			coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
 				      : format("%s%s", coord->name, prime);
 	}

@@ -118,8 +118,7 @@ static void read_bindings(struct parser *p, struct scene_part *use)
 			if (strcmp(b->name.name, binding.name.name) == 0 && b->name.primes == binding.name.primes &&
 			    b->component == binding.component)
 				error(binding.name.at, NULL, "%s is given already", token_text(binding.name));
-		ENLARGE(use->binding, (size_t)use->bindings + 1);
-		use->binding[use->bindings++] = binding;
+		*MORE(use->binding, use->bindings) = binding;
 	} while (take_op(p, ","));
 	p->no_acceleration = before;
 }
@@ -194,8 +193,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 	part->binding = ARRAY(struct binding, (size_t)use->bindings);
 	for (int i = 0; i < use->bindings; i++)
 		part->binding[i] = use->binding[i];
-	ENLARGE(spec->part, (size_t)spec->parts + 1);
-	spec->part[spec->parts++] = part;
+	*MORE(spec->part, spec->parts) = part;
 	struct spec *own = NEW(struct spec);
 	parse_statements(spec, own, part, text->source);
 	part->aside = left_aside(own);

@@ -4,10 +4,9 @@
 
 static struct when *add_when(struct parser *p, const struct when *when)
 {
-	struct spec *spec = p->spec;
-	ENLARGE(spec->when, (size_t)spec->whens + 1);
-	spec->when[spec->whens] = *when;
-	return &spec->when[spec->whens++];
+	struct when *added = MORE(p->spec->when, p->spec->whens);
+	*added = *when;
+	return added;
 }
 
 static bool same_state(const struct node *a, const struct node *b)
@@ -47,8 +46,7 @@ static void read_assignment(struct parser *p, struct when *when)
 			      text_between(jump.target->start, jump.target->end));
 	expect_op(p, "=", "'='");
 	jump.value = read_expression(p);
-	ENLARGE(when->jump, (size_t)when->jumps + 1);
-	when->jump[when->jumps++] = jump;
+	*MORE(when->jump, when->jumps) = jump;
 }
 
 /* when: when comparison : assignment { , assignment } */

@@ -57,7 +57,6 @@ static double *matrix_of(const struct linear *system, const struct drive *drive,
 	double *A = ARRAY(double, (size_t)size * (size_t)size);
 	RATIONALS *free = state_matrix(system, false), *inverse = rationals((size_t)n * (size_t)n);
 	RATIONALS *over = rationals((size_t)(OVER * n)), *row = rationals(OVER);
-	RATIONAL term = ZERO;
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++)
 		forces_on(system, drive, input, i, over + OVER * i);
@@ -68,10 +67,8 @@ static double *matrix_of(const struct linear *system, const struct drive *drive,
 		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
 		for (int k = 0; k < OVER; k++) {
 			mpq_set_ui(row[k], 0, 1);
-			for (int j = 0; j < n; j++) {
-				mpq_mul(term, inverse[i * n + j], over[OVER * j + k]);
-				mpq_add(row[k], row[k], term);
-			}
+			for (int j = 0; j < n; j++)
+				rational_addmul(row[k], inverse[i * n + j], over[OVER * j + k]);
 			A[state * size + states + k] = mpq_get_d(row[k]);
 		}
 	}

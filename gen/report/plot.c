@@ -24,8 +24,7 @@ struct picture {
 
 static void add_panel(struct picture *p, int left, int width, int height, const char *text)
 {
-	ENLARGE(p->panel, (size_t)p->panels + 1);
-	p->panel[p->panels++] = (struct panel){ left, p->height, width, height, text };
+	*MORE(p->panel, p->panels) = (struct panel){ left, p->height, width, height, text };
 }
 
 /* Names are identifiers with primes and indices, and what loads are in time: nothing in them means more in quotes. */

@@ -50,13 +50,11 @@ static double *doubles(int n, const mpq_t *row)
 mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 {
 	mpq_t *product = rationals((size_t)t->n);
-	RATIONAL part = ZERO;
 	for (int i = 0; i < t->n; i++)
 		for (int j = 0; j < t->n && mpq_sgn(row[i]) != 0; j++) {
 			if (mpq_sgn(A[i * t->n + j]) == 0)
 				continue;
-			mpq_mul(part, row[i], A[i * t->n + j]);
-			mpq_add(product[j], product[j], part);
+			rational_addmul(product[j], row[i], A[i * t->n + j]);
 		}
 	return product;
 }
@@ -94,8 +92,7 @@ static void add_gate(const struct through *t, struct area *area, struct gate gat
 	gate.near_row = doubles(t->n, (const mpq_t *)row);
 	gate.near_slope = doubles(t->n, (const mpq_t *)gate.slope);
 	gate.fourth = fourth_of(t, gate.near_row, (const mpq_t *)area->A);
-	ENLARGE(area->gate, (size_t)area->gates + 1);
-	area->gate[area->gates++] = gate;
+	*MORE(area->gate, area->gates) = gate;
 }
 
 /* The ends of an interval of an expression */

@@ -8,13 +8,11 @@
 static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	int sign;
-	RATIONAL sum = ZERO, part = ZERO;
+	RATIONAL sum = ZERO;
 	*known = true;
 	if (t->exact) {
-		for (int i = 0; i < t->n; i++) {
-			mpq_mul(part, row[i], t->exact[i]);
-			mpq_add(sum, sum, part);
-		}
+		for (int i = 0; i < t->n; i++)
+			rational_addmul(sum, row[i], t->exact[i]);
 		sign = mpq_cmp(sum, less);
 	} else {
 		INTERVAL value = OVER_BITS(t->precision);

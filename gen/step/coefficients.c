@@ -446,8 +446,7 @@ static void add_exponential(struct filling *f, mpq_srcptr fraction)
 	for (int i = 0; i < f->exponentials; i++)
 		if (mpq_equal(f->exponential[i].tau, tau))
 			return;
-	ENLARGE(f->exponential, (size_t)f->exponentials + 1);
-	f->exponential[f->exponentials++] =
+	*MORE(f->exponential, f->exponentials) =
 		(struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
 }
 

@@ -64,12 +64,11 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 {
 	const struct model *model = w->step->model;
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
-	RATIONAL part = ZERO;
 	for (int e = 0; e < w->system->channels; e++) {
 		const struct form_term *term = form_find(model->operator[0].left[e], &basis);
 		for (int i = 0; i < w->system->states && term; i++) {
-			mpq_mul(part, term->factor, w->slopes[0][i * w->layout.size + w->layout.channel + e]);
-			mpq_add(h->push[i], h->push[i], part);
+			rational_addmul(h->push[i], term->factor,
+					w->slopes[0][i * w->layout.size + w->layout.channel + e]);
 		}
 	}
 }
@@ -83,8 +82,7 @@ static void push_of_contact(const struct sequencing *w, struct holder *h, const 
 
 static struct holder *add_holder(struct holders *all)
 {
-	ENLARGE(all->holder, (size_t)all->holders + 1);
-	struct holder *h = &all->holder[all->holders++];
+	struct holder *h = MORE(all->holder, all->holders);
 	*h = (struct holder){ .impact = NONE, .drag = NONE, .slips = NONE,
 			      .push = rationals((size_t)all->w->system->states) };
 	return h;
@@ -114,13 +112,11 @@ static void find_holders(struct holders *all)
 
 static void find_answer(struct holders *all, const struct holder *h, const struct holder *of, mpq_ptr answer)
 {
-	RATIONAL part = ZERO;
 	for (int i = 0; i < h->rate->terms; i++) {
 		int state = rate_state(all->w, &h->rate->term[i].basis);
 		if (state == NONE)
 			continue;
-		mpq_mul(part, h->rate->term[i].factor, of->push[state]);
-		mpq_add(answer, answer, part);
+		rational_addmul(answer, h->rate->term[i].factor, of->push[state]);
 	}
 }
 
@@ -314,8 +310,7 @@ static void note_conflict(const struct holders *all, int count, const int *which
 		new.hold = which[at];
 		new.side = side_beside(all, which[at], which[!at]);
 	}
-	ENLARGE(c->conflict, (size_t)c->conflicts + 1);
-	c->conflict[c->conflicts++] = new;
+	*MORE(c->conflict, c->conflicts) = new;
 }
 
 /* Of member 0, where these hold and the others of the group slip */
@@ -389,9 +384,8 @@ static int watch(struct sequencing *w, int sequence, bool whole)
 			c->watch[i].whole |= whole;
 			return i;
 		}
-	ENLARGE(c->watch, (size_t)c->watches + 1);
-	c->watch[c->watches] = (struct watch){ .sequence = sequence, .whole = whole };
-	return c->watches++;
+	*MORE(c->watch, c->watches) = (struct watch){ .sequence = sequence, .whole = whole };
+	return c->watches - 1;
 }
 
 /* The force that it would take to hold this one, the others as they are: -(bare + answers of the others)/answer */
@@ -451,8 +445,7 @@ static void assign(struct holders *all, const struct jump *jump, int jumps)
 {
 	struct contacts *c = all->c;
 	for (int k = 0; k < jumps; k++) {
-		ENLARGE(c->assignment, (size_t)c->assignments + 1);
-		c->assignment[c->assignments++] = (struct series_jump){
+		*MORE(c->assignment, c->assignments) = (struct series_jump){
 			jump[k].state, watch(all->w, sequence_of_form(all->w, jump[k].form), false)
 		};
 	}

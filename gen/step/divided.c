@@ -22,10 +22,9 @@ static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr o
 	int known = known_expression(x, form, of);
 	if (known != NONE)
 		return known;
-	ENLARGE(x->expression, (size_t)x->expressions + 1);
-	x->expression[x->expressions] = (struct divided){ .form = form, .sequence = NONE };
+	*MORE(x->expression, x->expressions) = (struct divided){ .form = form, .sequence = NONE };
 	mpq_set_ui(of, 1, 1);
-	return x->expressions++;
+	return x->expressions - 1;
 }
 
 void add_twin(struct divided *d, int breakpoint)

@@ -33,8 +33,7 @@ static void add_guard(struct guards *g, int size, int branch, const double *row,
 		      struct guard guard)
 {
 	guard.row = add_row(g, size, branch, row, gate);
-	ENLARGE(g->guard, (size_t)g->guards + 1);
-	g->guard[g->guards++] = guard;
+	*MORE(g->guard, g->guards) = guard;
 }
 
 static double *turned(int size, const double *row, bool upward)
@@ -99,8 +98,7 @@ static void add_assignment(const struct step *step, struct guards *g, int state,
 	struct held_state new = { state, ARRAY(double, 2 * (size_t)step->layout.size), kind, of,
 				  g->assignments - g->set[g->sets] };
 	row_in_words(step, row, 0, new.value);
-	ENLARGE(g->assignment, (size_t)g->assignments + 1);
-	g->assignment[g->assignments++] = new;
+	*MORE(g->assignment, g->assignments) = new;
 }
 
 static int end_set(struct guards *g)

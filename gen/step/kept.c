@@ -125,9 +125,8 @@ static void bound_operands(const struct errors *e, struct kept *k)
 {
 	const struct linear *system = &e->step->branch->system;
 	const double end = mpq_get_d(e->r->until) + mpq_get_d(e->step->model->h);
-	for (int c = 0; c < k->columns; c++) {
+	for (int c = 0; c < k->columns; c++)
 		k->amplitude[c] = largest_load(&k->wave[c], end) * (1 + 1e-9);
-	}
 	for (int i = 0, c = 0; i < system->inputs; i++)
 		for (int j = 0; j <= system->input[i].hold; j++, c++)
 			k->most[c] = mpq_get_d(e->r->most[i]) * (1 + 1e-15);

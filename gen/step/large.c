@@ -170,8 +170,7 @@ static void add_group(struct program *program, const struct step *step, struct g
 {
 	choose_kind(step, &g, page);
 	list_columns(step, &g);
-	ENLARGE(program->group, (size_t)program->groups + 1);
-	program->group[program->groups++] = g;
+	*MORE(program->group, program->groups) = g;
 }
 
 /* ---- what it costs ---- */

@@ -242,18 +242,14 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	const struct input *input = &system->input[index];
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, 2);
-	RATIONAL part = ZERO;
 	for (int k = 0; k < n; k++) {
 		mpq_mul(e.force[k], input->force[0][k], value);
 		mpq_mul(e.force[2 * n + k], input->force[0][k], slope);
-		if (input->hold) {
-			mpq_mul(part, input->force[1][k], slope);
-			mpq_add(e.force[k], e.force[k], part);
-		}
+		if (input->hold)
+			rational_addmul(e.force[k], input->force[1][k], slope);
 	}
 	mpq_mul(e.direct[0], output->input[0][index], value);
-	mpq_mul(part, output->input[1][index], slope);
-	mpq_add(e.direct[0], e.direct[0], part);
+	rational_addmul(e.direct[0], output->input[1][index], slope);
 	mpq_mul(e.direct[2], output->input[0][index], slope);
 	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
 }

@@ -49,9 +49,10 @@ static void add_entries(struct motion *m, const struct step *step, const struct 
 		const struct form *slope = slope_of(step, layout, row, state);
 		if (slope->terms == 0)
 			continue;
-		ENLARGE(m->entry, (size_t)m->entries + 1);
-		m->entry[m->entries++] = (struct motion_entry){ .coord = coord, .of = system->coord[state],
-			.twice = state < system->n && system->velocity[state] >= 0, .slope = slope };
+		*MORE(m->entry, m->entries) = (struct motion_entry){
+			.coord = coord, .of = system->coord[state],
+			.twice = state < system->n && system->velocity[state] >= 0, .slope = slope
+		};
 	}
 }
 

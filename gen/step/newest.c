@@ -34,8 +34,7 @@ static void include(struct sequence *s, int other)
 	for (int i = 0; i < s->gains; i++)
 		if (s->gain[i] == other)
 			return;
-	ENLARGE(s->gain, (size_t)s->gains + 1);
-	s->gain[s->gains++] = other;
+	*MORE(s->gain, s->gains) = other;
 }
 
 static void include_operand(const struct expansion *x, const bool *depends, struct sequence *s, int operand)

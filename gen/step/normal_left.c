@@ -161,10 +161,7 @@ struct pattern_list {
 static void add_matrix_term(struct normal *normal, int matrix, int function, bool velocity, double *factor)
 {
 	struct normal_matrix *m = &normal->matrix[matrix];
-	ENLARGE(m->term, (size_t)m->terms + 1);
-	m->term[m->terms].function = function;
-	m->term[m->terms].velocity = velocity;
-	m->term[m->terms++].factor = factor;
+	*MORE(m->term, m->terms) = (struct normal_term){ .function = function, .velocity = velocity, .factor = factor };
 }
 
 static int new_pattern(struct normal *normal, struct pattern_list *list, struct pattern pattern)

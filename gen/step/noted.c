@@ -6,8 +6,7 @@
 
 static struct passed *new_passed(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
 {
-	ENLARGE(t->list, (size_t)t->passed + 1);
-	struct passed *p = &t->list[t->passed++];
+	struct passed *p = MORE(t->list, t->passed);
 	*p = (struct passed){ .expression = expression, .breakpoint = breakpoint, .upward = upward };
 	mpfi_init2(p->at, t->precision);
 	mpfi_set_q(p->at, t->base);

@@ -112,10 +112,9 @@ int new_stage(struct recipe *r)
 
 struct action *add_action(struct recipe *r, struct action action)
 {
-	struct program *program = r->program;
-	ENLARGE(program->action, (size_t)program->actions + 1);
-	program->action[program->actions] = action;
-	return &program->action[program->actions++];
+	struct action *added = MORE(r->program->action, r->program->actions);
+	*added = action;
+	return added;
 }
 
 int add_leftover(struct recipe *r, int node, int stage)

@@ -50,8 +50,7 @@ static void add_two(struct list *list, tape_ref first, tape_ref then)
 {
 	if (first == TAPE_NONE)
 		return;
-	ENLARGE(list->term, (size_t)list->terms + 1);
-	list->term[list->terms++] = (struct addend){ first, then };
+	*MORE(list->term, list->terms) = (struct addend){ first, then };
 }
 
 static void add(struct list *list, tape_ref ref)

@@ -6,10 +6,9 @@
 int new_sequence(struct sequencing *w, struct sequence sequence)
 {
 	struct expansion *x = w->x;
-	ENLARGE(x->sequence, (size_t)x->count + 1);
 	sequence.top = -1;
-	x->sequence[x->count] = sequence;
-	return x->count++;
+	*MORE(x->sequence, x->count) = sequence;
+	return x->count - 1;
 }
 
 /* ---- sums ---- */

@@ -11,11 +11,8 @@ enum { ENTRY_BITS = 640 };
 /* X += by Y */
 static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 {
-	RATIONAL part = ZERO;
-	for (size_t i = 0; i < cells && Y; i++) {
-		mpq_mul(part, by, Y[i]);
-		mpq_add(X[i], X[i], part);
-	}
+	for (size_t i = 0; i < cells && Y; i++)
+		rational_addmul(X[i], by, Y[i]);
 }
 
 int settled_size(const struct model *model)
@@ -27,7 +24,6 @@ int settled_size(const struct model *model)
 static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 {
 	int n = model->n, size = settled_size(model);
-	RATIONAL part = ZERO;
 	for (int k = 0; k < model->split->waves; k++) {
 		const struct wave_force *own = &model->split->wave[k];
 		int c = 2 * n + 1 + 2 * k, s = c + 1;
@@ -37,8 +33,7 @@ static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 		mpq_neg(A[c * size + s], own->wave->w);
 		for (int i = 0; i < 2 * n * n; i++) {
 			mpq_ptr entry = A[(n + i / 2 / n) * size + c + i % 2];
-			mpq_mul(part, inverse[i / 2], own->force[i % 2][i / 2 % n]);
-			mpq_add(entry, entry, part);
+			rational_addmul(entry, inverse[i / 2], own->force[i % 2][i / 2 % n]);
 		}
 	}
 }
@@ -51,7 +46,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 	const struct splitting *split = model->split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals((size_t)n) };
 	mpq_t *A = rationals((size_t)size * (size_t)size);
-	RATIONAL minus = ZERO, part = ZERO;
+	RATIONAL minus = ZERO;
 	mpq_set_si(minus, -1, 1);
 	add_multiple(cells, of[0], minus, K);
 	add_multiple(cells, of[1], minus, C);
@@ -70,8 +65,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 					mpq_ptr entry = A[(n + i) * size + d * n + j];
 					if (mpq_sgn(inverse[i * n + k]) == 0)
 						continue;
-					mpq_mul(part, inverse[i * n + k], of[d][k * (d < 2 ? n : 1) + j]);
-					mpq_add(entry, entry, part);
+					rational_addmul(entry, inverse[i * n + k], of[d][k * (d < 2 ? n : 1) + j]);
 				}
 	}
 	add_waves(model, A, (const mpq_t *)inverse);

@@ -758,7 +758,8 @@ struct mode_block {                 /* modes that no entry of M and K couples wi
 struct normal_matrix {              /* a matrix of forces on the modes: times a sum of vectors of modes */
 	double *value;              /* [bank][mode i][mode j]; nothing below 2^-160 of the largest */
 	int terms;
-	struct { int function; bool velocity; double *factor; } *term; /* factor[bank] times function times eta, eta' */
+	/* factor[bank] times function times eta, eta' */
+	struct normal_term { int function; bool velocity; double *factor; } *term;
 };
 struct normal_stage {               /* modes at a time after the step's start, from it and from forces */
 	int points;

@@ -362,8 +362,7 @@ static void count(struct program *program, const struct step *step)
 
 static struct assignment *new_assignment(struct program *program, const struct step *step, int target, bool added)
 {
-	ENLARGE(program->assignment, (size_t)program->assignments + 1);
-	struct assignment *a = &program->assignment[program->assignments++];
+	struct assignment *a = MORE(program->assignment, program->assignments);
 	*a = (struct assignment){ .target = target, .added = added, .carried = step->carry[target] >= 0 };
 	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns +
 						 step->branch->whole->inputs));

@@ -11,8 +11,7 @@ void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr fact
 			return;
 		}
 	}
-	ENLARGE(sum->key, (size_t)sum->keys + 1);
-	struct key *key = &sum->key[sum->keys++];
+	struct key *key = MORE(sum->key, sum->keys);
 	*key = (struct key){ .kind = kind, .a = a, .b = b };
 	mpq_init(key->factor);
 	mpq_set(key->factor, factor);
@@ -39,8 +38,7 @@ static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcp
 	RATIONAL part = ZERO, binomial = ZERO;
 	mpq_set(part, factor);
 	for (int k = 0; k <= m && k <= w->x->order; k++) {
-		ENLARGE(s->term, (size_t)s->terms + 1);
-		struct sequence_term *term = &s->term[s->terms++];
+		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = TERM_TIME, .a = m - k, .slot = -1 };
 		term->factor = ARRAY(double, (size_t)w->x->order + 1);
 		mpq_mul(binomial, part, scale[k]);
@@ -92,8 +90,7 @@ static void add_load_numbers(struct sequencing *w, struct sequence *s, int load,
 	const double *value = load_numbers(w, load, row, scale);
 	w->x->load[load] = true;
 	for (int j = 0; j < n; j++) {
-		ENLARGE(s->term, (size_t)s->terms + 1);
-		struct sequence_term *term = &s->term[s->terms++];
+		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j, .slot = -1 };
 		term->factor = ARRAY(double, (size_t)order + 1);
 		for (int k = 0; k <= order; k++)
@@ -128,8 +125,7 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 		return;
 	RATIONAL number = ZERO;
 	for (int k = 0; k <= (key->kind == TERM_INPUT && ramps); k++) {
-		ENLARGE(s->term, (size_t)s->terms + 1);
-		struct sequence_term *term = &s->term[s->terms++];
+		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = k ? TERM_SLOPE : key->kind, .a = key->a, .slot = -1 };
 		term->factor = ARRAY(double, (size_t)w->x->order + 1);
 		mpq_mul(number, key->factor, scale[k]);
@@ -143,8 +139,7 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 static void add_param(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	RATIONAL number = ZERO;
-	ENLARGE(s->term, (size_t)s->terms + 1);
-	struct sequence_term *term = &s->term[s->terms++];
+	struct sequence_term *term = MORE(s->term, s->terms);
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
 	term->factor = ARRAY(double, (size_t)w->x->order + 1);
 	mpq_mul(number, key->factor, scale[0]);
@@ -155,8 +150,7 @@ static void add_param(struct sequencing *w, struct sequence *s, const struct key
 static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	RATIONAL number = ZERO;
-	ENLARGE(s->term, (size_t)s->terms + 1);
-	struct sequence_term *term = &s->term[s->terms++];
+	struct sequence_term *term = MORE(s->term, s->terms);
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .b = key->b, .slot = -1 };
 	term->factor = ARRAY(double, (size_t)w->x->order + 1);
 	for (int k = 0; k <= w->x->order; k++) {
@@ -221,9 +215,9 @@ void add_changing_loads(struct sequencing *w, struct sequence *s, int state, con
 			continue;
 		x->load[l] = true;
 		for (int j = 0; j < n; j++) {
-			ENLARGE(s->term, (size_t)s->terms + 1);
-			s->term[s->terms++] = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j,
-								      .slot = x->slots + j };
+			*MORE(s->term, s->terms) = (struct sequence_term){
+				.kind = TERM_LOAD, .a = first + j, .slot = x->slots + j
+			};
 		}
 		ENLARGE(x->slot_load, (size_t)(x->slots + n));
 		ENLARGE(x->changing, (size_t)((x->slots + n) * segments * stride));

@@ -123,8 +123,7 @@ static void add_unseen(struct finding *f, const struct form *form, enum unseen_k
 	for (int i = 0; i < f->count; i++)
 		if (f->unseen[i].form == form && f->unseen[i].kind == kind && f->unseen[i].power >= power)
 			return;
-	ENLARGE(f->unseen, (size_t)f->count + 1);
-	f->unseen[f->count++] = (struct unseen){ .form = form, .kind = kind, .power = power };
+	*MORE(f->unseen, f->count) = (struct unseen){ .form = form, .kind = kind, .power = power };
 }
 
 /* Powers so high that terms of the first orders are nothing where their base is small */
