@@ -247,13 +247,24 @@ static bool take_directive(struct reader *f, const char *line)
 	return true;
 }
 
+/* With the algorithms in it that a file includes, as a model's does */
+static const char *full_text(const char *name)
+{
+	char *full = NULL;
+	size_t size;
+	FILE *to = need_memory(open_memstream(&full, &size));
+	print_included(to, runtime_text(name), "");
+	fclose(to);
+	return need_memory(full);
+}
+
 static void read_file(struct runtime *r, const char *name)
 {
 	struct reader f = { .runtime = r, .file = without_ending(name), .comment = "", .text = "" };
 	for (int i = 0; i < r->pieces; i++)
 		if (strcmp(r->piece[i].file, f.file) == 0)
 			return;
-	const char *rest = runtime_text(name);
+	const char *rest = strstr(runtime_text(name), "#define PL(") ? full_text(name) : runtime_text(name);
 	while (*rest) {
 		const char *line = format("%.*s", (int)strcspn(rest, "\n"), rest);
 		rest += strlen(line) + 1;

@@ -1111,41 +1111,17 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* Whether guard k keeps below its limit from x to y by its chord, and by what rounding may hide where it begins */
-static int is_below(const pl_guards *m, int k, const double *x, const double *y, const double *size)
-{
-    const int n = m->size;
-    const ptrdiff_t row = m->guard[k].row;
-    const double from = sum_of(n, m->gate + row * n, x), to = sum_of(n, m->gate + row * n, y);
-    const double off = sum_of(n, m->chord_error + row * n, size);
-    return larger(from, to) + off + noise_of(magnitude(m->limit[k]) + m->gate_play[row]) < m->limit[k];
-}
-
-/* y: x over h; whether that surely meets no guard.  work: 2 size */
-static int is_unmet(const pl_guards *m, const pl_contact *c, const double *x, double *y, double *work)
-{
-    const int n = m->size, region = c->region, matrix = m->matrix[region];
-    int i;
-    if (matrix < 0 || pl_not_finite(x, n) || !is_in_place(m, c, x, work)) {
-        return 0;
-    }
-    for (i = 0; i < n; i++) {
-        y[i] = 0.0 + sum_of(n, m->Phi + ((ptrdiff_t)matrix * n + i) * n, x);
-        work[i] = magnitude(x[i]);
-    }
-    assign(m, m->hold[region], y, work + n);
-    for (i = m->first[region]; i < m->first[region + 1]; i++) {
-        if (!is_below(m, i, x, y, work)) {
-            return 0;
-        }
-    }
-    return 1;
-}
+#define PL(name) unmet_##name
+#define PL_SIZE m->size
+#define PL_SUM(row, x) sum_of(m->size, row, x)
+#define PL_EACH
+#include "unmet.h"
 
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
 {
+    double *const size = work + m->size;
     int i;
-    if (tau < m->h || !is_unmet(m, c, x, work, work + m->size)) {
+    if (tau < m->h || !unmet_keeps_all(m, c->region, x, work, size, size + m->size)) {
         pl_guards_advance(m, tau, x, c, crossing, work);
         return;
     }

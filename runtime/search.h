@@ -220,39 +220,27 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 
 #if PL_CLEARS && PL_GUARDS
 /* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
-#define PL_FEW_REGIONS (PL_REGIONS <= 4 && PL_SIZE <= 8)
+#define PL_FEW_REGIONS (PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
 
 /* row . x in the order of the runtime's sums: of each fourth term, then these */
 #if PL_FEW_REGIONS
-#define PL_TERM(j) (row[j] < 0.0 || row[j] > 0.0 ? row[j] * x[j] : -0.0)
+static PL_INLINE double PL(product)(int j, const double *row, const double *x)
+{
+    return j < PL_SIZE && (row[j] < 0.0 || row[j] > 0.0) ? row[j] * x[j] : -0.0;
+}
+
+static PL_INLINE double PL(fourth)(int j, const double *row, const double *x)
+{
+    return ((PL(product)(j, row, x) + PL(product)(j + 4, row, x)) + PL(product)(j + 8, row, x)) +
+           PL(product)(j + 12, row, x);
+}
+
 static PL_INLINE double PL(sum)(const double *row, const double *x)
 {
-    double s0 = PL_TERM(0), s1 = -0.0, s2 = -0.0, s3 = -0.0;
-#if PL_SIZE > 1
-    s1 = PL_TERM(1);
-#endif
-#if PL_SIZE > 2
-    s2 = PL_TERM(2);
-#endif
-#if PL_SIZE > 3
-    s3 = PL_TERM(3);
-#endif
-#if PL_SIZE > 4
-    s0 += PL_TERM(4);
-#endif
-#if PL_SIZE > 5
-    s1 += PL_TERM(5);
-#endif
-#if PL_SIZE > 6
-    s2 += PL_TERM(6);
-#endif
-#if PL_SIZE > 7
-    s3 += PL_TERM(7);
-#endif
-    return (s0 + s2) + (s1 + s3);
+    return (PL(fourth)(0, row, x) + PL(fourth)(2, row, x)) + (PL(fourth)(1, row, x) + PL(fourth)(3, row, x));
 }
 #else
-static double PL(sum)(const double *row, const double *x)
+static PL_INLINE double PL(sum)(const double *row, const double *x)
 {
     double s[4] = {-0.0, -0.0, -0.0, -0.0};
     int j;
@@ -272,37 +260,47 @@ static double PL(sum)(const double *row, const double *x)
 #endif
 #include "unmet.h"
 
-/* x over h to end, where it is sure that no guard is met */
-static inline int PL(unmet)(int region, const double x[PL_SIZE], double end[PL_SIZE])
+/* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
+ * through memory. */
+static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 {
-    double size[PL_SIZE], place[PL_SIZE];
-#if PL_FEW_REGIONS
-    int i, clear = 0;
-    PL_UNROLL
-    for (i = 0; i < PL_REGIONS; i++) {
-        if (i == region) {
-            clear = PL(keeps_all)(&PL(switching), i, x, end, size, place);
-        }
-    }
-    return clear;
-#else
-    return PL(keeps_all)(&PL(switching), region, x, end, size, place);
-#endif
-}
-
-/* The same where that is so; else by the search */
-static inline void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
-{
-    double end[PL_SIZE];
+    double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
     int i;
-    if (PL_SOFT || !PL(unmet)(s->contact PL_PART.region, x, end)) {
-        PL(by_search)(s, x);
-        return;
+    if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
+        return 0;
     }
+    PL_EACH
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = end[i];
     }
     s->contact PL_PART.crossings = 0;
+    return 1;
+}
+
+/* s over h by that, or by the search */
+static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+{
+    const int region = s->contact PL_PART.region;
+    int clear = 0;
+#if PL_FEW_REGIONS
+    const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
+    int i;
+    PL_UNROLL
+    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+        x[i] = y[PL_PLACE(i)];
+    }
+    PL_UNROLL
+    for (i = 0; i < PL_REGIONS && !PL_SOFT; i++) {
+        if (i == region) {
+            clear = PL(unmet)(s, i, x);
+        }
+    }
+#else
+    clear = !PL_SOFT && PL(unmet)(s, region, x);
+#endif
+    if (!clear) {
+        PL(by_search)(s, x);
+    }
 }
 #endif
 

@@ -196,7 +196,6 @@
 #undef PL_SWEEPS
 #undef PL_SWIFT
 #undef PL_TABLES
-#undef PL_TERM
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* unmet.h: part of search.h: a step of a model with friction or impacts that meets none of the guards of its region, by
- * the tables of its search.  That (guards.c) would take the same one, to the last bit: sums have its order, and what is
- * accepted here leaves nothing to take up, nothing that touches, and each guard below its limit by the bound of the
- * search.  A guard that has just been left, and one that a cubic alone clears, goes by the search.  pl_guards_step is
- * the same for small processors. */
+/* unmet.h: a step of a model with friction or impacts that meets none of the guards of its region, by the tables of its
+ * search: part of search.h, and for small processors of guards.c.  The search would take the same one, to the last bit:
+ * sums have its order, and what is accepted here leaves nothing to take up, nothing that touches, and each guard below
+ * its limit by the bound of the search.  A guard that has just been left, and one that a cubic alone clears, goes by
+ * the search.  PL_SUM(row, x) is of PL_SIZE products. */
 
 /* Whether what a set holds is where it is held; at the end it is put there, all from the same x.  place: size */
 static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, double *end, double *place)
@@ -43,14 +43,14 @@ static PL_INLINE int PL(keeps_all)(const pl_guards *m, int region, const double 
     const int which = m->matrix[region], set = m->hold[region];
     double all = 0.0;
     int i;
-    if (which < 0) {
+    if (which < 0 || (PL_SOFT && pl_not_finite(x, PL_SIZE))) {
         return 0;
     }
     PL_EACH
     for (i = 0; i < PL_SIZE; i++) {
         end[i] = 0.0 + PL_SUM(m->Phi + (which * PL_SIZE + i) * PL_SIZE, x);
         size[i] = pl_magnitude(x[i]);
-        all += size[i];
+        all += PL_SOFT ? 0.0 : size[i];
     }
     if (!(all < 1e300) || (set >= 0 && !PL(holds)(m, set, x, end, place))) {
         return 0;
