@@ -26,14 +26,6 @@ int count_blocks(const struct emitter *e)
 	return blocks;
 }
 
-static void emit_list(const struct emitter *e, const char *name, int count, const int *value)
-{
-	say(e, "static const unsigned short $n_%s[%d] = {", name, count);
-	for (int i = 0; i < count; i++)
-		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
-	say(e, "};\n");
-}
-
 void emit_block_list(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
@@ -49,6 +41,6 @@ void emit_block_list(const struct emitter *e)
 			first[++block] = count;
 		}
 	say(e, "\n/* Independent blocks: where the states of each begin in the list, which they are */\n");
-	emit_list(e, "block_first", blocks + 1, first);
-	emit_list(e, "block_state", states, state);
+	emit_integers(e, "unsigned short", "block_first", blocks + 1, first);
+	emit_integers(e, "unsigned short", "block_state", states, state);
 }

@@ -69,10 +69,10 @@ void emit_gamma(const struct emitter *e)
 
 static void emit_start_samples(const struct emitter *e, int inputs)
 {
-	say(e, "static const int $n_start_samples[] = {");
+	int *ahead = ARRAY(int, (size_t)inputs);
 	for (int i = 0; i < inputs; i++)
-		say(e, "%s%d", i ? ", " : "", samples_ahead(e->system->input[i].hold));
-	say(e, "};\n");
+		ahead[i] = samples_ahead(e->system->input[i].hold);
+	emit_int_list(e, "start_samples", inputs, ahead);
 }
 
 static void emit_names(const struct emitter *e, int inputs, const struct tuning *tunable)

@@ -48,6 +48,10 @@ void put(FILE *to, const char *text, size_t length);              /* of finished
 /* static const int NAME_name[]; of none there is a 0 */
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value);
 void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value);
+/* static const TYPE NAME_name = {{...}, ...}; the name has its dimensions, as entry[7][3] */
+void emit_integer_rows(const struct emitter *e, const char *type, const char *name, int rows, int columns,
+		       const int *value);
+const int *numbers_up_to(int count);                              /* 0, 1, ... */
 /* Members of NAME_coeffs: of the spec's values, numbers between the two; or in declare_members what declares them */
 void open_member(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
 void close_member(const struct emitter *e);
@@ -64,8 +68,8 @@ const char *scaled(double factor, const char *operand);           /* operand NUL
 /* rounded; an error at the step where it overflows */
 double finite_number(const struct emitter *e, mpq_srcptr q);
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
-/* static const double NAME_name[size[0]]...[size[dimensions - 1]]; `row`: of those of the last dimension, NULL: nothing
- * is said of them */
+/* static const double NAME_name[size[0]]...[size[dimensions - 1]], behind a blank line and the note, NULL: none; `row`:
+ * of those of the last dimension, NULL: nothing is said of them */
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
 		const double *value, const char *const *row);
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name);
@@ -698,6 +702,7 @@ void emit_held_retune(const struct emitter *e);
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */
 void emit_tuned_at(const struct emitter *e);                      /* pass, from change to change of the loads; at */
+void emit_node_times(const struct emitter *e);                     /* NAME_node */
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);

@@ -124,13 +124,15 @@ static void emit_limits(const struct emitter *e)
 static void emit_entry_table(const struct emitter *e)
 {
 	const struct motion *m = e->step->motion;
+	int *row = ARRAY(int, 3 * (size_t)m->entries + 3), rows = m->entries ? m->entries : 1;
+	for (int k = 0; k < m->entries; k++) {
+		row[3 * k] = m->entry[k].coord;
+		row[3 * k + 1] = m->entry[k].of;
+		row[3 * k + 2] = m->entry[k].twice;
+	}
 	say(e, "\n/* Of each entry of the Jacobian: row, coordinate, whether it is by the coordinate and not by what\n"
-	       " * is one below its highest derivative */\n"
-	       "static const short $n_entry[%d][3] = {\n    ", m->entries ? m->entries : 1);
-	for (int k = 0; k < m->entries; k++)
-		say(e, "%s{%d, %d, %d}", k == 0 ? "" : k % 8 ? ", " : ",\n    ", m->entry[k].coord, m->entry[k].of,
-		    m->entry[k].twice);
-	say(e, "%s\n};\n", m->entries ? "" : "{0, 0, 0}");
+	       " * is one below its highest derivative */\n");
+	emit_integer_rows(e, "short", format("entry[%d][3]", rows), rows, 3, row);
 }
 
 static void emit_mode_tables(const struct emitter *e)

@@ -70,13 +70,13 @@ void emit_delay_declarations(const struct emitter *core)
 
 /* ---- what delays.h asks ---- */
 
-static void emit_list(const struct emitter *e, const char *name, int (*entry)(const struct emitter *e, int input))
+static int *list_of(const struct emitter *e, int (*entry)(const struct emitter *e, int input))
 {
-	const struct delays *d = delays_of(e);
-	say(e, "static const int $n_%s[] = {", name);
-	for (int i = 0; i < d->inputs + d->count; i++)
-		say(e, "%s%d", i ? ", " : "", entry(e, i));
-	say(e, "};\n");
+	const int count = delays_of(e)->inputs + delays_of(e)->count;
+	int *list = ARRAY(int, (size_t)count);
+	for (int i = 0; i < count; i++)
+		list[i] = entry(e, i);
+	return list;
 }
 
 static int input_of(const struct emitter *e, int input)
@@ -100,10 +100,10 @@ static void emit_samples_of_core(const struct emitter *e)
 {
 	const struct delays *d = delays_of(e);
 	say(e, "\n/* Of each input of $n_core: which sample it is of, how many of its steps ago; is it a ramp? */\n");
-	emit_list(e, "input_of", input_of);
-	emit_list(e, "parts_ago", parts_ago);
+	emit_int_list(e, "input_of", d->inputs + d->count, list_of(e, input_of));
+	emit_int_list(e, "parts_ago", d->inputs + d->count, list_of(e, parts_ago));
 	if (e->ramps)
-		emit_list(e, "is_ramp", is_ramp);
+		emit_int_list(e, "is_ramp", d->inputs + d->count, list_of(e, is_ramp));
 	const struct size sizes[] = {
 		{ "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
 		{ "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },

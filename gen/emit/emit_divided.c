@@ -57,29 +57,25 @@ void emit_divided_declarations(const struct emitter *e)
 void emit_divided_tables(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	const char *column = "", *breaks = "", *at = "";
+	int *column = ARRAY(int, (size_t)x->expressions), *breaks = ARRAY(int, (size_t)x->expressions), all = 0;
 	for (int i = 0; i < x->expressions; i++) {
-		const struct divided *d = &x->expression[i];
-		mpq_t *rising = rising_breakpoints(d);
-		column = format("%s%s%d", column, i ? ", " : "", d->column);
-		breaks = format("%s%s%d", breaks, i ? ", " : "", d->breaks);
-		const char *row = "";
-		for (int k = 0; k < d->breaks; k++)
-			row = format("%s%s%s", row, k ? ", " : "", shortest(round_rational(rising[k])));
-		at = format("%s%s%s", at, i ? ",\n    " : "", row);
+		column[i] = x->expression[i].column;
+		all += breaks[i] = x->expression[i].breaks;
 	}
-	if (!e->step->expansion) {
-		say(e, "\n/* Of the expressions that choose formulas: the breakpoints */\n"
-		       "static const int $n_breaks[] = {%s};\n"
-		       "static const double $n_breakpoint[] = {\n    %s\n};\n", breaks, at);
+	double *at = ARRAY(double, (size_t)all + 1), *to = at;
+	for (int i = 0; i < x->expressions; i++) {
+		mpq_t *rising = rising_breakpoints(&x->expression[i]);
+		for (int k = 0; k < breaks[i]; k++)
+			*to++ = round_rational(rising[k]);
+	}
+	say(e, "\n/* Of the expressions that choose formulas: breakpoints, in a series the column of each */\n");
+	emit_int_list(e, "breaks", x->expressions, breaks);
+	emit_array(e, NULL, "breakpoint", 1, &all, at, NULL);
+	if (!e->step->expansion)
 		return;
-	}
-	say(e, "\n/* Of the expressions that choose formulas: the column of each, its breakpoints */\n"
-	       "static const int $n_column[] = {%s}, $n_breaks[] = {%s};\n"
-	       "static const double $n_breakpoint[] = {\n    %s\n};\n"
-	       "static const pl_divided $n_divided = {\n"
-	       "    %d, $c, %d, $n_column, $n_breaks, $n_breakpoint\n"
-	       "};\n", column, breaks, at, x->expressions, x->order);
+	emit_int_list(e, "column", x->expressions, column);
+	say(e, "static const pl_divided $n_divided = {%d, $c, %d, $n_column, $n_breaks, $n_breakpoint};\n",
+	    x->expressions, x->order);
 }
 
 static int most_changes(const struct expansion *x)
@@ -101,12 +97,9 @@ void emit_divided_macros(const struct emitter *e)
 
 void emit_passing_table(const struct emitter *e, int order)
 {
-	const char *column = "";
-	for (int i = 0; i < expansion(e)->expressions; i++)
-		column = format("%s%s%d", column, i ? ", " : "", i);
-	say(e, "\n/* Of polynomials of each */\n"
-	       "static const int $n_each[] = {%s};\n"
-	       "static const pl_divided $n_passing = {\n"
-	       "    %d, %d, %d, $n_each, $n_breaks, $n_breakpoint\n"
-	       "};\n", column, expansion(e)->expressions, expansion(e)->expressions, order);
+	const int count = expansion(e)->expressions;
+	say(e, "\n/* Of polynomials of each */\n");
+	emit_int_list(e, "each", count, numbers_up_to(count));
+	say(e, "static const pl_divided $n_passing = {%d, %d, %d, $n_each, $n_breaks, $n_breakpoint};\n", count, count,
+	    order);
 }

@@ -3,6 +3,8 @@
  * series anew. */
 #include "emit/emit.h"
 
+#include <string.h>
+
 static const struct contacts *contacts(const struct emitter *e)
 {
 	return e->step->expansion->contacts;
@@ -28,40 +30,38 @@ static int rank_in(const struct emitter *e, int expression, int breakpoint)
 static void emit_watches(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
-	say(e, "\n/* What the search of events watches beside expressions: the column of each */\n"
-	       "static const int $n_event_watch[%d] = {", c->watches);
+	int *column = ARRAY(int, (size_t)c->watches);
 	for (int i = 0; i < c->watches; i++)
-		say(e, "%s%d", i ? ", " : "", c->watch[i].column);
-	say(e, "};\n");
+		column[i] = c->watch[i].column;
+	say(e, "\n/* What the search of events watches beside expressions: the column of each */\n");
+	emit_int_list(e, "event_watch", c->watches, column);
 }
 
 static void emit_rows(const struct emitter *e, const char *name, const char *note, int rows, int kind)
 {
 	const struct contacts *c = contacts(e);
-	int states = e->system->states;
-	say(e, "static const double $n_%s[%d][$N_STATES] = {  /* %s */\n", name, rows > 0 ? rows : 1, note);
-	for (int i = 0; i < rows; i++) {
-		const double *row = kind ? c->strike[i].back : c->hold[i].back;
-		say(e, "    {");
-		for (int j = 0; j < states; j++)
-			say(e, "%s%s", j ? ", " : "", shortest(row[j]));
-		say(e, "},\n");
-	}
-	say(e, "%s};\n", rows > 0 ? "" : "    {0.0}\n");
+	const int size[] = { rows > 0 ? rows : 1, e->system->states };
+	double *value = ARRAY(double, (size_t)(size[0] * size[1]));
+	for (int i = 0; i < rows; i++)
+		memcpy(value + i * size[1], kind ? c->strike[i].back : c->hold[i].back,
+		       (size_t)size[1] * sizeof *value);
+	emit_array(e, note, name, 2, size, value, NULL);
 }
 
 static void emit_holds(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
-	say(e, "\n/* What is held: expression, interval; watches: its velocity, what lets it go down, up; impact */\n"
-	       "static const pl_hold $n_event_hold[%d] = {\n", c->holds > 0 ? c->holds : 1);
+	const int rows = c->holds > 0 ? c->holds : 1;
+	int *row = ARRAY(int, 6 * (size_t)rows), none[] = { 0, 0, 0, -1, -1, -1 };
 	for (int i = 0; i < c->holds; i++) {
 		const struct series_hold *h = &c->hold[i];
-		say(e, "    {%d, %d, %d, %d, %d, %d},\n", h->expression, rank_in(e, h->expression, h->breakpoint) + 1,
-		    h->velocity, watch_or_none(h->pull[0]), watch_or_none(h->pull[1]), watch_or_none(h->impact));
+		const int of[] = { h->expression, rank_in(e, h->expression, h->breakpoint) + 1, h->velocity,
+				   watch_or_none(h->pull[0]), watch_or_none(h->pull[1]), watch_or_none(h->impact) };
+		memcpy(row + 6 * i, of, sizeof of);
 	}
-	say(e, "%s};\n", c->holds > 0 ? "" : "    {0, 0, 0, -1, -1, -1}\n");
-	emit_rows(e, "event_back", "of each: what is taken from the states for a velocity of 1", c->holds, 0);
+	say(e, "\n/* What is held: expression, interval; watches: its velocity, what lets it go down, up; impact */\n");
+	emit_integer_rows(e, "pl_hold", format("event_hold[%d]", rows), rows, 6, c->holds ? row : none);
+	emit_rows(e, "event_back", "Of each: what is taken from the states for a velocity of 1", c->holds, 0);
 }
 
 static void emit_strikes(const struct emitter *e)
@@ -78,14 +78,14 @@ static void emit_strikes(const struct emitter *e)
 		    shortest(s->restitution), shortest(s->per));
 	}
 	say(e, "%s};\n", c->strikes > 0 ? "" : "    {0, 0, 0, -1, 0, 0, 0, 0, 0, 0.0, 1.0}\n");
-	emit_rows(e, "event_place", "of each: what is taken from the states for a guard of 1", c->strikes, 1);
-	const char *state = "", *value = "";
+	emit_rows(e, "event_place", "Of each: what is taken from the states for a guard of 1", c->strikes, 1);
+	int *state = ARRAY(int, (size_t)c->assignments), *value = ARRAY(int, (size_t)c->assignments);
 	for (int i = 0; i < c->assignments; i++) {
-		state = format("%s%s%d", state, i ? ", " : "", c->assignment[i].state);
-		value = format("%s%s%d", value, i ? ", " : "", c->assignment[i].watch);
+		state[i] = c->assignment[i].state;
+		value[i] = c->assignment[i].watch;
 	}
-	say(e, "static const int $n_event_jumps[] = {%s}, $n_event_after[] = {%s};  /* states, watches */\n",
-	    *state ? state : "0", *value ? value : "0");
+	emit_int_list(e, "event_jumps", c->assignments, state);
+	emit_int_list(e, "event_after", c->assignments, value);
 }
 
 void emit_event_tables(const struct emitter *e)

@@ -7,17 +7,11 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 			 const struct coefficient *factor)
 {
 	const struct table *table = e->step->branch->whole;
-	int cells = table->states * table->columns;
-	double *value = ARRAY(double, (size_t)cells);
-	say(e, "\nstatic const double $n_%s[%d][$N_STATES][%d] = {  /* %s */\n", name, segments, table->columns, what);
-	for (int s = 0; s < segments; s++) {
-		for (int i = 0; i < cells; i++)
-			value[i] = is_forced(e->step, i % table->columns) ? factor[s * cells + i].value : 0;
-		say(e, "  {\n");
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
+	const int size[] = { segments, table->states, table->columns }, count = segments * table->states * table->columns;
+	double *value = ARRAY(double, (size_t)count);
+	for (int i = 0; i < count; i++)
+		value[i] = is_forced(e->step, i % table->columns) ? factor[i].value : 0;
+	emit_array(e, what, name, 3, size, value, e->model->state_name);
 }
 
 /* A change at the end of a step */

@@ -176,15 +176,10 @@ void emit_function_values(const struct emitter *e)
 	for (int k = 0; k < count; k++)
 		form[k] = split->function[k + 1].form;
 	struct reads r = reads_of(e->model, count, form);
-	const struct program *program = e->step->program;
 	struct emitter here = *e;
 	here.at_node = true;
-	double *after = ARRAY(double, (size_t)program->nodes);
-	for (int i = 0; i < program->nodes; i++)
-		after[i] = time_in_step(e->model, program->node[i]);
 	if (r.time)
-		emit_array(e, "Times of nodes after the start of the step [s]", "node", 1, &program->nodes, after,
-			   NULL);
+		emit_node_times(e);
 	if (any_of(r.load, e->system->loads))
 		emit_node_phases(e, r.load);
 	open_function(e, format("What forces and factors of forces are at a node, as functions of time%s",

@@ -136,11 +136,8 @@ static bool in_a_row(const struct group *g)
 /* Where the states of the blocks stand in y, [state][block] */
 static void emit_places(const struct emitter *e, const struct group *g, int index)
 {
-	const int count = g->states * g->blocks;
-	say(e, "\nstatic const unsigned short $n_states%d[%d] = {", index, count);
-	for (int i = 0; i < count; i++)
-		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", g->state[i]);
-	say(e, "};\n");
+	say(e, "\n");
+	emit_integers(e, "unsigned short", format("states%d", index), g->states * g->blocks, g->state);
 }
 
 static const char *place_of_row(const struct emitter *e, const struct group *g, int index)

@@ -96,6 +96,15 @@ static void print_node_rows(const struct emitter *e, const struct node_table *ta
 	say(e, "};\n");
 }
 
+void emit_node_times(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	double *after = ARRAY(double, (size_t)program->nodes);
+	for (int i = 0; i < program->nodes; i++)
+		after[i] = time_in_step(e->model, program->node[i]);
+	emit_array(e, "Times of nodes after the start of the step [s]", "node", 1, &program->nodes, after, NULL);
+}
+
 void emit_node_phases(const struct emitter *e, const bool *loads)
 {
 	bool turning = false, growing = false;

@@ -123,15 +123,12 @@ void emit_state_table(const struct emitter *e)
 {
 	if (all_first(e) || all_second(e))
 		return;
-	say(e, "\n/* The state whose derivative is a coordinate's highest; the coordinate of a state */\n"
-	       "static const short $n_highest_of[%d] = {", e->system->n);
+	int *highest = ARRAY(int, (size_t)e->system->n);
 	for (int j = 0; j < e->system->n; j++)
-		say(e, "%s%d", j ? ", " : "", highest_state(e->system, j));
-	say(e, "};\n"
-	       "static const short $n_coord_of[$N_STATES] = {");
-	for (int i = 0; i < e->system->states; i++)
-		say(e, "%s%d", i ? ", " : "", e->system->coord[i]);
-	say(e, "};\n");
+		highest[j] = highest_state(e->system, j);
+	say(e, "\n/* The state whose derivative is a coordinate's highest; the coordinate of a state */\n");
+	emit_integers(e, "short", "highest_of", e->system->n, highest);
+	emit_integers(e, "short", "coord_of", e->system->states, e->system->coord);
 }
 
 /* ---- what is known of a time before the state is ---- */
@@ -209,17 +206,9 @@ static bool changes(const struct emitter *e)
 static void emit_drive_table(const struct emitter *e)
 {
 	const struct motion *m = motion(e);
-	const char **note = ARRAY(const char *, (size_t)m->coords);
-	for (int i = 0; i < m->coords; i++)
-		note[i] = e->model->coord_name[i];
-	say(e, "\n/* What the load states give each highest derivative, in each segment of time */\n"
-	       "static const double $n_drive[%d][%d][%d] = {\n", e->system->segments, m->coords, m->columns);
-	for (int k = 0; k < e->system->segments; k++) {
-		say(e, "  {\n");
-		emit_number_rows(e, m->coords, m->columns, m->load + k * m->coords * m->columns, note);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
+	const int size[] = { e->system->segments, m->coords, m->columns };
+	emit_array(e, "What the load states give each highest derivative, in each segment of time", "drive", 3, size,
+		   m->load, e->model->coord_name);
 }
 
 static bool any_drive(const struct emitter *e)

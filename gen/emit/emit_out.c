@@ -36,25 +36,18 @@ static void emit_direct_factors(const struct emitter *e)
 	const int columns = load_columns(system), rows = changing_rows(e);
 	if (rows == 0)
 		return;
-	say(e, "\nstatic const double $n_direct[%d][%s][%d] = {  "
-	       "/* factors of the load states in each segment of time */\n",
-	       system->segments, rows == e->model->outputs ? spell(e, "$N_OUTPUTS") : format("%d", rows), columns);
-	for (int s = 0; s < system->segments; s++) {
-		say(e, "  {\n");
+	const int size[] = { system->segments, rows, columns };
+	double *value = ARRAY(double, (size_t)(size[0] * rows * columns)), *to = value;
+	const char **note = ARRAY(const char *, (size_t)rows);
+	for (int s = 0; s < system->segments; s++)
 		for (int o = 0; o < rows; o++) {
 			const struct output *output = output_of_row(e->model, o);
-			const char *row = "";
+			note[o] = format("%s%s", o < e->model->outputs ? "" : "a highest derivative in ", output->name);
 			for (int l = 0; l < system->loads; l++)
-				for (int k = 0; k < system->load[l].columns; k++) {
-					mpq_srcptr factor = output->load[l][k * system->segments + s];
-					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(factor)));
-				}
-			say(e, "    {%s},  /* %s%s */\n", row,
-			       o < e->model->outputs ? "" : "a highest derivative in ", output->name);
+				for (int k = 0; k < system->load[l].columns; k++)
+					*to++ = round_rational(output->load[l][k * system->segments + s]);
 		}
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
+	emit_array(e, "Factors of the load states in each segment of time", "direct", 3, size, value, note);
 }
 
 /* Rows read states as they are kept, forms the written ones. */

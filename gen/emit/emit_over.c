@@ -58,25 +58,24 @@ void emit_over_members(const struct emitter *e)
 	    order_of(e) + 1, truncation(e)->over, truncation(e)->over - 1);
 }
 
-static const char *part_of(const struct emitter *e, int step)
+static double part_of(const struct emitter *e, int step)
 {
 	mpq_t part;
 	mpq_init(part);
 	mpq_set_si(part, step, (unsigned long)truncation(e)->over);
 	mpq_canonicalize(part);
-	const char *text = shortest(round_rational(part));
+	const double value = round_rational(part);
 	mpq_clear(part);
-	return text;
+	return value;
 }
 
 void emit_over_table(const struct emitter *e)
 {
-	int over = truncation(e)->over;
-	say(e, "\n/* So many steps, as parts of those that a series is over */\n"
-	       "static const double $n_part_of[%d] = {\n    ", over - 1);
-	for (int m = 1; m < over; m++)
-		say(e, "%s%s", m == 1 ? "" : m % 8 == 1 ? ",\n    " : ", ", part_of(e, m));
-	say(e, "\n};\n");
+	const int count = truncation(e)->over - 1;
+	double *part = ARRAY(double, (size_t)count);
+	for (int m = 0; m < count; m++)
+		part[m] = part_of(e, m + 1);
+	emit_array(e, "So many steps, as parts of those that a series is over", "part_of", 1, &count, part, NULL);
 }
 
 /* ---- NAME_run ---- */
@@ -87,7 +86,7 @@ static void emit_rows_of_block(const struct emitter *e)
 	for (int m = 1; m <= over; m++) {
 		if (m < over) {
 			say(e, "    if (out) {\n");
-			emit_value(e, part_of(e, m), coefficient, "base%d", "        ");
+			emit_value(e, shortest(part_of(e, m)), coefficient, "base%d", "        ");
 			say(e, "    }\n");
 		} else {
 			for (int i = 0; i < states; i++)

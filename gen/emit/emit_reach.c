@@ -24,17 +24,17 @@ void emit_floors(const struct emitter *e)
 {
 	if (!has_floors(e))
 		return;
+	const int size = e->system->states + (e->step->expansion ? e->step->expansion->columns : 0);
+	double *value = ARRAY(double, (size_t)size);
 	mpq_t floor;
 	mpq_init(floor);
-	say(e, "\n/* Of each state its absolute tolerance over the relative one, which counts beside its size; 0: it "
-	       "has none */\n"
-	       "static const double $n_floor[$c] = {");
 	for (int i = 0; i < e->system->states; i++) {
 		mpq_div(floor, truncation(e)->absolute[i], truncation(e)->tolerance);
-		say(e, "%s%s", i == 0 ? "\n    " : i % 8 ? ", " : ",\n    ", shortest(round_rational(floor)));
+		value[i] = round_rational(floor);
 	}
-	say(e, "\n};\n");
 	mpq_clear(floor);
+	emit_array(e, "Of each state its absolute tolerance over the relative one, which counts beside its size; 0: none",
+		   "floor", 1, &size, value, NULL);
 }
 
 bool watches(const struct emitter *e)
@@ -65,7 +65,7 @@ void emit_reach_tables(const struct emitter *e)
 	if (!truncation(e)->adaptive || e->system->inputs)
 		return;
 	int order = order_of(e), most = most_served(e);
-	const char *last = "", *before = "";
+	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
 	mpq_t bound, steps;
 	mpq_inits(bound, steps, NULL);
 	for (int m = 1; m <= most; m++) {
@@ -73,15 +73,14 @@ void emit_reach_tables(const struct emitter *e)
 		mpq_set_ui(steps, (unsigned long)m, 1);
 		for (int k = 1; k < order; k++)
 			mpq_div(bound, bound, steps);
-		const char *gap = m == 1 ? "" : (m - 1) % 4 ? ", " : ",\n    ";
-		before = format("%s%s%s", before, gap, shortest(round_rational(bound)));
+		before[m - 1] = round_rational(bound);
 		mpq_div(bound, bound, steps);
-		last = format("%s%s%s", last, gap, shortest(round_rational(bound)));
+		last[m - 1] = round_rational(bound);
 	}
 	mpq_clears(bound, steps, NULL);
-	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps */\n"
-	       "static const double $n_last[%d] = {\n    %s\n};\n"
-	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order, order - 1, most, last, most, before);
+	emit_array(e, format("The tolerance over m^%d and m^%d: what the last coefficients may be for m steps", order,
+			     order - 1), "last", 1, &most, last, NULL);
+	emit_array(e, NULL, "before_last", 1, &most, before, NULL);
 }
 
 /* ---- what the runtime is told ---- */
@@ -113,12 +112,14 @@ static double crowded_length(const struct emitter *e, double phase)
 static void emit_unseen_table(const struct emitter *e, const char *name, bool columns)
 {
 	const struct expansion *x = unseens(e);
-	const char *text = "";
-	for (int i = 0; i < x->unseens; i++)
-		text = format("%s%s{%d, %d, %d}", text, i == 0 ? "" : i % 6 ? ", " : ",\n    ",
-			      columns ? x->unseen[i].column : i, x->unseen[i].kind, x->unseen[i].power);
-	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, the kind, a power */\n"
-	       "static const int $n_%s[%d][3] = {\n    %s\n};\n", name, x->unseens, text);
+	int *row = ARRAY(int, 3 * (size_t)x->unseens);
+	for (int i = 0; i < x->unseens; i++) {
+		row[3 * i] = columns ? x->unseen[i].column : i;
+		row[3 * i + 1] = (int)x->unseen[i].kind;
+		row[3 * i + 2] = x->unseen[i].power;
+	}
+	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, the kind, a power */\n");
+	emit_integer_rows(e, "int", format("%s[%d][3]", name, x->unseens), x->unseens, 3, row);
 }
 
 /* ---- what reach.h is told ---- */

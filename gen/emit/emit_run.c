@@ -6,22 +6,6 @@
 
 /* ---- the tables of a block ---- */
 
-/* Numbers of one column: a line for each row of outputs, after so many zeros */
-static void emit_column(const struct emitter *e, const double *value, int zeros, int rows, const char *of)
-{
-	enum { WIDTH = 100 };
-	int outputs = e->step->rows->outputs, width = 6;
-	say(e, "    {  /* %s */\n     ", of);
-	for (int i = -zeros; i < rows * outputs; i++) {
-		const char *number = i < 0 ? "0.0" : shortest(value[i]);
-		int length = (int)strlen(number) + 2;
-		bool breaks = width + length > WIDTH;
-		say(e, "%s%s,", breaks ? "\n      " : " ", number);
-		width = (breaks ? 6 : width) + length;
-	}
-	say(e, "\n    },\n");
-}
-
 static const char *operand_name(const struct emitter *e, const struct operand *operand)
 {
 	const struct linear *system = e->system;
@@ -44,23 +28,23 @@ static int zeros_of(const struct rows *rows)
 static void emit_row_tables(const struct emitter *e)
 {
 	const struct rows *rows = e->step->rows;
-	int numbers = rows->count * rows->outputs, inputs = e->system->inputs;
-	say(e, "\nenum { $N_ROWS = %d };  /* in a block of $n_run */\n", rows->count);
-	if (rows->columns) {
-		say(e, "\n/* The outputs after 1, 2, ... %d steps, from what there is at the start of a block */\n"
-		       "static const double $n_row[%d][%d] = {\n", rows->count, rows->columns, numbers);
-		for (int k = 0; k < rows->columns; k++)
-			emit_column(e, rows->column[k].value, 0, rows->count,
-				    operand_name(e, &rows->column[k].operand));
-		say(e, "};\n");
+	const int numbers = rows->count * rows->outputs, inputs = e->system->inputs, zeros = zeros_of(rows);
+	double *row = ARRAY(double, (size_t)(rows->columns * numbers));
+	double *sample = ARRAY(double, (size_t)(inputs * (numbers + zeros)));
+	const char **note = ARRAY(const char *, (size_t)rows->columns + 1);
+	for (int k = 0; k < rows->columns; k++) {
+		memcpy(row + k * numbers, rows->column[k].value, (size_t)numbers * sizeof *row);
+		note[k] = operand_name(e, &rows->column[k].operand);
 	}
-	if (!inputs)
-		return;
-	say(e, "\n/* And from each sample, at the end of its step, after one more, ...; before that nothing */\n"
-	       "static const double $n_sample_row[%d][%d] = {\n", inputs, numbers + zeros_of(rows));
 	for (int i = 0; i < inputs; i++)
-		emit_column(e, rows->sample[i], zeros_of(rows), rows->count, e->system->input[i].name);
-	say(e, "};\n");
+		memcpy(sample + i * (numbers + zeros) + zeros, rows->sample[i], (size_t)numbers * sizeof *sample);
+	say(e, "\nenum { $N_ROWS = %d };  /* in a block of $n_run */\n", rows->count);
+	if (rows->columns)
+		emit_array(e, format("The outputs after 1, 2, ... %d steps, from what there is at the start of a block",
+				     rows->count), "row", 2, (const int[]){ rows->columns, numbers }, row, note);
+	if (inputs)
+		emit_array(e, "And from each sample, at the end of its step, after one more, ...; before that nothing",
+			   "sample_row", 2, (const int[]){ inputs, numbers + zeros }, sample, names_of_inputs(e));
 }
 
 /* ---- its numbers ---- */
@@ -265,13 +249,15 @@ static void emit_leap_table(const struct emitter *e)
 {
 	struct leap_column *column = room_for_leap(e);
 	int count = leap_columns_of(e, column);
-	say(e, "\n/* What a block adds to the states%s */\n"
-	       "static const double $n_leap[%d][$N_STATES] = {\n",
-	    e->step->form == FORM_DELTA ? "" : ", from 0 on", count);
-	for (int k = 0; k < count; k++)
-		emit_number_rows(e, 1, e->system->states, column[k].value,
-				 &(const char *){ column[k].operand ? column[k].operand : "1" });
-	say(e, "};\n");
+	const int size[] = { count, e->system->states };
+	double *value = ARRAY(double, (size_t)(size[0] * size[1]));
+	const char **note = ARRAY(const char *, (size_t)count + 1);
+	for (int k = 0; k < count; k++) {
+		memcpy(value + k * size[1], column[k].value, (size_t)size[1] * sizeof *value);
+		note[k] = column[k].operand ? column[k].operand : "1";
+	}
+	emit_array(e, format("What a block adds to the states%s", e->step->form == FORM_DELTA ? "" : ", from 0 on"),
+		   "leap", 2, size, value, note);
 }
 
 static void emit_leap(const struct emitter *e)
@@ -339,12 +325,8 @@ static int rests_of(const struct emitter *e)
 
 static void emit_parts_at_rest(const struct emitter *e)
 {
-	say(e, "\n"
-	       "/* Which part each state is of, of those that decay by themselves; -1: of none */\n"
-	       "static const short $n_part[$N_STATES] = {\n    ");
-	for (int i = 0; i < e->system->states; i++)
-		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", e->step->rest->part[i]);
-	say(e, "};\n");
+	say(e, "\n/* Which part each state is of, of those that decay by themselves; -1: of none */\n");
+	emit_integers(e, "short", "part", e->system->states, e->step->rest->part);
 }
 
 void emit_run(const struct emitter *e)

@@ -58,20 +58,12 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->branch->whole;
-	int cells = table->states * table->columns;
-	double *value = ARRAY(double, (size_t)cells);
-	say(e, "\n"
-	       "/* Factors of the load states in each segment of time */\n"
-	       "static const double $n_load_factor[%d][$N_STATES][%d] = {\n",
-	    e->system->segments, table->columns);
-	for (int s = 0; s < e->system->segments; s++) {
-		for (int i = 0; i < cells; i++)
-			value[i] = table->load[s * cells + i].value;
-		say(e, "  {\n");
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
+	const int size[] = { e->system->segments, table->states, table->columns }, count = size[0] * size[1] * size[2];
+	double *value = ARRAY(double, (size_t)count);
+	for (int i = 0; i < count; i++)
+		value[i] = table->load[i].value;
+	emit_array(e, "Factors of the load states in each segment of time", "load_factor", 3, size, value,
+		   e->model->state_name);
 }
 
 void emit_set_aside(const struct emitter *e)

@@ -146,15 +146,14 @@ void emit_series_vector(const struct emitter *e)
 /* Of the load states that the step leaves out: their places in rows of what they add, and in x; returns how many */
 static int emit_forced_places(const struct emitter *e)
 {
-	int count = 0;
-	const char *list = "";
+	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = 0;
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
-		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++)
-			list = format("%s%s{%d, %d}", list, count++ ? ", " : "", column + j,
-				      e->step->layout.load[l] + j);
+		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++) {
+			place[2 * count] = column + j;
+			place[2 * count++ + 1] = e->step->layout.load[l] + j;
+		}
 	if (count)
-		say(e, "\nstatic const int $n_forced_at[%d][2] = {%s};  /* in rows of the next, in x */\n", count,
-		    list);
+		emit_integer_rows(e, "int", format("forced_at[%d][2]", count), count, 2, place);
 	return count;
 }
 
@@ -360,13 +359,12 @@ static void emit_conversion(const struct emitter *e)
 /* Of the states that have a low word, in its order; returns how many */
 static int emit_carried(const struct emitter *e)
 {
-	const char *list = "";
-	for (int k = 0; k < e->step->carries; k++)
-		for (int i = 0; i < e->system->states; i++)
-			if (e->step->carry[i] == k)
-				list = format("%s%s%d", list, k ? ", " : "", i);
-	if (*list)
-		say(e, "\nstatic const int $n_carried[%d] = {%s};\n", e->step->carries, list);
+	int *state = ARRAY(int, (size_t)e->step->carries);
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			state[e->step->carry[i]] = i;
+	if (e->step->carries)
+		emit_int_list(e, "carried", e->step->carries, state);
 	return e->step->carries;
 }
 

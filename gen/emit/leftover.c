@@ -132,16 +132,12 @@ const char *leftover_of_outputs(const struct emitter *e)
 
 static void emit_excess(const struct emitter *e, const struct bank *bank)
 {
-	say(e, "\n/* What the linear terms of the equations exceed those of each operator by */\n"
-	       "static const double $n_excess[%d][%d] = {\n", e->model->operators, bank->count);
-	for (int k = 0; k < e->model->operators; k++) {
-		const double *factor = bank->factor + k * bank->count;
-		say(e, "    {");
-		for (int i = 0; i < bank->count; i++)
-			say(e, "%s%s", i == 0 ? "" : i % 6 ? ", " : ",\n     ", shortest(factor[i]));
-		say(e, "},  /* %s */\n", e->model->operator[k].text);
-	}
-	say(e, "};\n");
+	const int size[] = { e->model->operators, bank->count };
+	const char **note = ARRAY(const char *, (size_t)e->model->operators);
+	for (int k = 0; k < e->model->operators; k++)
+		note[k] = e->model->operator[k].text;
+	emit_array(e, "What the linear terms of the equations exceed those of each operator by", "excess", 2, size,
+		   bank->factor, note);
 }
 
 /* A channel's form, and what the operator that serves does not have of its linear terms */
@@ -166,13 +162,8 @@ static tape_ref with_excess(struct formulas *f, int channel, tape_ref form, cons
 
 static void emit_nodes(const struct emitter *e, const struct reads *r)
 {
-	const struct program *program = e->step->program;
-	if (r->time || reads_ramp(e, r)) {
-		say(e, "\nstatic const double $n_node[%d] = {", program->nodes);
-		for (int i = 0; i < program->nodes; i++)
-			say(e, "%s%s", i ? ", " : "", shortest(time_in_step(e->model, program->node[i])));
-		say(e, "};  /* times after the start of the step [s] */\n");
-	}
+	if (r->time || reads_ramp(e, r))
+		emit_node_times(e);
 	if (any_of(r->load, e->system->loads))
 		emit_node_phases(e, r->load);
 }

@@ -36,30 +36,17 @@ static double picked_entry(const struct picked *p, const struct emitter *e, int 
 	}
 }
 
-static double *picked_matrix(const struct picked *p, const struct emitter *e, int operator, int segment)
-{
-	int rows = e->system->states;
-	double *value = ARRAY(double, (size_t)(rows * p->columns));
-	for (int i = 0; i < rows; i++)
-		for (int j = 0; j < p->columns; j++)
-			value[i * p->columns + j] = picked_entry(p, e, operator, segment, i, j);
-	return value;
-}
-
 /* NAME_name[of segments of time, then of operators][row][column] */
 static void emit_table(const struct emitter *e, const char *name, const char *note, int first, struct picked picked)
 {
-	int segments = picked.kind == PICK_LOAD ? e->system->segments : 1, rows = e->system->states;
-	int matrices = segments * (e->model->operators - first);
-	say(e, "\nstatic const double $n_%s[%d][%d][%d] = {  /* %s */\n", name, matrices, rows, picked.columns, note);
+	const int segments = picked.kind == PICK_LOAD ? e->system->segments : 1, rows = e->system->states;
+	const int size[] = { segments * (e->model->operators - first), rows, picked.columns };
+	double *value = ARRAY(double, (size_t)(size[0] * rows * picked.columns)), *to = value;
 	for (int s = 0; s < segments; s++)
-		for (int k = first; k < e->model->operators; k++) {
-			const double *matrix = picked_matrix(&picked, e, k, s);
-			say(e, "  {\n");
-			emit_number_rows(e, rows, picked.columns, matrix, e->model->state_name);
-			say(e, "  },\n");
-		}
-	say(e, "};\n");
+		for (int k = first; k < e->model->operators; k++)
+			for (int i = 0; i < rows * picked.columns; i++)
+				*to++ = picked_entry(&picked, e, k, s, i / picked.columns, i % picked.columns);
+	emit_array(e, note, name, 3, size, value, e->model->state_name);
 }
 
 static void emit_phi_table(const struct emitter *e, int t)

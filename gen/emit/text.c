@@ -167,8 +167,7 @@ static void say_array(const struct emitter *e, int dimensions, const int *size, 
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
 		const double *value, const char *const *row)
 {
-	say(e, "\n/* %s */\n"
-	       "static const double $n_%s", note, name);
+	say(e, "%sstatic const double $n_%s", note ? format("\n/* %s */\n", note) : "", name);
 	for (int k = 0; k < dimensions; k++)
 		say(e, "[%d]", size[k]);
 	say(e, " = ");
@@ -209,6 +208,27 @@ void emit_integers(const struct emitter *e, const char *type, const char *name, 
 	for (int i = 0; i < count; i++)
 		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
 	say(e, "};\n");
+}
+
+void emit_integer_rows(const struct emitter *e, const char *type, const char *name, int rows, int columns,
+		       const int *value)
+{
+	say(e, "static const %s $n_%s = {", type, name);
+	for (int i = 0; i < rows; i++) {
+		say(e, "%s{", !i ? "\n    " : i % 6 ? ", " : ",\n    ");
+		for (int j = 0; j < columns; j++)
+			say(e, "%s%d", j ? ", " : "", value[i * columns + j]);
+		say(e, "}");
+	}
+	say(e, "\n};\n");
+}
+
+const int *numbers_up_to(int count)
+{
+	int *number = ARRAY(int, (size_t)count);
+	for (int i = 0; i < count; i++)
+		number[i] = i;
+	return number;
 }
 
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value)
