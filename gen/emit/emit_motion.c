@@ -16,44 +16,37 @@ bool splits(const struct emitter *e)
 	return motion(e)->apart;
 }
 
-/* What chooses formulas: forms without their constants */
-static const struct form **dividing_forms(const struct emitter *e, int *count)
-{
-	const struct expansion *x = e->step->divided;
-	const struct form **form = ARRAY(const struct form *, x ? (size_t)x->expressions : 1);
-	*count = x ? x->expressions : 0;
-	for (int i = 0; i < *count; i++)
-		form[i] = x->expression[i].form;
-	return form;
-}
+/* What functions of the state are printed of: */
+enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 
-/* The arguments of what polynomials may not show */
-static const struct form **unseen_forms(const struct emitter *e, int *count)
-{
-	const struct expansion *x = e->step->unseen;
-	const struct form **form = ARRAY(const struct form *, x ? (size_t)x->unseens : 1);
-	*count = x ? x->unseens : 0;
-	for (int i = 0; i < *count; i++)
-		form[i] = x->unseen[i].form;
-	return form;
-}
-
-/* The forces and their slopes, then what chooses formulas, and what bounds the polynomials. These are read too. */
-static const struct form **all_forms(const struct emitter *e, int *count)
+/* The forces and their slopes, what chooses formulas (without its constants), or the arguments of what polynomials may
+ * not show */
+static const struct form **forms_of(const struct emitter *e, enum motion_part part, int *count)
 {
 	const struct motion *m = motion(e);
-	int dividing, unseen;
-	const struct form **choosing = dividing_forms(e, &dividing), **bounding = unseen_forms(e, &unseen);
-	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries + dividing + unseen));
-	for (int i = 0; i < m->coords; i++)
-		form[i] = m->force[i];
-	for (int k = 0; k < m->entries; k++)
-		form[m->coords + k] = m->entry[k].slope;
-	for (int i = 0; i < dividing; i++)
-		form[m->coords + m->entries + i] = choosing[i];
-	for (int i = 0; i < unseen; i++)
-		form[m->coords + m->entries + dividing + i] = bounding[i];
-	*count = m->coords + m->entries + dividing + unseen;
+	const struct expansion *d = e->step->divided, *u = e->step->unseen;
+	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
+	*count = part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
+		 : part == THE_ARGUMENTS ? (u ? u->unseens : 0) : m->coords + entries;
+	const struct form **form = ARRAY(const struct form *, (size_t)*count + 1);
+	for (int i = 0; i < *count; i++)
+		form[i] = part == THE_EXPRESSIONS ? d->expression[i].form
+			  : part == THE_ARGUMENTS ? u->unseen[i].form
+			  : i < m->coords	  ? m->force[i] : m->entry[i - m->coords].slope;
+	return form;
+}
+
+static const struct form **all_forms(const struct emitter *e, int *count)
+{
+	const struct form **form = NULL;
+	*count = 0;
+	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_ARGUMENTS; part++) {
+		int more;
+		const struct form **own = forms_of(e, part, &more);
+		ENLARGE(form, (size_t)(*count + more) + 1);
+		memcpy(form + *count, own, (size_t)more * sizeof *form);
+		*count += more;
+	}
 	return form;
 }
 
@@ -133,7 +126,9 @@ void emit_state_table(const struct emitter *e)
 
 /* ---- what is known of a time before the state is ---- */
 
-struct place_of_known { int driven, time, when, load, value, slope, param, count; };
+enum known_kind { KNOWN_DRIVEN, KNOWN_TIME, KNOWN_WHEN, KNOWN_LOAD, KNOWN_INPUT, KNOWN_PARAM };
+struct known { enum known_kind kind; int index, part; }; /* column of a load, order of an input's derivative */
+struct knowns { int count; struct known *of; };
 
 static bool ramps(const struct emitter *e, int input)
 {
@@ -166,36 +161,41 @@ static bool decides(const struct emitter *e)
 	return any;
 }
 
-/* Where each kind begins: driven coordinates, t, the time at which conditions on it hold, the load states that are
- * read, inputs, their slopes, tunable params */
-static struct place_of_known known_places(const struct emitter *e, const struct reads *r)
+static void add_known(struct knowns *list, enum known_kind kind, int index, int part)
 {
-	struct place_of_known p = { 0 };
+	ENLARGE(list->of, (size_t)list->count + 1);
+	list->of[list->count++] = (struct known){ kind, index, part };
+}
+
+/* Driven coordinates, t, the time at which conditions on it hold, the load states that are read, inputs, their slopes,
+ * tunable params */
+static struct knowns knowns_of(const struct emitter *e, const struct reads *r)
+{
+	const int inputs = e->system->inputs;
+	struct knowns list = { 0, NULL };
 	for (int i = 0; i < motion(e)->coords; i++)
-		p.count += motion(e)->driven[i];
-	p.time = p.count;
-	p.count += r->time;
-	p.when = p.count;
-	p.count += decides(e);
-	p.load = p.count;
+		if (motion(e)->driven[i])
+			add_known(&list, KNOWN_DRIVEN, i, 0);
+	if (r->time)
+		add_known(&list, KNOWN_TIME, 0, 0);
+	if (decides(e))
+		add_known(&list, KNOWN_WHEN, 0, 0);
 	for (int l = 0; l < e->system->loads; l++)
-		p.count += r->load[l] ? e->system->load[l].columns : 0;
-	p.value = p.count;
-	for (int i = 0; i < e->system->inputs; i++)
-		p.count += r->input[i];
-	p.slope = p.count;
-	for (int i = 0; i < e->system->inputs; i++)
-		p.count += r->input[e->system->inputs + i];
-	p.param = p.count;
+		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++)
+			add_known(&list, KNOWN_LOAD, l, k);
+	for (int i = 0; i < 2 * inputs; i++)
+		if (r->input[i])
+			add_known(&list, KNOWN_INPUT, i % inputs, i / inputs);
 	for (int k = 0; k < held_values(e->model); k++)
-		p.count += r->param[k];
-	return p;
+		if (r->param[k])
+			add_known(&list, KNOWN_PARAM, k, 0);
+	return list;
 }
 
 int known_values(const struct emitter *e)
 {
 	struct reads r = reads_of_motion(e);
-	return known_places(e, &r).count;
+	return knowns_of(e, &r).count;
 }
 
 static bool changes(const struct emitter *e)
@@ -260,57 +260,42 @@ static void emit_known_loads(const struct emitter *e, const struct reads *r)
 	emit_load_states(&here, wanted, true);
 }
 
-static void emit_known_values(const struct emitter *e, const struct reads *r)
+/* Its value, tau after now */
+static const char *known_text(const struct emitter *e, const struct known *k)
 {
-	struct place_of_known p = known_places(e, r);
-	int inputs = e->system->inputs;
-	for (int i = 0; i < motion(e)->coords; i++)
-		if (motion(e)->driven[i])
-			say(e, "    node[%d] = %s;  /* of %s */\n", p.driven++, drive_text(e, i),
-			    e->model->coord_name[i]);
-	if (r->time)
-		say(e, "    node[%d] = t;\n", p.time);
-	if (decides(e))
-		say(e, "    node[%d] = $n_time(s) + inside;  /* where conditions on t hold as they do over the step "
-		       "*/\n",
-		    p.when);
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++) {
-			const char *operand = load_operand(e, l, k);
-			say(e, "    node[%d] = %s;\n", p.load++, operand ? operand : "1.0");
-		}
-	for (int i = 0; i < inputs; i++)
-		if (r->input[i])
-			say(e, ramps(e, i) ? "    node[%d] = u[%d] + tau * slope[%d];\n" : "    node[%d] = u[%d];\n",
-			    p.value++, i, i);
-	for (int i = 0; i < inputs; i++)
-		if (r->input[inputs + i])
-			say(e, "    node[%d] = slope[%d];\n", p.slope++, i);
-	for (int k = 0; k < held_values(e->model); k++)
-		if (r->param[k])
-			say(e, "    node[%d] = %s;\n", p.param++, param_text(e, k));
+	const char *operand;
+	switch (k->kind) {
+	case KNOWN_DRIVEN: return drive_text(e, k->index);
+	case KNOWN_TIME:   return "t";
+	case KNOWN_WHEN:   return spell(e, "$n_time(s) + inside");
+	case KNOWN_LOAD:
+		operand = load_operand(e, k->index, k->part);
+		return operand ? operand : "1.0";
+	case KNOWN_INPUT:
+		return k->part		    ? format("slope[%d]", k->index)
+		       : ramps(e, k->index) ? format("u[%d] + tau * slope[%d]", k->index, k->index)
+					    : format("u[%d]", k->index);
+	default:           return param_text(e, k->index);
+	}
 }
 
 static void emit_known(const struct emitter *e, const struct reads *r)
 {
 	bool drive = changes(e) && any_drive(e);
-	int known = known_places(e, r).count;
+	const struct knowns known = knowns_of(e, r);
 	if (drive)
 		emit_drive_table(e);
-	say(e, "\n/* What the equations read beside the state, tau after now; conditions on t hold as at inside */\n"
-	       "static void $n_known(const $n *s, double tau, double inside, int segment, const double u[],\n"
-	       "    const double slope[], double node[%d])\n"
-	       "{\n", known ? known : 1);
+	open_function(e, "What the equations read beside the state, tau after now; conditions on t hold as at inside",
+		      "static void $n_known(const $n *s, double tau, double inside, int segment, const double u[],\n"
+		      "    const double slope[], double node[%d])", known.count ? known.count : 1);
 	if (drive)
 		say(e, "    const double (*const drive)[%d] = $n_drive[segment];\n", motion(e)->columns);
 	emit_known_loads(e, r);
-	emit_known_values(e, r);
-	if (!known)
+	for (int i = 0; i < known.count; i++)
+		say(e, "    node[%d] = %s;\n", i, known_text(e, &known.of[i]));
+	if (!known.count)
 		say(e, "    node[0] = 0.0;  /* nothing */\n");
-	static const char *const parameter[] = { "s", "tau", "inside", "segment", "u", "slope" };
-	for (size_t i = 0; i < sizeof parameter / sizeof *parameter; i++)
-		say(e, "    (void)%s;\n", parameter[i]);
-	say(e, "}\n");
+	close_function(e, "s tau inside segment u slope");
 }
 
 /* ---- the highest derivatives, and their Jacobian ---- */
@@ -318,31 +303,22 @@ static void emit_known(const struct emitter *e, const struct reads *r)
 /* Of what is known under the names that forms read, those of `read` */
 static void emit_motion_locals(const struct emitter *e, const struct reads *r, const struct reads *read)
 {
-	struct place_of_known p = known_places(e, r);
-	int inputs = e->system->inputs;
+	const struct knowns known = knowns_of(e, r);
 	emit_locals_of(e, read->state, "y");
-	if (read->time)
-		say(e, "    const double t = node[%d];\n", p.time);
-	for (int l = 0; l < e->system->loads; l++)
-		if (r->load[l]) {
-			if (read->load[l])
-				say(e, "    const double *const load%d = node + %d;\n", l + 1, p.load);
-			p.load += e->system->load[l].columns;
-		}
-	for (int i = 0; i < 2 * inputs; i++) {
-		bool slope = i >= inputs;
-		if (read->input[i])
-			say(e, "    const double %s = node[%d];\n", input_name(e, slope ? i - inputs : i, slope),
-			    slope ? p.slope : p.value);
-		if (r->input[i])
-			(*(slope ? &p.slope : &p.value))++;
+	for (int i = 0; i < known.count; i++) {
+		const struct known *k = &known.of[i];
+		const char *name = NULL;
+		if (k->kind == KNOWN_LOAD && k->part == 0 && read->load[k->index])
+			say(e, "    const double *const load%d = node + %d;\n", k->index + 1, i);
+		if (k->kind == KNOWN_TIME && read->time)
+			name = "t";
+		else if (k->kind == KNOWN_INPUT && read->input[k->index + k->part * e->system->inputs])
+			name = input_name(e, k->index, k->part);
+		else if (k->kind == KNOWN_PARAM && read->param[k->index])
+			name = param_local(e, k->index);
+		if (name)
+			say(e, "    const double %s = node[%d];\n", name, i);
 	}
-	for (int k = 0; k < held_values(e->model); k++)
-		if (r->param[k]) {
-			if (read->param[k])
-				say(e, "    const double %s = node[%d];\n", param_local(e, k), p.param);
-			p.param++;
-		}
 }
 
 static bool any_known(const struct emitter *e, const struct reads *read)
@@ -351,8 +327,10 @@ static bool any_known(const struct emitter *e, const struct reads *read)
 	       any_of(read->param, held_values(e->model));
 }
 
-static bool read_known(const struct emitter *e, int count, const struct form *const *form)
+static bool reads_known(const struct emitter *e, enum motion_part part)
 {
+	int count;
+	const struct form **form = forms_of(e, part, &count);
 	struct reads read = reads_of(e->model, count, form);
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
 	for (int i = 0; i < count; i++)
@@ -362,81 +340,52 @@ static bool read_known(const struct emitter *e, int count, const struct form *co
 
 bool watch_reads_known(const struct emitter *e)
 {
-	int count;
-	const struct form **form = dividing_forms(e, &count);
-	return read_known(e, count, form);
+	return reads_known(e, THE_EXPRESSIONS);
 }
 
 bool trace_reads_known(const struct emitter *e)
 {
-	int count;
-	const struct form **form = unseen_forms(e, &count);
-	return read_known(e, count, form);
+	return reads_known(e, THE_ARGUMENTS);
 }
 
-static struct formulas *motion_formulas(const struct emitter *e, const struct reads *r, int count,
-					const struct form *const *form)
+static const char *when_text(const struct emitter *e, const struct reads *r)
 {
-	struct reading how = { .by_intervals = is_divided(e),
-			       .when = decides(e) ? format("node[%d]", known_places(e, r).when) : NULL };
-	return formulas_new(e, how, count, form);
+	const struct knowns known = knowns_of(e, r);
+	for (int i = 0; i < known.count; i++)
+		if (known.of[i].kind == KNOWN_WHEN)
+			return format("node[%d]", i);
+	return NULL;
 }
 
-/* The highest derivatives, and where they are wanted the entries of their Jacobian */
-static struct formulas *force_formulas(const struct emitter *e, const struct reads *r, int entries)
+/* The highest derivatives with what drives them, and the entries of their Jacobian; expressions with the sizes of what
+ * they are summed from; arguments */
+static struct formulas *formulas_of_part(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
 	const struct motion *m = motion(e);
-	int driven = 0;
-	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + entries));
-	for (int i = 0; i < m->coords; i++)
-		form[i] = m->force[i];
-	for (int k = 0; k < entries; k++)
-		form[m->coords + k] = m->entry[k].slope;
-	struct formulas *f = motion_formulas(e, r, m->coords + entries, form);
+	const bool forces = part <= THE_SLOPES_TOO;
+	int count, driven = 0;
+	const struct form **form = forms_of(e, part, &count);
+	struct reading how = { .by_intervals = is_divided(e), .when = when_text(e, r) };
+	struct formulas *f = formulas_new(e, how, count, form);
 	struct tape *t = formulas_tape(f);
-	for (int i = 0; i < m->coords; i++) {
-		tape_ref force = formula(f, form[i]);
-		if (m->driven[i])
-			force = tape_binary(t, TAPE_ADD, force, tape_operand(t, TAPE_TABLE, driven++, TABLE_NODE));
-		tape_set(t, format("left[%d]", i), force, 15, e->model->coord_name[i]);
-	}
-	for (int k = 0; k < entries; k++)
-		tape_set(t, format("slope[%d]", k), formula(f, form[m->coords + k]), 15, NULL);
-	return f;
-}
-
-/* The expressions that choose formulas, and the sizes of what they are summed from */
-static struct formulas *watched_formulas(const struct emitter *e, const struct reads *r)
-{
-	int count;
-	const struct form **form = dividing_forms(e, &count);
-	struct formulas *f = motion_formulas(e, r, count, form);
 	for (int i = 0; i < count; i++) {
-		tape_set(formulas_tape(f), format("left[%d]", i), formula(f, form[i]), 15, NULL);
-		tape_set(formulas_tape(f), format("excess[%d]", i), formula_sizes(f, form[i]), 16, NULL);
+		const bool slope = forces && i >= m->coords;
+		tape_ref value = formula(f, form[i]);
+		if (forces && !slope && m->driven[i])
+			value = tape_binary(t, TAPE_ADD, value, tape_operand(t, TAPE_TABLE, driven++, TABLE_NODE));
+		tape_set(t, slope ? format("slope[%d]", i - m->coords) : format("left[%d]", i), value, 15,
+			 forces && !slope ? e->model->coord_name[i] : NULL);
+		if (part == THE_EXPRESSIONS)
+			tape_set(t, format("excess[%d]", i), formula_sizes(f, form[i]), 16, NULL);
 	}
-	return f;
-}
-
-static struct formulas *unseen_formulas(const struct emitter *e, const struct reads *r)
-{
-	int count;
-	const struct form **form = unseen_forms(e, &count);
-	struct formulas *f = motion_formulas(e, r, count, form);
-	for (int i = 0; i < count; i++)
-		tape_set(formulas_tape(f), format("left[%d]", i), formula(f, form[i]), 15, NULL);
 	return f;
 }
 
 /* ---- functions of them: what an interval decides is not read ---- */
 
-enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
-
 static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	struct formulas *f = part == THE_EXPRESSIONS ? watched_formulas(e, r)
-			     : part == THE_ARGUMENTS ? unseen_formulas(e, r)
-			     : force_formulas(e, r, part == THE_SLOPES_TOO ? motion(e)->entries : 0);
+	struct formulas *f = formulas_of_part(e, r, part);
 	const struct tape *t = formulas_tape(f);
 	formulas_finish(f);
 	struct reads read = reads_of_formulas(f);
@@ -444,13 +393,11 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	emit_formulas(f, 4);
 	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
 		say(e, "    slope[0] = 0.0;\n");
-	if (!any_known(e, &read) && !tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) && !tape_reads(t, TAPE_TIME, -1, 1))
-		say(e, "    (void)node;\n");
-	if (!tape_reads(t, TAPE_ABOVE, -1, -1))
-		say(e, "    (void)interval;\n");
-	if (!any_of(read.state, e->system->states))
-		say(e, "    (void)y;\n");
-	say(e, "}\n");
+	close_function(e, spell(e, "%s%s%s",
+				any_known(e, &read) || tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) ||
+					tape_reads(t, TAPE_TIME, -1, 1) ? "" : "node ",
+				tape_reads(t, TAPE_ABOVE, -1, -1) ? "" : "interval ",
+				any_of(read.state, e->system->states) ? "" : "y"));
 }
 
 static void emit_part(const struct emitter *e, const struct reads *r, enum motion_part part)
@@ -467,10 +414,9 @@ static void emit_part(const struct emitter *e, const struct reads *r, enum motio
 				    "" }
 	};
 	bool within = part == THE_SLOPES_TOO && !splits(e);
-	say(e, "\n/* %s */\n"
-	       "static %svoid $n_%s(const double node[], const int interval[], const double y[$N_STATES],\n"
-	       "    double left[]%s)\n"
-	       "{\n", of[part].note, within ? "inline " : "", of[part].name, of[part].more);
+	open_function(e, of[part].note,
+		      "static %svoid $n_%s(const double node[], const int interval[], const double y[$N_STATES],\n"
+		      "    double left[]%s)", within ? "inline " : "", of[part].name, of[part].more);
 	emit_motion_body(e, r, part);
 }
 
