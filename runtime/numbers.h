@@ -35,6 +35,7 @@
 #define pl_series_advance pl_seriesf_advance
 #define pl_two pl_twof
 #define pl_lead_change pl_leadf_change
+#define pl_lead_start pl_leadf_start
 #define pl_power_apply pl_powerf_apply
 #define pl_peak pl_peakf
 #define pl_peak_bend pl_peakf_bend
@@ -51,6 +52,7 @@
 #define pl_rate pl_ratef
 #define pl_rate_of pl_ratef_of
 #define pl_turn_at pl_turnf_at
+#define pl_turn_add pl_turnf_add
 #define pl_growth_at pl_growthf_at
 #define pl_equations_at pl_equationsf_at
 #define pl_increment pl_incrementf

@@ -46,6 +46,7 @@
 #undef PL_DIRECT
 #undef PL_DIVIDED
 #undef PL_EACH
+#undef PL_ELAPSED
 #undef PL_ENDED
 #undef PL_ENTRIES
 #undef PL_EQUATIONS
@@ -111,6 +112,7 @@
 #undef PL_MEASURED
 #undef PL_MET
 #undef PL_MET_BY
+#undef PL_MODAL
 #undef PL_MODES
 #undef PL_MOMENTA
 #undef PL_MOST
@@ -120,6 +122,7 @@
 #undef PL_NODES
 #undef PL_NOISE
 #undef PL_NOMINAL
+#undef PL_NORMAL
 #undef PL_NOTHING
 #undef PL_NOW
 #undef PL_NO_CHANGE
@@ -140,15 +143,18 @@
 #undef PL_PEAKS
 #undef PL_PEAK_ROW
 #undef PL_PHASES
+#undef PL_PHASE_RATE
 #undef PL_PHI
 #undef PL_PLACE
 #undef PL_PLACES
 #undef PL_PLAYS
 #undef PL_POINTS
 #undef PL_RAMPS
+#undef PL_RANGES
 #undef PL_RATES
 #undef PL_REACHES
 #undef PL_REGIONS
+#undef PL_RELATIVE
 #undef PL_REMAINDERS
 #undef PL_RESTS
 #undef PL_RETUNED
@@ -187,6 +193,7 @@
 #undef PL_START
 #undef PL_STATES
 #undef PL_STATE_ROUNDED
+#undef PL_STATUS
 #undef PL_STAYS
 #undef PL_STEPPED
 #undef PL_STILL
@@ -196,6 +203,7 @@
 #undef PL_SWEEPS
 #undef PL_SWIFT
 #undef PL_TABLES
+#undef PL_TAPS
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE
@@ -277,3 +285,5 @@
 #undef pl_block
 #undef pl_group
 #undef pl_model
+#undef pl_turn_add
+#undef pl_lead_start

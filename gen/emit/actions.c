@@ -296,7 +296,6 @@ void emit_leftover_step(const struct emitter *e)
 	emit_step_end(e);
 	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	if (e->system->segments > 1)
-		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
-		       "        s->segment++;\n", e->system->segments - 1);
+		say(e, "    $n_pass_segments(s);\n");
 	say(e, "}\n");
 }

@@ -138,12 +138,7 @@ const char *place_in_loop(const struct emitter *e);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
 const char *slope_of_samples(const struct emitter *e, const char *to, const char *from); /* samples a step apart */
 const char *ramp_slope(const struct emitter *e, int input);       /* of an input that ramps to u over the step */
-void emit_set_state(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
-/* s->y from states that are whole */
-void emit_set_forced_state(const struct emitter *e, const char *vector, const char *indent);
-void emit_get_state(const struct emitter *e, const char *vector);  /* states from s->y */
-/* the same, less their forced part where the step keeps them so */
-void emit_get_kept_state(const struct emitter *e, const char *vector);
+bool has_place(const struct emitter *e);                           /* NAME_place */
 /* a table of what a step adds: the instance's own, or the model's */
 const char *of_step(const struct emitter *e, const char *table);
 
@@ -239,7 +234,6 @@ const char *tuned_output_row(const struct emitter *e, const struct output *outpu
 
 void emit_peak_tables(const struct emitter *e);
 void emit_peak_members(const struct emitter *e);
-void emit_peak_set(const struct emitter *e);
 void emit_peak_step(const struct emitter *e);
 /* Members of NAME_coeffs, of tunable models */
 void emit_nominal_peaks(const struct emitter *e);
@@ -556,7 +550,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 
 void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
 void emit_load_members(const struct emitter *e);
-void emit_load_set(const struct emitter *e);
+const char *phase_rate_text(const struct emitter *e);             /* of the model, or the instance */
 void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
@@ -580,15 +574,15 @@ const char *growth_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
-/* declares i and load states; x[...] = what the series advances */
-void emit_series_vector(const struct emitter *e);
+/* declares load states, and i where one is `looped` over; x[...] = what the series advances */
+void emit_series_vector(const struct emitter *e, bool looped);
 void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_at_by(const struct emitter *e, const char *function);   /* NAME_at, by NAME_function(s, u, tau, y) */
 void emit_at_start(const struct emitter *e);
-void emit_next_tap(const struct emitter *e, int input);           /* u is the next of its samples */
 int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
@@ -692,7 +686,7 @@ int  retuned_kilobytes(const struct emitter *e);                  /* of stack, b
 
 void emit_held_types(const struct emitter *e);
 void emit_held_member(const struct emitter *e);
-void emit_held_set(const struct emitter *e);
+int  held_leads(const struct emitter *e);
 void emit_nominal_factors(const struct emitter *e);              /* those that an instance begins with */
 void emit_held_declarations(const struct emitter *e);
 void banner_held(const struct emitter *e);

@@ -306,18 +306,7 @@ void emit_collocation_step(const struct emitter *e)
 	emit_step_function(e);
 }
 
-/* ---- between steps ---- */
-
 void emit_collocation_at(const struct emitter *e)
 {
-	bool relative = e->model->relative != NULL;
-	const char *y = relative ? "x" : "y";
-	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n", driven_parameter(e));
-	if (relative)
-		say(e, "    double x[$N_STATES];\n");
-	say(e, "    $n_between(s, %s, tau, %s);\n", u_argument(e), y);
-	if (relative)
-		say(e, "    $n_written(s, x, y);\n");
-	say(e, "}\n");
+	emit_at_by(e, "between");
 }

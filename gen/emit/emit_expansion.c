@@ -296,12 +296,5 @@ void emit_expansion_step(const struct emitter *e)
 
 void emit_expansion_at(const struct emitter *e)
 {
-	const char *y = e->model->relative ? "x" : "y";
-	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", driven_parameter(e));
-	say(e, "%s"
-	       "    $n_state_at(s, %s, tau, %s);\n", e->model->relative ? spell(e, "    double x[$N_STATES];\n") : "",
-	    e->system->inputs ? "u" : "NULL", y);
-	if (e->model->relative)
-		say(e, "    $n_written(s, x, y);\n");
-	close_function(e, "");
+	emit_at_by(e, "state_at");
 }

@@ -7,7 +7,7 @@ static const struct tuning *held(const struct emitter *e)
 	return e->model->held;
 }
 
-static int leads(const struct emitter *e)
+int held_leads(const struct emitter *e)
 {
 	return e->model->held ? e->model->leads.count : 0;
 }
@@ -29,27 +29,15 @@ void emit_held_member(const struct emitter *e)
 {
 	if (held(e))
 		say(e, "    $n_coeffs coeffs;    /* its own */\n");
-	if (leads(e))
+	if (held_leads(e))
 		say(e, "    pl_lead lead[%d];     /* what phases have gained where $n_use changed frequencies */\n",
-		    leads(e));
-}
-
-void emit_held_set(const struct emitter *e)
-{
-	if (leads(e))
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        pl_lead_start(&s->lead[i]);\n", leads(e));
+		    held_leads(e));
 }
 
 void emit_nominal_factors(const struct emitter *e)
 {
 	if (held(e) || e->kind->own_factors)
 		say(e, "    s->coeffs = $n_nominal;\n");
-}
-
-static bool starts_anew(const struct emitter *e)
-{
-	return e->kind->places && e->kind->places(e);
 }
 
 void emit_held_declarations(const struct emitter *e)
@@ -66,7 +54,7 @@ void emit_held_declarations(const struct emitter *e)
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
 	       "void   $n_use($n *s, const $n_coeffs *c);  /* from now on; state and time stay%s%s */\n"
 	       "extern const $n_coeffs $n_nominal;         /* of the spec's values: what $n_init starts with */\n\n",
-	    leads(e) ? ", and phases of sines in t" : "", starts_anew(e) ? "; the scheme starts anew" : "");
+	    held_leads(e) ? ", and phases of sines in t" : "", has_place(e) ? "; the scheme starts anew" : "");
 }
 
 void banner_held(const struct emitter *e)
@@ -97,18 +85,18 @@ void emit_held_nominal(const struct emitter *e)
 /* Angular frequencies of the sines that have a lead */
 static void emit_frequencies(const struct emitter *e)
 {
-	const struct form **rate = ARRAY(const struct form *, (size_t)leads(e));
-	for (int k = 0; k < leads(e); k++)
+	const struct form **rate = ARRAY(const struct form *, (size_t)held_leads(e));
+	for (int k = 0; k < held_leads(e); k++)
 		rate[k] = e->model->leads.lead[k].rate;
-	const struct reads reads = reads_of(e->model, leads(e), rate);
+	const struct reads reads = reads_of(e->model, held_leads(e), rate);
 	open_function(e, "Of sines, as params have them [rad/s]",
-		      "static void $n_frequencies(const $n *s, double slope[%d])", leads(e));
+		      "static void $n_frequencies(const $n *s, double slope[%d])", held_leads(e));
 	emit_param_locals(e, reads.param);
 	for (int i = 0; i < e->system->inputs; i++)
 		if (reads.input[i])
 			say(e, "    const double %s = %s;\n", input_name(e, i, 0), sample_kept(e, i));
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, leads(e), rate);
-	for (int k = 0; k < leads(e); k++)
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, held_leads(e), rate);
+	for (int k = 0; k < held_leads(e); k++)
 		tape_set(formulas_tape(f), format("slope[%d]", k), formula(f, rate[k]), 15, NULL);
 	emit_formulas(f, 4);
 	close_function(e, "");
@@ -120,11 +108,11 @@ void emit_held_retune(const struct emitter *e)
 		return;
 	if (e->model->retuned)
 		emit_retuned(e);
-	if (leads(e))
+	if (held_leads(e))
 		emit_frequencies(e);
 	const struct size sizes[] = {
-		{ "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL }, { "LEADS", leads(e) },
-		{ "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", starts_anew(e) }
+		{ "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL }, { "LEADS", held_leads(e) },
+		{ "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) }
 	};
 	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
 	say(e, "#include \"held.h\"\n");

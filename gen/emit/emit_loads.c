@@ -173,16 +173,9 @@ void emit_load_members(const struct emitter *e)
 		say(e, "    pl_growth growth[%d]; /* of the loads%s */\n", e->growths, when);
 }
 
-void emit_load_set(const struct emitter *e)
+const char *phase_rate_text(const struct emitter *e)
 {
-	if (e->phases)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        s->phase[i] = pl_turn_add($n_phase_start[i], pl_turn_at(&%sphase_rate[i], t));\n",
-		    e->phases, has_tuned_rates(e) ? "s->coeffs." : format("%s_", e->name));
-	for (int l = 0; l < e->system->loads; l++)
-		if (e->growth[l] >= 0)
-			say(e, "    s->growth[%d] = pl_growth_at(&$n_growth_rate[%d], %d, t);\n",
-			    e->growth[l], e->growth[l], mpq_sgn(e->system->load[l].wave->a) < 0);
+	return has_tuned_rates(e) ? "s->coeffs.phase_rate" : spell(e, "$n_phase_rate");
 }
 
 /* s->phase[i], or s->growth[i], gains what it does in one step, or `steps` times that */

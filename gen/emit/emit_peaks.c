@@ -118,18 +118,12 @@ void emit_peak_members(const struct emitter *e)
 		say(e, "    double peak[%d];       /* the largest sizes so far */\n", peak_outputs(e->model));
 }
 
-void emit_peak_set(const struct emitter *e)
-{
-	for (int i = 0; i < peak_outputs(e->model); i++)
-		say(e, "    s->peak[%d] = 0.0;\n", i);
-}
-
 void emit_peak_step(const struct emitter *e)
 {
 	if (!has_peaks(e))
 		return;
 	open_function(e, "x at the start of a step",
 		      "static void $n_begin_step(const $n *s, const double *u, double x[%d])", e->step->layout.size);
-	emit_series_vector(e);
+	emit_series_vector(e, false);
 	close_function(e, "u");
 }

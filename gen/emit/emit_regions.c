@@ -361,8 +361,7 @@ void emit_segment_end(const struct emitter *e)
 	if (!e->step->parts && has_guards(e) && regions_change(e))
 		say(e, "    s->segment = s->contact.region / %d;\n", regions_at_once(regions_of(e)));
 	else if (e->system->segments > 1)
-		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
-		       "        s->segment++;\n", e->system->segments - 1);
+		say(e, "    $n_pass_segments(s);\n");
 }
 
 static void emit_searched_step(const struct emitter *e)

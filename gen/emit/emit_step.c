@@ -29,15 +29,6 @@ static void emit_tap_slope(const struct emitter *e, int input)
 	say(e, "    s->slope[%d] = (%s) / %s;\n", input, tree(terms, term, 18), step_length(e));
 }
 
-void emit_next_tap(const struct emitter *e, int input)
-{
-	int hold = e->system->input[input].hold;
-	for (int c = 0; c + 1 < hold; c++)
-		say(e, "    s->past[%d][%d] = s->past[%d][%d];\n", input, c, input, c + 1);
-	say(e, "    s->past[%d][%d] = u[%d];\n"
-	       "    s->u[%d] = s->past[%d][%d];\n", input, hold - 1, input, input, input, (hold - 1) / 2);
-}
-
 /* `samples` steps at once: of inputs that are held or ramp */
 void emit_keep_inputs(const struct emitter *e, int samples)
 {
@@ -46,7 +37,7 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
 		if (e->system->input[i].hold > 1) {
 			emit_tap_slope(e, i);
-			emit_next_tap(e, i);
+			say(e, "    $n_next_sample(s, %d, u[%d]);\n", i, i);
 			continue;
 		}
 		if (e->system->input[i].hold)
@@ -184,14 +175,12 @@ static void emit_interrupted_step(const struct emitter *e, const char *segment, 
 	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->kind->own_factors ? "NULL, " : "";
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
 	       "        double y[$N_STATES];\n"
-	       "        int i;\n"
-	       "        %s$n_pass(s, %s%s, %sy);\n",
-	    segment, e->system->segments - 1, segment, h, result, u, h, whole);
-	emit_set_state(e, "y", "        ");
-	say(e, "    } else {\n"
+	       "        %s$n_pass(s, %s%s, %sy);\n"
+	       "        $n_keep_state(s, y);\n"
+	       "    } else {\n"
 	       "        $n_plain_step(s%s);\n"
 	       "    }\n",
-	    given_inputs(e) ? ", u" : "");
+	    segment, e->system->segments - 1, segment, h, result, u, h, whole, given_inputs(e) ? ", u" : "");
 	emit_step_end(e);
 }
 
@@ -212,9 +201,7 @@ static void emit_forced_changes(const struct emitter *e)
 static void emit_plain_changes(const struct emitter *e)
 {
 	emit_interrupted_step(e, "s->segment", "", "");
-	say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s)\n"
-	       "        s->segment++;\n",
-	    e->system->segments - 1, step_length(e));
+	say(e, "    $n_pass_segments(s);\n");
 }
 
 static void emit_changing_step(const struct emitter *e)

@@ -121,17 +121,16 @@ static void emit_leftover_now(const struct emitter *e)
 		say(e, "    %s\n", leftover_of_step(e));
 }
 
-void emit_series_vector(const struct emitter *e)
+void emit_series_vector(const struct emitter *e, bool looped)
 {
 	const struct layout *layout = &e->step->layout;
+	const bool whole = e->step->forced && e->system->segments == 1;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
-	say(e, "    int i;\n");
+	if (looped || layout->powers)
+		say(e, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
-	if (e->step->forced && e->system->segments > 1)
-		emit_get_kept_state(e, "x");
-	else
-		emit_get_state(e, "x");
+	say(e, "    $n_%s(s, x);\n", whole ? "kept" : "kept_state");
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
@@ -202,7 +201,7 @@ void emit_passing(const struct emitter *e)
 		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
 		      layout->powers ? "const double *left, " : "", forced ? "int whole, " : "");
 	say(e, "    double x[%d];\n", layout->size);
-	emit_series_vector(e);
+	emit_series_vector(e, true);
 	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        y[i] = x[i];\n"
@@ -254,6 +253,18 @@ void emit_at_start(const struct emitter *e)
 	       "    }\n");
 }
 
+void emit_at_by(const struct emitter *e, const char *function)
+{
+	const bool relative = e->model->relative != NULL;
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", driven_parameter(e));
+	if (relative)
+		say(e, "    double x[$N_STATES];\n");
+	say(e, "    $n_%s(s, %s, tau, %s);\n", function, e->system->inputs ? "u" : "NULL", relative ? "x" : "y");
+	if (relative)
+		say(e, "    $n_written(s, x, y);\n");
+	close_function(e, "");
+}
+
 /* Where the loads change their formula on the way */
 static void emit_passing_at(const struct emitter *e)
 {
@@ -281,7 +292,7 @@ static void emit_series_at(const struct emitter *e)
 		       "    double work[%d];\n", e->step->branches > 1 ? "" : "static ", layout->size, series->degree,
 		    series->halvings, slope_text(e), 2 * layout->size);
 	say(e, "    double x[%d];\n", layout->size);
-	emit_series_vector(e);
+	emit_series_vector(e, !e->model->relative);
 	say(e, "    %s;\n", blocks ? format("%s_pass_blocks(%s, tau, x)", e->name, slope_text(e))
 				    : "pl_series_advance(&series, tau, x, work)");
 	emit_hand_over(e);
@@ -340,22 +351,6 @@ static bool converts(const struct emitter *e)
 	return e->step->momenta || e->step->modal;
 }
 
-static void emit_conversion(const struct emitter *e)
-{
-	open_function(e, NULL, "static void $n_kept_state(const $n *s, double y[$N_STATES])");
-	if (e->step->forced || e->model->relative) {
-		say(e, "    int i;\n");
-		(e->step->forced ? emit_get_kept_state : emit_get_state)(e, "y");
-	} else {
-		say(e, "    $n_get(s, y);\n");
-	}
-	close_function(e, "");
-	open_function(e, NULL, "static void $n_keep_state($n *s, const double y[$N_STATES])");
-	say(e, "    int i;\n");
-	emit_set_state(e, "y", "    ");
-	close_function(e, "");
-}
-
 /* Of the states that have a low word, in its order; returns how many */
 static int emit_carried(const struct emitter *e)
 {
@@ -406,8 +401,6 @@ void emit_jump(const struct emitter *e)
 	emit_second_words(e);
 	emit_power_entries(e, entries, entry);
 	emit_pass_steps(e);
-	if (converts(e))
-		emit_conversion(e);
 	emit_leap_loads(e, &leap);
 	const struct size sizes[] = {
 		{ "STATES", e->system->states }, { "LOAD_STATES", loads },

@@ -433,7 +433,7 @@ static void emit_vector_now(const struct emitter *e)
 	say(e, "\n/* x now */\n"
 	       "static void $n_vector_now(const $n *s, const double u[], double x[%d])\n"
 	       "{\n", e->step->layout.size);
-	emit_series_vector(e);
+	emit_series_vector(e, false);
 	say(e, "    (void)u;\n"
 	       "}\n");
 }
@@ -477,13 +477,5 @@ void emit_retune(const struct emitter *e)
 
 void emit_tuned_at(const struct emitter *e)
 {
-	const bool inputs = e->system->inputs > 0, relative = e->model->relative != NULL;
-	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
-	       "{\n", driven_parameter(e));
-	if (relative)
-		say(e, "    double x[$N_STATES];\n");
-	say(e, "    $n_pass(s, %s, tau, %s);\n", inputs ? "u" : "NULL", relative ? "x" : "y");
-	if (relative)
-		say(e, "    $n_written(s, x, y);\n");
-	say(e, "}\n");
+	emit_at_by(e, "pass");
 }

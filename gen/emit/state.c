@@ -279,77 +279,9 @@ const char *of_step(const struct emitter *e, const char *table)
 	return e->kind->own_factors ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
 }
 
-/* s->y from a vector of states, nothing left of earlier rounding */
-void emit_set_state(const struct emitter *e, const char *vector, const char *indent)
+bool has_place(const struct emitter *e)
 {
-	bool rest = e->step->program->compensated;
-	if (e->step->modal) {
-		say(e, "%sfor (i = 0; i < $N_STATES; i++) {\n"
-		       "%s    s->set[i] = %s[i];\n"
-		       "%s    s->y[i] = $n_dot($n_to_modes[i], %s);\n"
-		       "%s}\n", indent, indent, vector, indent, vector, indent);
-		return;
-	}
-	say(e, "%sfor (i = 0; i < $N_STATES; i++)%s\n"
-	       "%s    s->y[i] = %s[i];\n", indent, rest ? " {" : "", indent, vector);
-	if (rest)
-		say(e, "%s    s->rest[i] = 0.0;\n"
-		       "%s}\n", indent, indent);
-	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i))
-			say(e, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
-	for (int i = 0; i < e->step->carries; i++)
-		say(e, "%ss->carry[%d] = 0.0;\n", indent, i);
-}
-
-/* y = z + f, f the forced part: what rounds off in z = y - f is kept in rest */
-void emit_set_forced_state(const struct emitter *e, const char *vector, const char *indent)
-{
-	say(e, "%s$n_forced(s, now);\n"
-	       "%sfor (i = 0; i < $N_STATES; i++) {\n"
-	       "%s    const double f = now[i], z = %s[i] - f, lost = z - %s[i];\n"
-	       "%s    s->y[i] = z;\n"
-	       "%s    s->rest[i] = (%s[i] - (z - lost)) - (f + lost);\n"
-	       "%s}\n", indent, indent, indent, vector, vector, indent, indent, vector, indent);
-	for (int i = 0; i < e->step->carries; i++)
-		say(e, "%ss->carry[%d] = 0.0;\n", indent, i);
-}
-
-/* A vector of states from s->y; what rounds off in z + f counts, so that it is what was set */
-void emit_get_state(const struct emitter *e, const char *vector)
-{
-	if (e->step->forced)
-		say(e, "    double now[$N_STATES];\n");
-	emit_get_kept_state(e, vector);
-	if (!e->step->forced)
-		return;
-	say(e, "    $n_forced(s, now);\n"
-	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        const double z = %s[i], sum = z + now[i], back = sum - z;\n"
-	       "        %s[i] = sum + (((z - (sum - back)) + (now[i] - back)) + %s);\n"
-	       "    }\n", vector, vector,
-	       e->step->program->compensated ? "s->rest[i]" : "(s->k == 0u ? s->rest[i] : 0.0)");
-}
-
-void emit_get_kept_state(const struct emitter *e, const char *vector)
-{
-	if (e->step->modal) {
-		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        %s[i] = s->k == 0u ? s->set[i] : $n_dot($n_from_modes[i], s->y);\n", vector);
-		return;
-	}
-	if (e->step->normal) {
-		say(e, "    if (s->k) {\n"
-		       "        $n_of_modes(s->which, s->eta, %s);\n"
-		       "        $n_of_modes(s->which, s->rate, %s + %d);\n"
-		       "        return;\n"
-		       "    }\n", vector, vector, e->step->normal->modes);
-	}
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        %s[i] = s->y[i];\n", vector);
-	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i))
-			say(e, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
+	return e->kind->places && e->kind->places(e);
 }
 
 bool has_unseen(const struct emitter *e)

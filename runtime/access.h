@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* access.h: a state as it is given and as it is kept: init, set, get, time, status, hold.  Included by the file of the
+ * model, which defines before it
+ *
+ *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
+ *     PL_TYPE                    the model, with members y, t0, k, with a status status, with low words rest or carry
+ *     PL_STATES, PL_INPUTS
+ *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set
+ *     PL_NORMAL                  so many normal modes, from which PL(of_modes)(which, mode, q) makes coordinates
+ *     PL_MOMENTA                 1: s->y is PL(mass)[] times a state
+ *     PL_FORCED                  1: s->y is without PL(forced)(s, now)
+ *     PL_KEPT, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
+ *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
+ *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
+ *     PL_LEADS, PL_PEAKS         members lead and peak
+ *     PL_ANCHORED                1: loads have an anchor: since, PL(drop_anchor)(s)
+ *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
+ *     PL_STATUS, PL_RANGES       1: member status; ranges of PL(range_state)[]: PL(range)[][2]
+ *     PL_PLACES                  1: PL(place)(s) finds what follows from a state that was set
+ *     PL_OWN                     1: member coeffs, which begins as PL(nominal)
+ *     PL_RAMPS, PL_TAPS          1: members slope and PL(hold); of inputs through PL(taps)[] + 1 samples at most, past
+ *     PL_H, PL_ELAPSED           step; time since t0 [s]
+ *     PL(initial)[], PL(initial_set)[]     the first state as it is kept; the same as written */
+#include "numbers.h"
+
+/* What is kept of a state, nothing left of earlier rounding */
+static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
+{
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+#if PL_MODAL
+        s->set[i] = y[i];
+        s->y[i] = PL(dot)(PL(to_modes)[i], y);
+#elif PL_MOMENTA
+        s->y[i] = PL(mass)[i] * y[i];
+#else
+        s->y[i] = y[i];
+#endif
+#if PL_KEPT
+        s->rest[i] = 0;
+#endif
+    }
+#if PL_CARRIES > 0
+    for (i = 0; i < PL_CARRIES; i++) {
+        s->carry[i] = 0;
+    }
+#endif
+}
+
+/* And back, without a forced part */
+static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
+{
+    int i;
+#if PL_NORMAL > 0
+    if (s->k > 0u) {
+        PL(of_modes)(s->which, s->eta, y);
+        PL(of_modes)(s->which, s->rate, y + PL_NORMAL);
+        return;
+    }
+#endif
+    for (i = 0; i < PL_STATES; i++) {
+#if PL_MODAL
+        y[i] = s->k == 0u ? s->set[i] : PL(dot)(PL(from_modes)[i], s->y);
+#elif PL_MOMENTA
+        y[i] = s->y[i] / PL(mass)[i];
+#else
+        y[i] = s->y[i];
+#endif
+    }
+}
+
+#if PL_FORCED
+/* The states as they are kept, their forced part added; what rounds off in the sum counts, so that it is what was set */
+static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
+{
+    real now[PL_STATES];
+    int i;
+    PL(kept_state)(s, x);
+    PL(forced)(s, now);
+    for (i = 0; i < PL_STATES; i++) {
+        const real z = x[i], sum = z + now[i], back = sum - z;
+#if PL_KEPT
+        const real rest = s->rest[i];
+#else
+        const real rest = s->k == 0u ? s->rest[i] : 0;
+#endif
+        x[i] = sum + (((z - (sum - back)) + (now[i] - back)) + rest);
+    }
+}
+
+/* x = z + f, f the forced part: what rounds off in z = x - f is kept in rest */
+static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
+{
+    real now[PL_STATES];
+    int i;
+    PL(forced)(s, now);
+    for (i = 0; i < PL_STATES; i++) {
+        const real f = now[i], z = x[i] - f, lost = z - x[i];
+        s->y[i] = z;
+        s->rest[i] = (x[i] - (z - lost)) - (f + lost);
+    }
+}
+#endif
+
+#if PL_SEGMENTS > 1
+/* Changes of the loads that are now, or past */
+static inline void PL(pass_segments)(PL_TYPE *s)
+{
+    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
+        s->segment++;
+    }
+}
+#endif
+
+/* ---- set ---- */
+
+/* What follows from t alone */
+static void PL(begin_time)(PL_TYPE *s, real t)
+{
+#if PL_PHASES > 0 || PL_GROWTHS > 0 || PL_LEADS > 0 || PL_PEAKS > 0
+    int i;
+#endif
+    s->t0 = t;
+    s->k = 0;
+#if PL_STATUS
+    s->status = 0;
+#endif
+#if PL_PHASES > 0
+    for (i = 0; i < PL_PHASES; i++) {
+        s->phase[i] = pl_turn_add(PL(phase_start)[i], pl_turn_at(&PL_PHASE_RATE[i], t));
+    }
+#endif
+#if PL_GROWTHS > 0
+    for (i = 0; i < PL_GROWTHS; i++) {
+        s->growth[i] = pl_growth_at(&PL(growth_rate)[i], PL(falls)[i], t);
+    }
+#endif
+#if PL_LEADS > 0
+    for (i = 0; i < PL_LEADS; i++) {
+        pl_lead_start(&s->lead[i]);
+    }
+#endif
+#if PL_PEAKS > 0
+    for (i = 0; i < PL_PEAKS; i++) {
+        s->peak[i] = 0;
+    }
+#endif
+#if PL_ANCHORED
+    s->since = 0;
+    PL(drop_anchor)(s);
+#endif
+#if PL_SEGMENTS > 1
+    s->segment = 0;
+    PL(pass_segments)(s);
+#endif
+}
+
+#if PL_RELATIVE
+/* From the states as written, and as they are kept */
+static void PL(begin_state)(PL_TYPE *s, real t, const real y[PL_STATES], const real x[PL_STATES])
+#else
+void PL(set)(PL_TYPE *s, real t, const real x[PL_STATES])
+#endif
+{
+    PL(keep_state)(s, x);
+#if PL_RELATIVE
+    {
+        int i;
+        for (i = 0; i < PL_STATES; i++) {
+            s->set[i] = y[i];
+#if PL_MOMENTA
+            s->from[i] = s->y[i] / PL(mass)[i]; /* momenta have been rounded: gains count from there */
+#else
+            s->from[i] = x[i];
+#endif
+        }
+    }
+#endif
+    PL(begin_time)(s, t);
+#if PL_FORCED
+    PL(keep_forced)(s, x);
+#endif
+#if PL_PLACES
+    PL(place)(s);
+#endif
+}
+
+#if PL_RELATIVE
+void PL(set)(PL_TYPE *s, real t, const real y[PL_STATES])
+{
+    real x[PL_STATES];
+    PL(keep)(y, x);
+    PL(begin_state)(s, t, y, x);
+}
+#endif
+
+/* The tables are read through pointers whose value no compiler knows: with AVX-512, gcc 12 copies a table that it knows
+ * by wide constants, and of {1, 1, 0, 0} it makes {1, 1, 1, 1}. */
+void PL(init)(PL_TYPE *s)
+{
+    const real *volatile from = PL(initial);
+#if PL_RELATIVE
+    const real *volatile whole = PL(initial_set);
+#endif
+#if PL_INPUTS > 0
+    int i;
+#if PL_TAPS > 0
+    int k;
+#endif
+    for (i = 0; i < PL_INPUTS; i++) {
+        s->u[i] = 0;
+#if PL_RAMPS
+        s->slope[i] = 0;
+#endif
+#if PL_TAPS > 0
+        for (k = 0; k < PL_TAPS; k++) {
+            s->past[i][k] = 0;
+        }
+#endif
+    }
+#endif
+#if PL_OWN
+    s->coeffs = PL(nominal);
+#endif
+#if PL_RELATIVE
+    PL(begin_state)(s, 0, whole, from);
+#else
+    PL(set)(s, 0, from);
+#endif
+}
+
+/* ---- get, time, status ---- */
+
+void PL(get)(const PL_TYPE *s, real y[PL_STATES])
+{
+#if PL_RELATIVE
+    real x[PL_STATES];
+#else
+    real *const x = y;
+#endif
+#if PL_FORCED
+    PL(kept)(s, x);
+#else
+    PL(kept_state)(s, x);
+#endif
+#if PL_RELATIVE
+    PL(written)(s, x, y);
+#endif
+}
+
+real PL(time)(const PL_TYPE *s)
+{
+    return s->t0 + PL_ELAPSED;
+}
+
+/* What is not finite is seen in the state now, in both words where it has two: a step has nothing to do for it, and none
+ * can pass over it. */
+int PL(status)(const PL_TYPE *s)
+{
+#if PL_RELATIVE || PL_MOMENTA
+    real y[PL_STATES];
+    int status;
+    PL(get)(s, y);
+    status = pl_not_finite(y, PL_STATES);
+#else
+    int status = pl_not_finite(s->y, PL_STATES);
+#endif
+#if PL_STATUS
+    status |= s->status;
+#endif
+#if PL_KEPT
+    status |= pl_not_finite(s->rest, PL_STATES);
+#endif
+    return status;
+}
+
+#if PL_RANGES > 0
+/* Whether the states are in their ranges, at the end of a step.  What is not a number has left none: PL_NOT_FINITE tells
+ * it. */
+static void PL(stay)(PL_TYPE *s)
+{
+    real y[PL_STATES];
+    int i;
+    PL(get)(s, y);
+    for (i = 0; i < PL_RANGES; i++) {
+        if (y[PL(range_state)[i]] < PL(range)[i][0] || y[PL(range_state)[i]] > PL(range)[i][1]) {
+            s->status |= PL_LEFT_RANGE;
+        }
+    }
+}
+#endif
+
+/* ---- samples ---- */
+
+#if PL_TAPS > 0
+/* u is the next sample of an input that goes through some before it */
+static void PL(next_sample)(PL_TYPE *s, int input, real u)
+{
+    const int taps = PL(taps)[input];
+    int k;
+    for (k = 0; k + 1 < taps; k++) {
+        s->past[input][k] = s->past[input][k + 1];
+    }
+    s->past[input][taps - 1] = u;
+    s->u[input] = s->past[input][(taps - 1) / 2];
+}
+#endif
+
+#if PL_RAMPS
+void PL(hold)(PL_TYPE *s, const real u[PL_INPUTS])
+{
+    int i;
+    for (i = 0; i < PL_INPUTS; i++) {
+#if PL_TAPS > 0
+        if (PL(taps)[i] > 1) {
+            PL(next_sample)(s, i, u[i]);
+            continue;
+        }
+#endif
+        s->u[i] = u[i];
+    }
+#if PL_PLACES && !PL_TAPS
+    if (s->k == 0u) {
+        PL(place)(s);
+    }
+#endif
+}
+#endif
+
+#include "undef.h"
