@@ -230,7 +230,6 @@ static void rewrite(struct work *w, struct file *f)
 {
 	if (has_inside(w, f))
 		file_rewrite(f, w->model->name, print_included);
-	file_rewrite(f, w->model->name, print_braces);
 	if (w->options.request.single)
 		file_rewrite(f, w->model->name, print_single);
 	file_rewrite(f, w->model->name, print_apart);

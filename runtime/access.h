@@ -70,7 +70,7 @@ static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
 }
 
 #if PL_FORCED
-/* The states as they are kept, their forced part added; what rounds off in the sum counts, so that it is what was set */
+/* With it: what rounds off in the sum counts, so that it is what was set */
 static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
 {
     real now[PL_STATES];
@@ -253,8 +253,8 @@ real PL(time)(const PL_TYPE *s)
     return s->t0 + PL_ELAPSED;
 }
 
-/* What is not finite is seen in the state now, in both words where it has two: a step has nothing to do for it, and none
- * can pass over it. */
+/* What is not finite is seen in the state now, in both words where it has two: a step has nothing to do for it, and
+ * none can pass over it. */
 int PL(status)(const PL_TYPE *s)
 {
 #if PL_RELATIVE || PL_MOMENTA
@@ -275,8 +275,8 @@ int PL(status)(const PL_TYPE *s)
 }
 
 #if PL_RANGES > 0
-/* Whether the states are in their ranges, at the end of a step.  What is not a number has left none: PL_NOT_FINITE tells
- * it. */
+/* Whether the states are in their ranges, at the end of a step.  What is not a number has left none, which
+ * PL_NOT_FINITE tells. */
 static void PL(stay)(PL_TYPE *s)
 {
     real y[PL_STATES];

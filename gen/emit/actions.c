@@ -193,8 +193,7 @@ static void emit_passes(const struct emitter *e)
 	const char *more = format("%s%s%s", which, u, e->step->layout.powers ? "NULL, " : "");
 	if (adds_driven(e))
 		say(e, "        $n rest = *s;\n"
-		       "        for (i = 0; i < $N_STATES; i++)\n"
-		       "            rest.y[i] = 0.0;\n");
+		       "        for (i = 0; i < $N_STATES; i++) { rest.y[i] = 0.0; }\n");
 	for (int t = 0; t < e->step->tables; t++) {
 		const struct table *table = e->step->branch[0].table[t];
 		if (table->Phi)

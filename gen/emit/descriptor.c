@@ -97,8 +97,7 @@ static void emit_allowed(const struct emitter *e)
 	say(e, "\nvoid $n_allowed(const $n *s, double y[$N_STATES])\n"
 	       "{\n"
 	       "    int i;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        y[i] = %ss->unit[i] > 0.0 ? %s / s->unit[i] : 0.0;\n"
+	       "    for (i = 0; i < $N_STATES; i++) { y[i] = %ss->unit[i] > 0.0 ? %s / s->unit[i] : 0.0; }\n"
 	       "}\n", has_floors(e) ? spell(e, "$n_floor[i] > 0.0 ? 0.0 : ") : "",
 	    shortest(round_rational(e->model->truncation.tolerance)));
 }

@@ -76,11 +76,10 @@ void emit_name_list(const struct emitter *e, const char *array, int count, const
 const char *low_text(mpq_srcptr q);                               /* what its rounding leaves out, rounded */
 const char *two_text(mpq_srcptr q);                               /* {hi, lo} */
 
-/* ---- included.c, braces.c, single.c, apart.c: C that was printed, printed again, in this order ---- */
+/* ---- included.c, single.c, apart.c: C that was printed, printed again, in this order ---- */
 
 typedef void rewriter(FILE *to, const char *text, const char *name); /* of a model of this name */
 rewriter print_included;        /* the runtime's algorithms in the place of the lines that include them, for double */
-rewriter print_braces;          /* around what an if, an else or a loop governs */
 rewriter print_single;          /* C for double as C for float */
 rewriter print_apart;           /* no local is called as the model */
 bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes, or a header? */

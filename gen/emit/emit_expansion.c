@@ -49,8 +49,7 @@ void emit_series_ahead(const struct emitter *e)
 		say(e, "    int i, k;\n"
 		       "    for (i = 0; i < $N_STATES; i++) {\n"
 		       "        gain[i] = c[%d][i];\n"
-		       "        for (k = %d; k > 0; k--)\n"
-		       "            gain[i] = gain[i] * theta + c[k][i];\n"
+		       "        for (k = %d; k > 0; k--) { gain[i] = gain[i] * theta + c[k][i]; }\n"
 		       "        gain[i] *= theta;\n"
 		       "    }\n", expansion(e)->order, expansion(e)->order - 1);
 	}

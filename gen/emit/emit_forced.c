@@ -7,7 +7,8 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 			 const struct coefficient *factor)
 {
 	const struct table *table = e->step->branch->whole;
-	const int size[] = { segments, table->states, table->columns }, count = segments * table->states * table->columns;
+	const int size[] = { segments, table->states, table->columns };
+	const int count = segments * table->states * table->columns;
 	double *value = ARRAY(double, (size_t)count);
 	for (int i = 0; i < count; i++)
 		value[i] = is_forced(e->step, i % table->columns) ? factor[i].value : 0;
@@ -29,11 +30,10 @@ static void emit_rebase(const struct emitter *e)
 	}
 	say(e, "};\n"
 	       "    int i, j;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            s->y[i] += $n_forced_change[s->segment][i][j] * load[j];\n"
-	       "}\n",
-	    count);
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        for (j = 0; j < %d; j++) { s->y[i] += $n_forced_change[s->segment][i][j] * load[j]; }\n"
+	       "    }\n"
+	       "}\n", count);
 }
 
 static void emit_forced_tables(const struct emitter *e)

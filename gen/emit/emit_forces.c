@@ -73,12 +73,11 @@ void add_summand(struct row_sum *s, const char *text)
 void say_row_sum(const struct emitter *e, const char *target, int rows, const struct row_sum *s)
 {
 	if (s->terms == 0)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        %s = 0.0;\n", rows, target);
+		say(e, "    for (i = 0; i < %d; i++) { %s = 0.0; }\n", rows, target);
 	for (int first = 0; first < s->terms; first += TERMS) {
 		int count = s->terms - first < TERMS ? s->terms - first : TERMS;
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        %s %s %s;\n", rows, target, first ? "+=" : "=", tree(count, s->term + first, 12));
+		say(e, "    for (i = 0; i < %d; i++) { %s %s %s; }\n",
+		    rows, target, first ? "+=" : "=", tree(count, s->term + first, 12));
 	}
 }
 
@@ -396,8 +395,7 @@ static void emit_combinations(const struct emitter *e, const struct combination 
 		const char *both = !made[k].velocity   ? position
 				   : !made[k].position ? velocity
 						       : format("%s + %s", position, velocity);
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        x%d[i] = %s;\n", m->width, k + 1, both);
+		say(e, "    for (i = 0; i < %d; i++) { x%d[i] = %s; }\n", m->width, k + 1, both);
 	}
 }
 

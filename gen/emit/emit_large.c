@@ -119,8 +119,7 @@ static void emit_column_sums(const struct emitter *e, const char *table, const c
 	       "        const double *const a = %s[j], *const b = %s[j + 1];\n"
 	       "        const double *const c = %s[j + 2], *const d = %s[j + 3];\n"
 	       "        const double p = %s[j], q = %s[j + 1], r = %s[j + 2], w = %s[j + 3];\n"
-	       "        for (i = 0; i < %d; i++)\n"
-	       "            z[i] += (a[i] * p + b[i] * q) + (c[i] * r + d[i] * w);\n"
+	       "        for (i = 0; i < %d; i++) { z[i] += (a[i] * p + b[i] * q) + (c[i] * r + d[i] * w); }\n"
 	       "    }\n",
 	    columns, COLUMNS_AT_ONCE, table, table, table, table, x, x, x, x, rows);
 }
@@ -157,8 +156,7 @@ static void emit_parameters(const struct emitter *e, const struct group *g, cons
 static void emit_acting(const struct emitter *e, const char *x, int to, int from, int count, int end)
 {
 	if (count > 0)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        %s[%s] = act[%s];\n",
+		say(e, "    for (i = 0; i < %d; i++) { %s[%s] = act[%s]; }\n",
 		    count, x, to ? format("%d + i", to) : "i", from ? format("%d + i", from) : "i");
 	for (int k = to + count; k < end; k++)
 		say(e, "    %s[%d] = 0.0;\n", x, k);
@@ -176,19 +174,16 @@ static void emit_columns_function(const struct emitter *e, const struct group *g
 		say(e, "    %sdouble (*const changing)[%d] = %s[s->segment];\n"
 		       "    double load[%d];\n", own_or_const(g), rows, group_table(e, g, "loads", index), loads);
 	say(e, "    int i, j;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        x[i] = s->y[%s];\n",
+	       "    for (i = 0; i < %d; i++) { x[i] = s->y[%s]; }\n",
 	    g->states, place);
 	emit_acting(e, "x", g->states, first, operands - g->states, columns);
 	emit_acting(e, "load", 0, 0, first, loads);
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        z[i] = 0.0;\n",
+	say(e, "    for (i = 0; i < %d; i++) { z[i] = 0.0; }\n",
 	    rows);
 	emit_column_sums(e, group_table(e, g, "columns", index), "x", rows, columns);
 	if (loads)
 		emit_column_sums(e, "changing", "load", rows, loads);
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        s->y[%s] %s z[i];\n"
+	say(e, "    for (i = 0; i < %d; i++) { s->y[%s] %s z[i]; }\n"
 	       "}\n",
 	    g->states, place, e->step->program->products_added ? "+=" : "=");
 }

@@ -150,7 +150,6 @@ void emit_modal_step(const struct emitter *e, const char *const *acting_text)
 		    driven_sum(e, count, at));
 	}
 	if (modal->reals)
-		say(e, "    for (i = %d; i < %d; i++)\n"
-		       "        s->y[i] = $n_turn[i] * s->y[i]%s;\n",
+		say(e, "    for (i = %d; i < %d; i++) { s->y[i] = $n_turn[i] * s->y[i]%s; }\n",
 		    2 * pairs, modal->states, driven_sum(e, count, "i"));
 }

@@ -249,8 +249,7 @@ static void emit_swing(const struct emitter *e)
 	for (int k = 0; k < count; k++)
 		if (is_there(e, k))
 			add_summand(&sum, spell(e, "$n_swing[which][%d][i] * swing[%d]", k, k));
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        force[i] += %s;\n", m->width, tree(sum.terms, sum.term, 20));
+	say(e, "    for (i = 0; i < %d; i++) { force[i] += %s; }\n", m->width, tree(sum.terms, sum.term, 20));
 	for (int k = 0; k < count; k += 2)
 		emit_next_term(e, k / 2, !is_there(e, k + 1));
 	close_function(e, "before");

@@ -94,8 +94,8 @@ static void emit_rows_of_block(const struct emitter *e)
 				       "    s->rest[%d] = rest%d;\n", i, i, i, i);
 		}
 		emit_step_end(e);
-		say(e, "    if (out)\n"
-		       "        $n_out(s, out%s);\n", m == 1 ? "" : format(" + %d * %s_OUTPUTS", m - 1, e->upper));
+		say(e, "    if (out) { $n_out(s, out%s); }\n",
+		    m == 1 ? "" : format(" + %d * %s_OUTPUTS", m - 1, e->upper));
 	}
 }
 
@@ -120,8 +120,7 @@ void emit_over_block(const struct emitter *e)
 				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
 	}
 	say(e, "    ");
-	say_wrapped(e, format("if (%s)\n", is_not_finite(e, "next", "")));
-	say(e, "        return 0;\n");
+	say_wrapped(e, format("if (%s) { return 0; }\n", is_not_finite(e, "next", "")));
 	emit_rows_of_block(e);
 	say(e, "    return 1;\n"
 	       "}\n");

@@ -259,9 +259,8 @@ static void emit_linear_loop(const struct emitter *part, const double *whole)
 	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
-		  "    for (i = 0; i < %d; i++)\n"
-		  "        s->y[$o_state[i]] = end[i];\n", part->system->states, part->step->layout.size,
-	    part->system->states);
+		  "    for (i = 0; i < %d; i++) { s->y[$o_state[i]] = end[i]; }\n",
+	    part->system->states, part->step->layout.size, part->system->states);
 }
 
 static const char **linear_operands(const struct emitter *part)
@@ -361,8 +360,7 @@ static void emit_linear_step(const struct emitter *part)
 					       : emit_linear_rows)(part, whole);
 	for (int i = 0; i < part->system->states; i++)
 		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
-	say(part, "    if (!(%s < %s))\n"
-		  "        s->status |= pl_not_finite(s->y, $N_STATES);\n",
+	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
 	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
 	close_function(part, "");
 }
@@ -420,8 +418,7 @@ static void emit_at_of_part(const struct emitter *part)
 	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    $o_search_step(s, tau, x, &contact, crossing);\n");
-	say(part, "    for (i = 0; i < %d; i++)\n"
-		  "        y[$o_state[i]] = x[i];\n", part->system->states);
+	say(part, "    for (i = 0; i < %d; i++) { y[$o_state[i]] = x[i]; }\n", part->system->states);
 	close_function(part, "");
 }
 

@@ -33,7 +33,7 @@ void emit_floors(const struct emitter *e)
 		value[i] = round_rational(floor);
 	}
 	mpq_clear(floor);
-	emit_array(e, "Of each state its absolute tolerance over the relative one, which counts beside its size; 0: none",
+	emit_array(e, "Of each state its absolute tolerance over the relative one: it counts beside its size; 0: none",
 		   "floor", 1, &size, value, NULL);
 }
 

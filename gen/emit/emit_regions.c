@@ -217,18 +217,15 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 static void emit_rests_in_x(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	say(e, "    for (i = 0; i < %s; i++)\n"
-	       "        x[%d + i] = s->rest[%s];\n", own_states(e), size, place_in_loop(e));
+	say(e, "    for (i = 0; i < %s; i++) { x[%d + i] = s->rest[%s]; }\n", own_states(e), size, place_in_loop(e));
 	if (size > e->system->states)
-		say(e, "    for (i = %d; i < %d; i++)\n"
-		       "        x[%d + i] = 0.0;\n", e->system->states, size, size);
+		say(e, "    for (i = %d; i < %d; i++) { x[%d + i] = 0.0; }\n", e->system->states, size, size);
 }
 
 void emit_region_vector(const struct emitter *e, bool step)
 {
 	const struct layout *layout = &e->step->layout;
-	say(e, "    for (i = 0; i < %s; i++)\n"
-	       "        x[i] = s->y[%s];\n", own_states(e), place_in_loop(e));
+	say(e, "    for (i = 0; i < %s; i++) { x[i] = s->y[%s]; }\n", own_states(e), place_in_loop(e));
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++) {
 			const char *operand = load_operand(e, l, k);

@@ -77,11 +77,10 @@ static void emit_rows(const struct emitter *e)
 	       "{\n"
 	       "    int cell;\n", samples ? " and its samples" : "", rows->columns ? rows->columns : 1,
 	    samples ? format(", const double u[%d]", samples) : "");
-	for (int first = 0; first < rows->count; first += rows->group) {
-		say(e, "    for (cell = 0; cell < %d; cell++)\n", rows->group * rows->outputs);
-		say(e, "        out[cell%s] = %s;\n", first ? format(" + %d", first * rows->outputs) : "",
+	for (int first = 0; first < rows->count; first += rows->group)
+		say(e, "    for (cell = 0; cell < %d; cell++) { out[cell%s] = %s; }\n",
+		    rows->group * rows->outputs, first ? format(" + %d", first * rows->outputs) : "",
 		    group_text(e, first));
-	}
 	close_function(e, rows->columns ? "" : "start");
 }
 
@@ -269,8 +268,7 @@ static void emit_leap(const struct emitter *e)
 		const char *operand = column[k].operand;
 		term[k] = format("%s_leap[%d][cell]%s%s", e->name, k, operand ? " * " : "", operand ? operand : "");
 	}
-	say(e, "    for (cell = 0; cell < $N_STATES; cell++)\n"
-	       "        s->y[cell] %s %s;\n",
+	say(e, "    for (cell = 0; cell < $N_STATES; cell++) { s->y[cell] %s %s; }\n",
 	    e->step->form == FORM_DELTA ? "+=" : "=", count ? tree(count, term, 22) : "0.0");
 }
 
@@ -306,8 +304,7 @@ static void emit_block(const struct emitter *e)
 	if (e->step->anchors)
 		say(e, "    s->since = $N_ROWS;\n"
 		       "    $n_drop_anchor(s);\n");
-	say(e, "    if (out != NULL)\n"
-	       "        $n_rows(start, %sout);\n", inputs ? "u, " : "");
+	say(e, "    if (out != NULL) { $n_rows(start, %sout); }\n", inputs ? "u, " : "");
 	close_function(e, "");
 }
 

@@ -154,12 +154,10 @@ void emit_step_end(const struct emitter *e)
 		emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");
 	if (e->step->anchors)
-		say(e, "    if (++s->since == %d)\n"
-		       "        $n_drop_anchor(s);\n",
+		say(e, "    if (++s->since == %d) { $n_drop_anchor(s); }\n",
 		    e->step->anchors->steps);
 	if (e->step->rest && e->step->rest->in_step)
-		say(e, "    if ((s->k & 63) == 0)\n"
-		       "        $n_rest(s);\n");
+		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
 	if (has_ranges(e))
 		say(e, "    $n_stay(s);\n");
 }

@@ -135,8 +135,7 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
 	if (layout->powers)
-		say(e, "    for (i = 0; i < %d; i++)\n"
-		       "        x[%d + i] = %s;\n",
+		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n",
 		    e->system->channels, layout->channel, e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
 }
 
@@ -203,8 +202,7 @@ void emit_passing(const struct emitter *e)
 	say(e, "    double x[%d];\n", layout->size);
 	emit_series_vector(e, true);
 	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        y[i] = x[i];\n"
+	       "    for (i = 0; i < $N_STATES; i++) { y[i] = x[i]; }\n"
 	       "%s}\n", forced ? "const int segment = " : "(void)", slope_text(e), forced ? "whole" : "0",
 	    forced ? "    return segment;\n" : "");
 }
@@ -240,8 +238,7 @@ void emit_hand_over(const struct emitter *e)
 	if (e->model->relative)
 		say(e, "    $n_written(s, x, y);\n");
 	else
-		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        y[i] = x[i];\n");
+		say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] = x[i]; }\n");
 }
 
 /* At the start of the step the state is what $n_get gives, to the last bit. */

@@ -447,8 +447,9 @@ static void emit_group_call(const struct emitter *e, const struct tuned_block *f
 		number += p->block[b].group->tuned;
 	const char *to = shape.rows ? format("c->%s[0]", tuned_table(e, first)) : "NULL";
 	const char *apart = shape.changing ? format("c->loads%d[0][0]", first->index) : "NULL";
-	say(e, "    if (status == 0)\n"
-	       "        status = $n_retune_group(&$n_block_group[%d], params, h, value, %s, %s, work);\n",
+	say(e, "    if (status == 0) {\n"
+	       "        status = $n_retune_group(&$n_block_group[%d], params, h, value, %s, %s, work);\n"
+	       "    }\n",
 	    number, to, apart);
 }
 

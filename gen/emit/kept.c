@@ -120,14 +120,12 @@ void emit_conversions(const struct emitter *e)
 	       "{\n"
 	       "    double d[$N_STATES];\n"
 	       "    int i;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        d[i] = x[i] - s->from[i];\n");
+	       "    for (i = 0; i < $N_STATES; i++) { d[i] = x[i] - s->from[i]; }\n");
 	for (int order = 0; order < 2; order++) {
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
 		emit_gains(e, order, at + order * coords, kept + order * coords);
 	}
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        y[i] += s->set[i];\n");
+	say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] += s->set[i]; }\n");
 	for (int order = 0; order < 2; order++)
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
 	say(e, "}\n");

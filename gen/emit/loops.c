@@ -165,12 +165,9 @@ void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *
 
 void emit_combination_loop(const struct emitter *e, const struct action *a)
 {
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        left%d[i] = ", e->model->channels, a->target);
-	if (a->minus == NONE)
-		say(e, "2.0 * left%d[i];\n", a->plus);
-	else
-		say(e, "left%d[i] %c left%d[i];\n", a->plus, a->added ? '+' : '-', a->minus);
+	say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->channels, a->target,
+	    a->minus == NONE ? format("2.0 * left%d[i]", a->plus)
+			     : format("left%d[i] %c left%d[i]", a->plus, a->added ? '+' : '-', a->minus));
 }
 
 void emit_sum_loop(const struct emitter *e, const struct action *a)
@@ -180,8 +177,7 @@ void emit_sum_loop(const struct emitter *e, const struct action *a)
 	if (a->flow != NONE && !flows_apart(e))
 		emit_flow_loop(e, a->flow, false, target, "    ");
 	else
-		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        %s[i] = %s;\n", target,
+		say(e, "    for (i = 0; i < $N_STATES; i++) { %s[i] = %s; }\n", target,
 		    a->flow != NONE ? format("flow%d[i]", a->flow) : format("stage%d[i]", a->plain));
 	for (int k = 0; k < a->kernels; k++) {
 		const struct kernel *kernel = &table[a->kernel[k].table]->wanted->kernel[a->kernel[k].kernel];
@@ -189,8 +185,7 @@ void emit_sum_loop(const struct emitter *e, const struct action *a)
 		    matrix_text(e, kernel->name), a->kernel[k].left, target);
 	}
 	if (a->target == STAGE_STATE)
-		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        s->y[i] = next[i];\n");
+		say(e, "    for (i = 0; i < $N_STATES; i++) { s->y[i] = next[i]; }\n");
 }
 
 const char *vector_name(int stage)

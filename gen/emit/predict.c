@@ -86,11 +86,9 @@ void emit_predictor(const struct emitter *e)
 	       "        }\n"
 	       "        %s\n"
 	       "        $n_slope_of(%sz, left, dz);\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            sum[i] += weight[k] * dz[i];\n"
+	       "        for (i = 0; i < $N_STATES; i++) { sum[i] += weight[k] * dz[i]; }\n"
 	       "    }\n", driven ? " + (k < 2 ? middle[i] : last[i])" : "",
 	    leftover_call(e, "k < 2 ? half : end", "y", "left", FROM_INSIDE), many_operators(e) ? "which, " : "");
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        y[i] = s->y[i] + tau / 6.0 * sum[i]%s;\n"
+	say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] = s->y[i] + tau / 6.0 * sum[i]%s; }\n"
 	       "}\n", driven ? " + last[i]" : "");
 }

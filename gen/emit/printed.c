@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* C that was printed, read again: what the rewriters (float, locals apart, braces) have in common. They know how
+/* C that was printed, read again: what the rewriters (float, locals apart) have in common. They know how
  * emitters write: strings have no escapes, and a line of the preprocessor begins in its first column. */
 #include "emit/emit.h"
 

@@ -347,12 +347,11 @@ int size_of_vector(const struct emitter *e)
 
 void emit_state_of_x(const struct emitter *e)
 {
-	bool rest = keeps_rest(e);
-	say(e, "    for (i = 0; i < %s; i++)%s\n"
-	       "        s->y[%s] = x[i];\n", own_states(e), rest ? " {" : "", place_in_loop(e));
-	if (rest)
-		say(e, "        s->rest[%s] = x[%d + i];\n"
-		       "    }\n", place_in_loop(e), e->step->layout.size);
+	say(e, "    for (i = 0; i < %s; i++) {\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
+	if (keeps_rest(e))
+		say(e, "        s->rest[%s] = x[%d + i];\n", place_in_loop(e), e->step->layout.size);
+	say(e, "    }\n");
 }
 
 const char **listed_twice(int count, const char *const *text)

@@ -39,7 +39,7 @@ done
 for spec in sdcsf oscillator; do
 	make ${spec}_batch models/$spec.spec --batch
 done
-for spec in sdcsf gear1 pendulum; do
+for spec in sdcsf gear1 pendulum oscillator quarter_car_bumps; do
 	make ${spec}_bundle_x models/$spec.spec --bundle
 done
 make tuned_x tests/tunable/changes.spec
