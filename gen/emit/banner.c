@@ -46,7 +46,7 @@ static void banner_poles(const struct emitter *e)
 }
 
 /* One sentence, its lines broken between words */
-static void banner_sentence(const struct emitter *e, const char *text)
+static void banner_words(const struct emitter *e, const char *text)
 {
 	enum { WIDTH = 110 };
 	size_t column = 2;
@@ -64,12 +64,17 @@ static void banner_sentence(const struct emitter *e, const char *text)
 	say(e, "\n");
 }
 
+#define banner_sentence(e, ...) banner_words(e, format(__VA_ARGS__))
+
+#define region_number \
+	"A region's number is the sum of its intervals, each times the product of the numbers of intervals before it."
+
 /* What the scheme is; nothing of exact */
 static void banner_scheme(const struct emitter *e)
 {
 	const struct model *shown = e->step->shown->model;
 	if (e->model->scheme != SCHEME_EXACT)
-		banner_sentence(e, scheme_note(e->model->scheme, order_of_step(e->step)));
+		banner_sentence(e, "%s", scheme_note(e->model->scheme, order_of_step(e->step)));
 	if (loses_order(shown))
 		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
 		    printable(smoothness_text(shown)));
@@ -88,22 +93,14 @@ static void banner_growth(const struct emitter *e)
 /* Which modes are kept, and what is lost at most */
 static void banner_shortening(const struct emitter *e)
 {
-	enum { WIDTH = 100 };
 	const struct model *model = e->model;
-	const char *line = format(" * From the start and under the loads%s outputs lose at most",
-				  model->system.inputs ? ", inputs 0," : "");
-	say(e, " * Modes %s of %d are kept; %s.\n", mode_numbers(model->shortened, true),
-	    modes_of_model(model->shortened), statics_text(model));
-	for (int i = 0; i < model->outputs; i++) {
-		const char *loss = loss_text(model, i);
-		if (strlen(line) + strlen(loss) > WIDTH) {
-			say(e, "%s\n", line);
-			line = " *    ";
-		}
-		line = format("%s %s%s", line, loss,
-			      i + 1 < model->outputs ? "," : " (sums of |residues|, for all time).");
-	}
-	say(e, "%s\n", line);
+	const char *lost = "";
+	for (int i = 0; i < model->outputs; i++)
+		lost = format("%s%s%s", lost, i ? ", " : "", loss_text(model, i));
+	banner_sentence(e, "Modes %s of %d are kept; %s. From the start and under the loads%s outputs lose at most %s "
+			"(sums of |residues|, for all time).", mode_numbers(model->shortened, true),
+			modes_of_model(model->shortened), statics_text(model), model->system.inputs ? ", inputs 0," :
+			"", lost);
 }
 
 void banner_linear(const struct emitter *e)
@@ -117,20 +114,6 @@ void banner_linear(const struct emitter *e)
 	if (e->model->shortened)
 		banner_shortening(e);
 	banner_growth(e);
-}
-
-/* One line for each equation that has a leftover, as far as they are few and short */
-static void banner_left(const struct emitter *e, const struct model *model)
-{
-	enum { SHOWN = 6, WIDTH = 90 };
-	for (int c = 0; c < model->channels && c < SHOWN; c++) {
-		const char *text = form_text(model, model->operator[0].left[c]);
-		say(e, " *     %.*s%s  in the equation of %s\n", WIDTH, printable(text),
-		    strlen(text) > WIDTH ? " ..." : "",
-		    model->coord_name[coordinate_of_row(model, model->channel_row[c])]);
-	}
-	if (model->channels > SHOWN)
-		say(e, " *     and so in %d more equations\n", model->channels - SHOWN);
 }
 
 static const char *operator_text(const struct model *model)
@@ -147,9 +130,9 @@ void banner_leftover(const struct emitter *e)
 	banner_scheme(e);
 	say(e, " * y' = A y + loads + inputs + r(t, y). A: the %s%s.\n", operator_text(model),
 	    e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
-	say(e, " * Exact: A%s, each constant correctly rounded; approximated: r, which is\n",
-	    model->loads_left ? " and the inputs" : ", the loads and the inputs");
-	banner_left(e, model);
+	say(e, " * Exact: A%s, each constant correctly rounded; approximated: r, a force on %d equation%s.\n",
+	    model->loads_left ? " and the inputs" : ", the loads and the inputs", model->channels,
+	    model->channels == 1 ? "" : "s");
 	banner_growth(e);
 }
 
@@ -163,13 +146,8 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
 		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
 	}
-}
-
-static void banner_series_regions(const struct emitter *e, const struct expansion *x)
-{
 	if (regions_of_series(x))
-		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
-				   "numbers of intervals before it.");
+		banner_sentence(e, region_number);
 }
 
 /* From crossing to crossing */
@@ -177,22 +155,18 @@ void banner_cut(const struct emitter *e)
 {
 	const struct cut *cut = e->step->cut;
 	banner_leftover(e);
-	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing. Where an expression passes "
-			   "a breakpoint is the first root of the cubic through its values and slopes at both ends of "
-			   "a step, found before it is stepped over; there the formulas change, and the step goes on.");
-	if (cut->certain < 1)
-		banner_sentence(e, "A pole turns by more than 2 in a step: one whose cubic comes near a breakpoint is "
-				   "made in parts so short that no pole turns by more than 1 where one is passed.");
+	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
+			"cubic through an expression's values and slopes at both ends; there the formulas change.");
 	banner_breakpoints(e, cut->look);
-	banner_series_regions(e, cut->look);
-	banner_sentence(e, format("The parts of such a step go by scheme etdrk4, whatever the scheme, with e^{A tau} "
-				  "of each part, made by the target: some %d KB of stack.", cut->kilobytes));
-	banner_sentence(e, format("Costs below are of a step without a crossing; the look for one takes %d "
-				  "multiplications and %d additions more.", cut->multiplications, cut->additions));
+	banner_sentence(e, "Parts of such a step%s go by scheme etdrk4, with e^{A tau} made by the target: some %d KB "
+			"of stack. The look takes %d multiplications and %d additions beside the costs below.",
+			cut->certain < 1 ? ", so short that no pole turns by more than 1," : "", cut->kilobytes,
+			cut->multiplications, cut->additions);
 }
 
 static void tell_no_phi(const struct emitter *e)
 {
+	say(e, " * What rounding takes from the state is kept in rest.\n");
 	if (e->step->shown->no_phi)
 		say(e, " * There is no Phi: %s.\n", e->step->shown->no_phi);
 }
@@ -224,31 +198,19 @@ static void banner_contacts(const struct emitter *e)
 		banner_impacts(e);
 }
 
-/* What the series is of, how long a step is */
 /* What chooses formulas by the state */
 static void banner_divided(const struct emitter *e)
 {
 	const struct expansion *x = e->step->divided;
 	if (!x)
 		return;
-	banner_sentence(e, !e->step->collocation
-		? "The state chooses formulas: a series is of those between two crossings. Where an expression passes "
-		  "a breakpoint is the first root of its own series, found before it is stepped over; there the series "
-		  "ends, and the next one begins."
-		: format("The state chooses formulas: an internal step is of those between two crossings. Where an "
-			 "expression passes a breakpoint is the first root of its %s, found before it is stepped over; "
-			 "there the step ends%s, and the next one begins.",
-			 e->step->expansion ? "own series, or of its polynomial through the nodes"
-					    : "polynomial through the start and the nodes",
-			 e->step->expansion ? ", one of the collocation made anew with that length"
-					    : ", made anew with that length"));
+	banner_sentence(e, "The state chooses formulas: %s is of those between two crossings. Where an expression "
+			"passes a breakpoint is the first root of its %s, found before it is stepped over; costs "
+			"below are without the search.", e->step->collocation ? "an internal step" : "a series",
+			!e->step->collocation ? "own series" : e->step->expansion ? "own series, or of its polynomial "
+			"through the nodes" : "polynomial through the start and the nodes");
 	banner_breakpoints(e, x);
 	banner_contacts(e);
-	banner_series_regions(e, x);
-	banner_sentence(e, !e->step->collocation
-		? "Costs below are of one series, without the search on it; a crossing takes another one."
-		: "Costs below are without the search; a crossing takes another internal step, of the collocation "
-		  "two.");
 }
 
 /* Where errors are measured otherwise than by the largest size of a state */
@@ -260,8 +222,8 @@ static void banner_floors(const struct emitter *e)
 			list = format("%s%s%s %s", list, *list ? ", " : "", e->model->state_name[i],
 				      readable_text(e->model->truncation.absolute[i]));
 	if (*list)
-		banner_sentence(e, format("Beside the tolerance of their size now states may be off by an absolute "
-					  "one: %s.", list));
+		banner_sentence(e, "Beside the tolerance of their size now states may be off by an absolute one: %s.",
+				list);
 }
 
 /* The ranges of states */
@@ -274,8 +236,8 @@ static void banner_ranges(const struct emitter *e)
 			      written->state_name[written->range[i].state], readable_text(written->range[i].low),
 			      readable_text(written->range[i].high));
 	if (*list)
-		banner_sentence(e, format("%s_status says PL_LEFT_RANGE once a state is outside at the end of a "
-					  "step: %s.", e->name, list));
+		banner_sentence(e, "%s_status says PL_LEFT_RANGE once a state is outside at the end of a step: %s.",
+				e->name, list);
 }
 
 void banner_expanded(const struct emitter *e)
@@ -283,27 +245,19 @@ void banner_expanded(const struct emitter *e)
 	const struct truncation *truncation = &e->model->truncation;
 	const char *tolerance = readable_text(truncation->tolerance);
 	banner_scheme(e);
-	if (truncation->adaptive)
-		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state "
-		       "so far:\n"
-		       " * %s, or a part of h, of which there are %d at most.\n",
-		    tolerance, e->system->inputs ? "h" : "several h, whose states the one series gives",
-		    truncation->substeps);
-	else if (mpq_sgn(truncation->tolerance) != 0)
-		say(e, " * One way through, whatever the numbers are; where the last two terms are above %s of the "
-		       "largest value\n"
-		       " * of a state so far, $n_status says PL_INACCURATE.\n", tolerance);
-	else
-		say(e, " * One way through, whatever the numbers are; no %s looks at its error.\n",
-		    spans_steps(e) ? "expansion" : "step");
+	banner_sentence(e, "%s", truncation->adaptive ? format("Each step is as long as its last two terms are below "
+			"%s of the largest value of each state so far: %s, or a part of h, of which there are %d at "
+			"most.", tolerance, e->system->inputs ? "h" : "several h, whose states the one series gives",
+			truncation->substeps) : mpq_sgn(truncation->tolerance) != 0 ? format("One way through, "
+			"whatever the numbers are; where the last two terms are above %s of the largest value of a "
+			"state so far, %s_status says PL_INACCURATE.", tolerance, e->name) : "One way through, "
+			"whatever the numbers are; nothing looks at the error.");
 	banner_floors(e);
 	if (spans_steps(e))
-		say(e, " * One expansion is over %d steps, and its error is that of a step of %d h; those before the "
-		       "last are values of\n"
-		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of "
-		       "such values.\n", truncation->over, truncation->over);
+		banner_sentence(e, "One expansion is over %d steps, with the error of one of %d h; those before the "
+				"last are values of its series. Costs are a step's share.", truncation->over,
+				truncation->over);
 	banner_divided(e);
-	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }
 
@@ -312,23 +266,20 @@ void banner_collocated(const struct emitter *e)
 {
 	const struct truncation *truncation = &e->model->truncation;
 	banner_scheme(e);
-	say(e, " * %s%d stages, of order %d; an internal step is as long as its error is below %s of the largest "
-	       "value of\n"
-	       " * each state so far: several h, whose states its polynomial gives, or a part of h, of which %d are "
-	       "tried "
-	       "at most.\n", e->step->expansion ? "The collocation: " : "", truncation->stages,
-	    2 * truncation->stages - 1, readable_text(truncation->tolerance), truncation->substeps);
+	banner_sentence(e, "%s%d stages, of order %d; an internal step is as long as its error is below %s of the "
+			"largest value of each state so far: several h, whose states its polynomial gives, or a part "
+			"of h, of which %d are tried at most.", e->step->expansion ? "The collocation: " : "",
+			truncation->stages, 2 * truncation->stages - 1, readable_text(truncation->tolerance),
+			truncation->substeps);
 	banner_floors(e);
-	say(e, splits(e) ? " * Newton's method with the Jacobian of its start, by the modes of its stages: one real "
-			   "and %d "
-			   "complex systems of %d.\n"
-			 : " * Newton's method with the Jacobian at each node: %d stages by %d unknowns.\n",
-	    splits(e) ? (truncation->stages - 1) / 2 : truncation->stages, e->step->motion->coords);
+	banner_sentence(e, splits(e) ? "Newton's method with the Jacobian of its start, by the modes of its stages: "
+			"one real and %d complex systems of %d." : "Newton's method with the Jacobian at each node: "
+			"%d stages by %d unknowns.", splits(e) ? (truncation->stages - 1) / 2 : truncation->stages,
+			e->step->motion->coords);
 	if (e->step->expansion)
 		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
 		    e->step->iteration.multiplications, e->step->iteration.additions, e->step->iteration.calls);
 	banner_divided(e);
-	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }
 
@@ -338,18 +289,17 @@ void banner_normal(const struct emitter *e)
 	const struct normal *m = e->step->normal;
 	const struct model *model = e->model;
 	banner_scheme(e);
-	banner_sentence(e, format("Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
-				  operators_of_modes(e->step)));
-	banner_sentence(e, format("Exact: %s; approximated, by polynomials in time: all %s forces on the modes, which "
-				  "are V^T times", exact_in_modes(e->step), model->split->waves ? "other" : "these"));
-	banner_left(e, model);
-	banner_sentence(e, format("Step: %s.", course_of_modes(e->step)));
-	banner_sentence(e, format("Stability: %s.", stability_of_modes(e->step)));
-	banner_sentence(e, format("Tables: at most %d numbers, of which a step reads those of one operator.",
-				  numbers_of_modes(e->step)));
+	banner_sentence(e, "Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
+			operators_of_modes(e->step));
+	banner_sentence(e, "Exact: %s; approximated, by polynomials in time: all %s forces on the modes.",
+			exact_in_modes(e->step), model->split->waves ? "other" : "these");
+	banner_sentence(e, "Step: %s.", course_of_modes(e->step));
+	banner_sentence(e, "Stability: %s.", stability_of_modes(e->step));
+	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
+			numbers_of_modes(e->step));
 	if (e->system->segments > 1)
-		banner_sentence(e, format("Where functions of time change their formula, the method starts anew%s.",
-					  m->settled ? "; after the last change steps are exact" : ""));
+		banner_sentence(e, "Where functions of time change their formula, the method starts anew%s.", m->settled
+				? "; after the last change steps are exact" : "");
 }
 
 static void banner_expressions(const struct emitter *e)
@@ -365,36 +315,10 @@ static void banner_expressions(const struct emitter *e)
 	}
 }
 
-/* Of regions beside a fast pole: the shortest piece of a step; 0: none is shorter than the step */
-static int most_halvings(const struct step *step)
-{
-	int most = 0;
-	for (int k = 0; k < step->branches; k++)
-		most = step->branch[k].halvings > most && step->branch[k].rungs > 0 ? step->branch[k].halvings : most;
-	for (int p = 0; p < step->parts; p++) {
-		int own = most_halvings(step->part[p]);
-		most = own > most ? own : most;
-	}
-	return most;
-}
-
-static void banner_pieces(const struct emitter *e)
-{
-	long most = e->step->parts ? 0 : most_of_regions(e->step);
-	for (int p = 0; p < e->step->parts; p++)
-		most += most_of_regions(e->step->part[p]);
-	if (most_halvings(e->step) > 0)
-		say(e, " * The fastest pole turns far in a step: crossings are looked for in pieces of h/%ld, and "
-		       "longer ones lead there\n"
-		       " * that a bound shows clear; of a step that is not clear as a whole, at most %ld "
-		       "multiplications.\n", 1l << most_halvings(e->step), most);
-}
-
 static void banner_region_number(const struct emitter *e)
 {
-	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
-	       " * A region's number is the sum of its intervals, "
-	       "each times the product of the numbers of intervals before it.\n");
+	say(e, " * The poles above are those of the terms that are linear everywhere.\n");
+	banner_sentence(e, region_number);
 }
 
 /* Regions, and what each expression is compared with */
@@ -420,18 +344,11 @@ void banner_regions(const struct emitter *e)
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);
-	if (e->step->swift)
-		say(e, " * A step is one product where a bound shows it clear of every breakpoint; up to %d "
-		       "crossings that are\n"
-		       " * certain go by the model's own Taylor polynomials, of degree %d; all else by the "
-		       "search.\n",
-		    MOST_SWIFT, e->step->swift_degree);
-	else if (e->step->clears)
-		say(e, " * A step is one product where a bound shows it clear of every breakpoint; all else goes by "
-		       "the search.\n");
-	else
-		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
-	banner_pieces(e);
+	banner_sentence(e, "%s", e->step->swift ? format("A step is one product where a bound shows it clear of every "
+			"breakpoint; up to %d crossings that are certain go by the model's own Taylor polynomials, of "
+			"degree %d; all else by the search.", MOST_SWIFT, e->step->swift_degree) : e->step->clears ?
+			"A step is one product where a bound shows it clear of every breakpoint; all else goes by the "
+			"search." : format("Every step goes by the search: %s.", e->step->searches));
 	banner_region_number(e);
 }
 
@@ -469,11 +386,9 @@ void banner_parts(const struct emitter *e)
 		swift = swift || e->step->part[p]->swift;
 	}
 	if (swift)
-		say(e, " * A step of a part is one product where a bound shows it clear of every breakpoint; up to %d "
-		       "crossings that\n"
-		       " * are certain go by the part's own Taylor polynomials; all else by the search.\n",
-		    MOST_SWIFT);
-	banner_pieces(e);
+		banner_sentence(e, "A step of a part is one product where a bound shows it clear of every breakpoint; "
+				"up to %d crossings that are certain go by the part's own Taylor polynomials; all "
+				"else by the search.", MOST_SWIFT);
 	banner_region_number(e);
 }
 
@@ -514,17 +429,16 @@ static void banner_modes(const struct emitter *e)
 {
 	const struct modal *modal = e->step->modal;
 	const char *unit = e->model->asked.single ? "2^-24" : "2^-53";
-	say(e, " * Modal: %d pairs of modes turned and damped, %d real ones; residues enclosed, each number rounded "
-	       "once.\n", modal->pairs, modal->reals);
-	if (e->model->asked.form == FORM_AUTO)
-		say(e, " * It is the cheapest for so few outputs; --form delta or --form direct steps the states.\n");
+	const int lost = e->system->states / 8 + 5;
+	banner_sentence(e, "Modal: %d pairs of modes turned and damped, %d real ones; residues enclosed, each number "
+			"rounded once.%s", modal->pairs, modal->reals, e->model->asked.form == FORM_AUTO ? " It is "
+			"the cheapest for so few outputs; --form delta or --form direct step the states." : "");
 	if (modal->output)
 		say(e, " * A row of outputs: %d multiplications.\n", e->system->states * e->model->outputs);
-	say(e, " * A step rounds a mode by 3 %s of its amplitude at most, what it reads of loads and inputs apart; "
-	       "an output by\n"
-	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what\n"
-	       " * a state itself has in the modes, up to %.3g times its size, %d %s are rounding.\n",
-	    unit, e->system->states / 8 + 5, unit, modal->condition, 2 * (e->system->states / 8 + 5), unit);
+	banner_sentence(e, "A step rounds a mode by 3 %s of its amplitude at most, what it reads of loads and inputs "
+			"apart; an output by %d %s of the sum of its modes' sizes. States become modes in set and "
+			"states again in get: of what a state itself has in the modes, up to %.3g times its size, %d "
+			"%s are rounding.", unit, lost, unit, modal->condition, 2 * lost, unit);
 }
 
 /* What the form does to rounding, and what rounding has done to its constants */
@@ -562,41 +476,24 @@ static void banner_form(const struct emitter *e)
 /* What is left out of the step, and what it costs where it comes back */
 static void banner_forced(const struct emitter *e)
 {
-	enum { SHOWN = 4 };
 	const struct forced *forced = e->step->forced;
-	const char *list = "";
 	int count = 0;
-	for (int l = 0; l < e->system->loads; l++) {
-		const struct load *load = &e->system->load[l];
-		if (forced->load[l] && count++ < SHOWN)
-			list = format("%s%s%s", list, *list ? ", " : "",
-				      column_text(load, load->columns - 1 - oscillates(load->wave)));
-	}
-	say(e, " * The step would round to what %s%s drive%s: "
-	       "the state is kept less their forced part, which is added where it is\n"
-	       " * read (get, out, at): %d multiplications, %d additions.\n", list,
-	       count > SHOWN ? format(" and %d more loads", count - SHOWN) : "", count == 1 ? "s" : "",
-	       forced->multiplications, forced->additions);
-}
-
-/* What is counted */
-static const char *step_note_of(const struct emitter *e)
-{
-	const char *note = e->kind->step_note ? e->kind->step_note : "";
-	return most_halvings(e->step) > 0 ? " * A step that a bound shows clear of every breakpoint, as a whole:\n"
-					  : note;
+	for (int l = 0; l < e->system->loads; l++)
+		count += forced->load[l];
+	say(e, " * The state is kept less what %d load%s sustain%s: added where it is read, by %d multiplications, %d "
+	       "additions.\n", count, count == 1 ? "" : "s", count == 1 ? "s" : "", forced->multiplications,
+	    forced->additions);
 }
 
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	if (e->step->collocation)
-		say(e, " * %s:\n", e->step->expansion ? "One series, which may serve several steps"
-						       : "One iteration of Newton's method, of which an internal step "
-							 "takes two "
-							 "to four");
-	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", step_note_of(e),
-	    readable_text(e->model->h), step_form_text(e->step), program->multiplications, program->additions);
+		banner_sentence(e, e->step->expansion ? "One series, which may serve several steps:"
+				: "One iteration of Newton's method, of which an internal step takes two to four:");
+	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions",
+	    e->kind->step_note ? e->kind->step_note : "", readable_text(e->model->h), step_form_text(e->step),
+	    program->multiplications, program->additions);
 	if (e->step->anchors)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
 		    e->step->anchors->steps, program->wave_multiplications, program->wave_additions);
