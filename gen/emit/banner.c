@@ -591,7 +591,7 @@ void emit_banner(const struct emitter *e)
 	banner_form(e);
 	if (e->step->forced)
 		banner_forced(e);
-	(e->kind->own_factors ? banner_tuning : banner_held)(e);
+	banner_held(e);
 	banner_state(e);
 	banner_run(e);
 	banner_functions(e);

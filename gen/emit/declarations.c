@@ -151,7 +151,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		declare_free_step(e);
 	if (has_jump(e))
 		announce(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
-	(e->kind->own_factors ? emit_tuning_declarations : emit_held_declarations)(e);
+	emit_held_declarations(e);
 	if (e->model->asked.batch)
 		emit_batch_declarations(e);
 	declare_checks(e, rhs);
@@ -191,7 +191,7 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
 	emit_if_any(e->kind->types, e);
-	(e->kind->own_factors ? emit_coefficient_struct : emit_held_types)(e);
+	emit_held_types(e);
 	emit_state_struct(e);
 	emit_functions(e, rhs);
 	close_declarations(e);

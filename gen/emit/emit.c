@@ -131,7 +131,8 @@ static void emit_all_tables(const struct emitter *e)
 	emit_mode_matrices(e);
 	emit_load_tables(e);
 	emit_anchor_tables(e);
-	(e->kind->own_factors ? emit_nominal : emit_held_nominal)(e);
+	if (!e->model->retuned)
+		emit_nominal(e);                /* else with the tables of regions */
 	if (e->system->segments > 1)
 		emit_changes(e);
 	emit_if_any(e->kind->tables, e);
@@ -177,7 +178,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_all_tables(e);
 	emit_modes(e);
 	emit_access(e);
-	(e->kind->own_factors ? emit_retune : emit_held_retune)(e);
+	emit_held_retune(e);
 	emit_if_any(e->kind->pass, e);
 	e->kind->step(e);
 	emit_out(e);

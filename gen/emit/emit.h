@@ -656,10 +656,7 @@ void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */
-void emit_coefficient_struct(const struct emitter *e);
-void emit_tuning_declarations(const struct emitter *e);
-void banner_tuning(const struct emitter *e);
-const char *two_words(struct coefficient number);                 /* {1.0, 0.0} */
+void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */
 /* Of a group's factors in NAME_coeffs: "rows0" */
 const char *tuned_table(const struct emitter *e, const struct tuned_block *first);
 /* Calls print(e, the first of its blocks) for each group whose factors the instance has */
@@ -667,13 +664,10 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 
 /* ---- emit_tuned_blocks.c: what retune.h is told of a linear step ---- */
 
-const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
 void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
-void emit_monomials(const struct emitter *e, const struct tuning *t);
-void emit_term_start(const struct emitter *e, int terms);
-void emit_term(const struct emitter *e, int row, int column, const struct tuned_term *of, const char *note);
-/* rows, columns, terms, of which the first is this one */
-const char *equations_text(const struct emitter *e, int monomials, bool solves, const int part[4]);
+/* Products and terms of all of the list; of each what a pl_equations has */
+const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
+			    const struct tuned_equations *const *list);
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 
@@ -689,7 +683,6 @@ int  held_leads(const struct emitter *e);
 void emit_nominal_factors(const struct emitter *e);              /* those that an instance begins with */
 void emit_held_declarations(const struct emitter *e);
 void banner_held(const struct emitter *e);
-void emit_held_nominal(const struct emitter *e);
 void emit_held_retune(const struct emitter *e);
 /* the generator's own coefficients, of the spec's values */
 void emit_nominal(const struct emitter *e);

@@ -12,15 +12,27 @@ int held_leads(const struct emitter *e)
 	return e->model->held ? e->model->leads.count : 0;
 }
 
+/* What an instance has */
+static void emit_members(const struct emitter *e)
+{
+	if (e->kind->own_factors)
+		emit_tuned_members(e);
+	else
+		(e->model->retuned ? emit_retuned_numbers : emit_nominal_params)(e);
+}
+
 void emit_held_types(const struct emitter *e)
 {
-	if (!held(e))
+	if (!tunables_of(e->model))
 		return;
+	const char *what = e->model->held ? "what the equations and outputs read"
+			   : format("what a step multiplies with: z is the states, load states%s, inputs%s",
+				    e->system->segments > 1 ? " in each segment of time" : "",
+				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
-	       "typedef struct $n_coeffs $n_coeffs;  /* what %s read */\n"
-	       "struct $n_coeffs {\n", held(e)->params, param_list(e),
-	    e->model->retuned ? "a step and outputs" : "the equations and outputs");
-	declare_members(e, e->model->retuned ? emit_retuned_numbers : emit_nominal_params);
+	       "typedef struct $n_coeffs $n_coeffs;  /* %s */\n"
+	       "struct $n_coeffs {\n", tunables_of(e->model)->params, param_list(e), what);
+	declare_members(e, emit_members);
 	say(e, "};\n"
 	       "\n");
 }
@@ -36,50 +48,65 @@ void emit_held_member(const struct emitter *e)
 
 void emit_nominal_factors(const struct emitter *e)
 {
-	if (held(e) || e->kind->own_factors)
+	if (tunables_of(e->model))
 		say(e, "    s->coeffs = $n_nominal;\n");
 }
 
 void emit_held_declarations(const struct emitter *e)
 {
-	if (!held(e))
+	if (!tunables_of(e->model))
 		return;
-	const char *more = !e->model->retuned ? "" :
-		format("; PL_SINGULAR: a divisor is 0, as a mass is;\n"
-		       " * PL_OUT_OF_RANGE: a restitution is not within 0 and 1, a gap or a force of friction below\n"
-		       " * 0, breakpoints change their order, or a pole times h is above 2^%d", LIMIT_PIECES);
-	say(e, "\n/* Sets c to params (%s), for steps of the spec's h alone [s]. 0, or c is as it was and\n"
-	       " * PL_NO_STEP: h is not $N_H; PL_NOT_FINITE: a param%s is not a number, or infinite%s */\n",
-	    param_list(e), e->model->retuned ? ", or a number of it," : "", more);
+	const bool own = e->kind->own_factors, any = own && e->step->blocks->whole;
+	const char *more = own ? e->model->tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
+			       : e->model->retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
+	say(e, "\n/* Sets c to params (%s), for steps of h [s]%s. 0, or c is as it was and, as plrt.h\n"
+	       " * says, PL_NO_STEP%s, PL_NOT_FINITE */\n", param_list(e), any ? "" : ", the spec's", more);
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
 	       "void   $n_use($n *s, const $n_coeffs *c);  /* from now on; state and time stay%s%s */\n"
 	       "extern const $n_coeffs $n_nominal;         /* of the spec's values: what $n_init starts with */\n\n",
-	    held_leads(e) ? ", and phases of sines in t" : "", has_place(e) ? "; the scheme starts anew" : "");
+	    held_leads(e) || e->phases ? ", and phases go on" : "", has_place(e) ? "; the scheme starts anew" : "");
+}
+
+static void banner_blocks(const struct emitter *e)
+{
+	const struct tuned_blocks *p = e->step->blocks;
+	int touched = 0;
+	for (int b = 0; b < p->blocks; b++)
+		touched += p->block[b].group->tuned;
+	if (!p->solved)
+		say(e, "They touch %s independent blocks, and factors of the others stay.\n"
+		       " * ",
+		    touched == p->blocks ? format("all %d", touched) : format("%d of %d", touched, p->blocks));
+	say(e, "$n_retune computes factors from other values%s on the\n"
+	       " * target; of the spec's they are these, correctly rounded. It needs some %d KB of stack.\n",
+	    p->whole ? " and another h" : "", p->kilobytes);
 }
 
 void banner_held(const struct emitter *e)
 {
 	const bool acts = e->system->inputs > e->model->spec->inputs;
-	if (e->model->retuned) {
-		say(e, " * Tunable: %s. An instance has the tables of its regions, %d numbers of matrices, which\n"
+	if (!tunables_of(e->model))
+		return;
+	say(e, " * Tunable: %s. ", param_list(e));
+	if (e->kind->own_factors)
+		banner_blocks(e);
+	else if (e->model->retuned)
+		say(e, "An instance has the tables of its regions, %d numbers of matrices, which\n"
 		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
 		       "correctly rounded. It\n"
-		       " * needs as much stack as they take, and some %d KB.\n", param_list(e), retuned_numbers(e),
+		       " * needs as much stack as they take, and some %d KB.\n", retuned_numbers(e),
 		    retuned_kilobytes(e));
-		return;
-	}
-	if (held(e))
-		say(e, " * Tunable: %s. %s\n", param_list(e),
+	else
+		say(e, "%s\n",
 		    acts ? "They act like held inputs, with the instance's own values."
 			 : "Expressions read the instance's own values; operators, orders and choices are those of the "
 			   "spec's.");
 }
 
-void emit_held_nominal(const struct emitter *e)
+void emit_nominal(const struct emitter *e)
 {
-	if (!held(e) || e->model->retuned)
-		return;                         /* with the tables of regions */
-	emit_nominal_of(e, emit_nominal_params);
+	if (tunables_of(e->model))
+		emit_nominal_of(e, emit_members);
 }
 
 /* Angular frequencies of the sines that have a lead */
@@ -104,6 +131,8 @@ static void emit_frequencies(const struct emitter *e)
 
 void emit_held_retune(const struct emitter *e)
 {
+	if (e->kind->own_factors)
+		emit_retune(e);
 	if (!held(e))
 		return;
 	if (e->model->retuned)

@@ -21,84 +21,22 @@ static struct guards own_guards(const struct emitter *e)
 
 /* ---- the equations ---- */
 
-static const char *name_of_row(const struct emitter *e, const struct retuned_row *row)
-{
-	const struct model *model = e->model;
-	const struct switching *s = model->switching;
-	const struct strike *strike;
-	switch (row->kind) {
-	case RETUNED_SLOPE:
-		return format("system %d: %s%s", row->of, model->coord_name[row->index],
-			      model->system.velocity[row->index] >= 0 ? "''" : "'");
-	case RETUNED_EXPRESSION:  return form_text(model, s->expression[row->index].form);
-	case RETUNED_BREAK:       return format("breakpoint %d of %s", row->index,
-						form_text(model, s->expression[row->of].form));
-	case RETUNED_HOLD:        return format("region %d: %s", row->of,
-						model->state_name[s->region[row->of].hold[row->index].state]);
-	case RETUNED_RELEASE:     return format("region %d: release %d", row->of, row->index);
-	case RETUNED_GRIP:        return format("region %d: friction %d", row->of, row->index);
-	case RETUNED_JUMP:
-	case RETUNED_STILL:
-		strike = &s->impact[row->of % s->impacts].in[row->of / s->impacts];
-		return format("impact %d: %s", row->of, model->state_name[strike->jump[row->index].state]);
-	case RETUNED_SPEED:       return format("impact %d: speed", row->of);
-	case RETUNED_BACK:        return format("impact %d: back", row->of);
-	case RETUNED_RESTITUTION: return format("impact %d: restitution", row->of);
-	case RETUNED_LEAST:       return "at least 0";
-	default:                  return row->positive ? "stays above 0" : "stays below 0";
-	}
-}
-
-static bool is_number(const struct retuned_row *row)
-{
-	return row->kind == RETUNED_BREAK || row->kind == RETUNED_RESTITUTION || row->kind == RETUNED_LEAST ||
-	       row->kind == RETUNED_SIGN;
-}
-
-static const struct retuned_row *row_at(const struct emitter *e, int place)
-{
-	const struct retuned *r = retuned_of(e);
-	int i = 0;
-	while (r->row[i].place != place)
-		i++;
-	return &r->row[i];
-}
-
-/* W a = R x, or a = R x; rows from `place` on */
-static void emit_terms(const struct emitter *e, const struct tuning *t, int place)
-{
-	const char **column = layout_names(&e->step->layout, e->system, e->model);
-	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++) {
-		const struct retuned_row *row = row_at(e, place + term->row);
-		bool left = term->column >= t->x.size;
-		const char *of = is_number(row) ? ""
-				 : left ? format(" row %d", term->column - t->x.size)
-					: format(" %s", column[term->column]);
-		emit_term(e, term->row, term->column, term, format("%s%s: %s%s", name_of_row(e, row),
-								    left ? ", left" : "",
-								    tuned_product(retuned_of(e)->tuning, term), of));
-	}
-}
-
 /* All rows but what the target solves for, and behind it that, block by block */
-static void emit_equations(const struct emitter *e)
+static void emit_numbers(const struct emitter *e)
 {
 	const struct retuned *r = retuned_of(e);
-	const char *text = "";
-	int terms = 0, *row = ARRAY(int, (size_t)r->blocks + 1);
-	emit_monomials(e, r->tuning);
-	for (int b = 0; b <= r->blocks; b++) {
-		const struct tuning *t = b ? r->block[b - 1].tuning : r->tuning;
-		const int part[] = { t->rows, t->x.size, t->terms, terms };
-		text = format("%s    %s,\n", text, equations_text(e, r->tuning->monomials, t->solves, part));
-		terms += t->terms;
-		row[b] = b ? r->block[b - 1].place : 0;
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)r->blocks + 1);
+	int *row = ARRAY(int, (size_t)r->blocks + 1);
+	list[0] = &r->tuning->all;
+	for (int b = 0; b < r->blocks; b++) {
+		list[b + 1] = &r->block[b].all;
+		row[b + 1] = r->block[b].place;
 	}
-	emit_term_start(e, terms);
-	emit_terms(e, r->tuning, 0);
-	for (int b = 0; b < r->blocks; b++)
-		emit_terms(e, r->block[b].tuning, r->block[b].place);
-	say(e, "};\n\nstatic const pl_equations $n_equations[%d] = {\n%s};\n", r->blocks + 1, text);
+	const char **text = emit_equations(e, r->tuning, r->blocks + 1, list);
+	say(e, "\nstatic const pl_equations $n_equations[%d] = {\n", r->blocks + 1);
+	for (int b = 0; b <= r->blocks; b++)
+		say(e, "    %s,\n", text[b]);
+	say(e, "};\n");
 	if (r->blocks)
 		emit_integers(e, "short", "block_row", r->blocks + 1, row);
 }
@@ -108,7 +46,7 @@ static int widest_block(const struct emitter *e)
 	const struct retuned *r = retuned_of(e);
 	int most = 0;
 	for (int b = 0; b < r->blocks; b++) {
-		int rows = r->block[b].tuning->rows, cells = rows * (rows + e->step->layout.size);
+		const int cells = r->block[b].all.rows * width_of_equations(&r->block[b].all);
 		most = cells > most ? cells : most;
 	}
 	return most;
@@ -293,7 +231,7 @@ void emit_retuned(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
-	emit_equations(e);
+	emit_numbers(e);
 	const int taken = emit_from(e, &g), products = retuned_of(e)->tuning->monomials + 1;
 	const int work = PL_REGION_WORK(e->step->layout.size);
 	if (has_guards(e))
@@ -303,7 +241,7 @@ void emit_retuned(const struct emitter *e)
 		{ "PARAMS", e->model->held->params }, { "SIZE", e->step->layout.size },
 		{ "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
 		{ "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
-		{ "ROWS", retuned_of(e)->tuning->rows }, { "BLOCKS", retuned_of(e)->blocks },
+		{ "ROWS", retuned_of(e)->tuning->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
 		{ "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
 		{ "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
 		{ "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
@@ -326,6 +264,6 @@ int retuned_numbers(const struct emitter *e)
 int retuned_kilobytes(const struct emitter *e)
 {
 	int size = e->step->layout.size, cells = size * size, real = e->model->asked.single ? 4 : 8;
-	int twos = retuned_of(e)->tuning->rows * size + 8 * cells + widest_block(e);
+	int twos = retuned_of(e)->tuning->all.rows * size + 8 * cells + widest_block(e);
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }

@@ -3,65 +3,9 @@
  * that params touch, and NAME_retune, of retune.h, computes them anew on the target. Here is what both hold. */
 #include "emit/emit.h"
 
-#include <string.h>
-
 static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
 {
 	return e->step->blocks;
-}
-
-/* Columns of a step's factors: states, load states in each segment of time, inputs */
-static int step_columns(const struct emitter *e)
-{
-	return e->model->tuning->x.size;
-}
-
-/* Names of the columns as a comment says them: the load states once, lines broken */
-static const char *column_list(const struct emitter *e)
-{
-	enum { WIDTH = 110 };
-	const char **name = layout_names(&e->model->tuning->x, e->system, e->model), *list = "", *line = "";
-	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
-	for (int i = 0; i < step_columns(e); i++) {
-		if (i >= states + loads && i < states + segments * loads)
-			continue;
-		bool several = segments > 1 && loads, last = several && i == states + loads - 1;
-		const char *end = last ? format(") in each of %d segments of time", segments) : "";
-		const char *text = format("%s%s%s", several && i == states ? "(" : "", name[i], end);
-		bool wide = strlen(line) + strlen(text) > WIDTH;
-		list = format("%s%s%s%s", list, i ? "," : "", wide ? "\n *     " : i ? " " : "", text);
-		line = wide ? text : format("%s, %s", line, text);
-	}
-	return list;
-}
-
-/* ---- the header ---- */
-
-static int count_touched(const struct emitter *e)
-{
-	int touched = 0;
-	for (int b = 0; b < blocks_of_step(e)->blocks; b++)
-		touched += blocks_of_step(e)->block[b].group->tuned;
-	return touched;
-}
-
-void banner_tuning(const struct emitter *e)
-{
-	const struct tuned_blocks *p = blocks_of_step(e);
-	const int touched = count_touched(e);
-	say(e, " * Tunable: %s.", param_list(e));
-	if (p->solved)
-		say(e, " $n_retune computes the factors of a step from other values and another h on the target;"
-		       " of the spec's\n"
-		       " * values they are these, correctly rounded. It needs some %d KB of stack.\n", p->kilobytes);
-	else
-		say(e, "\n"
-		       " * They touch %s independent blocks; $n_retune computes the factors of these from other values"
-		       "%s,\n"
-		       " * of a block whose params are the spec's these, correctly rounded. It needs some %d KB of "
-		       "stack.\n",
-		    touched == p->blocks ? format("all %d", touched) : format("%d of %d", touched, p->blocks),
-		    p->whole ? " and another h" : "", p->kilobytes);
 }
 
 static const char *first_state(const struct emitter *e, const struct group *g)
@@ -81,41 +25,6 @@ void each_tuned_group(const struct emitter *e, void (*print)(const struct emitte
 	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
 		if (p->block[b].group->tuned)
 			print(e, &p->block[b]);
-}
-
-static void emit_members(const struct emitter *e);
-
-void emit_coefficient_struct(const struct emitter *e)
-{
-	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
-	       "typedef struct $n_coeffs $n_coeffs;"
-	       "  /* what a step multiplies with, at one set of params and one h */\n"
-	       "/* z = %s%s */\n"
-	       "struct $n_coeffs {\n", e->model->tuning->params, param_list(e), column_list(e),
-	    e->ramps ? "; of a ramp its value before the step, then after it" : "");
-	declare_members(e, emit_members);
-	say(e, "};\n\n");
-}
-
-void emit_tuning_declarations(const struct emitter *e)
-{
-	const bool one = !blocks_of_step(e)->whole;
-	say(e, "\n/* Computes c anew from params (%s) and h [s]%s. 0, or c is as it was and\n"
-	       " *     PL_NO_STEP     h is not %s\n"
-	       " *     PL_SINGULAR    the mass matrix has no inverse, or a divisor is 0\n", param_list(e),
-	    one ? ", the spec's" : "", one ? spell(e, "$N_H") : "above 0");
-	if (e->model->tuning->frequencies)
-		say(e, " *     PL_NO_RATE     a frequency of a load is below 0\n");
-	say(e, " *     PL_NOT_FINITE  a number of it is infinite, or not a number\n"
-	       " * c may be that of an instance as long as h stays. */\n"
-	       "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
-	       "\n"
-	       "/* From now on with c. State and time stay%s. */\n"
-	       "void   $n_use($n *s, const $n_coeffs *c);\n"
-	       "\n"
-	       "/* Of the spec's values, correctly rounded: what $n_init starts with */\n"
-	       "extern const $n_coeffs $n_nominal;\n"
-	       "\n", e->phases ? "; phases of loads go on from where they are" : "");
 }
 
 /* ---- all of them: declared, or the generator's own ---- */
@@ -167,7 +76,7 @@ static void emit_group(const struct emitter *e, const struct tuned_block *first)
 	}
 }
 
-static void emit_members(const struct emitter *e)
+void emit_tuned_members(const struct emitter *e)
 {
 	number_member(e, "h", spell(e, "$N_H"), "[s]");
 	if (e->system->segments > 1)
@@ -184,9 +93,4 @@ static void emit_members(const struct emitter *e)
 		close_member(e);
 	}
 	emit_loads(e, "pl_growth", "growth_step", e->growths, e->growth, growth_step_text);
-}
-
-void emit_nominal(const struct emitter *e)
-{
-	emit_nominal_of(e, emit_members);
 }

@@ -19,7 +19,7 @@ static const char *monomial_text(const struct tuning *t, int number)
 	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
 }
 
-void emit_monomials(const struct emitter *e, const struct tuning *t)
+static void emit_monomials(const struct emitter *e, const struct tuning *t)
 {
 	if (t->monomials == 0)
 		return;
@@ -32,73 +32,54 @@ void emit_monomials(const struct emitter *e, const struct tuning *t)
 	say(e, "};\n");
 }
 
-/* What a row of the equations gives, and what a column of them multiplies */
-static const char *row_name(const struct emitter *e, int row)
-{
-	for (int o = 0; o < e->model->outputs; o++)
-		if (e->model->tuning->output[o] == row)
-			return e->model->output[o].name;
-	for (int l = 0; l < e->system->loads; l++)
-		if (e->model->tuning->frequency[l] == row)
-			return format("frequency of %s", column_text(&e->system->load[l], 0));
-	return format("%s%.*s", e->model->coord_name[row], e->system->velocity[row] >= 0 ? 2 : 1, "''");
-}
-
-const char *tuned_product(const struct tuning *t, const struct tuned_term *term)
-{
-	const char *product = monomial_text(t, term->monomial), *factor = readable_text(term->factor);
-	if (term->monomial == 0)
-		return factor;
-	if (mpq_cmp_si(term->factor, 1, 1) == 0)
-		return product;
-	bool minus = mpq_cmp_si(term->factor, -1, 1) == 0;
-	return minus ? format("-%s", product) : format("%s*%s", factor, product);
-}
-
-static const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term)
-{
-	const struct tuning *t = e->model->tuning;
-	bool left = term->column >= t->x.size;
-	if (term->row >= t->rows - t->frequencies)
-		return format("%s: %s", row_name(e, term->row), tuned_product(t, term));
-	const char *of = left ? row_name(e, term->column - t->x.size)
-			      : layout_names(&e->model->tuning->x, e->system, e->model)[term->column];
-	const char *equation = format("equation %d, %s", term->row + 1, left ? "left" : "right");
-	const char *where = t->solves ? equation : row_name(e, term->row);
-	return format("%s: %s %s", where, tuned_product(t, term), of);
-}
-
-const char *two_words(struct coefficient number)
+static const char *two_words(struct coefficient number)
 {
 	return format("{%s, %s}", shortest(number.value), shortest(number.low));
 }
 
-/* An array has one element at least. */
-void emit_term_start(const struct emitter *e, int terms)
+/* Values of an array, some a line */
+static const char *next_value(int number)
 {
-	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n",
-	    terms > 0 ? terms : 1);
-	if (terms == 0)
-		say(e, "    {0, 0, 0, {0.0, 0.0}},\n");
+	return number == 0 ? "\n    " : number % 5 ? ", " : ",\n    ";
 }
 
-void emit_term(const struct emitter *e, int row, int column, const struct tuned_term *of, const char *note)
+static void emit_terms(const struct emitter *e, int terms, int count, const struct tuned_equations *const *list)
 {
-	say(e, "    {%d, %d, %d, %s},  /* %s */\n", row, column, of->monomial,
-	    two_words(equation_number(e->model, of->factor)), note);
+	int number = 0;
+	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */", terms);
+	for (int k = 0; k < count; k++)
+		for (const struct tuned_term *term = list[k]->term; term < list[k]->term + list[k]->terms; term++)
+			say(e, "%s{%d, %d, %d, %s}", next_value(number++), term->row, term->column, term->monomial,
+			    two_words(equation_number(e->model, term->factor)));
+	say(e, "\n};\n");
 }
 
-const char *equations_text(const struct emitter *e, int monomials, bool solves, const int part[4])
+const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
+			    const struct tuned_equations *const *list)
 {
-	return format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", part[0], part[1], solves, e->upper, monomials, part[2],
-		      monomials ? format("%s_monomial", e->name) : "NULL",
-		      part[2] ? format("%s_term + %d", e->name, part[3]) : "NULL");
+	const char **text = ARRAY(const char *, (size_t)count);
+	int terms = 0;
+	for (int k = 0; k < count; terms += list[k++]->terms)
+		text[k] = format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", list[k]->rows, list[k]->columns,
+				 list[k]->solves, e->upper, t->monomials, list[k]->terms,
+				 t->monomials ? format("%s_monomial", e->name) : "NULL",
+				 list[k]->terms ? format("%s_term + %d", e->name, terms) : "NULL");
+	emit_monomials(e, t);
+	if (terms)
+		emit_terms(e, terms, count, list);
+	return text;
 }
 
 /* Blocks in tables: all where NAME_at is there, else those that params touch */
 static bool is_listed(const struct emitter *e, int block)
 {
 	return e->step->series.emitted || blocks_of_step(e)->block[block].group->tuned;
+}
+
+/* Outputs and frequencies that the equations of no block have */
+static bool has_others(const struct emitter *e)
+{
+	return !blocks_of_step(e)->solved && blocks_of_step(e)->others.all.rows > 0;
 }
 
 static int number_of_block(const struct emitter *e, int block)
@@ -109,39 +90,17 @@ static int number_of_block(const struct emitter *e, int block)
 	return number;
 }
 
-static void emit_part_terms(const struct emitter *e, const struct tuned_part *part)
-{
-	for (const struct part_term *term = part->term; term < part->term + part->terms; term++)
-		emit_term(e, term->row, term->column, term->of, tuned_term_note(e, term->of));
-}
-
-static int count_terms(const struct emitter *e)
-{
-	int terms = blocks_of_step(e)->solved ? 0 : blocks_of_step(e)->others.terms;
-	for (int b = 0; b < blocks_of_step(e)->blocks; b++)
-		terms += is_listed(e, b) ? blocks_of_step(e)->block[b].part.terms : 0;
-	return terms;
-}
-
-static void emit_terms(const struct emitter *e)
+/* Of the listed blocks, then, where there are some, of what belongs to none */
+static const char **emit_all_equations(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_monomials(e, e->model->tuning);
-	if (count_terms(e) == 0)
-		return;
-	emit_term_start(e, count_terms(e));
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)p->blocks + 1);
+	int count = 0;
 	for (int b = 0; b < p->blocks; b++)
 		if (is_listed(e, b))
-			emit_part_terms(e, &p->block[b].part);
-	if (!p->solved)
-		emit_part_terms(e, &p->others);
-	say(e, "};\n");
-}
-
-static const char *part_text(const struct emitter *e, const struct tuned_part *part, int first)
-{
-	const struct tuning *t = e->model->tuning;
-	return equations_text(e, t->monomials, t->solves, (int[]){ part->rows, part->columns, part->terms, first });
+			list[count++] = &p->block[b].part.all;
+	list[count] = &p->others.all;
+	return emit_equations(e, e->model->tuning, count + has_others(e), list);
 }
 
 /* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
@@ -194,10 +153,9 @@ void emit_entries(const struct emitter *e, int count, const struct fixed_slope *
 {
 	if (count == 0)
 		return;
-	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */\n    ", count);
+	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */", count);
 	for (int i = 0; i < count; i++)
-		say(e, "%s{%d, %d, %s}", !i ? "" : i % 5 ? ", " : ",\n    ", fixed[i].row, fixed[i].column,
-		    two_words(fixed[i].value));
+		say(e, "%s{%d, %d, %s}", next_value(i), fixed[i].row, fixed[i].column, two_words(fixed[i].value));
 	say(e, "\n};\n");
 }
 
@@ -226,15 +184,15 @@ static void emit_lists(const struct emitter *e, const struct listed *l)
 		say(e, "\nstatic const double $n_tap[%d] = {%s};\n", l->taps, l->tap);
 }
 
-static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l, int term,
-			      int entry)
+static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l,
+			      const char *equations, int entry)
 {
 	const struct group *g = b->group;
 	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
 	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
 	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
 	const char *places = placed ? list_text(e, 1, add_columns(l, e, b)) : "NULL";
-	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", part_text(e, &b->part, term),
+	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations,
 		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
 		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
 }
@@ -329,18 +287,17 @@ static void emit_reads(const struct emitter *e)
 	emit_integers(e, "unsigned short", "reads", listed, reads);
 }
 
-static void emit_block_tables(const struct emitter *e)
+static void emit_block_tables(const struct emitter *e, const char *const *equations)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const char **block = ARRAY(const char *, (size_t)p->blocks), **group = ARRAY(const char *, (size_t)p->blocks);
 	const int listed = number_of_block(e, p->blocks);
 	struct listed lists = { 0 };
-	int term = 0, entry = 0, groups = 0;
+	int entry = 0, groups = 0;
 	for (int b = 0; b < p->blocks; b++) {
 		if (!is_listed(e, b))
 			continue;
-		block[b] = block_text(e, &p->block[b], &lists.place, term, entry);
-		term += p->block[b].part.terms;
+		block[b] = block_text(e, &p->block[b], &lists.place, equations[number_of_block(e, b)], entry);
 		entry += p->block[b].slopes;
 	}
 	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
@@ -358,19 +315,17 @@ static void emit_block_tables(const struct emitter *e)
 
 /* ---- beside the blocks ---- */
 
-static void emit_others(const struct emitter *e)
+static void emit_others(const struct emitter *e, const char *equations)
 {
 	const struct tuning *t = e->model->tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	if (p->solved || p->others.rows == 0)
-		return;
 	say(e, "\n/* %s%s */\n"
 	       "static const pl_equations $n_equations = %s;\n",
 	    !t->outputs         ? "Frequencies of loads"
 	    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
 				: "Outputs, over x",
 	    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
-	    part_text(e, &p->others, count_terms(e) - p->others.terms));
+	    equations);
 }
 
 /* By phases: which row of the equations its frequency is; by growths: whether a load decays */
@@ -418,7 +373,8 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		{ "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
 		{ "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		{ "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
-		{ "ROWS", p->others.rows }, { "WIDTH", p->others.width }, { "SOLVED", p->solved },
+		{ "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },
+		{ "SOLVED", p->solved },
 		{ "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
 		{ "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
 		{ "PEAKS", has_peaks(e) ? peak_outputs(e->model) : 0 },
@@ -455,9 +411,10 @@ static void emit_group_call(const struct emitter *e, const struct tuned_block *f
 
 void emit_retune(const struct emitter *e)
 {
-	emit_terms(e);
-	emit_block_tables(e);
-	emit_others(e);
+	const char **equations = emit_all_equations(e);
+	emit_block_tables(e, equations);
+	if (has_others(e))
+		emit_others(e, equations[number_of_block(e, blocks_of_step(e)->blocks)]);
 	emit_rows_of_loads(e);
 	if (e->step->series.emitted)
 		emit_vector_now(e);

@@ -193,30 +193,29 @@ static int monomial_of(struct tuning *t, signed char *power)
 	return t->monomials;
 }
 
-static struct tuned_term *add_term(struct tuning *t, int row, int column, int monomial)
+static struct tuned_term *add_term(struct tuned_equations *all, int row, int column, int monomial)
 {
-	struct tuned_term *term = MORE(t->term, t->terms);
+	struct tuned_term *term = MORE(all->term, all->terms);
 	*term = (struct tuned_term){ .row = row, .column = column, .monomial = monomial };
 	mpq_init(term->factor);
 	return term;
 }
 
-void add_tuned_unit(struct tuning *t, int row, int column)
+void add_tuned_unit(struct tuned_equations *all, int row, int column)
 {
-	mpq_set_ui(add_term(t, row, column, 0)->factor, 1, 1);
+	mpq_set_ui(add_term(all, row, column, 0)->factor, 1, 1);
 }
 
-/* Products are those of s->tuning, whichever the terms are of. */
-static void add_fitted(struct elsewhere *s, struct tuning *t, int row, int column)
+static void add_fitted(struct elsewhere *s, struct tuned_equations *all, int row, int column)
 {
 	const struct fit *f = &s->fit;
 	for (int i = 0; i < f->products; i++) {
 		signed char power[LIMIT_TUNABLES];
 		if (mpq_sgn(f->factor[i]) == 0)
 			continue;
-		for (int k = 0; k < t->params; k++)
+		for (int k = 0; k < f->params; k++)
 			power[k] = f->power[i][k];
-		mpq_set(add_term(t, row, column, monomial_of(s->tuning, power))->factor, f->factor[i]);
+		mpq_set(add_term(all, row, column, monomial_of(s->tuning, power))->factor, f->factor[i]);
 	}
 }
 
@@ -244,11 +243,11 @@ bool fits_entry(struct elsewhere *s, ptrdiff_t index)
 	return true;
 }
 
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column)
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column)
 {
 	const bool fits = fits_entry(s, index);
 	if (fits)
-		add_fitted(s, t, row, column);
+		add_fitted(s, all, row, column);
 	return fits;
 }
 

@@ -874,21 +874,26 @@ struct tuned_term {
 	int row, column, monomial;
 	mpq_t factor;
 };
-/* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the
- * outputs that depend on params, then the frequencies of loads that do (in column 0); x is the states, the load states
- * in each segment of time, the inputs (of ramps: u, u'). */
+/* W a = R x, exactly, for all values of the params */
+struct tuned_equations {
+	int rows, columns;          /* entries of a, of x */
+	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
+	int terms;
+	struct tuned_term *term;    /* the same entry's one after the other */
+};
+/* a holds the highest derivatives of the coordinates, then the outputs that depend on params, then the frequencies of
+ * loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u,
+ * u'). */
 struct tuning {
 	int params;
 	const struct tunable *param;
 	mpq_t *nominal;             /* the spec's values */
 	struct layout x;
-	int rows, outputs, frequencies; /* rows: of coordinates, such outputs, such frequencies */
+	struct tuned_equations all;
+	int outputs, frequencies;   /* of its rows, behind those of coordinates */
 	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
-	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
 	int monomials;
 	struct tuned_monomial *monomial;
-	int terms;
-	struct tuned_term *term;    /* by rows, then by columns */
 	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
 	/* the model at values that are related by nothing: what holds there holds for all */
 	const struct model *other;
@@ -919,13 +924,15 @@ struct retuned_row {
 	bool positive;
 };
 struct retuned_block {              /* a system that the target solves, and what reads its highest derivatives */
-	const struct tuning *tuning; /* products of params are those of the whole */
+	struct tuned_equations all;       /* products of params are those of the whole */
 	int place;                  /* of its first row */
 };
 struct retuned {
 	int blocks;
 	struct retuned_block *block;
-	const struct tuning *tuning; /* its terms; x: states, load states of all loads in one segment of time, inputs */
+	/* x: states, load states of all loads in one segment of time, inputs; its rows: all, of which blocks have terms
+	 * of their own */
+	const struct tuning *tuning;
 	const bool *factor;
 	const struct model *other;  /* at values that are related by nothing */
 	int rows;
@@ -965,9 +972,9 @@ mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
 bool fits_entry(struct elsewhere *s, ptrdiff_t index);
 /* its terms; false: it is no such sum, as refuse_fit says */
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuning *t, int row, int column);
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
 _Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
-void add_tuned_unit(struct tuning *t, int row, int column);
+void add_tuned_unit(struct tuned_equations *all, int row, int column);
 void warn_of_idle(const struct elsewhere *s);
 void check_tuned(const struct model *model, bool regions);      /* what is no such sum, by the text */
 

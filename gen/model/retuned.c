@@ -145,10 +145,10 @@ static void merge_systems(struct search *s)
 /* ---- terms ---- */
 
 /* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
-static void fit_row(struct search *s, struct tuning *t, int row, int to, int from, int columns)
+static void fit_row(struct search *s, struct tuned_equations *all, int row, int to, int from, int columns)
 {
 	for (int j = 0; j < columns; j++)
-		if (!fit_entry(&s->at, index_of(s, row, j), t, to, from + j))
+		if (!fit_entry(&s->at, index_of(s, row, j), all, to, from + j))
 			refuse_fit(&s->at, "regions", "only masses in equations may be sums");
 }
 
@@ -183,26 +183,35 @@ static int row_apart(const struct search *s, int row, bool W)
 	return i;
 }
 
+static struct tuned_equations *new_block(struct search *s)
+{
+	struct retuned_block *block = MORE(s->r->block, s->r->blocks);
+	*block = (struct retuned_block){ { .columns = s->t->x.size, .solves = true }, s->t->all.rows };
+	return &block->all;
+}
+
+/* The next of its rows, which is that of the whole */
+static int add_row(struct search *s, struct tuned_equations *all)
+{
+	all->rows++;
+	return s->t->all.rows++;
+}
+
 /* W a = R x, and what reads a: b - F a = G x */
 static void add_block(struct search *s, int system)
 {
-	int n = s->model->n, size = s->t->x.size;
-	struct tuning *t = NEW(struct tuning);
-	*t = *s->model->held;
-	t->x = s->t->x;
-	t->solves = true;
-	*MORE(s->r->block, s->r->blocks) = (struct retuned_block){ t, s->t->rows };
+	const int n = s->model->n, size = s->t->x.size;
+	struct tuned_equations *all = new_block(s);
 	for (int i = 0; i < s->r->rows; i++) {
 		struct retuned_row *row = &s->r->row[i];
 		if (!is_of_system(s, i, system))
 			continue;
 		bool slope = row->kind == RETUNED_SLOPE;
-		fit_row(s, t, row_apart(s, i, false), t->rows, 0, size);
-		fit_row(s, t, row_apart(s, i, true), t->rows, size, n);
+		fit_row(s, all, row_apart(s, i, false), all->rows, 0, size);
+		fit_row(s, all, row_apart(s, i, true), all->rows, size, n);
 		if (!slope)
-			add_tuned_unit(t, t->rows, size + t->rows);
-		row->place = s->t->rows++;
-		t->rows++;
+			add_tuned_unit(all, all->rows, size + all->rows);
+		row->place = add_row(s, all);
 	}
 }
 
@@ -220,15 +229,10 @@ static bool add_divided(struct search *s, int row)
 		return false;
 	while (s->r->row[answer].kind != RETUNED_ANSWER || s->r->row[answer].of != r->of)
 		answer--;
-	struct tuning *t = NEW(struct tuning);
-	*t = *s->model->held;
-	t->x = s->t->x;
-	t->solves = true;
-	t->rows = 1;
-	*MORE(s->r->block, s->r->blocks) = (struct retuned_block){ t, s->t->rows };
-	r->place = s->t->rows++;
-	fit_row(s, t, row + 1, 0, 0, t->x.size);
-	fit_row(s, t, answer, 0, t->x.size, 1);
+	struct tuned_equations *all = new_block(s);
+	r->place = add_row(s, all);
+	fit_row(s, all, row + 1, 0, 0, s->t->x.size);
+	fit_row(s, all, answer, 0, s->t->x.size, 1);
 	return true;
 }
 
@@ -237,9 +241,9 @@ static void place_row(struct search *s, int row)
 	if (add_divided(s, row))
 		return;
 	struct retuned_row *r = &s->r->row[row];
-	r->place = s->t->rows++;
+	r->place = s->t->all.rows++;
 	r->positive = mpq_sgn(entry_seen(&s->at, 0, index_of(s, row, 0))) > 0;
-	fit_row(s, s->t, row, r->place, 0, s->t->x.size);
+	fit_row(s, &s->t->all, row, r->place, 0, s->t->x.size);
 }
 
 /* All rows of a system or none */
@@ -323,6 +327,7 @@ static void find(void *context)
 	for (int l = 0; l < s->model->system.loads; l++)
 		all[l] = true;
 	s->t->x = layout_with(&s->model->system, 0, all);
+	s->t->all.columns = s->t->x.size;
 	s->own = list_rows(s->model, &s->t->x, false);
 	look_elsewhere(&s->at);
 	s->r->other = s->at.other;
@@ -360,15 +365,13 @@ int retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int i
 /* What is solved reads all that any of its equations reads. */
 bool retuned_reads(const struct retuned *r, int place, int column)
 {
-	const struct tuning *t = r->tuning;
-	bool solved = false, reads = false;
+	const struct tuned_equations *all = &r->tuning->all;
+	bool reads = false;
 	for (int b = 0; b < r->blocks; b++)
-		if (place >= r->block[b].place && place < r->block[b].place + r->block[b].tuning->rows) {
-			t = r->block[b].tuning;
-			solved = true;
-		}
-	for (int i = 0; i < t->terms; i++)
-		reads = reads || (t->term[i].column == column && (solved || t->term[i].row == place));
+		if (place >= r->block[b].place && place < r->block[b].place + r->block[b].all.rows)
+			all = &r->block[b].all;
+	for (const struct tuned_term *term = all->term; term < all->term + all->terms; term++)
+		reads = reads || (term->column == column && (all->solves || term->row == place));
 	return reads;
 }
 

@@ -100,19 +100,19 @@ static void number_rows(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
 	const struct linear *system = &s->model->system;
-	t->rows = s->model->n;
+	t->all.rows = s->model->n;
 	t->output = ARRAY(int, (size_t)s->model->outputs);
 	for (int o = 0; o < s->model->outputs; o++) {
 		bool changes = false;
 		for (int j = 0; j < t->x.size; j++)
 			changes = changes || !entry_stays(s, solved_index(s, s->model->n + o, j));
-		t->output[o] = changes ? t->rows++ : -1;
+		t->output[o] = changes ? t->all.rows++ : -1;
 		t->outputs += changes;
 	}
 	t->frequency = ARRAY(int, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++) {
 		const bool changes = !entry_stays(s, frequency_index(s, l));
-		t->frequency[l] = changes ? t->rows++ : -1;
+		t->frequency[l] = changes ? t->all.rows++ : -1;
 		t->frequencies += changes;
 	}
 }
@@ -138,10 +138,10 @@ static bool fit_frequencies(struct elsewhere *s)
 	struct tuning *t = s->tuning;
 	for (int l = 0; l < s->model->system.loads; l++) {
 		int row = t->frequency[l];
-		if (row >= 0 && !fit_entry(s, frequency_index(s, l), t, row, 0))
+		if (row >= 0 && !fit_entry(s, frequency_index(s, l), &t->all, row, 0))
 			return false;
-		if (row >= 0 && t->solves)
-			add_tuned_unit(t, row, t->x.size + row);
+		if (row >= 0 && t->all.solves)
+			add_tuned_unit(&t->all, row, t->x.size + row);
 	}
 	return true;
 }
@@ -149,14 +149,14 @@ static bool fit_frequencies(struct elsewhere *s)
 static bool fit_all(struct elsewhere *s, bool solved)
 {
 	struct tuning *t = s->tuning;
-	int rows = t->rows - t->frequencies;
-	t->solves = !solved;
-	t->terms = t->monomials = 0;
+	int rows = t->all.rows - t->frequencies;
+	t->all.solves = !solved;
+	t->all.terms = t->monomials = 0;
 	for (int i = 0; i < rows; i++)
 		for (int j = 0; j < t->x.size + (solved ? 0 : rows); j++) {
 			const ptrdiff_t index = solved ? solved_index(s, entry_row(s, i), j)
 						       : raw_index(s, entry_row(s, i), entry_column(s, j));
-			if (!fit_entry(s, index, t, i, j))
+			if (!fit_entry(s, index, &t->all, i, j))
 				return false;
 		}
 	return fit_frequencies(s);
@@ -165,8 +165,8 @@ static bool fit_all(struct elsewhere *s, bool solved)
 static void mark_acting(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
-	t->acts = ARRAY(bool, (size_t)(t->rows * t->x.size));
-	for (int i = 0; i < t->rows - t->frequencies; i++)
+	t->acts = ARRAY(bool, (size_t)(t->all.rows * t->x.size));
+	for (int i = 0; i < t->all.rows - t->frequencies; i++)
 		for (int j = 0; j < t->x.size; j++) {
 			const ptrdiff_t index = solved_index(s, entry_row(s, i), j);
 			bool *acts = &t->acts[i * t->x.size + j];
@@ -219,6 +219,7 @@ bool find_tuning(struct model *model, const struct request *request)
 	t->param = spec->tunable;
 	t->nominal = rationals((size_t)t->params);
 	t->x = layout_of_columns(system);
+	t->all.columns = t->x.size;
 	s.entries = frequency_index(&s, system->loads);
 	model->tuning = t;
 	return statement_guard(find, &s);

@@ -97,7 +97,7 @@ static void person_tuning(FILE *to, const struct step *step)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
 	if (model->retuned)
 		fprintf(to, "; rows of regions that change with them have %d terms there%s.\n",
-			model->retuned->tuning->terms,
+			model->retuned->tuning->all.terms,
 			model->retuned->blocks ? format(", and %d sets of them are solved", model->retuned->blocks)
 					       : "");
 	else if (model->held && model->switching)
@@ -105,8 +105,8 @@ static void person_tuning(FILE *to, const struct step *step)
 	else if (model->held)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
 	else
-		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
-			t->solves ? ", and are solved for the highest derivatives" : "");
+		fprintf(to, "; the equations there have %d term%s%s.\n", t->all.terms, t->all.terms == 1 ? "" : "s",
+			t->all.solves ? ", and are solved for the highest derivatives" : "");
 	if (step->blocks && !step->blocks->solved)
 		person_blocks(to, step->blocks);
 }

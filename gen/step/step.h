@@ -953,17 +953,10 @@ int fixed_slopes(const struct step *step, struct fixed_slope **list);
 
 /* ---- tuned_blocks.c: a linear step with tunable params, a large one block by block ---- */
 
-struct part_term {
-	int row, column;            /* of the part; W's columns stand behind those of x */
-	const struct tuned_term *of;
-};
 struct tuned_part {                 /* some of the equations of struct tuning, which the target solves by themselves */
-	int rows, columns;          /* columns of its x */
+	struct tuned_equations all;
 	int *row, *unknown;         /* of struct tuning: what row i is, and what is found in its place */
-	int terms;
-	struct part_term *term;
 	unsigned params;            /* that it depends on, a bit each */
-	int width;                  /* columns, W's among them */
 };
 struct tuned_block {                /* an independent block; x: its states, load states and inputs that act on it */
 	const struct group *group;
@@ -988,6 +981,7 @@ struct tuned_blocks {
 	bool whole;                 /* params touch every block: any h will do */
 	int kilobytes;              /* of stack */
 };
+int width_of_equations(const struct tuned_equations *all);        /* columns, W's among them */
 /* Per state: tunable params touch its independent block. NULL: there are none */
 bool *touched_states(const struct step *step);
 /* Per state: a number that those whose equations hang together share. NULL: there are no tunable params */

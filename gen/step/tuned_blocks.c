@@ -19,9 +19,9 @@ static int *components(const struct step *step)
 	int *parent = ARRAY(int, 2 * (size_t)n);
 	for (int i = 0; i < 2 * n; i++)
 		parent[i] = i;
-	for (int i = 0; i < n && !t->solves; i++)
+	for (int i = 0; i < n && !t->all.solves; i++)
 		join(parent, i, n + i);
-	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
+	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
 		if (term->row < n && term->column < system->states)
 			join(parent, term->row, n + system->coord[term->column]);
 		else if (term->row < n && term->column >= t->x.size)
@@ -61,7 +61,7 @@ bool *touched_states(const struct step *step)
 		return NULL;
 	int *parent = components(step);
 	bool *root = ARRAY(bool, 2 * (size_t)n), *touched = ARRAY(bool, (size_t)system->states);
-	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
+	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
 		if (term->row < n && term->monomial != 0)
 			root[root_of_node(parent, term->row)] = true;
 	for (int l = 0; l < system->loads; l++)
@@ -85,10 +85,11 @@ static int *nowhere(int count)
 
 static void add_row(struct tuned_part *part, int row, int unknown)
 {
-	ENLARGE(part->row, (size_t)part->rows + 1);
-	ENLARGE(part->unknown, (size_t)part->rows + 1);
-	part->row[part->rows] = row;
-	part->unknown[part->rows++] = unknown;
+	const int rows = part->all.rows++;
+	ENLARGE(part->row, (size_t)rows + 1);
+	ENLARGE(part->unknown, (size_t)rows + 1);
+	part->row[rows] = row;
+	part->unknown[rows] = unknown;
 }
 
 /* Equations and coordinates of a component: as many of each, one beside the other */
@@ -117,24 +118,31 @@ static unsigned params_of(const struct tuning *t, int monomial)
 static void take_terms(struct tuned_part *part, const struct step *step, const int *column)
 {
 	const struct tuning *t = step->model->tuning;
-	int *row = nowhere(t->rows), *unknown = nowhere(t->rows), left = t->rows - t->frequencies;
-	for (int i = 0; i < part->rows; i++) {
+	struct tuned_equations *all = &part->all;
+	int *row = nowhere(t->all.rows), *unknown = nowhere(t->all.rows), left = t->all.rows - t->frequencies;
+	for (int i = 0; i < all->rows; i++) {
 		row[part->row[i]] = i;
 		unknown[part->unknown[i]] = i;
 	}
-	part->width = part->columns + (t->solves ? part->rows : 0);
-	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++) {
+	all->solves = t->all.solves;
+	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++) {
 		if (row[term->row] < 0)
 			continue;
 		const bool of_w = term->column >= t->x.size, rate = term->row >= left;
 		const int at = of_w ? unknown[term->column - t->x.size] : rate ? 0 : column[term->column];
 		if (at < 0)
 			internal_error(step, "a term of tunable params leaves its independent block");
-		ENLARGE(part->term, (size_t)part->terms + 1);
-		part->term[part->terms++] =
-			(struct part_term){ row[term->row], of_w ? part->columns + at : at, term };
+		struct tuned_term *own = MORE(all->term, all->terms);
+		*own = *term;
+		own->row = row[term->row];
+		own->column = of_w ? all->columns + at : at;
 		part->params |= params_of(t, term->monomial);
 	}
+}
+
+int width_of_equations(const struct tuned_equations *all)
+{
+	return all->columns + (all->solves ? all->rows : 0);
 }
 
 /* ---- a block ---- */
@@ -151,7 +159,7 @@ static int *columns_of(struct tuned_block *b, const struct step *step)
 			column[states + s * t->x.loads + g->load[k]] = g->states + s * g->loads + k;
 	for (int k = 0; k < g->inputs; k++)
 		column[states + segments * t->x.loads + g->input[k]] = g->states + segments * g->loads + k;
-	b->part.columns = g->states + segments * g->loads + g->inputs;
+	b->part.all.columns = g->states + segments * g->loads + g->inputs;
 	return column;
 }
 
@@ -191,7 +199,7 @@ static void take_turns(struct tuned_block *b, const struct step *step, const int
 			if (place[k] < 0)
 				continue;
 			ENLARGE(b->turn, 2 * (size_t)b->turns + 2);
-			b->turn[2 * b->turns] = b->part.rows;
+			b->turn[2 * b->turns] = b->part.all.rows;
 			b->turn[2 * b->turns++ + 1] = place[k];
 		}
 		add_row(&b->part, t->frequency[l], t->frequency[l]);
@@ -209,7 +217,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	if (!whole)
 		add_component(&b.part, step, parent,
 			      root_of_node(parent, system->n + system->coord[group->state[block]]));
-	b.derivatives = whole ? system->n : b.part.rows;
+	b.derivatives = whole ? system->n : b.part.all.rows;
 	for (int row = 0; whole && row < system->n + step->model->tuning->outputs; row++)
 		add_row(&b.part, row, row);
 	b.size = group->states + group->loads + group->inputs;
@@ -233,8 +241,8 @@ static void add_read_components(struct tuned_part *part, const struct step *step
 	const int n = step->branch->system.n;
 	int *parent = components(step);
 	bool *read = ARRAY(bool, 2 * (size_t)n);
-	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
-		if (term->row >= n && term->row < t->rows - t->frequencies && term->column >= t->x.size &&
+	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
+		if (term->row >= n && term->row < t->all.rows - t->frequencies && term->column >= t->x.size &&
 		    term->column < t->x.size + n)
 			read[root_of_node(parent, n + term->column - t->x.size)] = true;
 	for (int root = 0; root < 2 * n; root++)
@@ -250,15 +258,15 @@ static void plan_others(struct tuned_blocks *p, const struct step *step)
 	int *column = ARRAY(int, (size_t)t->x.size);
 	for (int k = 0; k < t->x.size; k++)
 		column[k] = k;
-	p->others.columns = t->x.size;
+	p->others.all.columns = t->x.size;
 	add_read_components(&p->others, step);
-	p->first_output = p->others.rows;
+	p->first_output = p->others.all.rows;
 	for (int row = 0; row < t->outputs; row++)
 		add_row(&p->others, step->branch->system.n + row, step->branch->system.n + row);
 	p->frequency = nowhere(loads);
 	for (int l = 0; l < loads; l++)
 		if (t->frequency[l] >= 0) {
-			p->frequency[l] = p->others.rows;
+			p->frequency[l] = p->others.all.rows;
 			add_row(&p->others, t->frequency[l], t->frequency[l]);
 		}
 	take_terms(&p->others, step, column);
@@ -273,7 +281,7 @@ static void larger_of(int *most, int count)
 
 static void measure_block(struct tuned_blocks *p, const struct step *step, const struct tuned_block *b)
 {
-	const int rows = b->part.rows * b->part.width, square = b->size * b->size;
+	const int rows = b->part.all.rows * width_of_equations(&b->part.all), square = b->size * b->size;
 	const int increments = step->branch->system.segments * b->group->states * b->size;
 	int further = square + PL_INCREMENT_WORK(b->size), advance = square + further;
 	larger_of(&further, step->model->tuning->monomials + 1);
@@ -353,7 +361,7 @@ void plan_tuned_blocks(struct step *step)
 	if (!p->solved)
 		plan_others(p, step);
 	larger_of(&p->work, t->monomials + 1);
-	stack = p->others.rows * p->others.width + p->work;
+	stack = p->others.all.rows * width_of_equations(&p->others.all) + p->work;
 	larger_of(&stack, p->more);
 	p->kilobytes = 1 + real * (numbers + 2 * stack) / 1024;
 	step->series.emitted = most <= LIMIT_TUNED_BLOCK;

@@ -132,38 +132,37 @@ static struct model *model_of(const char *text, const struct spec *tunables, con
 /* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. */
 static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 {
-    const int width = t->x.size + t->rows;
-    mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->rows * width));
+    const int width = t->x.size + t->all.rows;
+    mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->all.rows * width));
     mpq_set_ui(product[0], 1, 1);
     for (int m = 0; m < t->monomials; m++)
         (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from],
                                                      values[t->monomial[m].param]);
-    for (int i = 0; i < t->rows && !t->solves; i++)
+    for (int i = 0; i < t->all.rows && !t->all.solves; i++)
         mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
-    for (int i = 0; i < t->terms; i++)
-        add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial],
-                    false);
+    for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
+        add_product(value[term->row * width + term->column], term->factor, product[term->monomial], false);
     return value;
 }
 
 /* W^-1 R by Gauss and Jordan; false: singular */
 static bool solve(const struct tuning *t, mpq_t *value)
 {
-    const int width = t->x.size + t->rows;
+    const int width = t->x.size + t->all.rows;
     mpq_t factor;
     mpq_init(factor);
-    for (int k = 0; k < t->rows; k++) {
+    for (int k = 0; k < t->all.rows; k++) {
         int pivot = k;
-        while (pivot < t->rows && mpq_sgn(value[pivot * width + t->x.size + k]) == 0)
+        while (pivot < t->all.rows && mpq_sgn(value[pivot * width + t->x.size + k]) == 0)
             pivot++;
-        if (pivot == t->rows)
+        if (pivot == t->all.rows)
             return false;
         for (int j = 0; j < width; j++)
             mpq_swap(value[pivot * width + j], value[k * width + j]);
         mpq_inv(factor, value[k * width + t->x.size + k]);
         for (int j = 0; j < width; j++)
             mpq_mul(value[k * width + j], value[k * width + j], factor);
-        for (int i = 0; i < t->rows; i++) {
+        for (int i = 0; i < t->all.rows; i++) {
             mpq_neg(factor, value[i * width + t->x.size + k]);
             for (int j = 0; i != k && j < width; j++)
                 add_product(value[i * width + j], factor, value[k * width + j], false);
@@ -176,7 +175,7 @@ static bool solve(const struct tuning *t, mpq_t *value)
 static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column,
                   mpq_ptr left)
 {
-    const int width = t->x.size + t->rows, n = system->n;
+    const int width = t->x.size + t->all.rows, n = system->n;
     mpq_set_ui(left, 0, 1);
     for (int j = 0; j < n; j++)
         add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column],
@@ -212,7 +211,7 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
 static void compare_model(const struct model *there, const struct tuning *t, const mpq_t *value)
 {
     const struct linear *system = &there->system;
-    const int width = t->x.size + t->rows;
+    const int width = t->x.size + t->all.rows;
     mpq_t left, zero;
     mpq_inits(left, zero, NULL);
     for (int i = 0; i < system->n; i++)
@@ -244,7 +243,7 @@ static void compare_fixed(const struct model *a, const struct model *b, const st
 static bool turned(const struct model *model, const struct tuning *t, const mpq_t *value)
 {
     for (int l = 0; l < model->system.loads; l++)
-        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->x.size + t->rows)]) <= 0)
+        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->x.size + t->all.rows)]) <= 0)
             return true;
     return false;
 }
