@@ -41,6 +41,9 @@ int  echelon_null_space(const struct echelon *e, mpq_t ***basis);
 bool eigenvalues(int n, const mpq_t *A, double *re, double *im);
 
 double spectral_radius(int n, const double *A);             /* of n x n; infinite where none is found */
+/* x of A x = b, n x n, by elimination with pivots in double precision; A goes, b becomes x. False: A is singular, as
+ * far as that precision tells, and x may not be finite */
+bool solve_complex(int n, double _Complex *A, double _Complex *b);
 
 /* ---- symmetric.c: K v = lambda M v of symmetric K and positive definite M, in multiprecision ---- */
 

@@ -3,6 +3,7 @@
  * a step that shows them as slower ones, resonance, drift, forces that belong to no energy. */
 #include "model/model.h"
 
+#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -263,62 +264,27 @@ static void check_step(const struct lint *lint)
 
 /* ---- resonance ---- */
 
-struct phasor { double re, im; };
-
-/* Solves P x = f of n, f in the last column of n x (n + 1): the largest |x|; HUGE_VAL where P is singular */
-static double largest_solution(int n, struct phasor *P)
-{
-	int width = n + 1;
-	for (int k = 0; k < n; k++) {
-		int pivot = k;
-		for (int i = k; i < n; i++)
-			if (hypot(P[i * width + k].re, P[i * width + k].im) >
-			    hypot(P[pivot * width + k].re, P[pivot * width + k].im))
-				pivot = i;
-		struct phasor d = P[pivot * width + k];
-		double size = d.re * d.re + d.im * d.im;
-		if (!(size > 0))
-			return HUGE_VAL;
-		for (int j = k; j < width; j++) {
-			struct phasor a = P[pivot * width + j];
-			P[pivot * width + j] = P[k * width + j];
-			P[k * width + j] = (struct phasor){ (a.re * d.re + a.im * d.im) / size,
-							    (a.im * d.re - a.re * d.im) / size };
-		}
-		for (int i = 0; i < n; i++) {
-			struct phasor f = P[i * width + k];
-			for (int j = k; j < width && i != k && (f.re != 0 || f.im != 0); j++) {
-				struct phasor a = P[k * width + j];
-				P[i * width + j].re -= f.re * a.re - f.im * a.im;
-				P[i * width + j].im -= f.re * a.im + f.im * a.re;
-			}
-		}
-	}
-	double largest = 0;
-	for (int i = 0; i < n; i++)
-		largest = fmax(largest, hypot(P[i * width + n].re, P[i * width + n].im));
-	return largest;
-}
-
-/* The largest coordinate under the load's forces at frequency w, in its last segment of time that has some */
+/* The largest coordinate under the load's forces at frequency w, in its last segment of time that has some; HUGE_VAL:
+ * there the model has a pole */
 static double amplitude(const struct linear *s, const struct load *load, double w)
 {
-	int n = s->n, width = n + 1, segment = s->segments - 1;
-	SCRATCH struct phasor *P = ARRAY(struct phasor, (size_t)n * (size_t)width);
+	int n = s->n, segment = s->segments - 1;
+	SCRATCH double complex *P = ARRAY(double complex, (size_t)n * (size_t)n), *x = ARRAY(double complex, (size_t)n);
 	bool acts = false;
 	for (; !acts && segment >= 0; segment--)
 		for (int i = 0; i < n; i++)
 			for (int c = 0; c < load->columns; c++) {
 				double force = nearest_double(load->force[c][segment * n + i]);
 				acts = acts || force != 0;
-				*(c % 2 ? &P[i * width + n].im : &P[i * width + n].re) += c % 2 ? -force : force;
+				x[i] += c % 2 ? -I * force : force;
 			}
+	for (int i = 0; i < n * n; i++)
+		P[i] = nearest_double(s->K[i]) - w * w * nearest_double(s->M[i]) + I * w * nearest_double(s->C[i]);
+	solve_complex(n, P, x);
+	double largest = 0;
 	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++)
-			P[i * width + j] = (struct phasor){ nearest_double(s->K[i * n + j]) -
-								    w * w * nearest_double(s->M[i * n + j]),
-							    w * nearest_double(s->C[i * n + j]) };
-	return largest_solution(n, P);
+		largest = isfinite(cabs(x[i])) ? fmax(largest, cabs(x[i])) : HUGE_VAL;
+	return largest;
 }
 
 /* cos or sin in an expression, through lets; or NULL */

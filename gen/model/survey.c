@@ -2,6 +2,7 @@
 /* How large each mode's answer is in each output, in double precision: sums of |residues|, to choose by and to tell. */
 #include "model/modes.h"
 
+#include <complex.h>
 #include <math.h>
 
 #define UNSEEN 1e-13                /* of what it is a sum of: less is rounding */
@@ -184,56 +185,24 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 	}
 }
 
-/* x of F x = b, n x n, both destroyed; false: singular, as far as double precision tells */
-static bool solve(int n, double *F, double *b)
-{
-	for (int c = 0; c < n; c++) {
-		int pivot = c;
-		double most = 0;
-		for (int i = 0; i < n; i++)
-			for (int j = c; j < n; j++)
-				most = fabs(F[i * n + j]) > most && i >= c ? fabs(F[i * n + j]) : most;
-		for (int r = c + 1; r < n; r++)
-			pivot = fabs(F[r * n + c]) > fabs(F[pivot * n + c]) ? r : pivot;
-		if (!(fabs(F[pivot * n + c]) > 1e-14 * most))
-			return false;
-		for (int j = 0; j < n; j++) {
-			const double swap = F[c * n + j];
-			F[c * n + j] = F[pivot * n + j];
-			F[pivot * n + j] = swap;
-		}
-		const double swap = b[c];
-		b[c] = b[pivot];
-		b[pivot] = swap;
-		for (int r = 0; r < n; r++) {
-			const double factor = r == c ? 0 : F[r * n + c] / F[c * n + c];
-			for (int j = c; j < n && factor != 0; j++)
-				F[r * n + j] -= factor * F[c * n + j];
-			b[r] -= factor * b[c];
-		}
-	}
-	for (int i = 0; i < n; i++)
-		b[i] /= F[i * n + i];
-	return true;
-}
-
-/* The forced part of a load, per column k states: of t^j e^{at} (cos, sin), from the highest power down,
- * (a - T) P_c + w P_s = B_c - (j+1) P_c', (a - T) P_s - w P_c = B_s - (j+1) P_s'. False: it has a pole of the mode. */
+/* The forced part of a load, per column k states: P = P_c + i P_s of t^j e^{at} (cos, sin), from the highest power
+ * down, (a - i w - T) P = B - (j+1) P'. False: it has a pole of the mode. */
 static bool forced(const struct picture *p, const struct load *load, const double *B, double *P)
 {
 	const int k = p->k, trig = oscillates(load->wave) ? 2 : 1, size = trig * k;
-	const double a = nearest_double(load->wave->a), w = nearest_double(load->wave->w);
-	SCRATCH double *F = ARRAY(double, (size_t)size * (size_t)size);
+	const double complex rate = nearest_double(load->wave->a) - I * nearest_double(load->wave->w);
+	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, (size_t)k);
 	bool good = true;
 	for (int power = load->powers - 1; power >= 0 && good; power--) {
-		double *x = P + power * size;
+		for (int i = 0; i < k; i++) {
+			const double *b = B + power * size + i;
+			x[i] = b[0] + (trig == 2 ? I * b[k] : 0) - (power + 1) * x[i];
+			for (int j = 0; j < k; j++)
+				F[i * k + j] = (i == j ? rate : 0) - p->T[i * k + j];
+		}
+		good = solve_complex(k, F, x);
 		for (int i = 0; i < size; i++)
-			x[i] = B[power * size + i] - (power + 1 < load->powers ? (power + 1) * x[size + i] : 0);
-		for (int r = 0; r < size; r++)
-			for (int c = 0; c < size; c++)
-				F[r * size + c] = r / k == c / k ? (r == c ? a : 0) - p->T[r % k * k + c % k]
-						: r % k == c % k ? (r < c ? w : -w) : 0;
-		good = solve(size, F, x);
+			P[power * size + i] = i < k ? creal(x[i]) : cimag(x[i - k]);
 	}
 	return good;
 }
@@ -325,16 +294,22 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 static double survey_input(const struct survey *s, const struct picture *p, const struct input *input)
 {
 	const int k = p->k;
-	SCRATCH double *B = ARRAY(double, (size_t)k), *F = ARRAY(double, (size_t)k * (size_t)k);
+	SCRATCH double *B = ARRAY(double, (size_t)k);
+	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, (size_t)k);
 	double sum = 0;
 	bool any = false;
 	for (int i = 0; i < k * k; i++)
 		F[i] = -p->T[i];
 	drive(s, p, (const mpq_t *)input->force[0], B);
-	for (int i = 0; i < k; i++)
+	for (int i = 0; i < k; i++) {
+		x[i] = B[i];
 		any = any || B[i] != 0;
+	}
+	bool known = solve_complex(k, F, x);
+	for (int i = 0; i < k; i++)
+		B[i] = creal(x[i]);
 	if (any && !p->hidden)
-		sum = solve(k, F, B) ? fabs(along(p, B)) + peak_of(p, B) : HUGE_VAL;
+		sum = known ? fabs(along(p, B)) + peak_of(p, B) : HUGE_VAL;
 	drive(s, p, (const mpq_t *)input->force[1], B);
 	sum += peak_of(p, B);
 	return sum;

@@ -53,7 +53,7 @@ static int run(FILE *script, FILE *picture, FILE *words)
 	return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static void copy(FILE *from, FILE *to)
+void copy_file(FILE *from, FILE *to)
 {
 	char part[4096];
 	rewind(from);
@@ -74,10 +74,10 @@ void draw(FILE *to, FILE *script)
 		cannot_draw(ENOENT);
 	if (status != 0) {
 		fputs("plgen: error: gnuplot could not draw:\n", stderr);
-		copy(words, stderr);
+		copy_file(words, stderr);
 		abandon();
 	}
-	copy(picture, to);
+	copy_file(picture, to);
 	fclose(picture);
 	fclose(words);
 }

@@ -19,12 +19,6 @@ static void json_names(FILE *to, const char *key, int count, const char *const *
 	fputs("],\n", to);
 }
 
-/* JSON has no infinity: what is beyond the range of double is null. */
-static const char *json_number(double value)
-{
-	return isfinite(value) ? format("%.17g", value) : "null";
-}
-
 static void json_matrix(FILE *to, const char *key, int rows, int columns, const double *value)
 {
 	fprintf(to, "  \"%s\": [", key);

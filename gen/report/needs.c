@@ -149,17 +149,9 @@ void person_needs(FILE *to, const struct step *step)
 		fprintf(to, "and %d more that are dearer than a more exact one, or that there are not.\n", left);
 }
 
-static const char *json_quoted(const char *text)
-{
-	const char *quoted = "";
-	for (; *text; text++)
-		quoted = format("%s%s%c", quoted, *text == '"' || *text == '\\' ? "\\" : "", *text);
-	return format("\"%s\"", quoted);
-}
-
 static void json_tried(FILE *to, const struct alternative *a)
 {
-	fprintf(to, "\"scheme\": %s, ", json_quoted(a->name));
+	fprintf(to, "\"scheme\": \"%s\", ", json_text(a->name));
 	if (a->step)
 		fprintf(to, "\"step\": %s, ", a->step);
 	if (a->tolerance)
@@ -171,11 +163,6 @@ static void json_modes(FILE *to, const struct alternative *a)
 	const struct shortening *s = a->model->shortened;
 	fprintf(to, "\"modes\": \"%s\", \"statics\": %s, ", s ? mode_numbers(s, true) : "all",
 		s && s->statics ? "true" : "false");
-}
-
-static const char *json_number(double x)
-{
-	return isfinite(x) ? format("%.17g", x) : "null";
 }
 
 static void json_error(FILE *to, const struct alternative *a, int k)
@@ -193,7 +180,7 @@ void json_needs(FILE *to, const struct step *step)
 	const struct model *model = step->model;
 	fputs("  \"needs\": [", to);
 	for (int i = 0; i < model->requirements; i++)
-		fprintf(to, "%s%s", i ? ", " : "", json_quoted(need_text(&model->requirement[i])));
+		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(need_text(&model->requirement[i])));
 	fputs("],\n  \"alternatives\": [", to);
 	for (int i = 0; i < step->choice->alternatives; i++) {
 		const struct alternative *a = &step->choice->alternative[i];
@@ -203,7 +190,7 @@ void json_needs(FILE *to, const struct step *step)
 			a->single ? "float" : "double", step_form_name(a->form),
 			a->compensated ? "compensated" : "plain", i == step->choice->taken ? "true" : "false");
 		if (a->refused || a->why) {
-			fprintf(to, ", \"why\": %s}", json_quoted(a->refused ? a->refused : a->why));
+			fprintf(to, ", \"why\": \"%s\"}", json_text(a->refused ? a->refused : a->why));
 			continue;
 		}
 		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, ", a->cost, a->excess);

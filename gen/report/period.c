@@ -13,7 +13,7 @@
 enum { OVER = 3, TERMS = 60, MOST_CROSSINGS = 2000 };
 static const double two_pi = 6.283185307179586;
 
-void mover_multiply(int n, const double *a, const double *b, double *to)
+static void matrix_product(int n, const double *a, const double *b, double *to)
 {
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
@@ -94,31 +94,13 @@ static double *row_of(const struct linear *system, const struct output *row, con
 	return over;
 }
 
-/* The largest modulus of a pole [1/s]: the norm of a high power, of which the root is taken */
+/* The largest modulus of a pole [1/s] */
 static double rate_of(int states, int size, const double *A)
 {
-	enum { DOUBLINGS = 8 };
-	size_t cells = (size_t)states * (size_t)states;
-	double *power = ARRAY(double, cells), *square = ARRAY(double, cells), exponent = 0;
+	SCRATCH double *free = ARRAY(double, (size_t)states * (size_t)states);
 	for (int i = 0; i < states; i++)
-		memcpy(power + i * states, A + i * size, sizeof(double) * (size_t)states);
-	for (int k = 0;; k++) {
-		double norm = 0;
-		for (size_t i = 0; i < cells; i++)
-			norm = fmax(norm, fabs(power[i]));
-		if (norm == 0)
-			return 0;
-		exponent += ldexp(log(norm), -k);
-		if (k == DOUBLINGS)
-			break;
-		for (size_t i = 0; i < cells; i++)
-			power[i] /= norm;
-		mover_multiply(states, power, power, square);
-		double *other = power;
-		power = square;
-		square = other;
-	}
-	return exp(exponent);
+		memcpy(free + i * states, A + i * size, sizeof(double) * (size_t)states);
+	return spectral_radius(states, free);
 }
 
 /* ---- what moves on its own ---- */
@@ -363,7 +345,7 @@ static void vary(struct mover *m, const double *E, double *M)
 	double *block = m->square[1], *product_of = m->square[2];
 	for (int i = 0; i < n; i++)
 		memcpy(block + i * n, E + i * m->size, sizeof(double) * (size_t)n);
-	mover_multiply(n, block, M, product_of);
+	matrix_product(n, block, M, product_of);
 	memcpy(M, product_of, sizeof(double) * (size_t)n * (size_t)n);
 }
 

@@ -497,13 +497,6 @@ static void print_panels(FILE *to, const struct picture *p)
 	fputs("unset multiplot\n", to);
 }
 
-static void copy(FILE *from, FILE *to)
-{
-	rewind(from);
-	for (int c; (c = getc(from)) != EOF;)
-		putc(c, to);
-}
-
 bool has_frf(const char *list)
 {
 	for (; *list; list += *list == ',') {
@@ -527,7 +520,7 @@ void print_picture(FILE *to, const struct step *step, const char *list, const ch
 		error(step->model->asked.step_at, NULL,
 		      "there is nothing to draw: no output that is linear reacts to an input or a load");
 	print_terminal(script, as, p.height, list);
-	copy(p.data, script);
+	copy_file(p.data, script);
 	print_panels(script, &p);
 	draw(to, script);
 	fclose(p.data);

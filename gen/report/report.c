@@ -2,6 +2,8 @@
 /* Poles and polynomials as a reader wants to see them: good to the printed digits, in a fixed order. */
 #include "report/report.h"
 
+#include <math.h>
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,4 +70,9 @@ const char *json_text(const char *name)
 			       ? format("%s\\u%04x", text, *name)
 			       : format("%s%s%c", text, *name == '\\' || *name == '"' ? "\\" : "", *name);
 	return text;
+}
+
+const char *json_number(double value)
+{
+	return isfinite(value) ? format("%.17g", value) : "null";
 }

@@ -14,6 +14,7 @@ double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
 const char *json_text(const char *name);                    /* a file's name, as it is in quotes */
+const char *json_number(double value);                      /* null where it is not finite, which JSON cannot say */
 
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
@@ -156,7 +157,6 @@ struct mover {
 };
 /* of a model with `switching`; returns how many. The excitation is a cos(w t) in the place of what drives; other loads
  * that are constant act, and nothing else does */
-void mover_multiply(int n, const double *a, const double *b, double *to); /* n x n */
 int  movers_of(const struct model *model, const struct drive *drive, struct mover **list);
 void mover_tune(struct mover *m, double w);
 /* y becomes that a period later. M, states x states, how it follows from y, and scale, per state the largest size on
@@ -185,6 +185,7 @@ struct sweeps sweeps_of(const struct step *step, struct band band, double amplit
 /* ---- gnuplot.c ---- */
 
 FILE *new_script(void);                                     /* a file without a name */
+void copy_file(FILE *from, FILE *to);                       /* from its start */
 void draw(FILE *to, FILE *script);                          /* what gnuplot makes of it; it is said where it cannot */
 
 /* ---- plot.c: pictures ---- */

@@ -99,14 +99,6 @@ void person_shortening(FILE *to, const struct model *model)
 	fputs("\n", to);
 }
 
-static void json_number(FILE *to, double value)
-{
-	if (isfinite(value))
-		fprintf(to, "%.17g", value);
-	else
-		fputs("null", to);
-}
-
 /* Members of an object */
 void json_shortening(FILE *to, const struct model *model)
 {
@@ -116,15 +108,13 @@ void json_shortening(FILE *to, const struct model *model)
 		const struct mode *mode = &s->modes->mode[i];
 		fprintf(to,
 			"    {\"number\": %d, \"states\": %d, \"re\": %.9g, \"im\": %.9g, \"rigid\": %s, "
-			"\"seen\": %s, \"kept\": %s, \"share\": ", mode->number, mode->states, mode->re, mode->im,
-			mode->rigid ? "true" : "false", mode->seen ? "true" : "false", s->kept[i] ? "true" : "false");
-		json_number(to, mode->share);
-		fprintf(to, "}%s\n", i + 1 < s->modes->count ? "," : "");
+			"\"seen\": %s, \"kept\": %s, \"share\": %s}%s\n",
+			mode->number, mode->states, mode->re, mode->im, mode->rigid ? "true" : "false",
+			mode->seen ? "true" : "false", s->kept[i] ? "true" : "false", json_number(mode->share),
+			i + 1 < s->modes->count ? "," : "");
 	}
 	fprintf(to, "  ],\n  \"static\": %s,\n  \"lost\": [", s->statics ? "true" : "false");
-	for (int i = 0; i < model->outputs; i++) {
-		fputs(i ? ", " : "", to);
-		json_number(to, modes_loss(s->modes, s->kept, s->statics, i));
-	}
+	for (int i = 0; i < model->outputs; i++)
+		fprintf(to, "%s%s", i ? ", " : "", json_number(modes_loss(s->modes, s->kept, s->statics, i)));
 	fputs("],\n", to);
 }

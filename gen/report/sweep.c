@@ -15,7 +15,7 @@ static const double two_pi = 6.283185307179586, near = 0.3, settled = 1e-11;
 
 struct course_of_mover {                /* what is carried from one frequency to the next */
 	struct mover *m;
-	double *y, *trial, *end, *scale, *M, *power, *square;
+	double *y, *trial, *end, *scale, *M;
 	bool repeats;                   /* at the last frequency */
 };
 
@@ -27,28 +27,10 @@ static double larger(double size, double x)
 	return fabs(x) <= size || isnan(size) ? size : fabs(x);
 }
 
-/* Do all eigenvalues of M lie inside the unit circle, or on it? By the growth of M^(2^20) */
-static bool is_stable(struct course_of_mover *c)
+/* Do all eigenvalues of M lie inside the unit circle, or on it? */
+static bool is_stable(const struct course_of_mover *c)
 {
-	enum { DOUBLINGS = 20 };
-	int n = c->m->states, cells = n * n;
-	double exponent = 0;
-	memcpy(c->power, c->M, sizeof(double) * (size_t)cells);
-	for (int k = 0; k <= DOUBLINGS; k++) {
-		double norm = 0;
-		for (int i = 0; i < cells; i++)
-			norm = larger(norm, c->power[i]);
-		if (!(norm > 0))
-			return norm == 0;
-		exponent += ldexp(log(norm), -k);
-		for (int i = 0; i < cells; i++)
-			c->power[i] /= norm;
-		mover_multiply(n, c->power, c->power, c->square);
-		double *other = c->power;
-		c->power = c->square;
-		c->square = other;
-	}
-	return exponent < 1e-4;
+	return spectral_radius(c->m->states, c->M) < 1 + 1e-4;
 }
 
 /* The shortest d with (I - M) d = end - trial, both in units of the scale; its largest entry. A direction in which the
@@ -206,7 +188,7 @@ static void start(struct sweeping *s, const struct drive *drive, double amplitud
 		struct course_of_mover *c = &s->course[p];
 		size_t n = (size_t)list[p].states;
 		*c = (struct course_of_mover){ &list[p], ARRAY(double, n), ARRAY(double, n), ARRAY(double, n),
-			ARRAY(double, n), ARRAY(double, n * n), ARRAY(double, n * n), ARRAY(double, n * n), true };
+			ARRAY(double, n), ARRAY(double, n * n), true };
 		c->m->amplitude = amplitude;
 		for (size_t i = 0; i < n; i++)
 			c->y[i] = mpq_get_d(s->model->initial[c->m->place ? c->m->place[i] : (int)i]);

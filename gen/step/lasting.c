@@ -21,36 +21,6 @@ static double complex root_of_wave(const struct wave_of_column *wave, double h)
 	return cexp((wave->a + I * (wave->turns ? wave->w : 0)) * h);
 }
 
-/* A x = b by elimination with pivots; b becomes x. It may not be finite: the caller looks at what is left. */
-static void eliminate(int n, double complex *A, double complex *b)
-{
-	for (int c = 0; c < n; c++) {
-		int pivot = c;
-		for (int i = c + 1; i < n; i++)
-			pivot = cabs(A[i * n + c]) > cabs(A[pivot * n + c]) ? i : pivot;
-		for (int j = 0; j < n && pivot != c; j++) {
-			const double complex swap = A[c * n + j];
-			A[c * n + j] = A[pivot * n + j];
-			A[pivot * n + j] = swap;
-		}
-		const double complex other = b[pivot];
-		b[pivot] = b[c];
-		b[c] = other;
-		for (int i = c + 1; i < n; i++) {
-			const double complex factor = A[i * n + c] / A[c * n + c];
-			for (int j = c; j < n; j++)
-				A[i * n + j] -= factor * A[c * n + j];
-			b[i] -= factor * b[c];
-		}
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		for (int j = i + 1; j < n; j++)
-			b[i] -= A[i * n + j] * b[j];
-		b[i] /= A[i * n + i];
-	}
-}
-
-/* What p leaves of its equations, at most: what a step is off where it is taken for the motion */
 static void find_defect(const struct kept *k, double complex root, const double complex *b, const double complex *p,
 			double *defect)
 {
@@ -84,7 +54,7 @@ static bool sustained(const struct kept *k, int column, double h, double complex
 		for (int j = 0; j < n; j++)
 			A[i * n + j] = (i == j ? root : 0) - k->Phi[i * n + j];
 	}
-	eliminate(n, A, p);
+	solve_complex(n, A, p);                 /* where p is not finite, its defect is not */
 	find_defect(k, root, b, p, own);
 	for (int i = 0; i < n; i++)
 		largest = own[i] <= largest ? largest : own[i];
