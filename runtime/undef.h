@@ -45,6 +45,7 @@
 #undef PL_DEGREE
 #undef PL_DIRECT
 #undef PL_DIVIDED
+#undef PL_DRIVEN
 #undef PL_EACH
 #undef PL_ELAPSED
 #undef PL_ENDED

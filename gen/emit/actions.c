@@ -72,14 +72,21 @@ static const char *time_of(const struct emitter *e, mpq_srcptr fraction)
 
 /* ---- actions ---- */
 
+static bool adds_driven(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	for (int i = 0; i < program->nodes; i++)
+		if (program->node_table[i] != NONE)
+			return true;
+	return false;
+}
+
 static void emit_prediction(const struct emitter *e, const struct action *a)
 {
-	struct reads r = reads_of_leftover(e);
-	const char *nodes = needs_node(e, &r) ? format(", %d, %d", a->half, a->node) : "";
-	const char *parts = adds_driven(e) ? format(", driven%d, driven%d", a->half, a->node) : "";
 	const char *tau = shortest(time_in_step(e->model, e->step->program->node[a->node]));
-	say(e, "    $n_predict(%s%s, %s, first%s, stage%d);\n", leftover_arguments(e, &r, NULL, FROM_STEP), nodes, tau,
-	    parts, a->target);
+	say(e, "    $n_predict(s, %s, %s, %d, %d, %s, first, %s, stage%d);\n", many_operators(e) ? "which" : "0",
+	    samples_of_step(e), a->half, a->node, tau,
+	    adds_driven(e) ? format("driven%d, driven%d", a->half, a->node) : "NULL, NULL", a->target);
 }
 
 static void emit_evaluation(const struct emitter *e, const struct action *a)
@@ -92,9 +99,9 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 		    e->system->segments > 1 ? "s->segment" : "0", state, a->target);
 		return;
 	}
-	say(e, "    %s\n", leftover_call(e, format("%d", a->node), state, format("left%d", a->target), FROM_STEP));
+	say(e, "    %s\n", leftover_of_step(e, a->node, state, format("left%d", a->target)));
 	if (a->target == 0 && e->step->program->predicts)
-		say(e, "    $n_slope_of(%ss->y, left0, first);\n", many_operators(e) ? "which, " : "");
+		say(e, "    $n_slope_of(%s, s->y, left0, first);\n", many_operators(e) ? "which" : "0");
 }
 
 static void emit_action(const struct emitter *e, const struct action *a)
@@ -143,24 +150,18 @@ static void declare_vectors(const struct emitter *e)
 	say(e, program->loops ? ";\n    int i;\n" : ";\n");
 }
 
+/* start, slope: samples at the start of the step, where some are ramps */
 void emit_samples(const struct emitter *e)
 {
-	struct reads r = reads_of_leftover(e), chosen = r;
-	bool selected = many_operators(e);
-	if (selected)
-		chosen = reads_of(e->model, 1, &e->model->selector);
-	int inputs = e->system->inputs;
 	const char *start = "", *slope = "";
-	for (int i = 0; i < inputs; i++) {
+	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
-		const char *rate = ramp ? ramp_slope(e, i) : "0.0";
 		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
-		slope = format("%s%s%s", slope, i ? ", " : "", rate);
+		slope = format("%s%s%s", slope, i ? ", " : "", ramp ? ramp_slope(e, i) : "0.0");
 	}
-	if (e->ramps && (any_of(r.input, inputs) || (selected && any_of(chosen.input, inputs))))
-		say(e, "    const double start[$N_INPUTS] = {%s};\n", start);
-	if (takes_slope(e, &r) || (selected && takes_slope(e, &chosen)))
-		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
+	if (e->ramps)
+		say(e, "    const double start[$N_INPUTS] = {%s};\n"
+		       "    const double slope[$N_INPUTS] = {%s};\n", start, slope);
 }
 
 /* ---- what the loads and inputs add ---- */
@@ -215,6 +216,48 @@ static void emit_flows_apart(const struct emitter *e)
 			emit_flow_loop(e, t, false, format("flow%d", t), "        ");
 	emit_driven(e);
 	say(e, "    }\n");
+}
+
+/* ---- predictors of a quadrature ---- */
+
+static int add_terms(const struct coefficient *row, int columns, const char *vector, const char **term)
+{
+	int terms = 0;
+	for (int j = 0; j < columns; j++)
+		if (!row[j].zero)
+			term[terms++] = scaled(row[j].value, format("%s[%d]", vector, j));
+	return terms;
+}
+
+static void emit_unrolled_slope(const struct emitter *e)
+{
+	int states = e->system->states, channels = e->model->channels;
+	const struct slopes slopes = state_slopes(e->step, 0);
+	for (int i = 0; i < states; i++) {
+		const char **term = ARRAY(const char *, (size_t)(states + channels) + 1);
+		int terms = add_terms(slopes.A + i * states, states, "z", term);
+		terms += add_terms(slopes.B + i * channels, channels, "left", term + terms);
+		const char *sum = terms ? tree(terms, term, 12) : "0.0";
+		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum, e->model->state_name[i]);
+	}
+}
+
+static void emit_predictor(const struct emitter *e)
+{
+	const struct size sizes[] = { { "STATES", e->system->states }, { "FORCES", e->model->channels },
+				      { "DRIVEN", adds_driven(e) } };
+	open_function(e, "dz = A z + B r, r what is left over",
+		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
+		      "double dz[$N_STATES])", e->model->channels);
+	if (e->step->program->loops)
+		say(e, "    pl_multiply($N_STATES, $N_STATES, %s, z, dz);\n"
+		       "    pl_multiply_add($N_STATES, %d, %s, left, dz);\n", matrix_text(e, "A"), e->model->channels,
+		    matrix_text(e, "B"));
+	else
+		emit_unrolled_slope(e);
+	close_function(e, "which z");
+	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say_include(e, "predict.h");
 }
 
 /* ---- the whole ---- */

@@ -173,27 +173,16 @@ void emit_formulas(struct formulas *f, int indent);
 
 bool many_operators(const struct emitter *e);
 bool any_of(const bool *flag, int count);
-bool reads_slope(const struct emitter *e, const struct reads *r); /* of an input */
-bool takes_slope(const struct emitter *e, const struct reads *r); /* also since ramps go on between nodes of a step */
-struct reads reads_of_leftover(const struct emitter *e);
-bool needs_node(const struct emitter *e, const struct reads *r);  /* it depends on time, of which there are several */
-/* What every function of a step is handed on: the operator, the node, the inputs */
-const char *leftover_parameters(const struct emitter *e, const struct reads *r, bool with_node);
-/* Where a call stands: in a step, whose own inputs are set up there; inside a function that got them; in the outputs */
-enum call_from { FROM_STEP, FROM_INSIDE, FROM_OUTPUTS };
-/* node NULL: none */
-const char *leftover_arguments(const struct emitter *e, const struct reads *r, const char *node, enum call_from from);
-const char *leftover_call(const struct emitter *e, const char *node, const char *state, const char *left,
-			  enum call_from from);
-const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
+/* What a leftover, an operator, is handed in a step: samples at its start, their slopes [1/s] */
+const char *samples_of_step(const struct emitter *e);
+/* A call at a node of the step, and one in the outputs, into `left` */
+const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left);
 const char *leftover_of_outputs(const struct emitter *e);
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
 void emit_leftover(const struct emitter *e);
 
-/* ---- selection.c: which operator of a bank serves now ---- */
-
-void emit_selection(const struct emitter *e);
+void emit_selection(const struct emitter *e);                     /* of a bank: which operator serves now */
 const char *selection_call(const struct emitter *e);
 
 /* ---- loops.c: a step with a leftover that loops over its tables ---- */
@@ -207,11 +196,6 @@ void emit_operands(const struct emitter *e);                      /* declares lo
 void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
 void emit_combination_loop(const struct emitter *e, const struct action *a);
 void emit_sum_loop(const struct emitter *e, const struct action *a);
-
-/* ---- predict.c: predictors of a quadrature ---- */
-
-void emit_predictor(const struct emitter *e);
-bool adds_driven(const struct emitter *e);                        /* loads or inputs have a part in them */
 
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 

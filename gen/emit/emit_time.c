@@ -118,7 +118,7 @@ static const char *input_parameter(const struct emitter *e)
 static void emit_leftover_now(const struct emitter *e)
 {
 	if (e->step->layout.powers)
-		say(e, "    %s\n", leftover_of_step(e));
+		say(e, "    %s\n", leftover_of_step(e, 0, "s->y", "left"));
 }
 
 void emit_series_vector(const struct emitter *e, bool looped)

@@ -19,11 +19,6 @@ bool any_of(const bool *flag, int count)
 	return false;
 }
 
-bool reads_slope(const struct emitter *e, const struct reads *r)
-{
-	return any_of(r->input + e->system->inputs, e->system->inputs);
-}
-
 /* The value of a ramp, which differs from one time in a step to another */
 static bool reads_ramp(const struct emitter *e, const struct reads *r)
 {
@@ -31,11 +26,6 @@ static bool reads_ramp(const struct emitter *e, const struct reads *r)
 		if (e->system->input[i].hold && r->input[i])
 			return true;
 	return false;
-}
-
-bool takes_slope(const struct emitter *e, const struct reads *r)
-{
-	return reads_slope(e, r) || (reads_ramp(e, r) && e->step->program->nodes > 1);
 }
 
 static bool reads_channel(const struct model *model, int channel)
@@ -63,7 +53,7 @@ static bool is_asked(const struct emitter *e, int channel)
 	return e->model->drags == 0 || reads_channel(e->model, channel);
 }
 
-struct reads reads_of_leftover(const struct emitter *e)
+static struct reads reads_of_leftover(const struct emitter *e)
 {
 	int channels = e->model->channels, all = channels * e->model->operators, asked = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
@@ -74,58 +64,28 @@ struct reads reads_of_leftover(const struct emitter *e)
 	return reads_of(e->model, asked, form);
 }
 
-bool needs_node(const struct emitter *e, const struct reads *r)
+static bool needs_node(const struct emitter *e, const struct reads *r)
 {
 	if (e->step->normal)            /* outputs alone call it */
 		return false;
 	return e->step->program->nodes > 1 && (r->time || any_of(r->load, e->system->loads) || reads_ramp(e, r));
 }
 
-const char *leftover_parameters(const struct emitter *e, const struct reads *r, bool with_node)
+const char *samples_of_step(const struct emitter *e)
 {
-	const char *text = format("const %s *s", e->name);
-	if (many_operators(e))
-		text = format("%s, int which", text);
-	if (with_node)
-		text = format("%s, int node", text);
-	if (any_of(r->input, e->system->inputs))
-		text = format("%s, const double u[]", text);
-	if (takes_slope(e, r))
-		text = format("%s, const double slope[]", text);
-	return text;
+	return e->ramps ? "start, slope" : given_inputs(e) ? "u, NULL" : "NULL, NULL";
 }
 
-const char *leftover_arguments(const struct emitter *e, const struct reads *r, const char *node, enum call_from from)
+const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left)
 {
-	static const char *const u[] = { "u", "u", "s->u" }, *const slope[] = { "slope", "slope", "s->slope" };
-	const char *text = "s";
-	if (many_operators(e))
-		text = format("%s, %s", text, from == FROM_OUTPUTS ? "0" : "which");
-	if (node)
-		text = format("%s, %s", text, node);
-	if (any_of(r->input, e->system->inputs))
-		text = format("%s, %s", text, from == FROM_STEP && e->ramps ? "start" : u[from]);
-	if (takes_slope(e, r))
-		text = format("%s, %s", text, slope[from]);
-	return text;
-}
-
-const char *leftover_call(const struct emitter *e, const char *node, const char *state, const char *left,
-			  enum call_from from)
-{
-	struct reads r = reads_of_leftover(e);
-	const char *arguments = leftover_arguments(e, &r, needs_node(e, &r) ? node : NULL, from);
-	return format("%s_leftover(%s, %s, %s);", e->name, arguments, state, left);
-}
-
-const char *leftover_of_step(const struct emitter *e)
-{
-	return leftover_call(e, "0", "s->y", "left", FROM_STEP);
+	return spell(e, "$n_leftover(s, %s, %d, %s, %s, %s);", many_operators(e) ? "which" : "0", node,
+		     samples_of_step(e), state, left);
 }
 
 const char *leftover_of_outputs(const struct emitter *e)
 {
-	return leftover_call(e, "0", e->step->normal ? "now" : "s->y", "left", FROM_OUTPUTS);
+	return spell(e, "$n_leftover(s, 0, 0, %s, %s, %s, left);", given_inputs(e) ? "s->u" : "NULL",
+		     e->ramps ? "s->slope" : "NULL", e->step->normal ? "now" : "s->y");
 }
 
 /* ---- a bank: linear terms that differ from operator to operator ---- */
@@ -212,18 +172,56 @@ void emit_leftover(const struct emitter *e)
 		emit_nodes(e, &r);
 	if (bank.count)
 		emit_excess(e, &bank);
-	say(e, "\n/* What is left over at state y: a force on each equation that has some */\n"
-	       "static void $n_leftover(%s, const double y[$N_STATES], double left[%d])\n"
-	       "{\n", leftover_parameters(e, &r, node), e->model->channels);
+	open_function(e, "What is left over at state y: a force on each equation that has some",
+		      "static void $n_leftover(const $n *s, int which, int node, const double u[], const double slope[],\n"
+		      "    const double y[$N_STATES], double left[%d])", e->model->channels);
 	emit_leftover_locals(e, &r, node);
 	if (bank.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");
 	emit_lefts(e, &bank);
-	if (!r.time && !any_of(r.load, e->system->loads))
-		say(e, "    (void)s;\n");
-	if (many_operators(e) && !bank.count)
-		say(e, "    (void)which;\n");
-	if (!any_of(r.state, e->system->states))
-		say(e, "    (void)y;\n");
-	say(e, "}\n");
+	close_function(e, "s which node u slope y");
+}
+
+/* ---- a bank: which of its operators serves now ---- */
+
+static void emit_selection_locals(const struct emitter *e, const struct reads *r)
+{
+	emit_locals_of(e, r->state, "s->y");
+	emit_param_locals(e, r->param);
+	if (r->time)
+		say(e, "    const double t = $n_time(s);\n");
+	for (int i = 0; i < e->system->inputs; i++) {
+		if (r->input[i])
+			say(e, "    const double %s = u[%d];\n", input_name(e, i, 0), i);
+		if (r->input[e->system->inputs + i])
+			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
+	}
+	emit_load_states(e, r->load, true);
+}
+
+void emit_selection(const struct emitter *e)
+{
+	const struct form *selector = e->model->selector;
+	const struct operator *operator = e->model->operator;
+	struct reads r = reads_of(e->model, 1, &selector);
+	int last = e->model->operators - 1;
+	open_function(e, "The first operator whose value is not below the current one",
+		      "static int $n_operator(const $n *s, const double u[], const double slope[])");
+	emit_selection_locals(e, &r);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 1, &selector);
+	tape_set(formulas_tape(f), "const double now", formula(f, selector), 8, NULL);
+	emit_formulas(f, 4);
+	say(e, "    (void)s;\n"
+	       "    (void)u;\n"
+	       "    (void)slope;\n"
+	       "    return ");
+	for (int k = 0; k < last; k++)
+		say(e, "now <= %s ? %d : ", shortest(equation_number(e->model, operator[k].at).value), k);
+	say(e, "%d;\n"
+	       "}\n", last);
+}
+
+const char *selection_call(const struct emitter *e)
+{
+	return spell(e, "$n_operator(s, %s)", samples_of_step(e));
 }

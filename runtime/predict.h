@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* predict.h: predictors of a quadrature: a step of Runge and Kutta of fourth order in y' = A y + B r, r what is left
+ * over, the part of loads and inputs exact.  Included by the file of the model, which defines before it
+ *
+ *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
+ *     PL_TYPE                    the model, with member y
+ *     PL_STATES, PL_FORCES       states; forces that are left over
+ *     PL_DRIVEN                  1: loads and inputs have a part in them
+ *
+ *     PL(leftover)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
+ *     PL(slope_of)(which, z, left, dz)                 A z + B left */
+#include "numbers.h"
+
+/* y at node `end` of the step, tau [s] after its start, over node `half` in the middle; first: the slope at the start;
+ * middle, last: what loads and inputs add from rest up to these nodes. */
+static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real slope[], int half, int end, real tau,
+                        const real first[PL_STATES], const real middle[], const real last[], real y[PL_STATES])
+{
+    static const real ahead[3] = {(real)0.5, (real)0.5, 1}, weight[3] = {2, 2, 1};
+    real z[PL_STATES], dz[PL_STATES], sum[PL_STATES], left[PL_FORCES];
+    int i, k;
+    for (i = 0; i < PL_STATES; i++) {
+        dz[i] = first[i];
+        sum[i] = first[i];
+    }
+    for (k = 0; k < 3; k++) {
+        for (i = 0; i < PL_STATES; i++) {
+            z[i] = s->y[i] + ahead[k] * tau * dz[i];
+#if PL_DRIVEN
+            y[i] = z[i] + (k < 2 ? middle[i] : last[i]);
+#else
+            y[i] = z[i];
+#endif
+        }
+        PL(leftover)(s, which, k < 2 ? half : end, u, slope, y, left);
+        PL(slope_of)(which, z, left, dz);
+        for (i = 0; i < PL_STATES; i++) {
+            sum[i] += weight[k] * dz[i];
+        }
+    }
+    for (i = 0; i < PL_STATES; i++) {
+#if PL_DRIVEN
+        y[i] = s->y[i] + tau / 6 * sum[i] + last[i];
+#else
+        y[i] = s->y[i] + tau / 6 * sum[i];
+#endif
+    }
+    (void)middle;
+    (void)last;
+}
+
+#include "undef.h"
