@@ -173,8 +173,8 @@ void emit_leftover(const struct emitter *e)
 	if (bank.count)
 		emit_excess(e, &bank);
 	open_function(e, "What is left over at state y: a force on each equation that has some",
-		      "static void $n_leftover(const $n *s, int which, int node, const double u[], const double slope[],\n"
-		      "    const double y[$N_STATES], double left[%d])", e->model->channels);
+		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
+		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
 	emit_leftover_locals(e, &r, node);
 	if (bank.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");
