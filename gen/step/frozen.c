@@ -47,9 +47,11 @@ static void forces_at(const struct frozen *z, const double *eta, const double *r
 {
 	int n = z->normal->modes;
 	for (int i = 0; i < n; i++) {
-		force[i] = 0;
+		const double *stiffness = z->matrix[0] + i * n, *damping = z->matrix[1] + i * n;
+		double sum = 0;
 		for (int j = 0; j < n; j++)
-			force[i] += z->matrix[0][i * n + j] * eta[j] + z->matrix[1][i * n + j] * rate[j];
+			sum += stiffness[j] * eta[j] + damping[j] * rate[j];
+		force[i] = sum;
 	}
 }
 
@@ -97,9 +99,10 @@ static void collocation_of_frozen(const struct frozen *z, const double *from, do
 		force[i] = old[m->stages * n + i];
 	for (int k = 1; k < nodes; k++)
 		for (int i = 0; i < n; i++) {
-			force[k * n + i] = 0;
+			double sum = 0;
 			for (int l = 0; l < nodes; l++)
-				force[k * n + i] += m->ahead[(k - 1) * nodes + l] * old[l * n + i];
+				sum += m->ahead[(k - 1) * nodes + l] * old[l * n + i];
+			force[k * n + i] = sum;
 		}
 	for (int sweep = 0; sweep < m->sweeps; sweep++)
 		for (int k = 1; k < nodes; k++) {
@@ -107,12 +110,14 @@ static void collocation_of_frozen(const struct frozen *z, const double *from, do
 			const double *weight = m->stage[k - 1].weight + z->bank * nodes * 2 * width;
 			for (int i = 0; i < n; i++) {
 				int at = m->place[i];
-				to[i] = flow[at] * from[i] + flow[width + at] * from[n + i];
-				to[n + i] = flow[2 * width + at] * from[i] + flow[3 * width + at] * from[n + i];
+				double eta = flow[at] * from[i] + flow[width + at] * from[n + i];
+				double rate = flow[2 * width + at] * from[i] + flow[3 * width + at] * from[n + i];
 				for (int l = 0; l < nodes; l++) {
-					to[i] += weight[2 * l * width + at] * force[l * n + i];
-					to[n + i] += weight[(2 * l + 1) * width + at] * force[l * n + i];
+					eta += weight[2 * l * width + at] * force[l * n + i];
+					rate += weight[(2 * l + 1) * width + at] * force[l * n + i];
 				}
+				to[i] = eta;
+				to[n + i] = rate;
 			}
 			forces_at(z, to, to + n, force + k * n);
 		}

@@ -2,13 +2,11 @@
 /* Nodes, each made once; what they cost and read. */
 #include "tape/tape.h"
 
-enum { BUCKETS = 1 << 10 };
-
 struct tape {
-	int nodes, outs;
+	int nodes, room, outs;      /* room for nodes, a power of two, and as many buckets */
 	struct tape_node *node;
 	struct tape_out *out;
-	int *next, bucket[BUCKETS]; /* nodes of one hash; first + 1, 0: none */
+	int *next, *bucket;         /* nodes of one hash; first + 1, 0: none */
 };
 
 struct tape *tape_new(void)
@@ -50,27 +48,40 @@ static unsigned hash_of(const struct tape_node *n)
 	unsigned hash = (unsigned)n->op;
 	const int word[] = { n->index, n->part, n->a, n->b, n->c };
 	for (size_t i = 0; i < sizeof word / sizeof *word; i++)
-		hash = hash * 31 + (unsigned)word[i];
+		hash = (hash ^ hash >> 15 ^ (unsigned)word[i]) * 0x9e3779b1u;
 	if (n->op == TAPE_CONSTANT)
-		hash = hash * 31 + (unsigned)mpz_get_ui(mpq_numref(n->value)) * 7 +
+		hash = (hash ^ (unsigned)mpz_get_ui(mpq_numref(n->value))) * 0x9e3779b1u +
 		       (unsigned)mpz_get_ui(mpq_denref(n->value));
-	return (hash ^ hash >> 15) % BUCKETS;
+	return hash ^ hash >> 15;
+}
+
+static void into_bucket(struct tape *t, int node)
+{
+	int *bucket = &t->bucket[hash_of(&t->node[node]) % (unsigned)t->room];
+	t->next[node] = *bucket;
+	*bucket = node + 1;
+}
+
+static void make_room(struct tape *t)
+{
+	t->room = t->room ? 2 * t->room : 64;
+	ENLARGE(t->node, (size_t)t->room);
+	ENLARGE(t->next, (size_t)t->room);
+	discard(t->bucket);
+	t->bucket = ARRAY(int, (size_t)t->room);
+	for (int i = 0; i < t->nodes; i++)
+		into_bucket(t, i);
 }
 
 static tape_ref enter(struct tape *t, struct tape_node n)
 {
-	unsigned hash = hash_of(&n);
-	for (int i = t->bucket[hash] - 1; i >= 0; i = t->next[i] - 1)
+	if (t->nodes == t->room)
+		make_room(t);
+	for (int i = t->bucket[hash_of(&n) % (unsigned)t->room] - 1; i >= 0; i = t->next[i] - 1)
 		if (is_alike(&t->node[i], &n))
 			return i;
-	if ((t->nodes & (t->nodes - 1)) == 0) {         /* room for a power of two */
-		size_t room = t->nodes ? 2 * (size_t)t->nodes : 1;
-		ENLARGE(t->node, room);
-		ENLARGE(t->next, room);
-	}
-	t->next[t->nodes] = t->bucket[hash];
-	t->bucket[hash] = t->nodes + 1;
 	t->node[t->nodes] = n;
+	into_bucket(t, t->nodes);
 	return t->nodes++;
 }
 
