@@ -20,10 +20,12 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wcast-qual -Werror'
 level=-O0
 [ -z "${LONG:-}" ] || level=-O1
 
-# unpack FMU FOLDER: by a program that knows zip, which checks sums and lengths
+# unpack FMU FOLDER: by a program that knows zip, which checks sums and lengths; itself, not what may choose among
+# several, and without the packages of the site
+python=$(python3 -c 'import sys; print(sys.executable)')
 unpack() {
     rm -rf "$2"
-    python3 - "$1" "$2" >>log 2>&1 <<'END'
+    "$python" -I -S - "$1" "$2" >>log 2>&1 <<'END'
 import sys, zipfile
 z = zipfile.ZipFile(sys.argv[1])
 bad = z.testzip()

@@ -27,12 +27,13 @@ level=-O0
 sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
 merging || sanitizers="$sanitizers -fno-sanitize=null,alignment,object-size,pointer-overflow"
 every=1
+# seconds of a processor that plgen or a program may take
+ulimit -S -t 1200
 
 batch_new() {
 	turn=0
 	for cc in gcc clang; do
 		: >"subjects_$cc.list"
-		: >"code_$cc.list"
 		rm -f "./batch_$cc"
 	done
 }
@@ -71,7 +72,7 @@ make_c() {
 	rhs=--rhs
 	! grep -q -e '^# class: sticking$' -e '^# beside:' "$2" || rhs=
 	# shellcheck disable=SC2086
-	timeout 1200 "$plgen" $rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
+	"$plgen" $rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
 
 # what plgen said with this status: nothing if all is as it should be
@@ -82,7 +83,7 @@ why_refused() { # ID STATUS
 			elif ! grep -q -E -f "$source/tests/fuzz/refusals.list" "$1.said"; then
 				echo "status $2: $(grep -m 1 ': error: ' "$1.said")"
 			fi ;;
-		124) echo 'plgen takes over 1200 s' ;;
+		152) echo 'plgen takes over 1200 s' ;;
 		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" |
 			tr '\n' ' ')" ;;
 	esac
@@ -97,15 +98,42 @@ expressions_of() { # ID
 	sed -n '/^ \*     expression [0-9]*: /p' "$1.c"
 }
 
-# regions_of ID: how many numbers NAME_region may give, by the breakpoints of each expression; 0: there is none
-regions_of() {
-	if grep -q "^int *$1_region(" "$1.h"; then
-		awk '/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); all *= split($0, at, ",") + 1 }
-			BEGIN { all = 1 }
-			END { printf "%.17g", all }' "$1.c"
-	else
-		echo 0
-	fi
+# facts_of ID: of its C sets `scheme`; `inputs`, `pieces`, `own_region`, `selftest` and `lanes`: whether it has them;
+# `real`; `adds`, the additions of a step; `regions`, how many numbers NAME_region may give, by the breakpoints of each
+# expression, 0: there is none; `ratio`, the largest by which its banner measures one coordinate from another,
+# 10*x - y, at least 1
+facts_of() {
+	eval "$(awk -v id="$1" '
+		BEGIN { real = "double"; regions = ratio = adds = 1 }
+		FILENAME ~ /h$/ {
+			own_region += $0 ~ "^int *" id "_region\\("
+			selftest += index($0, id "_selftest")
+			lanes += index($0, id "_batch(")
+			inputs += $0 ~ /INPUTS = [1-9]/
+			if (index($0, "pl_modelf " id "_model"))
+				real = "float"
+			next
+		}
+		/^ \* Scheme [a-z0-9]/ && !scheme { scheme = $3; sub(/[^a-z0-9].*/, "", scheme) }
+		/piecewise linear/ { pieces++ }
+		/kick-drift-kick/ { adds = 3 }
+		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
+		/is kept apart from what moves in it:/ && !lists++ {
+			sub(/;.*/, "")
+			for (count = split($0, part, /[^0-9.*\/]+/); count > 0; count--) {
+				if (split(part[count], of, /[*\/]/) < 2)
+					continue
+				most = of[1] / (of[2] ? of[2] : 1)
+				ratio = most > ratio ? most : ratio
+			}
+		}
+		END {
+			printf "scheme=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ", scheme,
+				inputs ? "yes" : "", pieces ? "yes" : "", own_region ? "yes" : "",
+				selftest ? "yes" : "", lanes ? "yes" : ""
+			printf "real=%s adds=%d regions=%.17g ratio=%s", real, adds,
+				own_region ? regions : 0, ratio
+		}' "$1.h" "$1.c")"
 }
 
 # slopes ID: a function of one form around ID_rhs
@@ -117,20 +145,6 @@ slopes() {
 		echo "static void $1_slopes(double t, const double *y, const double *u, double *d)"
 		echo "{ $1_rhs(t, y, u, d); }"
 	fi
-}
-
-# ratio_of ID: the largest by which its banner measures one coordinate from another, 10*x - y; at least 1
-ratio_of() {
-	awk '/is kept apart from what moves in it:/ && !lists++ {
-			sub(/;.*/, "")
-			for (count = split($0, part, /[^0-9.*\/]+/); count > 0; count--) {
-				if (split(part[count], of, /[*\/]/) < 2)
-					continue
-				ratio = of[1] / (of[2] ? of[2] : 1)
-				most = ratio > most ? ratio : most
-			}
-		}
-		END { print (most > 1 ? most : 1) }' "$1.c"
 }
 
 batch_add() {
@@ -185,12 +199,12 @@ batch_add() {
 		fi
 		code="$code${tuned:+ $tuned.c}"
 	fi
-	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
+	facts_of "$id"
 	solution=NULL
-	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
+	if [ "$scheme" = exact ] && [ -z "$inputs$pieces" ]; then
 		horizon=$(step_of "$whole" | awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
-		timeout 1200 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
+		"$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
 		if [ $status -eq 0 ]; then
 			solution="\"$id.csv\""
@@ -208,7 +222,6 @@ batch_add() {
 	if [ -f "$id.again.c" ]; then
 		again="${id}_coords, ${id}_residual, ${id}_wanted"
 		sed "1i #define AGAIN $id" "$id.again.c" >"$id.again.made.c"
-		echo "$id.again.made.c" >>"again_$cc.list"
 	fi
 	{
 		for one in $code; do
@@ -223,24 +236,19 @@ batch_add() {
 			other=${whole}_where_too
 			echo "static int ${whole}_where_too(const void *s) { return ${whole}_region(s); }"
 		fi
-		if grep -q "^int *${id}_region(" "$id.h"; then
+		if [ "$own_region" ]; then
 			region=${id}_where
 			echo "static int ${id}_where(const void *s) { return ${id}_region(s); }"
 		fi
 		model="&${id}_model, NULL"
-		grep -q "pl_modelf ${id}_model" "$id.h" && model="NULL, &${id}_model"
-		selftest=NULL
-		if grep -q "${id}_selftest" "$id.h"; then
+		[ $real = double ] || model="NULL, &${id}_model"
+		if [ "$selftest" ]; then
 			selftest=${id}_tested
 			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
 		fi
-		lanes=NULL
-		if grep -q "${id}_batch(" "$id.h"; then
+		if [ "$lanes" ]; then
 			lanes=${id}_lanes
-			real=double with=
-			grep -q "pl_modelf ${id}_model" "$id.h" && real=float
-			grep -q 'INPUTS = [1-9]' "$id.h" && with='u COMMA'
-			echo "LANES($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real, $with)"
+			echo "LANES($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real, ${inputs:+u COMMA})"
 		fi
 		if [ "$again" != 'NULL, NULL, NULL' ]; then
 			echo "extern const int ${id}_coords[];"
@@ -250,17 +258,14 @@ batch_add() {
 				echo "double *out);"
 			done
 		fi
-		adds=1
-		! grep -q 'kick-drift-kick' "$id.c" || adds=3
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, $slopes, \"$scheme\", \"$(echo $class)\"," \
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, $slopes, \"$scheme\", \"${class# }\"," \
 			"\"$changes\"," \
-			"$solution, $selftest," \
-			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
-			"\"$impact\", $adds, $region, $(regions_of "$id"), $other," \
-			"$(ratio_of "$id")},"
+			"$solution, ${selftest:-NULL}," \
+			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
+			"\"$impact\", $adds, $region, $regions, $other, $ratio},"
 	} >"$id.subject"
+	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
-	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"
 	said=made
 }
 
@@ -282,7 +287,7 @@ compile() {
 	cc=$1
 	place=0
 	while read -r id; do
-		code="$(sed -n 's/^#include "\(.*\)\.h"$/\1.c/p' "$id.subject" | tr '\n' ' ')"
+		read -r code <"$id.code"
 		place=$((place + 1))
 		checks=$sanitizers
 		[ -n "${LONG:-}" ] || [ $((place % every)) -eq 0 ] || checks=
@@ -320,24 +325,21 @@ batch_build() {
 		{
 			echo '#include "drive.h"'
 			echo '#include "lanes.h"'
-			while read -r id; do
-				sed '/^SUBJECT/d' "$id.subject"
-			done <"compiled_$cc.list"
+			sed 's/$/.subject/' "compiled_$cc.list" | xargs sed '/^SUBJECT/d'
 			echo 'const struct subject subjects[] = {'
-			while read -r id; do
-				sed -n 's/^SUBJECT //p' "$id.subject"
-			done <"compiled_$cc.list"
+			sed 's/$/.subject/' "compiled_$cc.list" | xargs sed -n 's/^SUBJECT //p'
 			echo '{0}};'
 		} >"subjects_$cc.c"
 		objects=
 		while read -r id; do
-			objects="$objects $(sed -n 's/^#include "\(.*\)\.h"$/\1.o/p' "$id.subject" | tr '\n' ' ')"
-			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
+			read -r code <"$id.code"
+			objects="$objects $code"
+			[ -f "$id.again.c" ] && objects="$objects $id.again.c"
 		done <"compiled_$cc.list"
 		# those by run_cc as an archive, of which the linker takes what belongs to a program
 		rm -rf run_only.a passing && mkdir passing
 		xargs ar rcsD run_only.a <run_only.list && finish_archive run_only.a passing
-		objects=$(echo "$objects" | tr ' ' '\n' | grep -v -x -F -f run_only.list)
+		objects=$(echo "$objects" | sed 's/\.c\>/.o/g' | tr ' ' '\n' | grep -v -x -F -f run_only.list)
 		# shellcheck disable=SC2086
 		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/tests/fuzz" -I"$source/runtime" "subjects_$cc.c" \
 			$objects run_only.a "$folder/drive_$cc.a" \
@@ -350,12 +352,12 @@ batch_build() {
 batch_run() {
 	id=$1
 	[ -s "$id.wrong" ] && return
-	cc=$(cat "$id.cc")
+	read -r cc <"$id.cc"
 	if ! [ -x "batch_$cc" ]; then
 		echo "$cc: the program does not link" >"$id.wrong"
 		return
 	fi
-	timeout 1200 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
+	"./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
 	status=$?
 	if [ $status -ne 0 ]; then
 		{

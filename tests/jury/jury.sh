@@ -61,12 +61,12 @@ link() {
 	echo "[$1](../tests/jury/$(cat "$here/$1.topic"))"
 }
 
-# run_c NAME SCHEME END: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
+# run_c NAME SCHEME: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
 run_c() {
-	# shellcheck disable=SC2046
-	"$PLGEN" --scheme "$2" --prefix judged $(key "$1" options) "$here/$1.spec" >judged.c 2>log || return 2
+	# shellcheck disable=SC2086
+	"$PLGEN" --scheme "$2" --prefix judged $options "$here/$1.spec" >judged.c 2>log || return 2
 	$run_cc -I"$root/runtime" -DMODEL=judged "$root/runtime/host/plmain.c" judged.c "$archive" -lm -o judged \
-		>>log 2>&1 && ./judged "$3" >rows.csv 2>>log
+		>>log 2>&1 && ./judged "$end" >rows.csv 2>>log
 }
 
 # fewest_of FILE: `PUBLISHED REACHED` of what judge.awk has written: the fewest digits published, and `all` where each
@@ -79,7 +79,7 @@ fewest_of() {
 
 # end_of NAME: the last time at which it has values
 end_of() {
-	awk '$1 == "at" { print $2 }' "$here/$1.jury" | sort -g | tail -n 1
+	awk '$1 == "at" && (!any++ || $2 + 0 > last + 0) { last = $2 } END { print last }' "$here/$1.jury"
 }
 
 # stated NAME COLUMN: what the page says of the case
@@ -114,7 +114,7 @@ one_scheme() {
 	if key "$1" without | grep -q "^$2:"; then
 		return
 	fi
-	run_c "$1" "$2" "$(end_of "$1")"
+	run_c "$1" "$2"
 	case $? in
 		0) ;;
 		2) return ;;
@@ -131,8 +131,8 @@ one_scheme() {
 
 # poles_of NAME: its natural frequencies against those published
 poles_of() {
-	# shellcheck disable=SC2046
-	"$PLGEN" --explain=json $(key "$1" options) "$here/$1.spec" 2>log |
+	# shellcheck disable=SC2086
+	"$PLGEN" --explain=json $options "$here/$1.spec" 2>log |
 		awk '/"poles": \[/ { inside = 1 }
 			inside && match($0, /"im": [-0-9.e+]*/) { im = substr($0, RSTART + 6, RLENGTH - 6) + 0
 				sub(/.*"multiplicity": /, "")
@@ -149,14 +149,12 @@ poles_of() {
 
 # by_plrun NAME: plrun by itself has the rows of the C of the scheme that plgen chooses
 by_plrun() {
-	# shellcheck disable=SC2046
-	set -- "$1" $(key "$1" options)
-	name=$1
-	shift
-	scheme=$("$PLGEN" --explain=json "$@" "$here/$name.spec" 2>/dev/null |
+	# shellcheck disable=SC2086
+	scheme=$("$PLGEN" --explain=json $options "$here/$1.spec" 2>/dev/null |
 		sed -n 's/^ *"scheme": "\([a-z]*\).*/\1/p')
-	"$plrun" "$@" "$here/$name.spec" "$(end_of "$name")" >plrun.csv 2>log || return 1
-	[ -s "rows_$scheme.csv" ] || run_c "$name" "$scheme" "$(end_of "$name")" || return 1
+	# shellcheck disable=SC2086
+	"$plrun" $options "$here/$1.spec" "$end" >plrun.csv 2>log || return 1
+	[ -s "rows_$scheme.csv" ] || run_c "$1" "$scheme" || return 1
 	[ -s "rows_$scheme.csv" ] || cp rows.csv "rows_$scheme.csv"
 	cut -d , -f 2- plrun.csv >plrun_outputs
 	cut -d , -f 2- "rows_$scheme.csv" | cmp - plrun_outputs >>log 2>&1
@@ -176,7 +174,7 @@ column_of() {
 	esac
 }
 
-# try NAME: its lines as TAP
+# try NAME: its lines as TAP; sets `options` and `end` of the case
 try() {
 	rm -f rows_*.csv
 	if [ -n "$(key "$1" refused)" ]; then
@@ -186,6 +184,8 @@ try() {
 		result $? "$1 is refused"
 		return
 	fi
+	options=$(key "$1" options)
+	end=$(end_of "$1")
 	published=
 	line=
 	for scheme in exact taylor radau auto; do
@@ -215,7 +215,8 @@ told() {
 
 cases() {
 	for file in "$here"/*.jury; do
-		basename "$file" .jury
+		file=${file##*/}
+		echo "${file%.jury}"
 	done
 }
 

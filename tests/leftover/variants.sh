@@ -28,16 +28,16 @@ table=$(basename "$header" _variants.h)
 work=$(mktemp -d "${TMPDIR:-/tmp}/variants.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
+. "${0%/*}/../made.sh"
 
 # What the variants are made from: the specs and their data files, later folders do not hide earlier ones.
-for folder; do
-    for file in "$folder"/*; do
-        [ -e "$work/${file##*/}" ] || cp -r "$file" "$work/${file##*/}"
-    done
-done
+copy() {
+    [ $# -gt 0 ] || return 0
+    (shift && copy "$@")
+    cp -R "$1"/. "$work"
+}
+copy "$@"
 
-: >"$work/headers"
-: >"$work/bodies"
 : >"$work/names"
 grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     as=$name
@@ -62,9 +62,12 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             *) given="$given $option" ;;
         esac
     done
-    for scheme in $(echo "$schemes" | tr , ' '); do
-        i=0
-        for step in $(echo "$steps" | tr , ' '); do
+    schemes=$schemes,
+    while [ "$schemes" ]; do
+        scheme=${schemes%%,*} schemes=${schemes#*,}
+        i=0 left=$steps,
+        while [ "$left" ]; do
+            step=${left%%,*} left=${left#*,}
             prefix=${as}_${scheme}_$i
             choice="--prefix $prefix"
             if [ "$scheme" = - ]; then
@@ -81,8 +84,6 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
                 ${stages:+--scheme "$of_stages $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
-            cat "$work/$prefix.h" >>"$work/headers"
-            grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
             echo "$prefix" >>"$work/names"
             i=$((i + 1))
         done
@@ -92,12 +93,12 @@ done
 {
     echo "/* Made by variants.sh from $(basename "$list"). */"
     echo '#include "variant.h"'
-    cat "$work/headers"
+    made h
     echo "extern const struct variant ${table}[];  /* up to one without a model */"
 } >"$header"
 {
     echo "#include \"$(basename "$header")\""
-    cat "$work/bodies"
+    made c
     echo "const struct variant ${table}[] = {"
     sed 's/.*/    {\&&_model, \&&_Phi[0][0]},/' "$work/names"
     echo '    {NULL, NULL}};'

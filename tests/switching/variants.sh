@@ -24,9 +24,8 @@ table=$(basename "$header" _variants.h)
 work=$(mktemp -d "${TMPDIR:-/tmp}/variants.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
+. "${0%/*}/../made.sh"
 
-: >"$work/headers"
-: >"$work/bodies"
 : >"$work/names"
 grep -v -e '^#' -e '^$' "$list" | while read -r name steps options; do
     as=$name
@@ -46,15 +45,14 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name steps options; do
             break
         fi
     done
-    i=0
-    for step in $(echo "$steps" | tr , ' '); do
+    i=0 steps=$steps,
+    while [ "$steps" ]; do
+        step=${steps%%,*} steps=${steps#*,}
         prefix=${as}_$i
         choice="--prefix $prefix"
         [ "$step" = - ] || choice="$choice --step $step"
         # shellcheck disable=SC2086
         "$plgen" $choice $given -o "$work/$prefix.c" "$spec" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
-        cat "$work/$prefix.h" >>"$work/headers"
-        grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
         echo "$prefix" >>"$work/names"
         i=$((i + 1))
     done
@@ -63,12 +61,12 @@ done
 {
     echo "/* Made by variants.sh from $(basename "$list"). */"
     echo '#include "variant.h"'
-    cat "$work/headers"
+    made h
     echo "extern const struct variant ${table}_table[];  /* up to one without a model */"
 } >"$header"
 {
     echo "#include \"$(basename "$header")\""
-    cat "$work/bodies"
+    made c
     while read -r name; do
         echo "static int ${name}_region_of(const void *s)"
         echo '{'

@@ -22,8 +22,9 @@ shift 4
 work=$(mktemp -d "${TMPDIR:-/tmp}/tuned.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
-: >"$work/headers"
-: >"$work/bodies"
+. "${0%/*}/../made.sh"
+: >"$work/names"
+: >"$work/functions"
 : >"$work/table"
 
 # make SPEC PREFIX OPTION ...
@@ -34,8 +35,7 @@ make() {
     # shellcheck disable=SC2086
     "$plgen" --real "$real" --prefix "$prefix" $always "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" ||
         { cat "$work/said" >&2; exit 1; }
-    cat "$work/$prefix.h" >>"$work/headers"
-    grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
+    echo "$prefix" >>"$work/names"
 }
 
 # has NAME MEMBER: a line of the table, where the coefficients have such a member
@@ -51,8 +51,8 @@ entry() {
         echo "{"
         echo "    return $1_retune(($1_coeffs *)c, params, h);"
         echo "}"
-    } >>"$work/bodies"
-    echo "static void $1_any_use(void *s, const void *c) { $1_use(($1 *)s, (const $1_coeffs *)c); }" >>"$work/bodies"
+    } >>"$work/functions"
+    echo "static void $1_any_use(void *s, const void *c) { $1_use(($1 *)s, (const $1_coeffs *)c); }" >>"$work/functions"
     {
         echo "    {\"$1\", &$1_model, &$2_model, $3, \"$there\", $4, sizeof($1_coeffs), offsetof($1, coeffs),"
         echo "    &$1_nominal, $1_any_coeffs, $1_any_use,"
@@ -90,12 +90,13 @@ done
 {
     echo '/* Made by tuned.sh. */'
     echo '#include "tuned.h"'
-    cat "$work/headers"
+    made h
 } >"$header"
 {
     echo "#include \"$(basename "$header")\""
     echo '#include <stddef.h>'
-    cat "$work/bodies"
+    made c
+    cat "$work/functions"
     echo 'const struct tuned tuned[] = {'
     cat "$work/table"
     echo '    {.name = NULL}};'

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh
+# Sourced by what makes one file of many models, each $work/NAME.c beside its header, with a line NAME in $work/names.
+
+# made ENDING: these files one after the other, but for the lines that include their own header
+made() {
+	(cd "$work" && sed "s/$/.$1/" names | xargs awk 'FNR == 1 {
+		own = "#include \"" substr(FILENAME, 1, length(FILENAME) - 1) "h\""
+	}
+	$0 != own')
+}
