@@ -4,8 +4,7 @@
 
 #include <math.h>
 
-/* Events at one instant, before they count as without end; instants that so many bits do not tell apart are one. */
-enum { AT_ONCE = 64, BITS_OF_ONE = 768 };
+enum { AT_ONCE = 64 };              /* events at one instant, before they count as without end */
 
 /* ---- a piece that stays clear ---- */
 
@@ -87,6 +86,23 @@ static void expand_gate(struct through *t, const struct gate *gate, int degree, 
 	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
 }
 
+/* For --solution, what so many bits do not tell apart from 0 is 0. */
+static void clear_none(struct through *t, const struct gate *gate, int degree)
+{
+	double size = fabs(gate->near_limit);
+	if (!t->whole->asked.solution || t->precision < BITS_OF_ONE)
+		return;
+	for (int m = 0; m <= degree; m++)
+		for (int i = 0; i < t->n; i++)
+			size += fabs(gate->near_row[i] * mpfi_get_d(t->room.term[m][i]));
+	for (int m = 0; m <= degree; m++)
+		if (mpfi_has_zero(t->value[m]) && through_is_none(t, t->value[m], size)) {
+			mpfi_set_ui(t->value[m], 0);
+			if (m > 0)
+				mpfi_set_ui(t->slope[m - 1], 0);
+		}
+}
+
 /* How many first coefficients of a polynomial that begins below 0 are exactly 0 */
 static int zeros_of(const struct through *t, int degree)
 {
@@ -128,11 +144,11 @@ static bool is_fresh(const struct through *t, const struct gate *gate)
 	return t->order[gate->expression] > 0 && gate->upward == t->back[gate->expression] && !gate->release;
 }
 
-/* Whether nothing of a polynomial is told apart from 0 */
-static bool is_none(const struct through *t, int degree)
+/* Whether nothing of a polynomial is told apart from 0, or all of it is 0 */
+static bool is_none(const struct through *t, int degree, bool told)
 {
 	for (int m = 0; m <= degree; m++)
-		if (!mpfi_has_zero(t->value[m]))
+		if (told ? mpfi_is_zero(t->value[m]) <= 0 : !mpfi_has_zero(t->value[m]))
 			return false;
 	return true;
 }
@@ -157,6 +173,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 			continue;
 		int terms = degree;
 		expand_gate(t, gate, degree, tau);
+		clear_none(t, gate, degree);
 		bool fresh = is_fresh(t, gate);
 		int order = fresh ? t->order[gate->expression] : zeros_of(t, degree);
 		if (order > 0 && degree > order)
@@ -165,7 +182,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
 		    bounces(t, *found)) /* struck with what was found, where it touches then */
 			continue;
-		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_fresh(t, gate) && is_none(t, terms)) {
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
 			t->resting[gate->expression] = true;    /* let go by no force */
 			continue;
 		}

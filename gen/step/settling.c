@@ -3,6 +3,8 @@
  * enclosed apart from 0, or what it decides is not known. */
 #include "step/through.h"
 
+#include <math.h>
+
 enum { MOST_IDLE = 6 };
 
 struct idle {                       /* an expression on a breakpoint that stands twice */
@@ -11,7 +13,30 @@ struct idle {                       /* an expression on a breakpoint that stands
 	int goes;                   /* 1, -1: it has just been let go to this side; 0: it has not */
 };
 
-/* Of row . x - less: its sign, 0 where it is exactly 0; *known false: it is not told apart from 0 */
+/* Whether all of an enclosure is 0 to half of the bits, BITS_OF_ONE or fewer, of such a size, or of 2^-64 */
+bool through_is_none(const struct through *t, mpfi_srcptr value, double size)
+{
+	const int bits = t->precision < BITS_OF_ONE ? t->precision : BITS_OF_ONE;
+	REAL least = WITH_BITS(53);
+	mpfr_set_d(least, fmax(size, 0x1p-64), MPFR_RNDN);
+	mpfr_div_2si(least, least, bits / 2, MPFR_RNDN);
+	return mpfr_cmpabs(&value->left, least) <= 0 && mpfr_cmpabs(&value->right, least) <= 0;
+}
+
+/* What row . x may be summed from: of positions and of speeds the largest */
+double through_size(const struct through *t, const mpq_t *row)
+{
+	double most[2] = { 0, 0 }, size = 0;
+	for (int i = 0; i < t->layout.states; i++)
+		most[i >= t->system->n] = fmax(most[i >= t->system->n], fabs(mpfi_get_d(t->x[i])));
+	for (int i = 0; i < t->n; i++)
+		size += fabs(mpq_get_d(row[i])) *
+			(i < t->layout.states ? most[i >= t->system->n] : fabs(mpfi_get_d(t->x[i])));
+	return size;
+}
+
+/* Of row . x - less: its sign, 0 where it is 0; *known false: it is not told apart from 0. For --solution what enough
+ * bits do not tell apart from 0 is 0. */
 int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	INTERVAL value = OVER_BITS(t->precision);
@@ -19,7 +44,9 @@ int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, boo
 	if (less)
 		mpfi_sub_q(value, value, less);
 	int sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
-	*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right));
+	*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right)) ||
+		 (t->whole->asked.solution && t->precision >= BITS_OF_ONE &&
+		  through_is_none(t, value, through_size(t, row) + (less ? fabs(mpq_get_d(less)) : 0)));
 	return sign;
 }
 
@@ -91,7 +118,7 @@ static int is_held(struct through *t, struct area *area, const struct idle *idle
 }
 
 /* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
-static int heads(struct through *t, const struct area *area, int expression, bool *known)
+int through_heads(struct through *t, const struct area *area, int expression, bool *known)
 {
 	mpq_t *row = through_row_of(t, t->s->expression[expression].row);
 	int sign = 0;
@@ -121,7 +148,7 @@ static int agrees(struct through *t, int region, const struct idle *idle, int co
 		if (side == 0)
 			agree = is_held(t, area, &idle[i]);
 		else if (side != idle[i].goes || idle[i].impact < 0) {
-			int sign = heads(t, area, idle[i].expression, &known);
+			int sign = through_heads(t, area, idle[i].expression, &known);
 			agree = !known ? side == idle[i].goes ? 1 : -1 : sign == side;
 		}
 		if (agree == 0)

@@ -50,22 +50,12 @@ static bool touches(const struct through *t, const struct impact *p)
 	       through_side(t, p->in[t->segment].expression, p->in[t->segment].at) == 0;
 }
 
-/* Whether a speed is 0 to half the digits of the largest: speeds that impacts have made equal */
+/* Whether a speed is 0 but for rounding: speeds that impacts have made equal */
 static bool is_none(const struct through *t, const mpq_t *row)
 {
-	mpfi_t value;
-	double most = 0, size = 0;
-	mpfi_init2(value, t->precision);
+	INTERVAL value = OVER_BITS(t->precision);
 	through_dot(t, row, (const mpfi_t *)t->x, value);
-	for (int i = t->system->n; i < t->layout.states; i++) {
-		most = fmax(most, fabs(mpfi_get_d(t->x[i])));
-		size += fabs(mpq_get_d(row[i]));
-	}
-	size = ldexp(size * most, -t->precision / 2);
-	bool none = fabs(mpfr_get_d(&value->left, MPFR_RNDA)) <= size &&
-		    fabs(mpfr_get_d(&value->right, MPFR_RNDA)) <= size;
-	mpfi_clear(value);
-	return none;
+	return through_is_none(t, value, through_size(t, row));
 }
 
 /* Whether it comes closer: 1, 0, -1: not known. What was struck without restitution, or rests, does not. */
@@ -252,14 +242,17 @@ static bool collide(struct through *t, int begins, mpfr_srcptr off, struct chain
  * whether anything does is not known, and left is the least that it may be. */
 static bool time_left(struct through *t, const struct impact *p, mpfi_ptr left, bool *known)
 {
-	mpq_t *row = through_row_of(t, p->in[t->segment].speed_row), part;
-	mpq_t *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
+	RATIONALS *row = through_row_of(t, p->in[t->segment].speed_row);
+	RATIONALS *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
+	RATIONAL part = ZERO;
+	INTERVAL a = OVER_BITS(t->precision);
 	bool presses = through_sign(t, (const mpq_t *)press, NULL, known) > 0;
-	mpfi_t a;
-	mpq_init(part);
-	mpfi_init2(a, t->precision);
+	bool leaves = mpq_sgn(p->in[t->segment].restitution) != 0 || !is_none(t, (const mpq_t *)row);
 	mpfi_set_ui(left, 0);
-	if ((presses || !*known) && mpq_sgn(p->in[t->segment].restitution) != 0) {
+	if (t->whole->asked.solution && *known && !presses && !leaves)  /* by a force that begins at 0 */
+		presses = through_heads(t, t->at, p->in[t->segment].expression, known) ==
+			  (p->in[t->segment].upward ? 1 : -1);
+	if ((presses || !*known) && leaves) {
 		through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, left);
 		through_dot(t, (const mpq_t *)press, (const mpfi_t *)t->x, a);
 		mpfi_abs(a, a);
@@ -270,10 +263,6 @@ static bool time_left(struct through *t, const struct impact *p, mpfi_ptr left, 
 		mpfi_div_q(left, left, part);
 		mpfi_mul_ui(left, left, 2);
 	}
-	mpfi_clear(a);
-	mpq_clear(part);
-	rationals_free(row, (size_t)t->n);
-	rationals_free(press, (size_t)t->n);
 	return presses;
 }
 

@@ -5,7 +5,8 @@
 
 #include "step/step.h"
 
-enum { THROUGH_SLOTS = 64 };
+/* What so many bits do not tell apart is one: two instants, a force and its limit. */
+enum { THROUGH_SLOTS = 64, BITS_OF_ONE = 768 };
 struct near {                       /* x in double, and how far off it may be */
 	double *x, *off;
 };
@@ -99,12 +100,17 @@ void through_note_plain(struct through *t, int expression, int breakpoint, bool 
 
 /* ---- settling.c: what sticks and what slips ---- */
 
-/* Of row . x - less: its sign, 0 where it is exactly 0; *known false: it is not told apart from 0 */
+/* Of row . x - less: its sign, 0 where it is 0; *known false: it is not told apart from 0 */
 int  through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known);
+/* Whether all of an enclosure is 0 to half of the bits, BITS_OF_ONE or fewer, of such a size, or of 2^-64 */
+bool through_is_none(const struct through *t, mpfi_srcptr value, double size);
+double through_size(const struct through *t, const mpq_t *row);      /* what row . x may be summed from */
 mpq_t *through_row_of(const struct through *t, const struct output *output);
 void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh);
 bool through_unknown(struct through *t, const char *what);   /* false */
 void through_hold(struct through *t);                        /* states that the region gives */
+/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
+int  through_heads(struct through *t, const struct area *area, int expression, bool *known);
 /* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
 bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
