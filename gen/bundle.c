@@ -52,12 +52,20 @@ static bool is_seen(const struct runtime *r, const struct piece *p, const struct
 	return header ? includes(r, from->file, p->file) : strcmp(p->file, from->file) == 0;
 }
 
+/* As the last of these #define says, and then that of what it makes of it */
+static const char *other_name(const struct runtime *r, int aliases, const char *name)
+{
+	for (int i = aliases; i-- > 0;)
+		if (strcmp(r->from[i], name) == 0)
+			return other_name(r, aliases, r->to[i]);
+	return name;
+}
+
 static const char *new_name(const struct runtime *r, const struct piece *from, const char *word, size_t length)
 {
-	const char *name = format("%.*s", (int)length, word);
-	for (int i = 0; i < r->aliases; i++)
-		if (strcmp(r->from[i], name) == 0)
-			return r->to[i];
+	const char *name = other_name(r, from->typed ? r->floats : r->aliases, format("%.*s", (int)length, word));
+	if (strcmp(name, "PL_REAL") == 0)
+		return r->single ? "float" : "double";
 	if (is_runtime_name(name))
 		return name;
 	for (int header = 0; header < 2; header++)
@@ -97,7 +105,7 @@ static void rename_all(struct runtime *r)
 	const char ***name = ARRAY(const char **, (size_t)r->pieces);
 	for (int i = 0; i < r->pieces; i++) {
 		const struct piece *p = &r->piece[i];
-		if (p->shared)
+		if (p->shared && !p->typed)
 			continue;
 		text[i] = renamed(r, p);
 		name[i] = ARRAY(const char *, (size_t)p->names + 1);
@@ -105,7 +113,7 @@ static void rename_all(struct runtime *r)
 			name[i][k] = new_name(r, p, p->name[k], strlen(p->name[k]));
 	}
 	for (int i = 0; i < r->pieces; i++)
-		if (!r->piece[i].shared) {
+		if (text[i]) {
 			r->piece[i].text = text[i];
 			r->piece[i].name = name[i];
 		}
@@ -159,23 +167,22 @@ static void use_checks(struct runtime *r)
 static const char guards[] = "PL_HAS";
 
 /* FNV-1a of what the bundles' types are taken from: headers of one program have them from one plrt.h. */
-static unsigned long long mark_of(const struct runtime *r)
+static unsigned long long mark(void)
 {
 	unsigned long long hash = 0xcbf29ce484222325;
-	for (int i = 0; i < r->pieces; i++)
-		for (const char *c = r->piece[i].shared ? r->piece[i].text : ""; *c; c++)
+	for (int i = 0; i < 2; i++)
+		for (const char *c = runtime_text(i ? "plreal.h" : "plrt.h"); *c; c++)
 			hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
-	return hash & 0x7fffffffffffffff;
+	return hash & 0xfffffffffffffff;
 }
 
 static void print_types(FILE *to, const struct runtime *r)
 {
-	unsigned long long mark = mark_of(r);
 	fprintf(to, "#include <stddef.h>\n#include <stdint.h>\n\n"
 		"/* ---- of the runtime, plrt.h: types that this header needs ---- */\n\n"
-		"#if defined PL_BUNDLED && PL_BUNDLED != 0x%016llx\n"
+		"#if defined PL_BUNDLED && PL_BUNDLED != 0x%015llx\n"
 		"#error \"headers of bundles by plgen of different versions do not go together\"\n#endif\n"
-		"#ifndef PLRT_H\n#ifndef PL_BUNDLED\n#define PL_BUNDLED 0x%016llx\n#endif\n", mark, mark);
+		"#ifndef PLRT_H\n#ifndef PL_BUNDLED\n#define PL_BUNDLED 0x%015llx\n#endif\n", mark(), mark());
 	for (int i = 0; i < r->pieces; i++) {
 		const struct piece *p = &r->piece[i];
 		if (p->in_header)

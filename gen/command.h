@@ -84,7 +84,7 @@ struct piece {                  /* a declaration, a definition, or lines of the 
 	const char *comment, *text;
 	const char **name;      /* what it declares; none: a check of the compiler */
 	int names;
-	bool shared;            /* of plrt.h */
+	bool shared, typed;     /* of plrt.h; of what that has of each type */
 	bool function, local;   /* declared or defined; static */
 	bool in_code, in_header;
 };
@@ -96,8 +96,8 @@ struct runtime {
 	int pieces;
 	struct include *include;
 	int includes;
-	const char **from, **to; /* names that stand for others in float */
-	int aliases;
+	const char **from, **to; /* names that stand for others in float, or of states in two words */
+	int aliases, floats;    /* so many; of those in float the first */
 };
 struct runtime *runtime_read(bool single, bool kept);
 const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */

@@ -114,7 +114,8 @@ static void add_piece(struct runtime *r, const char *file, const char *comment, 
 {
 	struct piece *p = MORE(r->piece, r->pieces);
 	*p = (struct piece){ .file = file, .comment = comment, .text = text };
-	p->shared = strcmp(file, "plrt") == 0;
+	p->typed = strcmp(file, "plreal") == 0;
+	p->shared = p->typed || strcmp(file, "plrt") == 0;
 	name_piece(p);
 }
 
@@ -226,6 +227,9 @@ static bool take_directive(struct reader *f, const char *line)
 {
 	struct runtime *r = f->runtime;
 	char name[64], other[64], end;
+	if (strncmp(line, "#undef ", strlen("#undef ")) == 0 ||
+	    (!r->single && strcmp(line, "#include \"floats.h\"") == 0))
+		return true;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
 		*MORE(r->include, r->includes) = (struct include){ f->file, without_ending(name) };
 		read_file(r, name);
@@ -236,8 +240,8 @@ static bool take_directive(struct reader *f, const char *line)
 	int words = sscanf(line, "#define %63s %63s %c", name, other, &end);
 	if (words == 1 && decided(r, name) >= 0)
 		return true;
-	if (words == 2 && strcmp(name, "real") == 0)
-		return true;                    /* a type of real.h here */
+	if (words == 2 && (strcmp(name, "real") == 0 || strcmp(name, "PL_REAL") == 0))
+		return true;                    /* a type of real.h here, the one of all */
 	if (words != 2 || strncmp(name, "pl_", 3) != 0 || strncmp(other, "pl_", 3) != 0)
 		return false;
 	ENLARGE(r->from, (size_t)r->aliases + 1);
@@ -299,6 +303,7 @@ struct runtime *runtime_read(bool single, bool kept)
 	r->single = single;
 	r->kept = kept;
 	read_file(r, "plrt.h");
+	r->floats = r->aliases;
 	for (int i = 0; runtime_name(i); i++)
 		if (serves(r, runtime_name(i)))
 			read_file(r, runtime_name(i));

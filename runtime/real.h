@@ -26,49 +26,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define REAL_EPSILON FLT_EPSILON
 #define REAL_LARGE 0x1p72f /* products of any two numbers, divided by its square, can be summed */
 
-#define pl_turn pl_turnf
-#define pl_turn_add pl_turnf_add
-#define pl_lead pl_leadf
-#define pl_until pl_untilf
-#define pl_multiply pl_multiplyf
-#define pl_multiply_add pl_multiplyf_add
-#define pl_switching pl_switchingf
-#define pl_impact pl_impactf
-#define pl_guards pl_guardsf
-#define pl_strike pl_strikef
-#define pl_events pl_eventsf
-#define pl_term pl_termf
-#define pl_equations pl_equationsf
-#define pl_ladder pl_ladderf
-
-#ifdef REST_IS_KEPT
-#define pl_switching_start pl_switchingf_kept_start
-#define pl_switching_step pl_switchingf_kept_step
-#define pl_switching_advance pl_switchingf_kept_advance
-#define pl_switching_move pl_switchingf_kept_move
-#define pl_guards_start pl_guardsf_kept_start
-#define pl_guards_advance pl_guardsf_kept_advance
-#define pl_guards_change pl_guardsf_kept_change
 #else
-#define pl_switching_start pl_switchingf_start
-#define pl_switching_step pl_switchingf_step
-#define pl_switching_advance pl_switchingf_advance
-#define pl_guards_start pl_guardsf_start
-#define pl_guards_advance pl_guardsf_advance
-#define pl_guards_change pl_guardsf_change
-#endif
-
-#else
-
-#ifdef REST_IS_KEPT
-#define pl_switching_start pl_switching_kept_start
-#define pl_switching_step pl_switching_kept_step
-#define pl_switching_advance pl_switching_kept_advance
-#define pl_switching_move pl_switching_kept_move
-#define pl_guards_start pl_guards_kept_start
-#define pl_guards_advance pl_guards_kept_advance
-#define pl_guards_change pl_guards_kept_change
-#endif
 
 typedef double real;
 typedef uint64_t real_bits;
@@ -76,6 +34,23 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #define REAL_EPSILON DBL_EPSILON
 #define REAL_LARGE 0x1p520
 
+#endif
+
+/* With what rounding takes kept, in either type */
+#ifdef REST_IS_KEPT
+#undef pl_switching_start
+#define pl_switching_start pl_switching_kept_start
+#undef pl_switching_step
+#define pl_switching_step pl_switching_kept_step
+#undef pl_switching_advance
+#define pl_switching_advance pl_switching_kept_advance
+#define pl_switching_move pl_switching_kept_move
+#undef pl_guards_start
+#define pl_guards_start pl_guards_kept_start
+#undef pl_guards_advance
+#define pl_guards_advance pl_guards_kept_advance
+#undef pl_guards_change
+#define pl_guards_change pl_guards_kept_change
 #endif
 
 /* row . x, of n entries.  Four sums, so that an addition need not wait for the one before it: as fast as several rows

@@ -1,5 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# functions.sh OUTPUT plrt.h: rows of a table, name and address, of the functions that the header declares.
+# functions.sh OUTPUT plrt.h COMPILER...: rows of a table, name and address, of the functions that the header declares.
 set -eu
-sed -n '/inline\|__attribute__/!s/^[a-z][a-z0-9_ ]*[ *]\(pl_[a-z_]*\)(.*/{ "\1", (const void *)\1 },/p' "$2" >"$1"
+output=$1 header=$2
+shift 2
+"$@" -E -P "$header" |
+	sed -n -e '/inline\|__attribute__/d' \
+		-e 's/^[a-z][a-z0-9_ ]*[ *]\(pl_[a-z_]*\)(.*/{ "\1", (const void *)\1 },/p' >"$output"

@@ -60,6 +60,20 @@ static char *model_text(const struct step *step, enum running_with with)
 	return with & WITH_COUNTS ? rewritten(text, print_counts, model.name) : text;
 }
 
+/* A header of the runtime, with those in it that it includes */
+static void print_header(FILE *to, const char *name)
+{
+	char other[64];
+	for (const char *line = runtime_text(name), *end; *line; line = end) {
+		end = line + strcspn(line, "\n");
+		end += *end == '\n';
+		if (sscanf(line, "#include \"%63[^\"]\"", other) == 1)
+			print_header(to, other);
+		else
+			fprintf(to, "%.*s", (int)(end - line), line);
+	}
+}
+
 /* Headers are in the text already. */
 static char *without_includes(char *text)
 {
@@ -78,7 +92,7 @@ static char *text_of(const struct step *step, enum running_with with)
 	start_text(&p);
 	print_text_of(p.to, "prelude.h");
 	fputs(math_prototypes, p.to);
-	fputs(runtime_text("plrt.h"), p.to);
+	print_header(p.to, "plrt.h");
 	if (with & WITH_COUNTS) {
 		fprintf(p.to, "typedef %s pl_real;\n", step->model->asked.single ? "float" : "double");
 		print_text_of(p.to, "counts.h");
