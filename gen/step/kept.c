@@ -302,11 +302,8 @@ static struct extent lasting_extent(const struct step *step, const struct spread
 	const double h = mpq_get_d(step->model->h);
 	struct extent e = walk_loads(HEAD, h, spread, k, NULL);
 	double by_inputs = 0;
-	e.upper = lasting_output(k, spread, h) + slopes_of_inputs(system, k, h);
-	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1) {
+	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
 		by_inputs += sum_of_input(system, HEAD, k, i, c, NULL);
-		e.upper += lasting_input(system, spread, k, i, c);
-	}
 	lasting_sizes(spread, k, h);
 	add_inputs(spread, k);
 	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - e.slack - by_inputs * 1e-6);
@@ -326,6 +323,5 @@ struct extent extent_of_kept(const struct step *step, long steps, const struct s
 	add_inputs(spread, k);
 	const double slack = e.slack + by_inputs * (1e-9 + spread->slack * (double)steps);
 	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - slack);
-	e.upper = (e.most + by_inputs + slopes_of_inputs(system, k, h)) * (1 + 1e-9) + slack;
 	return e;
 }

@@ -22,7 +22,7 @@ struct kept {                       /* the step over the state as it is kept: y+
 };
 struct extent {                     /* of an output, over all samples */
 	double most, last, slack;   /* by the loads and from the start, as walked through; how far that may be off */
-	double lower, upper;        /* of the largest, inputs counted */
+	double lower;               /* of the largest, inputs counted */
 };
 struct errors {
 	const struct step *step;

@@ -8,6 +8,7 @@
 #   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder,
 #                            run in the root of the tree
 #   # case: ARGUMENT ...     or this is appended to the command of the test
+#   # text: TEXT             or only results with this in their names (CASE in the environment)
 #   # notice: build          plgen may stop while it writes what the suite is made of; otherwise what does not build
 #                            is not noticed
 #   # says: ...              what a user would see
@@ -196,8 +197,9 @@ run_suite()
 		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
-	timeout 600 meson test -C "$1/build" --setup all --timeout-multiplier 5 --print-errorlogs "$suite" \
-		--wrapper="sh $here/faults.sh --first" --test-args="$(head_of "$2" case)" >"$3" 2>&1
+	CASE=$(head_of "$2" text) timeout 600 meson test -C "$1/build" --setup all --timeout-multiplier 5 \
+		--print-errorlogs "$suite" --wrapper="sh $here/faults.sh --first" \
+		--test-args="$(head_of "$2" case)" >"$3" 2>&1
 	case $? in
 	0) return 0 ;;
 	125) return 2 ;;
@@ -208,7 +210,7 @@ run_suite()
 # passes_without COPY NAME: once for each way to call a suite
 passes_without()
 {
-	key=$(head_of "$2" 'suite' && head_of "$2" run && head_of "$2" case)
+	key=$(for word in suite run case text; do head_of "$2" "$word"; done)
 	key=$work/passed.$(printf '%s' "$key" | tr -c 'a-zA-Z0-9_.-' '_')
 	if [ ! -f "$key" ]; then
 		run_suite "$1" "$2" "$key.log"

@@ -142,7 +142,8 @@ cat >pressed.txt <<END
 param b = 0.3, k = 5, p = 0.1, G = 0.2, F = 0.8
 coord x
 init x = 0.2
-x'' + 0.1*x' + k*deadzone(x, -b, b) + (x > 0.1 ? p : 0) = F*cos(1.3*t) + G
+let pushed = (x > 0.1 ? p : 0)
+x'' + 0.1*x' + k*deadzone(x, -b, b) + pushed = F*cos(1.3*t) + G
 END
 varies clearance 'x, F'
 varies pressed 'x, G, F'
