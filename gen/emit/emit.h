@@ -484,6 +484,8 @@ void emit_block_list(const struct emitter *e);
 
 /* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
 
+#define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */
+
 struct region_tables {
 	const char *text;           /* of one of them: [row][column] follows */
 	int rows, columns;
@@ -493,11 +495,10 @@ struct region_tables {
 };
 /* over x, of all branches; and the same of one */
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
-				       double *(*of)(const struct region_piece *));
+		      size_t of);
 struct region_tables of_branch(struct region_tables t, int branch);
 /* e^{A h}; of a state in two words the same less I, second words behind the first */
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
-double *off_of(const struct region_piece *piece);                 /* expressions off their chords over h */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
 bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
@@ -587,10 +588,10 @@ void put_matrix(const struct emitter *e, const char *name, const char *note, int
 		 const double *value, const char *const *row_name);
 void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
 		   double *const *value, const char *const *row_name);
-double **of_branches(const struct emitter *e, const struct pieces *p, double *(*of)(const struct region_piece *));
+double **of_branches(const struct emitter *e, const struct pieces *p, size_t of);
 /* A row of each branch */
 void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
-		      double *(*of)(const struct region_piece *));
+		      size_t of);
 void close_table(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 void emit_retuned_numbers(const struct emitter *e);               /* NAME_coeffs, where it is these tables */
@@ -638,6 +639,7 @@ void emit_parts_at(const struct emitter *e);
 /* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
 void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
+const char **operands_of_x(const struct emitter *e);               /* of a step: locals; "" where x is 1 */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */
 void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */

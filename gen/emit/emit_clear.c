@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Of each entry of x, "" of 1; slopes of ramps in locals */
-static const char **operands(const struct emitter *e)
+const char **operands_of_x(const struct emitter *e)
 {
 	const struct layout *layout = &e->step->layout;
 	const char **text = entries(e, "x[%d]");
@@ -108,7 +108,7 @@ static struct look look_of(const struct emitter *e, const struct pieces *p, cons
 	l.size = magnitudes(e, l.x);
 	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
 	l.off = tables_of_regions(e, p, own && branch >= 0 ? format("c->chord_off[%d]", branch) : "c->chord_off[which]",
-				  expressions_of(e), off_of);
+				  expressions_of(e), OF_PIECE(off));
 	if (branch >= 0) {
 		l.whole = of_branch(l.whole, branch);
 		l.off = of_branch(l.off, branch);
@@ -338,7 +338,7 @@ void emit_clear_step(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
-	const char **x = operands(e);
+	const char **x = operands_of_x(e);
 	for (int i = 0; i < e->system->inputs; i++) {
 		int of = place_of_input(e, i);
 		if (e->system->input[i].hold)

@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-static double *turn_of(const struct region_piece *piece)  { return piece->turn; }
-static double *turns_of(const struct region_piece *piece) { return piece->turns; }
-
 /* ---- expressions, bounds ---- */
 
 static void emit_expression(const struct emitter *e, const struct pieces *p)
@@ -54,7 +51,7 @@ static void emit_product(const struct emitter *e, const char *name, const char *
 static void emit_products(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size;
-	struct region_tables slopes = tables_of_regions(e, p, "", expressions_of(e), turn_of);
+	struct region_tables slopes = tables_of_regions(e, p, "", expressions_of(e), OF_PIECE(turn));
 	bool *reads = ARRAY(bool, (size_t)size), *all = ARRAY(bool, (size_t)size), bounded = false;
 	const char **most = places(e, "pl_magnitude(x[%d])");
 	for (int j = 0; j < size; j++) {
@@ -226,7 +223,7 @@ void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 
 void emit_crossing(const struct emitter *e, const struct pieces *p)
 {
-	struct region_tables turns = tables_of_regions(e, p, "", e->step->layout.size, turns_of);
+	struct region_tables turns = tables_of_regions(e, p, "", e->step->layout.size, OF_PIECE(turns));
 	emit_expression(e, p);
 	emit_products(e, p);
 	emit_bounds(e, p);

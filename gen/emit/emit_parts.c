@@ -3,7 +3,7 @@
  * makes one model of them. */
 #include "emit/emit.h"
 
-#include <math.h>
+#include <string.h>
 
 static const struct switching *regions_of(const struct emitter *part)
 {
@@ -92,10 +92,6 @@ static const char *note_of_pieces(const struct emitter *part)
 	return keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}";
 }
 
-static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
-static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
-static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
-
 /* Regions without expressions, one in each segment of time: what the search has of those is not read. */
 static void emit_linear_tables(const struct emitter *part)
 {
@@ -108,9 +104,10 @@ static void emit_linear_tables(const struct emitter *part)
 	for (int k = 0; k < branches; k++)
 		halvings[k] = part->step->branch[k].halvings;
 	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
-		     of_branches(part, &pieces, slopes_of_piece), names_of_rows(part));
+		     of_branches(part, &pieces, OF_PIECE(slopes)), names_of_rows(part));
 	put_matrices(part, "pieces", note_of_pieces(part), branches, rows, size,
-		     of_branches(part, &pieces, keeps_rest(part) ? gain_of_piece : Phi_of_piece), names_of_rows(part));
+		     of_branches(part, &pieces, keeps_rest(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
+		     names_of_rows(part));
 	put_wholes(part, false, "matrix", "in each segment of time", s->segments, matrix);
 	put_wholes(part, false, "halvings", "log2 of the pieces of a step", branches, halvings);
 	emit_ladder_places(part, NULL);
@@ -259,55 +256,32 @@ static void emit_linear_loop(const struct emitter *part, const double *whole)
 	declare_region_vector(part);
 	emit_region_vector(part, true);
 	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
-		  "    for (i = 0; i < %d; i++) { s->y[$o_state[i]] = end[i]; }\n",
-	    part->system->states, part->step->layout.size, part->system->states);
+		  "    for (i = 0; i < %d; i++) { s->y[$o_state[i]] = end[i]; }\n", part->system->states,
+	    part->step->layout.size, part->system->states);
 }
 
-static const char **linear_operands(const struct emitter *part)
+/* What a function of a part is given; not all of it may be read. */
+static const char *given_names(const struct emitter *part)
 {
-	const struct layout *layout = &part->step->layout;
-	const char **x = ARRAY(const char *, (size_t)layout->size);
-	for (int i = 0; i < part->system->states; i++)
-		x[i] = part->local[i];
-	for (int l = 0; l < part->system->loads; l++)
-		for (int k = 0; k < part->system->load[l].columns && layout->load[l] >= 0; k++)
-			x[layout->load[l] + k] = load_operand(part, l, k);
-	for (int i = 0; i < part->system->inputs; i++) {
-		int of = place_of_input(part, i);
-		bool ramp = part->system->input[i].hold;
-		x[layout->input[i]] = ramp ? sample_kept(part, of) : sample_now(part, of);
-		if (ramp)
-			x[layout->input[i] + 1] = format("part%d", of);
-	}
-	return x;
-}
-
-/* Load states that are given, since others follow from them, and that no row reads */
-static void emit_unread(const struct emitter *part, const double *whole)
-{
-	int size = part->step->layout.size;
+	const char *text = given_inputs(part) ? "u" : "";
 	for (int l = 0; l < part->system->loads; l++) {
 		const struct load *load = &part->system->load[l];
-		int first = part->step->layout.load[l];
-		bool polynomial = is_polynomial(load->wave), time = false, array = false;
-		for (int k = 0; k < load->columns && first >= 0; k++)
-			for (int i = 0; i < part->system->states; i++) {
-				bool reads = whole[i * size + first + k] != 0;
-				time = time || (reads && polynomial && k == 1);
-				array = array || (reads && (!polynomial || k > 1));
-			}
-		if (first >= 0 && polynomial && load->powers > 1 && !time)
-			say(part, "    (void)t;\n");
-		if (first >= 0 && (!polynomial || load->powers > 2) && !array)
-			say(part, "    (void)load%d;\n", l + 1);
+		const bool polynomial = is_polynomial(load->wave);
+		if (part->step->layout.load[l] < 0)
+			continue;
+		if (polynomial && load->powers > 1)
+			text = format("%s t", text);
+		if (!polynomial || load->powers > 2)
+			text = format("%s load%d", text, l + 1);
 	}
+	return text + strspn(text, " ");
 }
 
 static void emit_linear_rows(const struct emitter *part, const double *whole)
 {
 	int size = part->step->layout.size, states = part->system->states;
 	bool *all = ARRAY(bool, (size_t)states);
-	const char **x = linear_operands(part), **term = ARRAY(const char *, (size_t)size);
+	const char **x = operands_of_x(part), **term = ARRAY(const char *, (size_t)size);
 	for (int i = 0; i < states; i++)
 		all[i] = true;
 	begin_step(part);
@@ -320,11 +294,10 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 		int terms = 0;
 		for (int j = 0; j < size; j++)
 			if (whole[i * size + j] != 0)
-				term[terms++] = scaled(whole[i * size + j], x[j]);
+				term[terms++] = scaled(whole[i * size + j], *x[j] ? x[j] : NULL);
 		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i),
 		    terms ? tree(terms, term, 14) : "0.0", part->model->state_name[i]);
 	}
-	emit_unread(part, whole);
 }
 
 /* That of a step that leaves no trace; of the linear part, which has none: in a segment of time */
@@ -338,9 +311,8 @@ static void declare_contact(const struct emitter *part)
 }
 
 /* By the pieces of the search, which has nothing to look for */
-static void emit_linear_by_pieces(const struct emitter *part, const double *whole)
+static void emit_linear_by_pieces(const struct emitter *part)
 {
-	(void)whole;
 	begin_step(part);
 	declare_contact(part);
 	declare_region_vector(part);
@@ -354,15 +326,15 @@ static void emit_linear_step(const struct emitter *part)
 	enum { TERMS = 400 };
 	const double *whole = whole_step_of(part->step, 0);
 	const char **size = ARRAY(const char *, (size_t)part->system->states);
-	bool pieces = regions_change(part) || keeps_rest(part);
-	(pieces                                ? emit_linear_by_pieces
-	 : acting_entries(part, whole) > TERMS ? emit_linear_loop
-					       : emit_linear_rows)(part, whole);
+	if (regions_change(part) || keeps_rest(part))
+		emit_linear_by_pieces(part);
+	else
+		(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
 	for (int i = 0; i < part->system->states; i++)
 		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
 	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
 	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
-	close_function(part, "");
+	close_function(part, given_names(part));
 }
 
 static void emit_divided_step(const struct emitter *part)
@@ -427,16 +399,6 @@ static void emit_at_call(const struct emitter *part)
 	say(part, "    $o_at(s%s, tau, y);\n", given_text(part, false));
 }
 
-static bool any_part_takes_inputs(const struct emitter *e)
-{
-	bool any = false;
-	for (int p = 0; p < e->step->parts; p++) {
-		const struct emitter part = part_of(e, p);
-		any = any || given_inputs(&part);
-	}
-	return any;
-}
-
 void emit_parts_at(const struct emitter *e)
 {
 	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
@@ -444,7 +406,5 @@ void emit_parts_at(const struct emitter *e)
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
 	emit_load_states(e, needed_loads(e, true), false);
 	for_parts(e, e->step->parts, emit_at_call);
-	if (given_inputs(e) && !any_part_takes_inputs(e))
-		say(e, "    (void)u;\n");
-	close_function(e, "");
+	close_function(e, given_inputs(e) ? "u" : "");
 }

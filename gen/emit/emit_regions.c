@@ -30,15 +30,8 @@ struct matrices {
 	const char *name, *note;
 	int rows;
 	const char **row_name;
-	double *(*of)(const struct region_piece *piece);
+	size_t of;
 };
-
-static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
-static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
-static double *gain_of_piece(const struct region_piece *piece)   { return piece->gain; }
-static double *slope_of_piece(const struct region_piece *piece)  { return piece->slope; }
-static double *second_of_piece(const struct region_piece *piece) { return piece->second; }
-static double *fourth_of_piece(const struct region_piece *piece) { return piece->fourth; }
 
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
@@ -87,9 +80,6 @@ static void emit_region_numbers(const struct emitter *e)
 	put_wholes(e, false, "matrix", "of each region; -1: its inequalities cannot hold together", s->regions, matrix);
 }
 
-static double *added_of(const struct region_piece *piece) { return piece->added; }
-static double *still_of(const struct region_piece *piece) { return piece->still; }
-
 /* By which a step sees over the whole of h that it stays clear */
 static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **expression)
 {
@@ -98,12 +88,13 @@ static void emit_own_look(const struct emitter *e, const struct pieces *pieces, 
 	for (int k = 0; k < e->step->branches; k++)
 		large[k] = pieces->large;
 	put_matrices(e, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
-		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, off_of), expression);
+		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, OF_PIECE(off)), expression);
 	if (any_stays(e->step))
 		emit_of_branches(e, pieces, "added", "over h to each state, by what stays of x", e->system->states,
-				 added_of);
+				 OF_PIECE(added));
 	if (any_still(e->step))
-		emit_of_branches(e, pieces, "still", "to chord_off, by that and by what is never above 1", n, still_of);
+		emit_of_branches(e, pieces, "still", "to chord_off, by that and by what is never above 1", n,
+				 OF_PIECE(still));
 	put_numbers(e, "edge", "breakpoints of each expression less what stays of x, between open ends",
 		     edges_of_regions(regions_of(e)), pieces->edge);
 	put_numbers(e, "large", "|x| that it has to be below", e->step->branches, large);
@@ -120,13 +111,13 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		entry = listed_twice(size, entry);
 	const struct matrices all[] = {
 		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
-		  slopes_of_piece },
+		  OF_PIECE(slopes) },
 		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
-		  rest ? gain_of_piece : Phi_of_piece },
+		  rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
 		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
-		  slope_of_piece },
-		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, second_of_piece },
-		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, fourth_of_piece }
+		  OF_PIECE(slope) },
+		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, OF_PIECE(second) },
+		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, OF_PIECE(fourth) }
 	};
 	emit_halvings(e);
 	emit_spacing(e);

@@ -84,16 +84,16 @@ void put_matrices(const struct emitter *e, const char *name, const char *note, i
 	close_table(e);
 }
 
-double **of_branches(const struct emitter *e, const struct pieces *p, double *(*of)(const struct region_piece *))
+double **of_branches(const struct emitter *e, const struct pieces *p, size_t of)
 {
 	double **value = ARRAY(double *, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
-		value[k] = of(&p->piece[k]);
+		value[k] = *(double *const *)((const char *)&p->piece[k] + of);
 	return value;
 }
 
 void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
-		      double *(*of)(const struct region_piece *))
+		      size_t of)
 {
 	const char **row = ARRAY(const char *, (size_t)e->step->branches);
 	double **value = of_branches(e, p, of), *all = ARRAY(double, (size_t)(e->step->branches * columns));
@@ -147,26 +147,17 @@ const char *row_text(const struct region_tables *t, int row, const char *const *
 }
 
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
-				      double *(*of)(const struct region_piece *))
+		      size_t of)
 {
 	return (struct region_tables){ text, rows, e->step->layout.size, 0, e->step->branches, of_branches(e, p, of),
 				       NULL };
 }
 
-static double *whole_of(const struct region_piece *piece)  { return piece->Phi; }
-static double *gain_over_h(const struct region_piece *piece)   { return piece->gain; }
-double *off_of(const struct region_piece *piece)    { return piece->off; }
-static double *still_of(const struct region_piece *piece)  { return piece->still; }
-static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
-static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
-static double *third_of(const struct region_piece *piece)  { return piece->third; }
-static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
-
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text)
 {
 	int size = e->step->layout.size;
-	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, gain_over_h)
-			     : tables_of_regions(e, p, text, size, whole_of);
+	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, OF_PIECE(gain))
+			     : tables_of_regions(e, p, text, size, OF_PIECE(Phi));
 }
 
 bool is_table(const struct region_tables *t)
@@ -189,8 +180,8 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 			    const char *const *size, int indent)
 {
 	int n = expressions_of(e);
-	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, off_of),
-		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, still_of);
+	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, OF_PIECE(off)),
+		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, OF_PIECE(still));
 	still.columns = n;
 	if (branch >= 0) {
 		off = of_branch(off, branch);
@@ -271,14 +262,14 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
 {
 	int n = expressions_of(e);
-	struct region_tables off = tables_of_regions(e, p, "", n, off_of),
-			     slack = tables_of_regions(e, p, "", n, slack_of),
-			     third = tables_of_regions(e, p, "", n, third_of),
-		      still = tables_of_regions(e, p, "", 1, still_of);
+	struct region_tables off = tables_of_regions(e, p, "", n, OF_PIECE(off)),
+			     slack = tables_of_regions(e, p, "", n, OF_PIECE(slack)),
+			     third = tables_of_regions(e, p, "", n, OF_PIECE(third)),
+		      still = tables_of_regions(e, p, "", 1, OF_PIECE(still));
 	still.columns = n;
 	if (any_pieces(e)) {
-		struct region_tables turn = tables_of_regions(e, p, "", n, turn_of),
-			      bend = tables_of_regions(e, p, "", n, bend_of);
+		struct region_tables turn = tables_of_regions(e, p, "", n, OF_PIECE(turn)),
+			      bend = tables_of_regions(e, p, "", n, OF_PIECE(bend));
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
@@ -287,7 +278,7 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &off, "chord_off",
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (reads && is_table(&still))
-		emit_of_branches(e, p, "still", "what 1, cos and sin add to that, at most", n, still_of);
+		emit_of_branches(e, p, "still", "what 1, cos and sin add to that, at most", n, OF_PIECE(still));
 	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
 	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
 	emit_neighbours(e, p);
