@@ -277,127 +277,6 @@ struct kind {                           /* NULL: none of its own */
 };
 const struct kind *row_of_kind(enum step_kind kind);
 
-/* ---- emit_sequences.c: the coefficients of a series ---- */
-
-/* Of a scheme with a leftover from crossing to crossing, */
-const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
-const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
-const struct emitter *forcing(const struct emitter *e);           /* what is left over */
-const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
-void emit_expand_from(const struct emitter *e);                   /* all that is kept */
-void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at: sloping(e) prints it */
-bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
-bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
-const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
-void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
-void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
-void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
-struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
-void series_set(struct recurrences *r, const char *target, int sequence, int k);
-void emit_series_tape(const struct emitter *e, const struct recurrences *r);
-void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
-const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
-void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
-bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
-bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
-/* gain_term: a coefficient of a state, as C; NULL: it is 0 */
-typedef const char *gain_term(const struct emitter *e, int state, int k);
-const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
-const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
-bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
-
-/* ---- emit_reach.c: how far a series holds ---- */
-
-bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series */
-bool looks_at_tolerance(const struct emitter *e);
-void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
-bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
-int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
-void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
-void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
-
-/* ---- emit_reach.c: how far what coefficients do not show is followed ---- */
-
-bool has_unseen(const struct emitter *e);
-bool traces(const struct emitter *e);                            /* some of it by its argument */
-bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
-void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
-void emit_hidden_table(const struct emitter *e);
-void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
-double crowded_steps(const struct emitter *e);                    /* how long, in h, such a step is at most */
-
-/* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
-
-bool expansion_places(const struct emitter *e);
-void emit_expansion_place(const struct emitter *e);
-void emit_pass_time(const struct emitter *e);                    /* NAME_pass_time: what else takes part in a step */
-void emit_expansion_members(const struct emitter *e);
-/* Of steps by collocation too, where there is a series beside it */
-void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
-void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
-void emit_pass_time(const struct emitter *e);                            /* NAME_pass_time */
-void emit_serving_step(const struct emitter *e);                         /* NAME_step, by NAME_serve */
-void emit_expansion_step(const struct emitter *e);
-void emit_expansion_at(const struct emitter *e);
-/* Whether $n_inside is there, for the steps that a series serves before its last */
-bool serves_rows(const struct emitter *e);
-
-void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: what is left over, alone */
-void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
-bool has_choices(const struct emitter *e);                        /* of formulas, by t */
-
-/* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
-
-void emit_cut_members(const struct emitter *e);
-void emit_cut_place(const struct emitter *e);
-void emit_cut_step(const struct emitter *e);
-
-/* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
-
-void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
-void emit_divided_members(const struct emitter *e);
-void emit_divided_declarations(const struct emitter *e);
-void emit_crossing_declarations(const struct emitter *e);         /* NAME_region, NAME_crossed, NAME_crossings */
-void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
-void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each */
-void emit_divided_macros(const struct emitter *e);               /* what chosen.h asks of them */
-
-/* ---- emit_events.c: impacts and friction beside a series ---- */
-
-bool meets_contacts(const struct emitter *e);
-int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
-void emit_event_tables(const struct emitter *e);
-
-/* ---- emit_over.c: a series of fixed order over several steps ---- */
-
-bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
-void emit_over_members(const struct emitter *e);
-/* s->y: the state `theta` after the start, by Horner's rule; what rounding took at the start is in `rest`, with %d */
-void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
-void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
-void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */
-
-/* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */
-
-/* So many coordinates that stages are solved by their modes, with the Jacobian of the step's start */
-bool splits(const struct emitter *e);
-bool motion_reads_load(const struct emitter *e, int load);
-void emit_motion(const struct emitter *e);      /* NAME_known, NAME_linearize, NAME_forces, NAME_watch, NAME_trace */
-int  known_values(const struct emitter *e);                       /* what is known of a time; 0: nothing is read */
-bool watch_reads_known(const struct emitter *e);                 /* more than the state; */
-bool trace_reads_known(const struct emitter *e);
-const char *kind_text(const struct emitter *e, const char *i);   /* C: 0 .. 2, which are measured together */
-void emit_state_table(const struct emitter *e);                   /* that it reads, where there is no formula */
-
-/* ---- emit_collocation.c: steps by collocation ---- */
-
-bool collocation_places(const struct emitter *e);
-void emit_collocation_place(const struct emitter *e);
-void emit_collocation_members(const struct emitter *e);
-void emit_collocation_step(const struct emitter *e);
-void emit_collocation_at(const struct emitter *e);
-
 /* ---- emit_forces.c: tables of modes, and forces on them ---- */
 
 const struct normal *normal_of_step(const struct emitter *e);
@@ -482,45 +361,6 @@ int  count_blocks(const struct emitter *e);
 int  states_of_largest_block(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
 
-/* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
-
-#define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */
-
-struct region_tables {
-	const char *text;           /* of one of them: [row][column] follows */
-	int rows, columns;
-	int from, to;               /* of branches from .. to - 1 */
-	double **value;             /* per branch */
-	const bool *own;            /* rows x columns: tunable params may change it, an instance has it; NULL: none */
-};
-/* over x, of all branches; and the same of one */
-struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
-		      size_t of);
-struct region_tables of_branch(struct region_tables t, int branch);
-/* e^{A h}; of a state in two words the same less I, second words behind the first */
-struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
-bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
-bool agree_at(const struct region_tables *t, int row, int column);
-bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
-/* Sum of a row over the operands of its columns; further: a term more, or NULL */
-const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
-		     int indent);
-/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
- * all */
-const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
-		     const char *const *size, int indent);
-int expressions_of(const struct emitter *e);
-bool any_pieces(const struct emitter *e);                         /* of h: then there are tables of all of it too */
-const char **places(const struct emitter *e, const char *layout); /* of each entry of x: x[%d] */
-const char **entries(const struct emitter *e, const char *layout); /* the same; "" where x is 1 */
-const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
-			    const char *const *operand, int indent);
-/* Sum of the sizes of those that are not bounded */
-const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
-/* Of a step that is swift; `expression`: names */
-void emit_spans(const struct emitter *e);                         /* region by region: intervals of expressions */
-void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
-
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
@@ -575,72 +415,12 @@ struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
-void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
-/* of dry friction and impacts in regions: their lists, numbers, descriptor */
-void emit_guards(const struct emitter *e, const struct guards *guards);
-void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
-/* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
-void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
-/* whole numbers; own: of an instance */
-void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number);
-void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number);
-void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
-		 const double *value, const char *const *row_name);
-void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
-		   double *const *value, const char *const *row_name);
-double **of_branches(const struct emitter *e, const struct pieces *p, size_t of);
-/* A row of each branch */
-void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
-		      size_t of);
-void close_table(const struct emitter *e);
-void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
-void emit_retuned_numbers(const struct emitter *e);               /* NAME_coeffs, where it is these tables */
-/* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
- * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
-void emit_ladder_places(const struct emitter *e, const struct guards *guards);
-void emit_spacing(const struct emitter *e);
-void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
-const char *ladder_text(const struct emitter *e, const struct guards *guards);
-int rungs_of_all(const struct emitter *e);
-int rows_of_rung(const struct emitter *e);
-int rows_of_reach(const struct emitter *e, const struct guards *guards);
-void emit_region_members(const struct emitter *e);
-void emit_region_start(const struct emitter *e);                  /* in set */
-void emit_region_step(const struct emitter *e);
-void emit_region_at(const struct emitter *e);
-/* of a part as of the whole: x from the state, in a step or at its start; its declaration, and room to work in; from
- * x, into the state; the same apart, where a step is swift */
-void emit_region_vector(const struct emitter *e, bool step);
-void declare_region_room(const struct emitter *e);                /* x, work */
-void declare_region_vector(const struct emitter *e);              /* x, i */
-void begin_macros(const struct emitter *e, const char *own);      /* own: what names of an algorithm begin with */
-/* what search.h asks for; ladder: as ladder_text */
-void emit_search(const struct emitter *e, const char *ladder);
-void emit_region_start_call(const struct emitter *e);
-void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
-bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
-bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
-int size_of_vector(const struct emitter *e);                      /* of x, with them */
-/* A list behind itself: first and second words */
-const char **listed_twice(int count, const char *const *text);
-void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
 
 void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
 
-/* emit_parts.c: of independent parts, each as it would be alone */
-void emit_part_tables(const struct emitter *e);
-void emit_part_members(const struct emitter *e);
-void emit_part_start(const struct emitter *e);
-void emit_parts_step(const struct emitter *e);
-void emit_parts_at(const struct emitter *e);
-/* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
-void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
-void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
-const char **operands_of_x(const struct emitter *e);               /* of a step: locals; "" where x is 1 */
-void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */
 void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */
 /* Of a group's factors in NAME_coeffs: "rows0" */
@@ -683,5 +463,8 @@ void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
 bool rhs_needs_math(const struct emitter *e);
+
+#include "emit/regions.h"
+#include "emit/series.h"
 
 #endif

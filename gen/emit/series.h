@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps by series of the solution and by collocation as C; part of emit.h. */
+#ifndef PLGEN_EMIT_SERIES_H
+#define PLGEN_EMIT_SERIES_H
+
+/* ---- emit_sequences.c: the coefficients of a series ---- */
+
+/* Of a scheme with a leftover from crossing to crossing, */
+const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
+const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
+const struct emitter *forcing(const struct emitter *e);           /* what is left over */
+const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
+void emit_expand_from(const struct emitter *e);                   /* all that is kept */
+void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at: sloping(e) prints it */
+bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
+bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
+const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
+void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
+void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
+void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
+struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
+void series_set(struct recurrences *r, const char *target, int sequence, int k);
+void emit_series_tape(const struct emitter *e, const struct recurrences *r);
+void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
+const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
+void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
+bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
+bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
+/* gain_term: a coefficient of a state, as C; NULL: it is 0 */
+typedef const char *gain_term(const struct emitter *e, int state, int k);
+const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
+const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
+const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
+bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
+
+/* ---- emit_reach.c: how far a series holds ---- */
+
+bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series */
+bool looks_at_tolerance(const struct emitter *e);
+void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
+bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
+int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
+void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
+void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
+
+/* ---- emit_reach.c: how far what coefficients do not show is followed ---- */
+
+bool has_unseen(const struct emitter *e);
+bool traces(const struct emitter *e);                            /* some of it by its argument */
+bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
+void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
+void emit_hidden_table(const struct emitter *e);
+void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
+double crowded_steps(const struct emitter *e);                    /* how long, in h, such a step is at most */
+
+/* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
+
+bool expansion_places(const struct emitter *e);
+void emit_expansion_place(const struct emitter *e);
+void emit_pass_time(const struct emitter *e);                    /* NAME_pass_time: what else takes part in a step */
+void emit_expansion_members(const struct emitter *e);
+/* Of steps by collocation too, where there is a series beside it */
+void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
+void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
+void emit_pass_time(const struct emitter *e);                            /* NAME_pass_time */
+void emit_serving_step(const struct emitter *e);                         /* NAME_step, by NAME_serve */
+void emit_expansion_step(const struct emitter *e);
+void emit_expansion_at(const struct emitter *e);
+/* Whether $n_inside is there, for the steps that a series serves before its last */
+bool serves_rows(const struct emitter *e);
+
+void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: what is left over, alone */
+void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
+bool has_choices(const struct emitter *e);                        /* of formulas, by t */
+
+/* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
+
+void emit_cut_members(const struct emitter *e);
+void emit_cut_place(const struct emitter *e);
+void emit_cut_step(const struct emitter *e);
+
+/* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
+
+void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
+void emit_divided_members(const struct emitter *e);
+void emit_divided_declarations(const struct emitter *e);
+void emit_crossing_declarations(const struct emitter *e);         /* NAME_region, NAME_crossed, NAME_crossings */
+void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
+void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each */
+void emit_divided_macros(const struct emitter *e);               /* what chosen.h asks of them */
+
+/* ---- emit_events.c: impacts and friction beside a series ---- */
+
+bool meets_contacts(const struct emitter *e);
+int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
+void emit_event_tables(const struct emitter *e);
+
+/* ---- emit_over.c: a series of fixed order over several steps ---- */
+
+bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
+void emit_over_members(const struct emitter *e);
+/* s->y: the state `theta` after the start, by Horner's rule; what rounding took at the start is in `rest`, with %d */
+void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
+void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
+void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */
+
+/* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */
+
+/* So many coordinates that stages are solved by their modes, with the Jacobian of the step's start */
+bool splits(const struct emitter *e);
+bool motion_reads_load(const struct emitter *e, int load);
+void emit_motion(const struct emitter *e);      /* NAME_known, NAME_linearize, NAME_forces, NAME_watch, NAME_trace */
+int  known_values(const struct emitter *e);                       /* what is known of a time; 0: nothing is read */
+bool watch_reads_known(const struct emitter *e);                 /* more than the state; */
+bool trace_reads_known(const struct emitter *e);
+const char *kind_text(const struct emitter *e, const char *i);   /* C: 0 .. 2, which are measured together */
+void emit_state_table(const struct emitter *e);                   /* that it reads, where there is no formula */
+
+/* ---- emit_collocation.c: steps by collocation ---- */
+
+bool collocation_places(const struct emitter *e);
+void emit_collocation_place(const struct emitter *e);
+void emit_collocation_members(const struct emitter *e);
+void emit_collocation_step(const struct emitter *e);
+void emit_collocation_at(const struct emitter *e);
+
+#endif
