@@ -90,8 +90,7 @@ extern const struct method *const propagator_methods[]; /* propagator.c: linear 
 const struct method *method_find(const char *name);     /* among these */
 /* pade.c: e^{A length}, n x n, row-major; false: A is not finite, and nor is the result */
 bool pade_exponential(int n, const double *A, double length, double *result);
-/* propagator.c: the same without the error of scaling and squaring in double: Taylor's series of a 2^-k part, squared k
- * times, in long double, and rounded once */
+/* exponential.c: the same without the error of scaling and squaring in double */
 void rounded_exponential(int size, const double *generator, double length, double *result);
 /* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`
  * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not

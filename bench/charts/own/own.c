@@ -27,10 +27,13 @@ static const struct peer peers[] = {
 	{"GSL rk8pd", true, gsl_rk8pd, "driver with scaled control, applied to each output time"},
 	{"CVODE Adams", true, cvode_adams, "fixed-point iteration, output from its interpolant"},
 	{"CVODE BDF", true, cvode_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
-	{"exp(A h), loop", false, exponential_loop, "found once; linear, constant loads, no inputs", is_affine},
+	{"exact in regions, bisection", false, own_regions,
+	 "as in the kept charts, borders and matrices from the tables of plgen's C",
+	 has_regions},
+	{"exp(A h), loop", false, exponential_loop, "found once; linear, constant loads, no inputs", is_affine, true},
 	{"exp(A h) rounded, literals", false, exponential_literals,
 	 "as in the kept charts: correctly rounded, constants in code; linear, constant loads, no inputs",
-	 has_literals},
+	 has_literals, true},
 };
 enum { PEERS = sizeof peers / sizeof *peers, MOST_LINES = 200 };
 /* Steps in an output, and tolerances as 10 to the minus these; fewer where there are many states */
@@ -265,8 +268,10 @@ static int read_list(const char *folder, struct line *lines)
 static const int *settings_of(const struct peer *peer)
 {
 	static const int once[] = {1, 0}, never[] = {0};
-	if (peer->applies)
-		return peer->applies() ? once : never;
+	if (peer->applies && !peer->applies())
+		return never;
+	if (peer->once)
+		return once;
 	if (peer->tolerance)
 		return LARGE ? digits_large : digits;
 	return LARGE ? parts_large : parts;

@@ -90,15 +90,19 @@ struct peer {
 	/* false: it failed */
 	bool (*run)(double setting, double *rows);
 	const char *settings;
-	/* to this model, whose scales are known; NULL: to every one. A step of such a peer is an output */
+	/* to this model, whose scales are known; NULL: to every one */
 	bool (*applies)(void);
+	bool once;                      /* its step is an output */
 };
 
-/* Of the kept charts: kept_dop853.c, kept_radau.c, kept_literals.c */
+/* Of the kept charts: kept_dop853.c, kept_radau.c, kept_regions.c, kept_literals.c */
 bool own_dop853(double setting, double *rows);
 bool own_radau5(double setting, double *rows);
 bool own_radau9(double setting, double *rows);
 bool own_radau13(double setting, double *rows);
+bool has_regions(void);
+bool own_regions(double setting, double *rows);
+void rounded_exponential(int size, const double *generator, double length, double *result);
 /* Phi: own + 1 rows and columns, the last entry of a state is 1: literals.c's `advance` for it, NULL where there is
  * none */
 void *own_literals(int own, const double *Phi);

@@ -35,7 +35,7 @@ if grep -q 'const pl_guard ' "$work/subject_pl.c"; then
 		"so no peer follows it and nothing says what is true" >&2
 	exit 1
 fi
-if sed -n 's/^static const int subject_start_samples\[\] = {\(.*\)};.*/\1/p' "$work/subject_pl.c" |
+if sed -n 's/^static const int subject_start_samples\[[0-9]*\] = {\(.*\)};.*/\1/p' "$work/subject_pl.c" |
 	grep -q '[2-9]'; then
 	echo "own.sh: $spec: inputs that are joined by polynomials of higher degree than 1 are not charted: they" \
 		"reach over several outputs, which no step of another method follows" >&2
@@ -70,6 +70,22 @@ awk '/^void subject_rhs\(/ && !/;/ { on = 1 } on { print } on && /^}/ { exit }' 
 sed 's/rhs_double/rhs_long/; s/\([^A-Za-z0-9_]\)double\([^A-Za-z0-9_]\)/\1quad_of_truth\2/g
 	s/\([^A-Za-z0-9_]\)double\([^A-Za-z0-9_]\)/\1quad_of_truth\2/g' "$work/rhs_double.h" >"$work/rhs_long.h"
 
+# Of regions, for a peer that knows where they end: how many, and load states at t = 0, which rows of slopes name
+awk -v states="$states" '
+	/_input_names\[\] = \{/ { input = $0; sub(/.*\{"/, "", input); sub(/".*/, "", input) }
+	/^static const double subject_slopes\[/ { split($0, part, /[][]/); regions = part[2]; on = 1 }
+	/^#define PL_SEGMENTS [^1]/ { regions = 0 }
+	on && /^    \{/ && ++row > states { gsub(/.*\/\* | \*\/$/, ""); load[++loads] = $0 }
+	/^  \},/ { on = 0 }
+	END { for (i = 1; i <= loads && load[i] != input; i++) {
+		words = load[i]
+		gsub(/cos|sin|exp|pi|t/, "", words)
+		if (words ~ /[a-z^]/) regions = 0
+		gsub(/pi/, "M_PI", load[i]); gsub(/\//, "/1.0/", load[i]); gsub(/t/, "0.0", load[i])
+		at_0 = at_0 ", " load[i] }
+		printf "#define REGIONS %d\n#define LOADS_AT_0 %s\n", regions, substr(at_0, 3) }' "$work/subject_pl.c" \
+	>"$work/subject_regions.h"
+
 # ---- plgen's variants ----
 
 sh bench/charts/variant.sh "$plgen" "$work/model.so" "$spec" --step "$every"
@@ -93,11 +109,12 @@ grep -v '^#' $own/variants | while IFS='|' read -r method options setting values
 done
 xargs -P "${JOBS:-2}" -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
 variants=$!
-for part in own kept_dop853 kept_radau kept_literals; do
+for part in own kept_dop853 kept_radau kept_regions kept_literals; do
 	echo "-c $own/$part.c -o $work/$part.o"
 done | xargs -P "${JOBS:-2}" -L1 $cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -fcx-limited-range -Iruntime -I$own \
 	-I"$work" -DSTATES="$states" -DINPUTS="$inputs" -DSECOND_ORDER="$second"
-$cc "$work/own.o" "$work/kept_dop853.o" "$work/kept_radau.o" "$work/kept_literals.o" -o "$work/own" \
+$cc "$work/own.o" "$work/kept_dop853.o" "$work/kept_radau.o" "$work/kept_regions.o" \
+	"$work/kept_literals.o" "${CHARTS_RUNTIME:-$work/runtime.a}" -o "$work/own" \
 	-lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
 	-lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas -lm -ldl
 wait $variants

@@ -247,7 +247,7 @@ static bool cvode_bdf(double setting, double *rows)
 
 /* ---- e^{A h} of y' = A y + b, found once; applied by a loop whose length is known ---- */
 
-static struct { double A[N][N + 1]; quad E[N + 1][N + 1]; } propagator;
+static struct { double A[N + 1][N + 1], E[N + 1][N + 1]; bool made; } propagator;
 
 /* Are the equations that?  A and b from rest and unit states; then they have to agree with what is asked at states of
  * the history's size, of either sign, at other times */
@@ -285,58 +285,22 @@ static bool is_affine(void)
 	return INPUTS == 0;
 }
 
-static void multiply(quad (*a)[N + 1], quad (*b)[N + 1], quad (*c)[N + 1])
+/* What is timed is its use */
+static void make_exponential(void)
 {
-	for (int i = 0; i <= N; i++)
-		for (int j = 0; j <= N; j++) {
-			quad sum = 0;
-			for (int k = 0; k <= N; k++)
-				sum += a[i][k] * b[k][j];
-			c[i][j] = sum;
-		}
-}
-
-/* By its series on a part of h, squared: in long double, so that its entries are good to the last bit or nearly so */
-static void exponential(quad h)
-{
-	enum { TERMS = 24 };
-	quad x[N + 1][N + 1] = {{0}}, term[N + 1][N + 1], next[N + 1][N + 1], (*E)[N + 1] = propagator.E, norm = 0;
-	int halvings = 0;
-	for (int i = 0; i < N; i++) {
-		quad sum = 0;
-		for (int j = 0; j <= N; j++)
-			sum += fabsl(propagator.A[i][j] * h);
-		norm = fmaxl(norm, sum);
-	}
-	for (; norm > 0.5L; norm /= 2)
-		halvings++;
-	for (int i = 0; i <= N; i++)
-		for (int j = 0; j <= N; j++) {
-			x[i][j] = i < N ? ldexpl(propagator.A[i][j] * h, -halvings) : 0;
-			E[i][j] = term[i][j] = i == j;
-		}
-	for (int k = 1; k <= TERMS; k++) {
-		multiply(term, x, next);
-		for (int i = 0; i <= N; i++)
-			for (int j = 0; j <= N; j++)
-				E[i][j] += term[i][j] = next[i][j] / k;
-	}
-	for (; halvings > 0; halvings--) {
-		multiply(E, E, next);
-		memcpy(E, next, sizeof next);
-	}
+	if (!propagator.made)
+		rounded_exponential(N + 1, *propagator.A, history.every, *propagator.E);
+	propagator.made = true;
 }
 
 static bool exponential_loop(double setting, double *rows)
 {
 	(void)setting;
 	double E[N][N], add[N], y[N], next[N];
-	if (propagator.E[N][N] == 0)            /* not yet: what is timed is its use */
-		exponential(history.every);
+	make_exponential();
 	for (int i = 0; i < N; i++) {
-		for (int j = 0; j < N; j++)
-			E[i][j] = (double)propagator.E[i][j];
-		add[i] = (double)propagator.E[i][N];
+		memcpy(E[i], propagator.E[i], sizeof E[i]);
+		add[i] = propagator.E[i][N];
 	}
 	memcpy(y, history.start, sizeof y);
 	for (int k = 0; k < history.units; k++, rows += N) {
@@ -358,15 +322,11 @@ static void (*advance)(double *z, long units, double *rows);
 
 static bool has_literals(void)
 {
-	double Phi[(N + 1) * (N + 1)];
 	void *code;
 	if (!is_affine())
 		return false;
-	exponential(history.every);
-	for (int i = 0; i <= N; i++)
-		for (int j = 0; j <= N; j++)
-			Phi[i * (N + 1) + j] = (double)propagator.E[i][j];
-	code = own_literals(N, Phi);
+	make_exponential();
+	code = own_literals(N, *propagator.E);
 	memcpy(&advance, &code, sizeof code);
 	return advance;
 }
