@@ -40,11 +40,7 @@
 #endif
 
 /* What a step tells that is not kept */
-#if PL_WATCHED
-#define PL_LOST ((int)PL_NOT_FINITE | (int)PL_INACCURATE)
-#else
-#define PL_LOST PL_NOT_FINITE
-#endif
+#define PL_LOST ((int)PL_NOT_FINITE | (PL_WATCHED ? (int)PL_INACCURATE : 0))
 
 #if PL_INPUTS == 0
 static inline void PL(inputs_now)(const PL_TYPE *s, const real u[], real start[], real slope[])
