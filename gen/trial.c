@@ -170,8 +170,7 @@ static void find_drives(struct measuring *m, const struct step *step)
 	m->drives = drive_kinds(count);
 	m->drive = ARRAY(struct sampled, (size_t)m->drives);
 	for (int i = 0; i < m->drives; i++)
-		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h),
-				       (const mpq_t *)m->model->requirement[0].most);
+		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h), m->model->requirement[0].most);
 }
 
 bool open_reference(struct measuring *m)

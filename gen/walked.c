@@ -33,7 +33,7 @@ static void make_output(void *context)
 	const struct exact_run *run = m->run;
 	struct started *list;
 	RATIONAL t = ZERO;
-	const int count = responses_of_output(m->written, &m->full->system, (const mpq_t *)m->full->initial,
+	const int count = responses_of_output(m->written, &m->full->system, m->full->initial,
 					      &m->full->output[m->output], &list);
 	const size_t first = (size_t)run->place[m->output] * (size_t)(run->samples + 1);
 	for (long k = 0; k <= run->samples; k++) {

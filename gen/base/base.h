@@ -96,6 +96,7 @@ void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 mpq_t *rationals_copied(size_t count, const mpq_t *q);
+bool  rationals_equal(size_t count, const mpq_t *a, const mpq_t *b);
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
 /* from the budget of LIMIT_TERMS; gives up when it is spent */

@@ -307,3 +307,10 @@ mpq_t *rationals_copied(size_t count, const mpq_t *q)
 	return copy;
 }
 
+bool rationals_equal(size_t count, const mpq_t *a, const mpq_t *b)
+{
+	for (size_t i = 0; i < count; i++)
+		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}

@@ -96,8 +96,7 @@ static void check_highest(const struct collector *c, const struct node *node, co
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && !(slides && basis->order == 1) &&
-		    basis->order >= c->frame->coord[basis->index]->highest)
+		if (!c->output && is_highest(c->frame, basis) && !(slides && basis->order == 1))
 			not_linear(c, node, params ? "has a tunable factor, by which the equation can be divided"
 						   : "is not linear");
 	}

@@ -67,6 +67,7 @@ void constant_value(struct collector *collector, const struct form *form, mpq_pt
 bool same_form(const struct form *a, const struct form *b);
 /* it depends on one; a coordinate of first order is one too */
 bool is_velocity(const struct frame *frame, const struct basis *basis);
+bool is_highest(const struct frame *frame, const struct basis *basis); /* the highest derivative of a coordinate */
 /* of a written coordinate; `frame` NULL: over itself */
 struct form *coordinate_form(const struct frame *frame, int coord, int order);
 

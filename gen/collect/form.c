@@ -292,6 +292,11 @@ bool same_form(const struct form *a, const struct form *b)
 	return true;
 }
 
+bool is_highest(const struct frame *frame, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= frame->coord[basis->index]->highest;
+}
+
 bool is_velocity(const struct frame *frame, const struct basis *basis)
 {
 	return basis->atom

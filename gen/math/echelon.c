@@ -14,7 +14,7 @@ void echelon_add(struct echelon *e, mpq_t *row)
 	for (int r = 0; r < e->rank; r++) {
 		mpq_set(factor, row[e->pivot[r]]);
 		if (mpq_sgn(factor) != 0)
-			rational_subtract_row(e->width, row, (const mpq_t *)e->row[r], factor);
+			rational_subtract_row(e->width, row, e->row[r], factor);
 	}
 	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
 		pivot++;
@@ -25,7 +25,7 @@ void echelon_add(struct echelon *e, mpq_t *row)
 		for (int r = 0; r < e->rank; r++) {
 			mpq_set(factor, e->row[r][pivot]);
 			if (mpq_sgn(factor) != 0)
-				rational_subtract_row(e->width, e->row[r], (const mpq_t *)row, factor);
+				rational_subtract_row(e->width, e->row[r], row, factor);
 		}
 		e->row[e->rank] = row;
 		e->pivot[e->rank++] = pivot;

@@ -90,18 +90,18 @@ static bool try_exponents(struct fit *f, int k, int most)
 	      *y = rationals((size_t)count), *c = rationals((size_t)count), *sum = rationals(2);
 	for (int i = 0; i < count; i++) {
 		mpq_t *at = near_base(f, k, i, k, 0);
-		mpq_set(y[i], value_at(f, (const mpq_t *)at));
+		mpq_set(y[i], value_at(f, at));
 		for (int j = 0; j < count; j++)
 			power_of(at[k], j - most, V[i * count + j]);
 		f->depends[k] = f->depends[k] || !mpq_equal(y[i], y[0]);
 	}
 	mpq_t *at = near_base(f, k, count, k, 0);
-	mpq_srcptr last = value_at(f, (const mpq_t *)at);
+	mpq_srcptr last = value_at(f, at);
 	f->depends[k] = f->depends[k] || !mpq_equal(last, y[0]);
 	if (!f->depends[k])
 		return true;
-	rational_inverse(count, (const mpq_t *)V, inverse, &unused);
-	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, c);
+	rational_inverse(count, V, inverse, &unused);
+	rational_product(count, count, 1, inverse, y, c);
 	for (int j = 0; j < count; j++) {
 		f->exponent[k][j + FIT_DEGREE - most] = mpq_sgn(c[j]) != 0;
 		power_of(at[k], j - most, sum[0]);
@@ -125,10 +125,9 @@ static void find_pairs(struct fit *f)
 		for (int j = 0; j < i; j++) {
 			if (!f->depends[i] || !f->depends[j])
 				continue;
-			mpq_sub(sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 0)),
-				value_at(f, (const mpq_t *)near_base(f, i, 1, j, 0)));
-			mpq_sub(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 1)));
-			mpq_add(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 1, j, 1)));
+			mpq_sub(sum[0], value_at(f, near_base(f, i, 0, j, 0)), value_at(f, near_base(f, i, 1, j, 0)));
+			mpq_sub(sum[0], sum[0], value_at(f, near_base(f, i, 0, j, 1)));
+			mpq_add(sum[0], sum[0], value_at(f, near_base(f, i, 1, j, 1)));
 			f->together[i][j] = f->together[j][i] = mpq_sgn(sum[0]) != 0;
 		}
 }
@@ -173,16 +172,16 @@ static bool fit_products(struct fit *f)
 	      *y = rationals((size_t)count), *sum = rationals(2);
 	f->factor = rationals((size_t)count);
 	for (int i = 0; i < count; i++) {
-		const mpq_t *at = (const mpq_t *)scattered(f, i + 1);
+		const mpq_t *at = scattered(f, i + 1);
 		mpq_set(y[i], value_at(f, at));
 		for (int j = 0; j < count; j++)
 			product_at(f, j, at, V[i * count + j]);
 	}
-	if (!rational_inverse(count, (const mpq_t *)V, inverse, &unused))
+	if (!rational_inverse(count, V, inverse, &unused))
 		return false;
-	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, f->factor);
+	rational_product(count, count, 1, inverse, y, f->factor);
 	for (int i = count + 1; i <= count + 2; i++) {
-		const mpq_t *at = (const mpq_t *)scattered(f, i);
+		const mpq_t *at = scattered(f, i);
 		mpq_set_ui(sum[0], 0, 1);
 		for (int j = 0; j < count; j++) {
 			product_at(f, j, at, sum[1]);
@@ -199,10 +198,10 @@ bool fit_value(struct fit *f)
 {
 	signed char power[LIMIT_TUNABLES] = { 0 };
 	bool constant = true;
-	mpq_srcptr first = value_at(f, (const mpq_t *)scattered(f, 0));
+	mpq_srcptr first = value_at(f, scattered(f, 0));
 	f->culprit = -1;
 	for (int i = 1; i < FIT_POINTS; i++)
-		constant = constant && mpq_equal(value_at(f, (const mpq_t *)scattered(f, i)), first);
+		constant = constant && mpq_equal(value_at(f, scattered(f, i)), first);
 	for (int k = 0; k < f->params && !constant; k++)
 		if (!find_exponents(f, k)) {
 			f->culprit = k;

@@ -4,7 +4,7 @@
 
 /* ---- blocks: rows and columns that have nothing in common with the others ---- */
 
-static int root_of(int *parent, int i)
+int root_of_node(int *parent, int i)
 {
 	while (parent[i] != i)
 		i = parent[i] = parent[parent[i]];
@@ -19,14 +19,14 @@ int matrix_blocks(int n, const bool *filled, int *block)
 		parent[i] = i;
 	for (int cell = 0; cell < n * n; cell++)
 		if (filled[cell])
-			parent[root_of(parent, cell / n)] = root_of(parent, n + cell % n);
+			parent[root_of_node(parent, cell / n)] = root_of_node(parent, n + cell % n);
 	for (int i = 0; i < 2 * n; i++)
 		block[i] = -1;
 	for (int j = 0; j < n; j++)
-		if (block[root_of(parent, n + j)] < 0)
-			block[root_of(parent, n + j)] = count++;
+		if (block[root_of_node(parent, n + j)] < 0)
+			block[root_of_node(parent, n + j)] = count++;
 	for (int i = 0; i < 2 * n; i++)
-		block[i] = block[root_of(parent, i)];
+		block[i] = block[root_of_node(parent, i)];
 	return count;
 }
 
@@ -95,7 +95,7 @@ bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column)
 		for (int i = width > n ? 0 : k + 1; i < n; i++) {     /* for the determinant alone, Gauss will do */
 			mpz_set(factor, W[i * width + k]);
 			if (i != k)
-				bareiss_row(width > n ? 0 : k, width, W + i * width, (const mpz_t *)W + k * width,
+				bareiss_row(width > n ? 0 : k, width, W + i * width, W + k * width,
 					    W[k * width + k], factor, previous);
 		}
 		mpz_set(previous, W[k * width + k]);
@@ -135,7 +135,7 @@ static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t 
 		for (int j = 0; j < size && i < m->rows; j++)
 			mpq_set(row[j], A[m->row[i] * n + m->column[j]]);
 		if (i < m->rows)
-			to_integers(size, (const mpq_t *)row, 1, scale[i], W + i * width);
+			to_integers(size, row, 1, scale[i], W + i * width);
 		mpz_set_ui(W[i * width + size + i], 1);
 	}
 	bool regular = bareiss(size, width, W, det, &dependent);

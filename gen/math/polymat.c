@@ -171,11 +171,11 @@ static struct poly determinant(struct polymat P, struct polymat *adj)
 		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
 	}
 	progress_end();
-	struct poly det = interpolate(count, point, (const mpz_t *)dets);
+	struct poly det = interpolate(count, point, dets);
 	for (int cell = 0; cell < cells; cell++) {
 		for (int k = 0; k < count; k++)
 			column[k][0] = adjs[k][cell][0];        /* borrowed, not copied */
-		adj->cell[cell] = interpolate(count, point, (const mpz_t *)column);
+		adj->cell[cell] = interpolate(count, point, column);
 	}
 	return det;
 }

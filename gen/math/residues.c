@@ -54,7 +54,7 @@ static void residue_at_zero(struct response *response)
 		set_coefficient(n[k], response->N, k);
 		set_coefficient(v[k], response->spectrum->D, m + k);
 	}
-	series_quotient(m, (const mpq_t *)n, (const mpq_t *)v, a);
+	series_quotient(m, n, v, a);
 	response->at_zero = rationals((size_t)m);
 	for (int k = 0; k < m; k++)
 		mpq_set(response->at_zero[k], a[m - 1 - k]);

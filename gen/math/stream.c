@@ -162,7 +162,7 @@ struct taylor_terms {
 static bool is_done(const struct stream *f, const struct series_room *room, struct taylor_terms *t, int m)
 {
 	double shrinks = t->angle / (m + 1);
-	scaled_size(f, (const mpfi_t *)room->term[m], t->size);
+	scaled_size(f, room->term[m], t->size);
 	if (mpfr_cmp(t->size, t->largest) > 0)
 		mpfr_set(t->largest, t->size, MPFR_RNDU);
 	if (mpfr_zero_p(t->size))
@@ -195,7 +195,7 @@ int stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struc
 		mpfi_set(term_at(f, room, 0)[i], x[i]);
 	while (!is_done(f, room, &t, m)) {
 		mpfi_t *next = term_at(f, room, m + 1);
-		product(f, (const mpfi_t *)room->term[m], next);
+		product(f, room->term[m], next);
 		m++;
 		for (int i = 0; i < f->n; i++) {
 			mpfi_mul(next[i], next[i], t.tau);
@@ -232,13 +232,13 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 	mpfr_neg(&time->left, delta, MPFR_RNDD);
 	mpfr_set(&time->right, delta, MPFR_RNDU);
 	mpfr_mul_d(angle, delta, rates, MPFR_RNDU);
-	scaled_size(before, (const mpfi_t *)x, size);
+	scaled_size(before, x, size);
 	mpfr_mul(size, size, angle, MPFR_RNDU);
 	mpfr_mul(size, size, angle, MPFR_RNDU);
 	mpfr_mul_2ui(size, size, 1, MPFR_RNDU);
-	product(before, (const mpfi_t *)x, old);
+	product(before, x, old);
 	if (after)
-		product(after, (const mpfi_t *)x, new);
+		product(after, x, new);
 	for (int i = 0; i < before->n; i++) {
 		mpfi_sub(old[i], old[i], new[i]);
 		mpfi_mul(old[i], old[i], time);
@@ -266,7 +266,7 @@ static void first_power(struct stream *f, mpfi_t *E)
 	for (int j = 0; j < n; j++) {
 		for (int i = 0; i < n; i++)
 			mpfi_set_ui(x[i], i == j);
-		int degree = stream_expand(f, (const mpfi_t *)x, f->piece, &room);
+		int degree = stream_expand(f, x, f->piece, &room);
 		stream_sum(f, &room, degree, one, x);
 		for (int i = 0; i < n; i++)
 			mpfi_set(E[i * n + j], x[i]);
@@ -299,10 +299,9 @@ void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y)
 		if (f->powers == 0)
 			first_power(f, E);
 		for (int j = 0; j < n && f->powers > 0; j++)
-			times(n, (const mpfi_t *)f->power[f->powers - 1],
-			      (const mpfi_t *)f->power[f->powers - 1] + j, n, E + j);
+			times(n, f->power[f->powers - 1], f->power[f->powers - 1] + j, n, E + j);
 	}
-	times(n, (const mpfi_t *)f->power[power], x, 1, y);
+	times(n, f->power[power], x, 1, y);
 }
 
 void series_room_free(int n, struct series_room *room)

@@ -4,20 +4,13 @@
 
 #include <string.h>
 
-static bool same_numbers(const mpq_t *a, const mpq_t *b, int count)
-{
-	for (int i = 0; i < count; i++)
-		if (!mpq_equal(a[i], b[i]))
-			return false;
-	return true;
-}
-
 /* Of all but what loads act with: *loads is set where that differs */
 static bool same_but_loads(const struct linear *p, const struct linear *q, bool *loads)
 {
+	const size_t cells = (size_t)p->n * (size_t)p->n;
 	if (p->states != q->states || p->loads != q->loads || p->segments != q->segments ||
-	    !same_numbers(p->M, q->M, p->n * p->n) || !same_numbers(p->C, q->C, p->n * p->n) ||
-	    !same_numbers(p->K, q->K, p->n * p->n))
+	    !rationals_equal(cells, p->M, q->M) || !rationals_equal(cells, p->C, q->C) ||
+	    !rationals_equal(cells, p->K, q->K))
 		return false;
 	for (int l = 0; l < p->loads; l++) {
 		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
@@ -25,8 +18,8 @@ static bool same_but_loads(const struct linear *p, const struct linear *q, bool 
 		    p->load[l].columns != q->load[l].columns)
 			return false;
 		for (int c = 0; c < p->load[l].columns; c++)
-			*loads = *loads ||
-				 !same_numbers(p->load[l].force[c], q->load[l].force[c], p->segments * p->n);
+			*loads = *loads || !rationals_equal((size_t)(p->segments * p->n), p->load[l].force[c],
+							    q->load[l].force[c]);
 	}
 	return true;
 }
@@ -56,8 +49,8 @@ static bool same_breakpoints(const struct switching *a, const struct switching *
 		    a->parts == b->parts;
 	for (int i = 0; i < a->expressions && same; i++) {
 		const struct expression *e = &a->expression[i], *f = &b->expression[i];
-		same = e->breaks == f->breaks && same_numbers(e->at, f->at, e->breaks) &&
-		       same_numbers(e->row->state, f->row->state, states);
+		same = e->breaks == f->breaks && rationals_equal((size_t)e->breaks, e->at, f->at) &&
+		       rationals_equal((size_t)states, e->row->state, f->row->state);
 	}
 	return same;
 }
@@ -101,6 +94,6 @@ bool differ_in_loads(const struct model *a, const struct model *b)
 {
 	bool loads = false;
 	return mpq_equal(a->h, b->h) && same_but_loads(&a->system, &b->system, &loads) &&
-	       same_numbers(a->initial, b->initial, a->system.states) && same_leftovers(a, b) &&
+	       rationals_equal((size_t)a->system.states, a->initial, b->initial) && same_leftovers(a, b) &&
 	       same_regions(a, b, &loads) && loads;
 }

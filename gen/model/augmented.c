@@ -120,8 +120,7 @@ static void fill_load(mpq_t *A, const struct layout *x, const struct linear *sys
 		      int at, int segment)
 {
 	for (int k = 0; k < system->load[load].columns; k++)
-		fill_force(A, x->size, at + k, system, inverse,
-			   (const mpq_t *)system->load[load].force[k] + segment * system->n);
+		fill_force(A, x->size, at + k, system, inverse, system->load[load].force[k] + segment * system->n);
 	fill_load_rows(A, x->size, at, &system->load[load]);
 }
 
@@ -137,25 +136,24 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 			mpq_set(A[i * size + j], own[i * states + j]);
 	for (int i = 0; i < n && x->held >= 0; i++) {
 		mpq_set_ui(unit[i], 1, 1);
-		fill_force(A, size, x->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
+		fill_force(A, size, x->held + i, system, inverse, unit);
 		mpq_set_ui(unit[i], 0, 1);
 	}
 	for (int l = 0; l < system->loads; l++)
 		for (int s = 0; s < x->segments && x->load[l] >= 0; s++)
-			fill_load(A, x, system, (const mpq_t *)inverse, l, x->load[l] + s * x->loads,
-				  x->segments > 1 ? s : segment);
+			fill_load(A, x, system, inverse, l, x->load[l] + s * x->loads, x->segments > 1 ? s : segment);
 	for (int i = 0; i < system->inputs; i++) {
 		int at = x->input[i];
-		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[0]);
+		fill_force(A, size, at, system, inverse, system->input[i].force[0]);
 		if (!system->input[i].hold)
 			continue;
-		fill_force(A, size, at + 1, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[1]);
+		fill_force(A, size, at + 1, system, inverse, system->input[i].force[1]);
 		for (int m = 0; m < system->input[i].hold; m++)
 			mpq_set_ui(A[(at + m) * size + at + m + 1], 1, 1);
 	}
 	for (int e = 0; e < system->channels && x->powers > 0; e++) {
 		int at = x->channel + e * x->powers;
-		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->channel[e]);
+		fill_force(A, size, at, system, inverse, system->channel[e]);
 		for (int m = 1; m < x->powers; m++)
 			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
 	}

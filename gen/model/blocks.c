@@ -4,13 +4,6 @@
 #include "model/model.h"
 
 /* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
-int root_of_node(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
 static int *components(const struct linear *system)
 {
 	int n = system->n, *parent = ARRAY(int, 2 * (size_t)n);
@@ -69,28 +62,27 @@ static void restrict_system(const struct linear *whole, struct block *b)
 	struct linear *system = &b->system;
 	int n = whole->n;
 	number_states(whole, b);
-	system->M = submatrix((const mpq_t *)whole->M, n, b);
-	system->C = submatrix((const mpq_t *)whole->C, n, b);
-	system->K = submatrix((const mpq_t *)whole->K, n, b);
-	system->heldC = submatrix((const mpq_t *)whole->heldC, n, b);
-	system->heldK = submatrix((const mpq_t *)whole->heldK, n, b);
+	system->M = submatrix(whole->M, n, b);
+	system->C = submatrix(whole->C, n, b);
+	system->K = submatrix(whole->K, n, b);
+	system->heldC = submatrix(whole->heldC, n, b);
+	system->heldK = submatrix(whole->heldK, n, b);
 	system->load = ARRAY(struct load, (size_t)whole->loads);
 	for (int l = 0; l < whole->loads; l++) {
 		system->load[l] = whole->load[l];
 		system->load[l].force = ARRAY(mpq_t *, (size_t)whole->load[l].columns);
 		for (int k = 0; k < whole->load[l].columns; k++)
-			system->load[l].force[k] =
-				subvector((const mpq_t *)whole->load[l].force[k], whole->segments, n, b);
+			system->load[l].force[k] = subvector(whole->load[l].force[k], whole->segments, n, b);
 	}
 	system->input = ARRAY(struct input, (size_t)whole->inputs);
 	for (int i = 0; i < whole->inputs; i++) {
 		system->input[i] = whole->input[i];
 		for (int k = 0; k < 2; k++)
-			system->input[i].force[k] = subvector((const mpq_t *)whole->input[i].force[k], 1, n, b);
+			system->input[i].force[k] = subvector(whole->input[i].force[k], 1, n, b);
 	}
 	system->channel = ARRAY(mpq_t *, (size_t)whole->channels);
 	for (int e = 0; e < whole->channels; e++)
-		system->channel[e] = subvector((const mpq_t *)whole->channel[e], 1, n, b);
+		system->channel[e] = subvector(whole->channel[e], 1, n, b);
 }
 
 struct block block_at(const struct linear *system, int *parent, int coord)

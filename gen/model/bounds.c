@@ -86,7 +86,7 @@ static void evaluate_all_absolute(void *context)
 static void relative_absolutes(struct model *model)
 {
 	const struct model *written = model->written;
-	const mpq_t *given = (const mpq_t *)written->truncation.absolute;
+	const mpq_t *given = written->truncation.absolute;
 	for (int i = 0; i < model->system.states && given; i++) {
 		int coord = model->system.coord[i], like = coord < written->n ? coord : 0;
 		int velocity = written->system.velocity[like];

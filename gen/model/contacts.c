@@ -17,11 +17,6 @@ static int drag_of(const struct model *model, const struct atom *atom)
 	return index;
 }
 
-static bool is_acceleration(const struct building *b, const struct basis *basis)
-{
-	return basis->kind == BASIS_COORD && basis->order >= b->model->frame.coord[basis->index]->highest;
-}
-
 static void add_drag(struct building *b, const struct atom *a)
 {
 	struct model *model = b->model;
@@ -30,7 +25,7 @@ static void add_drag(struct building *b, const struct atom *a)
 		return;
 	for (int i = 0; i < v->terms; i++) {
 		const struct basis *basis = &v->term[i].basis;
-		if (basis->kind == BASIS_ATOM || is_acceleration(b, basis))
+		if (basis->kind == BASIS_ATOM || is_highest(&b->model->frame, basis))
 			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 			      "the velocity of friction is linear in velocities");
 	}
@@ -95,7 +90,7 @@ static void refuse_acceleration(const struct building *b, const struct output *o
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (is_acceleration(b, basis))
+		if (is_highest(&b->model->frame, basis))
 			error(output->value->start, "a piecewise-linear model gives it",
 			      "an acceleration that a contact may hold beside what is not piecewise linear is no "
 			      "output");

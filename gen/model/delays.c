@@ -120,7 +120,7 @@ static void build_delays(void *context)
 	}
 	if (!good)
 		abandon();
-	find_parts(delays, (const mpq_t *)d);
+	find_parts(delays, d);
 	delays->inputs = spec->inputs - delays->count;
 	b->model->delays = delays;
 	b->model->name = format("%s_core", delays->name);

@@ -32,21 +32,13 @@ static void build_there(void *context)
 {
 	struct elsewhere *s = context;
 	struct request request = *s->request;
-	request.tunable = (const mpq_t *)s->values;
+	request.tunable = s->values;
 	request.factor = s->factor;
 	s->found = model_build(parse_spec(s->model->spec->source), &request);
 	if (s->found && request.reduce && !s->factor)
 		s->found = model_reduce(s->found);
 	if (!s->found)
 		abandon();
-}
-
-static mpq_t *copy_values(int params, const mpq_t *values)
-{
-	mpq_t *copy = rationals((size_t)params);
-	for (int k = 0; k < params; k++)
-		mpq_set(copy[k], values[k]);
-	return copy;
 }
 
 /* What others are like */
@@ -64,7 +56,7 @@ static const struct tunable *suspect(struct elsewhere *s, bool (*same)(const str
 		if (s->factor && !s->factor[k])
 			continue;
 		first = first < 0 ? k : first;
-		s->values = copy_values(t->params, (const mpq_t *)t->nominal);
+		s->values = rationals_copied((size_t)t->params, t->nominal);
 		mpq_set(s->values[k], scattered_near(t->params, 0, s->near)[k]);
 		if (silent_guard(build_there, s) && !same(pattern(s), s->found))
 			return &t->param[k];
@@ -119,13 +111,9 @@ static void forget(struct elsewhere *s)
 
 static int point_with(const struct elsewhere *s, const mpq_t *values)
 {
-	for (int i = 0; i < s->points; i++) {
-		bool same = true;
-		for (int k = 0; k < s->tuning->params; k++)
-			same = same && mpq_equal(s->point[i][k], values[k]);
-		if (same)
+	for (int i = 0; i < s->points; i++)
+		if (rationals_equal((size_t)s->tuning->params, s->point[i], values))
 			return i;
-	}
 	return -1;
 }
 
@@ -135,7 +123,7 @@ static int look(struct elsewhere *s, const mpq_t *values)
 	const int known = point_with(s, values);
 	if (known >= 0)
 		return known;
-	mpq_t *at = s->values = copy_values(s->tuning->params, values);
+	mpq_t *at = s->values = rationals_copied((size_t)s->tuning->params, values);
 	if (!silent_guard(build_there, s))
 		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model");
 	for (int i = 0; i < s->differences; i++)
@@ -156,7 +144,7 @@ void look_elsewhere(struct elsewhere *s)
 	const int params = s->tuning->params;
 	mpq_init(s->zero);
 	for (int i = 0; i < WHOLE_POINTS; i++)
-		look(s, (const mpq_t *)scattered_near(params, i, s->near));
+		look(s, scattered_near(params, i, s->near));
 	find_changing(s);
 }
 

@@ -305,7 +305,7 @@ void add_elements(struct building *b, struct snapshot *s)
 
 static bool zero_column(const struct model *model, int coord)
 {
-	const mpq_t *A = (const mpq_t *)(order_of(model, coord) == 2 ? model->system.M : model->system.C);
+	const mpq_t *A = (order_of(model, coord) == 2 ? model->system.M : model->system.C);
 	for (int i = 0; i < model->n; i++)
 		if (mpq_sgn(A[i * model->n + coord]) != 0)
 			return false;
@@ -362,12 +362,4 @@ void collect_whole(struct building *b)
 		if (s->kind == SYMBOL_LET && s->progress == COLLECTED &&
 		    s->collected->rows * s->collected->columns == 1)
 			s->whole = s->collected->cell[0];
-}
-
-int coordinate_of_row(const struct model *model, int row)
-{
-	int coord = 0;
-	while (model->owner[coord] != row)
-		coord++;
-	return coord;
 }

@@ -17,7 +17,7 @@ bool is_stick(const struct expression *e, int interval)
 	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
 }
 
-static int input_hold(const struct building *b, int index)
+int input_hold(const struct building *b, int index)
 {
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->index == index)

@@ -13,7 +13,7 @@ static void build_attempt(void *context)
 {
 	const struct attempt *a = context;
 	struct request request = *a->b->request;
-	request.tunable = (const mpq_t *)a->nominal;
+	request.tunable = a->nominal;
 	request.factor = a->factor;
 	if (!model_build(parse_spec(a->b->spec->source), &request))
 		abandon();

@@ -157,12 +157,7 @@ struct stuck {                      /* one expression that is held, in one regio
 static bool is_ratio(const struct form *a, const struct form *b, mpq_ptr ratio)
 {
 	mpq_set_ui(ratio, 0, 1);
-	if (a->terms == 0)
-		return true;
-	if (b->terms != a->terms)
-		return false;
-	mpq_div(ratio, a->term[0].factor, b->term[0].factor);
-	return same_form(a, form_scale(b, ratio));
+	return a->terms == 0 || is_form_multiple(a, b, ratio);
 }
 
 static void add_direction(const struct switching *s, const struct region *region, const struct friction *f,

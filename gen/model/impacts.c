@@ -14,11 +14,6 @@ static struct form *scalar_form(struct building *b, struct node *node)
 	return value->cell[0];
 }
 
-static bool is_highest(const struct building *b, const struct basis *basis)
-{
-	return basis->kind == BASIS_COORD && basis->order >= b->model->frame.coord[basis->index]->highest;
-}
-
 static void check_linear(const struct building *b, const struct node *node, const struct form *form, const char *what)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -29,7 +24,7 @@ static void check_linear(const struct building *b, const struct node *node, cons
 		if (form->term[i].basis.kind == BASIS_ATOM)
 			error(node->start, NULL, "%s is linear in states, loads and inputs, and '%s' is not", what,
 			      text_between(node->start, node->end));
-		if (is_highest(b, &form->term[i].basis))
+		if (is_highest(&b->model->frame, &form->term[i].basis))
 			error(node->start, "it follows from the equations, which change there",
 			      "%s cannot read the highest derivative of %s", what,
 			      b->model->coord_name[form->term[i].basis.index]);
@@ -72,14 +67,6 @@ static int state_at(const struct building *b, const struct node *target)
 	return target->primes ? b->model->system.velocity[coord] : coord;
 }
 
-static bool is_ramp(const struct building *b, int input)
-{
-	bool ramp = false;
-	for (const struct symbol *s = b->spec->first; s; s = s->next)
-		ramp = ramp || (s->kind == SYMBOL_INPUT && s->index == input && s->hold > 0);
-	return ramp;
-}
-
 static void collect_jumps(struct building *b, const struct when *when, struct strike *strike)
 {
 	strike->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
@@ -110,7 +97,7 @@ static void collect_impact(void *context)
 		      "this guard never changes");
 	for (int i = 0; i < strike->guard->terms; i++) {
 		const struct basis *basis = &strike->guard->term[i].basis;
-		if (basis->kind == BASIS_INPUT && !is_ramp(b, basis->index))
+		if (basis->kind == BASIS_INPUT && !input_hold(b, basis->index))
 			error(when->guard->start, "as a ramp it moves: input ... hold first",
 			      "this guard jumps with an input that is held");
 	}
@@ -235,7 +222,7 @@ static bool reads_highest(const struct building *b, const struct form *form)
 {
 	bool any = false;
 	for (int i = 0; i < form->terms; i++)
-		any = any || is_highest(b, &form->term[i].basis);
+		any = any || is_highest(&b->model->frame, &form->term[i].basis);
 	return any;
 }
 
@@ -352,7 +339,7 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 	RATIONAL speed = ZERO, factor = ZERO;
 	add_row(b, when->from, 1, force);
 	add_row(b, when->to, -1, force);
-	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)force, d);
+	rational_product(n, n, 1, inverse, force, d);
 	for (int i = 0; i < strike->speed->terms; i++) {
 		const struct basis *basis = &strike->speed->term[i].basis;
 		if (basis->kind != BASIS_COORD)

@@ -95,20 +95,20 @@ bool squared_frequencies(const struct linear *system, double *value)
 	RATIONALS *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
 	if (!leading_inverse(system, inverse, &column))
 		return false;
-	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
-	return sorted_eigenvalues(n, (const mpq_t *)product, false, value);
+	unreduced_product(n, n, n, inverse, system->K, product);
+	return sorted_eigenvalues(n, product, false, value);
 }
 
 double fastest_pole(const struct linear *system)
 {
 	double *value = ARRAY(double, (size_t)system->states);
-	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
+	bool found = sorted_eigenvalues(system->states, state_matrix(system, false), true, value);
 	return found ? value[system->states - 1] : 0;
 }
 
 double fastest_decay(const struct linear *system)
 {
 	double *value = ARRAY(double, (size_t)system->states);
-	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), false, value);
+	bool found = sorted_eigenvalues(system->states, state_matrix(system, false), false, value);
 	return found ? fmax(-value[0], 0) : 0;
 }

@@ -38,14 +38,6 @@ struct linear first_order_system(int n, const mpq_t *A)
 	return system;
 }
 
-static bool same_rationals(size_t count, const mpq_t *a, const mpq_t *b)
-{
-	for (size_t i = 0; i < count; i++)
-		if (!mpq_equal(a[i], b[i]))
-			return false;
-	return true;
-}
-
 static mpq_t *leading_matrix(const struct linear *system)
 {
 	size_t n = (size_t)system->n;
@@ -61,8 +53,8 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 	static struct { int n; mpq_t *W, *inverse; } last;
 	size_t cells = (size_t)system->n * (size_t)system->n;
 	mpq_t *W = leading_matrix(system);
-	bool known = last.n == system->n && same_rationals(cells, (const mpq_t *)last.W, (const mpq_t *)W);
-	if (!known && !rational_inverse(system->n, (const mpq_t *)W, inverse, column)) {
+	bool known = last.n == system->n && rationals_equal(cells, last.W, W);
+	if (!known && !rational_inverse(system->n, W, inverse, column)) {
 		rationals_free(W, cells);
 		return false;
 	}
@@ -78,7 +70,7 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 	}
 	last.n = system->n;
 	last.W = W;
-	last.inverse = rationals_copied(cells, (const mpq_t *)inverse);
+	last.inverse = rationals_copied(cells, inverse);
 	return true;
 }
 
@@ -96,7 +88,7 @@ void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < states; j++)
 			mpq_neg(lower[i * states + j], factor_of_state(system, i, j, held));
-	rational_product(n, n, states, inverse, (const mpq_t *)lower, row);
+	rational_product(n, n, states, inverse, lower, row);
 }
 
 /* x' = A x over the states (held terms: those that a scheme holds, alone) */
@@ -107,7 +99,7 @@ mpq_t *state_matrix(const struct linear *system, bool held)
 	mpq_t *A = rationals((size_t)states * (size_t)states);
 	RATIONALS *highest = rationals((size_t)n * (size_t)states);
 	leading_inverse(system, inverse, &column);
-	highest_derivatives(system, (const mpq_t *)inverse, held, highest);
+	highest_derivatives(system, inverse, held, highest);
 	for (int i = 0; i < n; i++) {
 		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
 		for (int j = 0; j < states; j++)

@@ -166,10 +166,10 @@ static int sign_at(const struct lint *lint, const mpq_t *A, int coord)
 static const char *pushing_term(const struct lint *lint, int coord)
 {
 	const struct linear *s = lint->system;
-	int mass = sign_at(lint, (const mpq_t *)(s->velocity[coord] < 0 ? s->C : s->M), coord);
-	if (s->velocity[coord] >= 0 && mass * sign_at(lint, (const mpq_t *)s->C, coord) < 0)
+	int mass = sign_at(lint, (s->velocity[coord] < 0 ? s->C : s->M), coord);
+	if (s->velocity[coord] >= 0 && mass * sign_at(lint, s->C, coord) < 0)
 		return "damping";
-	return mass * sign_at(lint, (const mpq_t *)s->K, coord) < 0 ? "stiffness" : NULL;
+	return mass * sign_at(lint, s->K, coord) < 0 ? "stiffness" : NULL;
 }
 
 /* [1/s] of the entries of y' = A y: roots of those by which coordinates accelerate */
@@ -350,8 +350,7 @@ static void check_resonance(const struct lint *lint)
 /* By how much coordinate j acts on i, of the sign that the mass of i gives its equation */
 static double action(const struct lint *lint, const mpq_t *A, int i, int j)
 {
-	return sign_at(lint, (const mpq_t *)lint->system->M, i) *
-	       nearest_double(A[lint->model->owner[i] * lint->system->n + j]);
+	return sign_at(lint, lint->system->M, i) * nearest_double(A[lint->model->owner[i] * lint->system->n + j]);
 }
 
 /* Where two coordinates act on each other, not one on the other alone, factors of the equations make both actions
@@ -386,11 +385,10 @@ static bool shows_energy(const struct lint *lint)
 {
 	const struct linear *s = lint->system;
 	for (int i = 0; i < s->n; i++) {
-		if (s->velocity[i] < 0 || sign_at(lint, (const mpq_t *)s->M, i) == 0)
+		if (s->velocity[i] < 0 || sign_at(lint, s->M, i) == 0)
 			return false;
 		for (int j = 0; j < i; j++)
-			if ((action(lint, (const mpq_t *)s->M, i, j) == 0) !=
-			    (action(lint, (const mpq_t *)s->M, j, i) == 0))
+			if ((action(lint, s->M, i, j) == 0) != (action(lint, s->M, j, i) == 0))
 				return false;
 	}
 	return true;
@@ -413,7 +411,7 @@ static void check_symmetry(const struct lint *lint)
 			int i = queue[next];
 			for (int j = 0; j < n; j++) {
 				bool fresh = factor[j] == 0;
-				const mpq_t *M = (const mpq_t *)s->M, *K = (const mpq_t *)s->K;
+				const mpq_t *M = s->M, *K = s->K;
 				if (j == i)
 					continue;
 				bool M_good = is_balanced(lint, M, i, j, factor), K_good;
@@ -454,7 +452,7 @@ static int unopposed_row(int n, int width, mpq_t *A)
 			if (mpq_sgn(A[row[i] * width + column]) == 0)
 				continue;
 			mpq_div(factor, A[row[i] * width + column], A[found * width + column]);
-			rational_subtract_row(width, A + row[i] * width, (const mpq_t *)A + found * width, factor);
+			rational_subtract_row(width, A + row[i] * width, A + found * width, factor);
 		}
 		rank++;
 	}
@@ -515,7 +513,7 @@ void lint(struct building *b)
 	if (states <= MOST_POLES) {
 		lint.re = ARRAY(double, (size_t)states);
 		lint.im = ARRAY(double, (size_t)states);
-		const mpq_t *A = (const mpq_t *)state_matrix(&model->system, false);
+		const mpq_t *A = state_matrix(&model->system, false);
 		lint.size = size_of(&model->system, A);
 		if (eigenvalues(states, A, lint.re, lint.im))
 			lint.poles = states;

@@ -415,7 +415,7 @@ static void collect_intervals(struct building *b)
 	const mpq_t *change = NULL;
 	int known, done = 0;
 	do {
-		const mpq_t *list = (const mpq_t *)c->change;
+		const mpq_t *list = c->change;
 		known = c->changes;
 		b->snapshot = ARRAY(struct snapshot, (size_t)known + 1);
 		int within = 0;                 /* the old interval in which this one lies */

@@ -473,7 +473,6 @@ struct block {
 /* M regular, so that a block has as many equations as coordinates */
 int blocks_of(const struct linear *system, struct block **blocks);
 /* Components of a graph whose nodes are n equations and then n coordinates, by their parents */
-int  root_of_node(int *parent, int node);
 struct block block_at(const struct linear *system, int *parent, int coord);  /* the component of that coordinate */
 bool is_seen_before(int n, int *parent, int coord);          /* an earlier coordinate is of the same one */
 
@@ -519,7 +518,6 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 struct output *row_of_form(struct building *b, struct form *form);
 /* the same with the highest derivatives that a system gives */
 struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
-int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
 void add_elements(struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
@@ -541,6 +539,7 @@ struct reads {                    /* what forms read */
 };
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
 struct reads reads_of(const struct model *model, int count, const struct form *const *form);
+int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
 
@@ -659,6 +658,7 @@ bool holds_friction(const struct building *b);              /* somewhere in the 
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
 /* What is held exceeds the force of what slides by this, where the velocity is 0 */
 struct form *less_in_velocity(const struct form *rest, const struct form *force, const struct form *velocity);
+int  input_hold(const struct building *b, int index);      /* the degree of what goes through its samples */
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */

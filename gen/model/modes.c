@@ -97,16 +97,14 @@ static bool take_coordinates(struct mode_basis *basis, const struct linear *syst
 		return false;
 	basis->A = rationals(cells);
 	basis->D = rationals(cells);
-	rational_product(n, n, n, (const mpq_t *)basis->inverse, (const mpq_t *)system->K, basis->A);
-	rational_product(n, n, n, (const mpq_t *)basis->inverse, (const mpq_t *)system->C, basis->D);
-	if (!is_zero(cells, (const mpq_t *)basis->D) &&
-	    !commute(n, (const mpq_t *)basis->A, (const mpq_t *)basis->D))
+	rational_product(n, n, n, basis->inverse, system->K, basis->A);
+	rational_product(n, n, n, basis->inverse, system->C, basis->D);
+	if (!is_zero(cells, basis->D) && !commute(n, basis->A, basis->D))
 		return false;
-	if (is_symmetric(n, (const mpq_t *)system->M) && is_symmetric(n, (const mpq_t *)system->K))
-		basis->invariants = invariants_symmetric(n, (const mpq_t *)basis->A, (const mpq_t *)system->M,
-							 (const mpq_t *)system->K);
+	if (is_symmetric(n, system->M) && is_symmetric(n, system->K))
+		basis->invariants = invariants_symmetric(n, basis->A, system->M, system->K);
 	if (!basis->invariants)
-		basis->invariants = invariants_of(n, (const mpq_t *)basis->A, n);
+		basis->invariants = invariants_of(n, basis->A, n);
 	basis->moves = basis->invariants && all_real(basis->invariants);
 	return basis->moves;
 }
@@ -120,7 +118,7 @@ static struct mode_basis *basis_of(const struct linear *system)
 	if (take_coordinates(basis, system))
 		return basis;
 	basis->A = state_matrix(system, false);
-	basis->invariants = invariants_of(system->states, (const mpq_t *)basis->A, system->n);
+	basis->invariants = invariants_of(system->states, basis->A, system->n);
 	return basis->invariants ? basis : NULL;
 }
 
@@ -230,16 +228,16 @@ static void straighten(struct mode *mode, int states, int coords)
 {
 	RATIONALS *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
 		  *right = rationals(2 * (size_t)states);
-	const mpq_t *T = (const mpq_t *)mode->block;
+	const mpq_t *T = mode->block;
 	int column;
 	const bool second = fabs(nearest_double(T[2])) + fabs(nearest_double(T[3])) >
 			    fabs(nearest_double(T[0])) + fabs(nearest_double(T[1]));
 	mpq_set_ui(S[second], 1, 1);
 	mpq_set(S[2], T[2 * second]);
 	mpq_set(S[3], T[2 * second + 1]);
-	if (rational_inverse(2, (const mpq_t *)S, inverse, &column)) {
-		rational_product(2, 2, states, (const mpq_t *)S, (const mpq_t *)mode->left, left);
-		rational_product(states, 2, 2, (const mpq_t *)mode->right, (const mpq_t *)inverse, right);
+	if (rational_inverse(2, S, inverse, &column)) {
+		rational_product(2, 2, states, S, mode->left, left);
+		rational_product(states, 2, 2, mode->right, inverse, right);
 		make_unit(states, coords, left, right);
 		for (int i = 0; i < 2 * states; i++) {
 			mpq_swap(mode->left[i], left[i]);
@@ -256,7 +254,7 @@ static bool is_nilpotent(const struct mode *mode, double largest)
 	const int k = mode->states;
 	RATIONALS *square = rationals((size_t)k * (size_t)k);
 	double most = 0;
-	rational_product(k, k, k, (const mpq_t *)mode->block, (const mpq_t *)mode->block, square);
+	rational_product(k, k, k, mode->block, mode->block, square);
 	for (int i = 0; i < k * k; i++)
 		most = fmax(most, fabs(nearest_double(square[i])));
 	return most <= 1e-25 * largest * largest;
@@ -346,8 +344,8 @@ static void lift_exactly(const struct modes *modes, struct mode *mode, const mpq
 	const int n = modes->model->n, c = mode->columns, k = mode->states, states = 2 * n;
 	const int *velocity = modes->model->system.velocity;
 	RATIONALS *DX = rationals((size_t)n * (size_t)c), *damping = rationals((size_t)c * (size_t)c);
-	rational_product(n, n, c, (const mpq_t *)modes->basis->D, X, DX);
-	rational_product(c, n, c, Y, (const mpq_t *)DX, damping);
+	rational_product(n, n, c, modes->basis->D, X, DX);
+	rational_product(c, n, c, Y, DX, damping);
 	for (int i = 0; i < c; i++) {
 		mpq_set_ui(mode->block[i * k + c + i], 1, 1);
 		for (int j = 0; j < c; j++) {
@@ -384,7 +382,7 @@ bool mode_refine(struct modes *modes, int index)
 	mode->block = rationals(k * k);
 	mode->right = rationals(k * (size_t)states);
 	mode->left = rationals(k * (size_t)states);
-	lift_exactly(modes, mode, (const mpq_t *)theta, (const mpq_t *)X, (const mpq_t *)Y);
+	lift_exactly(modes, mode, theta, X, Y);
 	rationals_free(theta, c * c);
 	rationals_free(X, cells);
 	rationals_free(Y, cells);

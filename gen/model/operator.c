@@ -303,7 +303,7 @@ static bool is_carried(const struct building *b, const struct basis *basis)
 		return !model->loads_left;
 	if (basis->kind == BASIS_INPUT)
 		return true;
-	return basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
+	return is_highest(&model->frame, basis);
 }
 
 /* What inputs are with the spec's values of params beside what they are with the instance's */
@@ -479,9 +479,9 @@ static bool is_classical(const struct building *b, const mpq_t *C, const mpq_t *
 			mpq_set(damping[i * n + j], of_coordinates(b, C, i, j));
 			mpq_set(stiffness[i * n + j], of_coordinates(b, K, i, j));
 		}
-	bool classical = rational_inverse(n, (const mpq_t *)mass, inverse, &column);
-	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)stiffness, solved);
-	rational_product(n, n, n, (const mpq_t *)damping, (const mpq_t *)solved, product);
+	bool classical = rational_inverse(n, mass, inverse, &column);
+	rational_product(n, n, n, inverse, stiffness, solved);
+	rational_product(n, n, n, damping, solved, product);
 	for (int i = 0; i < n; i++)             /* of symmetric matrices, K M^-1 C is the transpose */
 		for (int j = 0; j < i && classical; j++)
 			classical = mpq_equal(product[i * n + j], product[j * n + i]);
@@ -501,7 +501,7 @@ static void keep_modes(const struct building *b, struct operator *operator)
 	operator->K = K;
 	keep_symmetric(b, K);
 	keep_symmetric(b, C);
-	for (size_t i = 0; !is_classical(b, (const mpq_t *)C, (const mpq_t *)K) && i < cells; i++)
+	for (size_t i = 0; !is_classical(b, C, K) && i < cells; i++)
 		mpq_set_ui(C[i], 0, 1);
 }
 

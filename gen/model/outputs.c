@@ -301,14 +301,14 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
 	      *highest = rationals((size_t)(model->n * system->states));
 	leading_inverse(system, inverse, &column);
-	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
+	highest_derivatives(system, inverse, false, highest);
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind != BASIS_COORD || state_of(model, &form->term[i].basis) >= 0)
 			form_add_basis(lower, form->term[i].basis, form->term[i].factor);
 	struct output *row = row_of_form(b, lower);
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind == BASIS_COORD && state_of(model, &form->term[i].basis) < 0)
-			add_highest(model, system, (const mpq_t *)inverse, (const mpq_t *)highest,
+			add_highest(model, system, inverse, highest,
 				    form->term[i].basis.index, form->term[i].factor, row);
 	return row;
 }
@@ -374,7 +374,7 @@ void build_outputs(struct building *b)
 	/* what is left over is left by this one */
 	struct linear first = model->operators ? operator_system(model, 0) : *system;
 	leading_inverse(system, inverse, &column);
-	highest_derivatives(&first, (const mpq_t *)inverse, false, highest);
+	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);
 	int told = -1;                          /* the statement last told: once is enough */
 	for (int i = 0; i < model->outputs; i++)
@@ -390,8 +390,8 @@ void build_outputs(struct building *b)
 		if (!output->value)
 			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())
-			spread_output(b, (const mpq_t *)inverse, (const mpq_t *)highest, output);
+			spread_output(b, inverse, highest, output);
 	}
 	if (!diagnostics_errors())
-		build_highest(b, (const mpq_t *)inverse, (const mpq_t *)highest);
+		build_highest(b, inverse, highest);
 }

@@ -302,9 +302,9 @@ static struct output *own_row(const struct region_part *part, const struct outpu
 {
 	struct output *own = NEW(struct output);
 	*own = *row;
-	own->state = picked((const mpq_t *)row->state, part->model->system.states, part->state);
+	own->state = picked(row->state, part->model->system.states, part->state);
 	for (int k = 0; k < 2; k++)
-		own->input[k] = picked((const mpq_t *)row->input[k], part->model->system.inputs, part->input);
+		own->input[k] = picked(row->input[k], part->model->system.inputs, part->input);
 	return own;
 }
 

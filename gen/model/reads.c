@@ -24,9 +24,7 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		const struct atom *atom = basis->atom;
-		bool highest = basis->kind == BASIS_COORD && basis->order > 0 &&
-			       basis->order >= model->frame.coord[basis->index]->highest;
-		if (highest)
+		if (is_highest(&model->frame, basis))
 			reading->highest[basis->index] = true;
 		else if (basis->kind == BASIS_COORD)
 			reading->state[basis->order ? model->system.velocity[basis->index] : basis->index] = true;
@@ -74,4 +72,12 @@ bool reads_input_slope(const struct model *model, int input)
 	for (int i = 0; i < model->outputs; i++)
 		any = any || model->output[i].left || mpq_sgn(model->output[i].input[1][input]) != 0;
 	return any;
+}
+
+int coordinate_of_row(const struct model *model, int row)
+{
+	int coord = 0;
+	while (model->owner[coord] != row)
+		coord++;
+	return coord;
 }

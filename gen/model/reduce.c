@@ -26,7 +26,7 @@ static mpq_t *row_of(const struct observable *o, int r)
 /* Of what a row has at the pivot of another, nothing stays. */
 static void clear_pivot(const struct observable *o, mpq_t *row, int by)
 {
-	const mpq_t *other = (const mpq_t *)row_of(o, by);
+	const mpq_t *other = row_of(o, by);
 	RATIONAL factor = ZERO;
 	mpq_set(factor, row[o->pivot[by]]);
 	for (int j = 0; j < o->states && mpq_sgn(factor) != 0; j++)
@@ -107,7 +107,7 @@ static void see_expression(struct observable *o, const struct model *model, cons
 		RATIONALS *row = rationals((size_t)o->states);
 		mpq_set_ui(row[i], 1, 1);
 		if (reads.state[i])
-			add_row(o, (const mpq_t *)row);
+			add_row(o, row);
 	}
 }
 
@@ -115,7 +115,7 @@ static struct observable observe(const struct model *model)
 {
 	size_t n = (size_t)model->system.states;
 	struct observable o = { .states = model->system.states,
-				.A = (const mpq_t *)state_matrix(&model->system, false),
+				.A = state_matrix(&model->system, false),
 				.row = rationals(n * n),
 				.pivot = ARRAY(int, n) };
 	for (int i = 0; i < model->outputs; i++) {
@@ -123,13 +123,13 @@ static struct observable observe(const struct model *model)
 		if (output->left)
 			see_expression(&o, model, output->left);
 		if (output->form || !output->value)
-			add_row(&o, (const mpq_t *)output->state);
+			add_row(&o, output->state);
 	}
 	/* A row changes by later ones alone, whose derivatives are seen with them. */
 	for (int r = 0; r < o.rank; r++) {
 		RATIONALS *derivative = rationals(n);
-		rational_product(1, o.states, o.states, (const mpq_t *)row_of(&o, r), o.A, derivative);
-		add_row(&o, (const mpq_t *)derivative);
+		rational_product(1, o.states, o.states, row_of(&o, r), o.A, derivative);
+		add_row(&o, derivative);
 	}
 	make_small(&o);
 	sort_rows(&o);
@@ -161,8 +161,7 @@ static mpq_t *force_column(const struct linear *written, const mpq_t *inverse, c
 static void project_force(const struct observable *o, const struct linear *written, const mpq_t *inverse,
 			  const mpq_t *force, mpq_t *reduced)
 {
-	rational_product(o->rank, o->states, 1, (const mpq_t *)o->row,
-			 (const mpq_t *)force_column(written, inverse, force), reduced);
+	rational_product(o->rank, o->states, 1, o->row, force_column(written, inverse, force), reduced);
 }
 
 static void project_loads(const struct observable *o, const struct linear *written, struct linear *system)
@@ -181,7 +180,7 @@ static void project_loads(const struct observable *o, const struct linear *writt
 		for (int k = 0; k < load->columns; k++) {
 			system->load[l].force[k] = rationals((size_t)written->segments * (size_t)o->rank);
 			for (int s = 0; s < written->segments; s++)
-				project_force(o, written, (const mpq_t *)inverse, (const mpq_t *)load->force[k] + s * n,
+				project_force(o, written, inverse, load->force[k] + s * n,
 					      system->load[l].force[k] + s * o->rank);
 		}
 	}
@@ -191,8 +190,7 @@ static void project_loads(const struct observable *o, const struct linear *writt
 		system->input[i] = written->input[i];
 		for (int k = 0; k < 2; k++) {
 			system->input[i].force[k] = rationals((size_t)o->rank);
-			project_force(o, written, (const mpq_t *)inverse, (const mpq_t *)written->input[i].force[k],
-				      system->input[i].force[k]);
+			project_force(o, written, inverse, written->input[i].force[k], system->input[i].force[k]);
 		}
 	}
 }
@@ -201,10 +199,10 @@ static struct linear project_system(const struct observable *o, const struct lin
 {
 	int r = o->rank;
 	mpq_t *A = rationals((size_t)r * (size_t)r), *derivative = rationals((size_t)r * (size_t)o->states);
-	rational_product(r, o->states, o->states, (const mpq_t *)o->row, o->A, derivative);
+	rational_product(r, o->states, o->states, o->row, o->A, derivative);
 	for (int i = 0; i < r * r; i++)
 		mpq_set(A[i], derivative[i / r * o->states + o->pivot[i % r]]);
-	struct linear system = first_order_system(r, (const mpq_t *)A);
+	struct linear system = first_order_system(r, A);
 	project_loads(o, written, &system);
 	return system;
 }
@@ -268,7 +266,7 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 	if (is_written(o, r))
 		return model->state_name[o->pivot[r]];
 	for (int i = 0; i < model->outputs; i++)
-		if (is_position(model, &model->output[i]) && is_row(o, r, (const mpq_t *)model->output[i].state))
+		if (is_position(model, &model->output[i]) && is_row(o, r, model->output[i].state))
 			return model->output[i].name;
 	for (int i = 0; i < r; i++)
 		if (is_derivative(&reduced->system, i, r))
@@ -312,12 +310,12 @@ struct model *model_reduce(struct model *model)
 	for (int r = 0; r < o.rank; r++)
 		reduced->state_name[r] = name_of(&o, reduced, r);
 	reduced->initial = rationals((size_t)o.rank);
-	rational_product(o.rank, o.states, 1, (const mpq_t *)o.row, (const mpq_t *)model->initial, reduced->initial);
+	rational_product(o.rank, o.states, 1, o.row, model->initial, reduced->initial);
 	reduced->highest = ARRAY(struct output *, (size_t)o.rank); /* none: that was refused */
 	reduced->output = ARRAY(struct output, (size_t)model->outputs);
 	for (int i = 0; i < model->outputs; i++) {
 		reduced->output[i] = model->output[i];
-		reduced->output[i].state = coefficients_of(&o, (const mpq_t *)model->output[i].state);
+		reduced->output[i].state = coefficients_of(&o, model->output[i].state);
 	}
 	place_states(&o, reduced);
 	reduced->reduction.row = o.row;
@@ -326,7 +324,7 @@ struct model *model_reduce(struct model *model)
 
 bool same_reduction(const struct model *a, const struct model *b)
 {
-	const mpq_t *p = (const mpq_t *)a->reduction.row, *q = (const mpq_t *)b->reduction.row;
+	const mpq_t *p = a->reduction.row, *q = b->reduction.row;
 	int written = a->written->system.states;
 	if (!p || !q)
 		return p == q;

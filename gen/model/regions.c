@@ -108,21 +108,28 @@ static void refuse_force(const struct node *node, const struct form *form)
 		      "the force of friction cannot decide a function or a condition");
 }
 
-/* The expression of which a form is factor (expression - at); -1: it is a constant, then in `at` */
-static int expression_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
-			   mpq_ptr at)
+/* A form, and the constant in it apart */
+static struct compared compared_here(struct looking *l, const struct node *node, const struct form *form,
+				     mpq_ptr constant)
 {
 	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
-	constant_value(&l->b->collector, &plain, at);
-	if (plain.terms == form->terms) {
+	constant_value(&l->b->collector, &plain, constant);
+	return (struct compared){ node, form_sum(form, &plain, true), constant, order_met(l) };
+}
+
+/* The expression of which a form is factor (expression - at); -1: it is a constant, then in `at` */
+static int expression_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
+			   mpq_ptr at)
+{
+	RATIONAL constant = ZERO;
+	struct compared what = compared_here(l, node, form, constant);
+	if (what.form->terms == 0) {
+		mpq_set(at, constant);
 		note_sign(l->b, l->s, at, false);
 		return -1;
 	}
-	RATIONAL constant = ZERO;
-	mpq_set(constant, at);
-	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
 	int e = find_expression(l->s, l->segment, &what, factor, at);
 	note_sign(l->b, l->s, factor, false);
 	return e;
@@ -440,11 +447,7 @@ static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr 
 	const struct node *node = impact->when->guard;
 	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
 	const struct form *guard = rising ? strike->guard : form_difference(NEW(struct form), strike->guard);
-	struct form plain = { 0, guard->term, 0 };
-	while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
-	constant_value(&l->b->collector, &plain, constant);
-	struct compared what = { node, form_sum(guard, &plain, true), constant, order_met(l) };
+	struct compared what = compared_here(l, node, guard, constant);
 	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
 	note_sign(l->b, l->s, strike->factor, false);
 	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
@@ -559,8 +562,7 @@ static bool can_hold(struct inequalities set)
 				add_inequality(&rest, set.row[i].a);
 			for (int j = 0; j < set.count && sign > 0; j++)
 				if (mpq_sgn(set.row[j].a[v]) < 0)
-					add_inequality(&rest, combined(set.variables, v, (const mpq_t *)set.row[i].a,
-								       (const mpq_t *)set.row[j].a));
+					add_inequality(&rest, combined(set.variables, v, set.row[i].a, set.row[j].a));
 		}
 		set = rest;
 	}
@@ -736,26 +738,17 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 
 /* ---- their systems ---- */
 
-static bool same_matrix(const mpq_t *a, const mpq_t *b, size_t cells)
-{
-	for (size_t i = 0; i < cells; i++)
-		if (!mpq_equal(a[i], b[i]))
-			return false;
-	return true;
-}
-
 static bool same_system(const struct linear *a, const struct linear *b)
 {
 	size_t n = (size_t)a->n, cells = n * n;
-	bool same = same_matrix((const mpq_t *)a->M, (const mpq_t *)b->M, cells) &&
-		    same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) &&
-		    same_matrix((const mpq_t *)a->K, (const mpq_t *)b->K, cells);
+	bool same = rationals_equal(cells, a->M, b->M) && rationals_equal(cells, a->C, b->C) &&
+		    rationals_equal(cells, a->K, b->K);
 	for (int l = 0; l < a->loads && same; l++)
 		for (int k = 0; k < a->load[l].columns && same; k++)
-			same = same_matrix((const mpq_t *)a->load[l].force[k], (const mpq_t *)b->load[l].force[k], n);
+			same = rationals_equal(n, a->load[l].force[k], b->load[l].force[k]);
 	for (int i = 0; i < a->inputs && same; i++)
 		for (int k = 0; k < 2 && same; k++)
-			same = same_matrix((const mpq_t *)a->input[i].force[k], (const mpq_t *)b->input[i].force[k], n);
+			same = rationals_equal(n, a->input[i].force[k], b->input[i].force[k]);
 	return same;
 }
 

@@ -26,12 +26,6 @@ struct look {
 	bool *seen;                 /* per atom */
 };
 
-static bool leads(const struct model *model, const struct basis *basis)
-{
-	return basis->kind == BASIS_COORD && basis->order > 0 &&
-	       basis->order >= model->frame.coord[basis->index]->highest;
-}
-
 static void join(bool *joined, int n, int a, int b)
 {
 	joined[a * n + b] = joined[b * n + a] = true;
@@ -74,7 +68,7 @@ static void look_at(struct look *l, const struct form *form, int own)
 				join(l->strong, n, own, basis->index);
 			if (basis->order == 0)
 				mpq_set(place[basis->index], form->term[i].factor);
-			else if (!leads(l->model, basis))
+			else if (!is_highest(&l->model->frame, basis))
 				mpq_set(rate[basis->index], form->term[i].factor);
 		}
 		if (!atom)
@@ -85,14 +79,6 @@ static void look_at(struct look *l, const struct form *form, int own)
 	}
 	echelon_add(&l->place, place);
 	echelon_add(&l->rate, rate);
-}
-
-static int own_coordinate(const struct model *model, int row)
-{
-	for (int j = 0; j < model->n; j++)
-		if (model->owner[j] == row)
-			return j;
-	return 0;
 }
 
 /* An atom is looked at once, but joins all equations in which it stands. */
@@ -127,14 +113,14 @@ static struct look look_at_equations(const struct model *model)
 {
 	struct look l = look_new(model);
 	for (int i = 0; i < model->n; i++)
-		look_at(&l, model->residual[i].form, own_coordinate(model, i));
+		look_at(&l, model->residual[i].form, coordinate_of_row(model, i));
 	for (int i = 0; i < model->n && model->channels + (model->switching != NULL) > 0; i++) {
 		memset(l.seen, 0, (size_t)atoms_count(model->atoms));
-		join_atoms(&l, model->residual[i].form, own_coordinate(model, i));
+		join_atoms(&l, model->residual[i].form, coordinate_of_row(model, i));
 	}
 	memset(l.seen, 0, (size_t)atoms_count(model->atoms));
 	for (int i = 0; i < model->n && model_elsewhere(model); i++)
-		look_at(&l, model_elsewhere(model)->residual[i].form, own_coordinate(model, i));
+		look_at(&l, model_elsewhere(model)->residual[i].form, coordinate_of_row(model, i));
 	return l;
 }
 
@@ -173,9 +159,8 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 		const struct form *form = (row == i ? model : model_elsewhere(model))->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
-			bool state = basis->kind == BASIS_ATOM ? basis->atom->state
-							       : basis->kind == BASIS_COORD && !leads(model, basis);
-			if (state)
+			bool coord = basis->kind == BASIS_COORD && !is_highest(&model->frame, basis);
+			if (basis->kind == BASIS_ATOM ? basis->atom->state : coord)
 				weigh(&b, model->n, row - i, i, &form->term[k]);
 		}
 	}
@@ -282,7 +267,7 @@ static mpq_t *sum_in(int n, int vectors, mpq_t **vector, const int *component, i
 	mpq_t *sum = rationals((size_t)n);
 	*count = 0;
 	for (int v = 0; v < vectors; v++) {
-		int first = first_entry(n, (const mpq_t *)vector[v]);
+		int first = first_entry(n, vector[v]);
 		if (first == n || component[first] != number)
 			continue;
 		for (int j = 0; j < n; j++)
@@ -304,10 +289,10 @@ static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rat
 {
 	int count, several = 0;
 	mpq_t *motion = sum_in(n, rates, rate, component, number, &count), **shared = ARRAY(mpq_t *, (size_t)n);
-	if (support(n, (const mpq_t *)motion) > 1)
+	if (support(n, motion) > 1)
 		return motion;
 	for (int v = 0; v < places; v++)
-		if (support(n, (const mpq_t *)place[v]) > 1)
+		if (support(n, place[v]) > 1)
 			shared[several++] = place[v];
 	mpq_t *other = sum_in(n, several, shared, component, number, &several);
 	if (several == 1)
@@ -400,7 +385,7 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 	RATIONAL sum = ZERO;
 	for (int j = 0; j < n && weight; j++)
 		rational_addmul(sum, weight[j], motion[j]);
-	if (mpq_sgn(sum) != 0 && centres(l, g, (const mpq_t *)weight)) {
+	if (mpq_sgn(sum) != 0 && centres(l, g, weight)) {
 		mpq_div(sum, sum, motion[g->root]);
 		scale(n, weight, sum);
 		g->weight = weight;
@@ -699,11 +684,11 @@ static bool add_group(struct relative *r, const struct look *l, const mpq_t *mot
 /* Of several coordinates, which no other such motion has, and no group */
 static bool moves_alone(int n, int places, mpq_t **place, int which, const bool *moved)
 {
-	bool alone = support(n, (const mpq_t *)place[which]) > 1;
+	bool alone = support(n, place[which]) > 1;
 	for (int j = 0; j < n && alone; j++) {
 		int others = 0;
 		for (int v = 0; v < places; v++)
-			others += v != which && mpq_sgn(place[v][j]) != 0 && support(n, (const mpq_t *)place[v]) > 1;
+			others += v != which && mpq_sgn(place[v][j]) != 0 && support(n, place[v]) > 1;
 		alone = mpq_sgn(place[which][j]) == 0 || (others == 0 && !moved[j]);
 	}
 	return alone;
@@ -726,20 +711,15 @@ struct relative *relative_of(const struct model *model)
 	both.rank = 0;
 	for (int k = 0; k < 2; k++) {
 		const struct echelon *from = k ? &l.rate : &l.place;
-		for (int i = 0; i < from->rank; i++) {
-			mpq_t *row = rationals((size_t)n);
-			for (int j = 0; j < n; j++)
-				mpq_set(row[j], from->row[i][j]);
-			echelon_add(&both, row);
-		}
+		for (int i = 0; i < from->rank; i++)
+			echelon_add(&both, rationals_copied((size_t)n, from->row[i]));
 	}
 	int rates = echelon_null_space(&both, &rate), sums = free_sums(model, &sum);
 	int *component = components_of(&l, &count);
 	for (int s = 0, all = sums; s < all; s++) {
-		const mpq_t *u = (const mpq_t *)sum[s];
+		const mpq_t *u = sum[s];
 		sum[s] = weights_of(model, u);
-		if (model_elsewhere(model) &&
-		    retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model_elsewhere(model), u)))
+		if (model_elsewhere(model) && retunes(model, sum[s], weights_of(model_elsewhere(model), u)))
 			sum[s] = rationals((size_t)n);
 	}
 	struct relative *r = relative_new(model);
@@ -749,11 +729,11 @@ struct relative *relative_of(const struct model *model)
 		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c),
 		      *weight = sum_in(n, sums, sum, component, c, &found);
 		if (motion)
-			groups += add_group(r, &l, (const mpq_t *)motion, found == 1 ? weight : NULL, moved);
+			groups += add_group(r, &l, motion, found == 1 ? weight : NULL, moved);
 	}
 	for (int v = 0; v < places; v++)
 		if (moves_alone(n, places, place, v, moved))
-			groups += add_group(r, &l, (const mpq_t *)place[v], NULL, moved);
+			groups += add_group(r, &l, place[v], NULL, moved);
 	if (groups == 0)
 		return NULL;
 	name_kept(r);

@@ -346,7 +346,7 @@ static bool find_retuning(struct model *model, const struct request *request)
 	struct search s = { .model = model, .r = r, .t = t };
 	*t = *model->held;
 	s.at = (struct elsewhere){ .model = model, .request = request, .tuning = t, .factor = model->factor,
-				   .near = (const mpq_t *)t->nominal, .difference = difference,
+				   .near = t->nominal, .difference = difference,
 				   .differences = sizeof difference / sizeof *difference, .read = read_rows };
 	r->factor = model->factor;
 	r->tuning = t;

@@ -99,7 +99,7 @@ static void list_system(struct listing *l, int index)
 
 static const mpq_t *highest_of(const struct listing *l, int system)
 {
-	return (const mpq_t *)l->entry + system * l->model->n * l->x->size;
+	return l->entry + system * l->model->n * l->x->size;
 }
 
 /* W, and R = W times what it was solved to */
@@ -120,7 +120,7 @@ static void list_parts(struct listing *l, int system, const struct form *form, e
 	const int size = l->x->size;
 	add_row(l, W, whole.of, whole.index);
 	mpq_t *rest = add_row(l, R, whole.of, whole.index);
-	part_row(l->model, form, size, highest_of(l, system), (const mpq_t *)rest - 2 * size, rest, rest - size);
+	part_row(l->model, form, size, highest_of(l, system), rest - 2 * size, rest, rest - size);
 }
 
 static void list_expressions(struct listing *l)

@@ -358,7 +358,7 @@ static bool settle_scheme(struct building *b)
 static bool is_stiff(struct building *b)
 {
 	struct model *model = b->model;
-	struct jacobian j = { .b = b, .damped = true, .state = (const mpq_t *)model->initial };
+	struct jacobian j = { .b = b, .damped = true, .state = model->initial };
 	mpq_init(j.t);
 	bool known = silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);
 	mpq_clear(j.t);

@@ -59,7 +59,7 @@ static void fill_block(const struct selection *s, int index, struct linear *syst
 	for (int i = 0; i < c; i++)
 		for (int j = 0; j < c; j++) {
 			const int cell = (s->first[index] + i) * n + s->first[index] + j;
-			const mpq_t *row = (const mpq_t *)mode->block + (mode->moves ? c + i : i) * k;
+			const mpq_t *row = mode->block + (mode->moves ? c + i : i) * k;
 			mpq_neg(system->K[cell], row[j]);
 			if (mode->moves)
 				mpq_neg(system->C[cell], row[c + j]);
@@ -86,7 +86,7 @@ static mpq_t *force_column(const struct modes *modes, const mpq_t *inverse, cons
 static void drive(const struct modes *modes, const struct mode *mode, const mpq_t *column, mpq_t *b)
 {
 	const int states = modes->model->system.states;
-	rational_product(mode->states, states, 1, (const mpq_t *)mode->left, column, b);
+	rational_product(mode->states, states, 1, mode->left, column, b);
 }
 
 static void project_force(const struct selection *s, const mpq_t *inverse, const mpq_t *force, mpq_t *to)
@@ -98,7 +98,7 @@ static void project_force(const struct selection *s, const mpq_t *inverse, const
 		if (!s->of[i])
 			continue;
 		RATIONALS *b = rationals((size_t)mode->states);
-		drive(modes, mode, (const mpq_t *)column, b);
+		drive(modes, mode, column, b);
 		const int from = mode->moves ? mode->columns : 0;
 		for (int j = from; j < mode->states; j++)
 			mpq_set(to[s->first[i] + j - from], b[j]);
@@ -120,7 +120,7 @@ static void project_loads(const struct selection *s, const mpq_t *inverse, struc
 		for (int k = 0; k < load->columns; k++) {
 			load->force[k] = rationals((size_t)whole->segments * (size_t)s->coords);
 			for (int part = 0; part < whole->segments; part++)
-				project_force(s, inverse, (const mpq_t *)whole->load[l].force[k] + part * n,
+				project_force(s, inverse, whole->load[l].force[k] + part * n,
 					      load->force[k] + part * s->coords);
 		}
 	}
@@ -130,7 +130,7 @@ static void project_loads(const struct selection *s, const mpq_t *inverse, struc
 		system->input[i] = whole->input[i];
 		for (int k = 0; k < 2; k++) {
 			system->input[i].force[k] = rationals((size_t)s->coords);
-			project_force(s, inverse, (const mpq_t *)whole->input[i].force[k], system->input[i].force[k]);
+			project_force(s, inverse, whole->input[i].force[k], system->input[i].force[k]);
 		}
 	}
 }
@@ -149,7 +149,7 @@ struct following {
 static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_ptr to)
 {
 	RATIONALS *sum = rationals(1);
-	rational_product(1, f->mode->states, 1, (const mpq_t *)f->c[output], x, sum);
+	rational_product(1, f->mode->states, 1, f->c[output], x, sum);
 	(f->minus ? mpq_sub : mpq_add)(to, to, sum[0]);
 }
 
@@ -169,7 +169,7 @@ static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int 
 			if (r / k != c / k && r % k == c % k)
 				(r < c ? mpq_set : mpq_neg)(cell, w);
 		}
-	const bool regular = rational_inverse(size, (const mpq_t *)F, inverse, &column);
+	const bool regular = rational_inverse(size, F, inverse, &column);
 	return regular;
 }
 
@@ -180,7 +180,7 @@ static void forced_power(int size, const mpq_t *inverse, mpq_t *b, const mpq_t *
 	mpq_set_si(factor, power + 1, 1);
 	for (int i = 0; i < size && above; i++)
 		rational_submul(b[i], factor, above[i]);
-	rational_product(size, size, 1, inverse, (const mpq_t *)b, x);
+	rational_product(size, size, 1, inverse, b, x);
 }
 
 static void follow_load(const struct following *f, int l, int segment)
@@ -196,14 +196,14 @@ static void follow_load(const struct following *f, int l, int segment)
 		mpq_t *above = x;
 		x = rationals((size_t)size);
 		for (int t = 0; t < trig; t++) {
-			const mpq_t *force = (const mpq_t *)load->force[power * trig + t] + segment * system->n;
+			const mpq_t *force = load->force[power * trig + t] + segment * system->n;
 			RATIONALS *column = force_column(f->modes, f->inverse, force);
-			drive(f->modes, f->mode, (const mpq_t *)column, b + t * k);
+			drive(f->modes, f->mode, column, b + t * k);
 		}
-		forced_power(size, (const mpq_t *)inverse, b, (const mpq_t *)above, power, x);
+		forced_power(size, inverse, b, above, power, x);
 		for (int o = 0; o < f->modes->model->outputs; o++)
 			for (int t = 0; t < trig; t++)
-				add_rows(f, o, (const mpq_t *)x + t * k,
+				add_rows(f, o, x + t * k,
 					 f->output[o].load[l][(power * trig + t) * system->segments + segment]);
 		if (above)
 			rationals_free(above, (size_t)size);
@@ -220,20 +220,19 @@ static void follow_input(const struct following *f, int input)
 	mpq_srcptr zero = rationals(1)[0];
 	const bool regular = inverse_of(f->mode, zero, zero, 1, inverse);
 	for (int order = 0; order < 2 && regular; order++) {
-		const mpq_t *force = (const mpq_t *)f->modes->model->system.input[input].force[order];
+		const mpq_t *force = f->modes->model->system.input[input].force[order];
 		RATIONALS *column = force_column(f->modes, f->inverse, force);
-		drive(f->modes, f->mode, (const mpq_t *)column, b);
-		rational_product(k, k, 1, (const mpq_t *)inverse, (const mpq_t *)b, x);
+		drive(f->modes, f->mode, column, b);
+		rational_product(k, k, 1, inverse, b, x);
 		for (int o = 0; o < f->modes->model->outputs; o++)
-			add_rows(f, o, (const mpq_t *)x, f->output[o].input[order][input]);
+			add_rows(f, o, x, f->output[o].input[order][input]);
 	}
 }
 
 static mpq_t *row_over(const struct modes *modes, const struct mode *mode, const struct output *output)
 {
 	mpq_t *c = rationals((size_t)mode->states);
-	rational_product(1, modes->model->system.states, mode->states, (const mpq_t *)output->state,
-			 (const mpq_t *)mode->right, c);
+	rational_product(1, modes->model->system.states, mode->states, output->state, mode->right, c);
 	return c;
 }
 
@@ -282,12 +281,10 @@ static struct output *rows_over(const struct selection *s, bool direct)
 		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
 		for (int l = 0; l < system->loads; l++) {
 			const size_t cells = (size_t)(system->load[l].columns * system->segments);
-			output[o].load[l] = direct ? rationals_copied(cells, (const mpq_t *)of->load[l])
-						   : rationals(cells);
+			output[o].load[l] = direct ? rationals_copied(cells, of->load[l]) : rationals(cells);
 		}
 		for (int k = 0; k < 2; k++)
-			output[o].input[k] =
-				direct ? rationals_copied((size_t)system->inputs, (const mpq_t *)of->input[k])
+			output[o].input[k] = direct ? rationals_copied((size_t)system->inputs, of->input[k])
 				       : rationals((size_t)system->inputs);
 	}
 	return output;
@@ -316,7 +313,7 @@ static void project_start(const struct selection *s, mpq_t *initial)
 		if (!s->of[i])
 			continue;
 		RATIONALS *z = rationals((size_t)mode->states);
-		drive(s->modes, mode, (const mpq_t *)model->initial, z);
+		drive(s->modes, mode, model->initial, z);
 		for (int j = 0; j < mode->states; j++)
 			mpq_swap(initial[place_of(s, i, j)], z[j]);
 	}
@@ -362,7 +359,7 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 			fill_block(s, i, &shorter->system);
 	}
 	shorter->coord_name = shorter->state_name;
-	project_loads(s, (const mpq_t *)inverse, &shorter->system);
+	project_loads(s, inverse, &shorter->system);
 	project_start(s, shorter->initial);
 	shorter->highest = ARRAY(struct output *, (size_t)s->coords);
 	shorter->output = rows_over(s, direct);
@@ -381,7 +378,7 @@ static bool follow_dropped(struct modes *modes, const bool *kept, struct output 
 	bool good = true;
 	leading_inverse(&model->system, inverse, &column);
 	for (int i = 0; i < modes->count && good; i++)
-		good = kept[i] || follow(modes, i, (const mpq_t *)inverse, output, minus);
+		good = kept[i] || follow(modes, i, inverse, output, minus);
 	return good;
 }
 

@@ -183,11 +183,8 @@ struct side {
 /* d as a multiple of g: the sign of the multiple; 0: it is none */
 static int multiple_of(const struct form *d, const struct form *g)
 {
-	if (d->terms != g->terms)
-		return 0;
 	RATIONAL ratio = ZERO;
-	mpq_div(ratio, d->term[0].factor, g->term[0].factor);
-	return same_form(d, form_scale(g, ratio)) ? mpq_sgn(ratio) : 0;
+	return is_form_multiple(d, g, ratio) ? mpq_sgn(ratio) : 0;
 }
 
 struct looking_for { const struct form *g; bool found; };

@@ -253,7 +253,7 @@ static bool survey_loads(const struct survey *s, const struct picture *p, int se
 			       *q = ARRAY(double, (size_t)load->columns);
 		bool any = false;
 		for (int c = 0; c < load->columns; c++)
-			drive(s, p, (const mpq_t *)load->force[c] + segment * system->n, B + c * p->k);
+			drive(s, p, load->force[c] + segment * system->n, B + c * p->k);
 		for (size_t i = 0; i < cells; i++)
 			any = any || B[i] != 0;
 		good = !any || forced(p, load, B, P);
@@ -300,7 +300,7 @@ static double survey_input(const struct survey *s, const struct picture *p, cons
 	bool any = false;
 	for (int i = 0; i < k * k; i++)
 		F[i] = -p->T[i];
-	drive(s, p, (const mpq_t *)input->force[0], B);
+	drive(s, p, input->force[0], B);
 	for (int i = 0; i < k; i++) {
 		x[i] = B[i];
 		any = any || B[i] != 0;
@@ -310,7 +310,7 @@ static double survey_input(const struct survey *s, const struct picture *p, cons
 		B[i] = creal(x[i]);
 	if (any && !p->hidden)
 		sum = known ? fabs(along(p, B)) + peak_of(p, B) : HUGE_VAL;
-	drive(s, p, (const mpq_t *)input->force[1], B);
+	drive(s, p, input->force[1], B);
 	sum += peak_of(p, B);
 	return sum;
 }
@@ -318,7 +318,7 @@ static double survey_input(const struct survey *s, const struct picture *p, cons
 static void see_output(const struct survey *s, struct picture *p, int output)
 {
 	const int states = s->model->system.states;
-	const mpq_t *row = (const mpq_t *)s->model->output[output].state;
+	const mpq_t *row = s->model->output[output].state;
 	p->hidden = true;
 	for (int j = 0; j < p->k; j++) {
 		double sum = 0, size = 0;
@@ -388,9 +388,9 @@ struct survey *survey_of(const struct modes *modes)
 	const size_t n = (size_t)model->n, states = (size_t)model->system.states;
 	struct survey *s = NEW(struct survey);
 	*s = (struct survey){ .model = model, .basis = basis };
-	s->A = doubles_of(basis->moves ? n * n : states * states, (const mpq_t *)basis->A);
-	s->D = basis->moves ? doubles_of(n * n, (const mpq_t *)basis->D) : NULL;
-	s->inverse = doubles_of(n * n, (const mpq_t *)basis->inverse);
+	s->A = doubles_of(basis->moves ? n * n : states * states, basis->A);
+	s->D = basis->moves ? doubles_of(n * n, basis->D) : NULL;
+	s->inverse = doubles_of(n * n, basis->inverse);
 	return s;
 }
 

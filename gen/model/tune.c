@@ -76,15 +76,14 @@ static mpq_t *read_entries(struct elsewhere *s, const struct model *model)
 	mpq_t *entry = rationals((size_t)s->entries);
 	rows_of_highest(&s->tuning->x, system, entry);
 	for (int i = 0; i < n; i++)
-		equation_row(system, i, size, (const mpq_t *)entry, &entry[raw_index(s, i, 0)],
-			     &entry[raw_index(s, i, size)]);
+		equation_row(system, i, size, entry, &entry[raw_index(s, i, 0)], &entry[raw_index(s, i, size)]);
 	for (int o = 0; o < model->outputs; o++) {
 		/* a reduced model has no highest derivatives of what is written */
 		const struct form *form = model->reduction.row ? NULL : model->output[o].form;
 		const int row = n + o;
 		mpq_t *whole = &entry[solved_index(s, row, 0)];
 		row_of_output(&s->tuning->x, system, &model->output[o], system->segments, 0, whole);
-		part_row(model, form, size, (const mpq_t *)entry, (const mpq_t *)whole, &entry[raw_index(s, row, 0)],
+		part_row(model, form, size, entry, whole, &entry[raw_index(s, row, 0)],
 			 &entry[raw_index(s, row, size)]);
 		mpq_set_ui(entry[raw_index(s, row, size + row)], 1, 1);
 	}

@@ -29,7 +29,7 @@ static void check_predictor(struct jacobian *j)
 	struct building *b = j->b;
 	const struct model *model = b->model;
 	double fastest = 0;
-	j->state = (const mpq_t *)model->initial;
+	j->state = model->initial;
 	j->damped = true;
 	if (silent_guard(jacobian_evaluate, j))
 		fastest = fastest_pole(&j->at);
@@ -171,8 +171,7 @@ static void state_leaf(void *context, const struct basis *basis, mpfr_ptr value)
 {
 	const struct reference *r = context;
 	const struct model *model = r->b->model;
-	bool highest = basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
-	if (basis->kind == BASIS_COORD && !highest)
+	if (basis->kind == BASIS_COORD && !is_highest(&model->frame, basis))
 		mpfr_set_d(value, r->y[basis->order ? model->system.velocity[basis->index] : basis->index], MPFR_RNDN);
 	else
 		mpfr_set_ui(value, 0, MPFR_RNDN);       /* inputs are not known */
@@ -268,7 +267,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 	gsl_set_error_handler(handler);
 	mpfr_clears(r.t, r.value, NULL);
 	mpq_t *state = rationals(size);
-	j->state = (const mpq_t *)state;
+	j->state = state;
 	for (int k = 0; k < followed && !lost; k++) {
 		if (when[k] == 0)
 			continue;               /* at the initial values */
@@ -294,9 +293,9 @@ static void check_softness(struct jacobian *j)
 	if (changes == 0 || mpq_sgn(model->system.change[changes - 1]) <= 0)
 		mpq_mul(end, end, model->h);
 	/* at rest; where that is not defined, at the start */
-	j->state = (const mpq_t *)rationals((size_t)model->system.states);
+	j->state = rationals((size_t)model->system.states);
 	if (!silent_guard(jacobian_evaluate, j))
-		j->state = (const mpq_t *)model->initial;
+		j->state = model->initial;
 	bool moves = stiffness_moves(j);
 	for (int k = 0; k <= (moves ? SAMPLES : 0); k++) {
 		mpq_set_ui(j->t, (unsigned long)k, SAMPLES);
@@ -306,7 +305,7 @@ static void check_softness(struct jacobian *j)
 	}
 	if (stiffness_reads_states(j)) {
 		mpq_set_ui(j->t, 0, 1);
-		j->state = (const mpq_t *)model->initial;
+		j->state = model->initial;
 		compare(j, true, "at the initial values ", &worst);
 		compare_excursions(j, nearest_double(end), &worst);
 	}

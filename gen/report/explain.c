@@ -37,11 +37,11 @@ static void person_loads(FILE *to, const struct linear *system)
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++)
 			person_force(to, format("load %s", column_text(&system->load[l], k)), system->n,
-				     (const mpq_t *)system->load[l].force[k]);
+				     system->load[l].force[k]);
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k < 2; k++)
 			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n,
-				     (const mpq_t *)system->input[i].force[k]);
+				     system->input[i].force[k]);
 }
 
 static void person_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
@@ -49,7 +49,7 @@ static void person_poles(FILE *to, const struct model *model, const struct resol
 	int length = resolvent_determinant(resolvent)->length;
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(resolvent, B);
-	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, (const mpq_t *)B));
+	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, B));
 	struct pole_report *pole;
 	int count = poles_of(model, resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
@@ -254,8 +254,8 @@ static void person_split(FILE *to, const struct step *step)
 			"A: the Jacobian of the equations at %s (of an entry that still moves there, the constant "
 			"part):\n",
 			operator->text);
-		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
-		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
+		person_matrix(to, "C", model->n, operator->C);
+		person_matrix(to, "K", model->n, operator->K);
 		if (!scheme_row(model->scheme)->holds_coupling)
 			person_poles(to, model, step->shown->branch[k].resolvent);
 	}
@@ -310,7 +310,7 @@ static void person_reduction(FILE *to, const struct step *step)
 	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
 		model->written->system.states);
 	for (int i = 0; i < model->system.states; i++) {
-		const mpq_t *row = (const mpq_t *)model->reduction.row;
+		const mpq_t *row = model->reduction.row;
 		const char *text = row ? combination_text(model->written, row + i * model->written->system.states)
 				       : model->state_name[i];
 		bool same = strcmp(text, model->state_name[i]) == 0;
@@ -397,9 +397,9 @@ void explain_person(FILE *to, const struct step *step)
 	person_equations(to, step);
 	fprintf(to, "\n%sP(s) = M s^2 + C s + K with\n",
 		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients:\n" : "");
-	person_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
-	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
-	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
+	person_matrix(to, "M", model->written->n, model->written->system.M);
+	person_matrix(to, "C", model->written->n, model->written->system.C);
+	person_matrix(to, "K", model->written->n, model->written->system.K);
 	person_loads(to, &model->written->system);
 	if (model->shortened)
 		fputs("\nOf the modes that are kept:\n", to);

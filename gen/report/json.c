@@ -138,8 +138,8 @@ static void json_split(FILE *to, const struct step *step)
 		struct pole_report *pole;
 		int count = poles_of(model, step->shown->branch[k].resolvent, &pole);
 		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
-		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
-		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);
+		json_rational_matrix(to, "C", model->n, model->operator[k].C);
+		json_rational_matrix(to, "K", model->n, model->operator[k].K);
 		json_pole_list(to, count, pole);
 		fputs("}", to);
 	}
@@ -209,7 +209,7 @@ static void json_scene(FILE *to, const struct spec *spec)
 /* What the spec says of single states */
 static void json_bounds(FILE *to, const struct model *model)
 {
-	const mpq_t *absolute = (const mpq_t *)model->truncation.absolute;
+	const mpq_t *absolute = model->truncation.absolute;
 	const bool looks = mpq_sgn(model->truncation.tolerance) != 0 && scheme_row(model->scheme)->expands;
 	bool any = false;
 	for (int i = 0; i < model->system.states && absolute && looks; i++) {
@@ -282,9 +282,9 @@ void explain_json(FILE *to, const struct step *step)
 		json_scene(to, model->spec);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));
-	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
-	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
-	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
+	json_rational_matrix(to, "M", model->written->n, model->written->system.M);
+	json_rational_matrix(to, "C", model->written->n, model->written->system.C);
+	json_rational_matrix(to, "K", model->written->n, model->written->system.K);
 	json_poles(to, step);
 	json_nonlinear(to, step);
 	if (!is_nonlinear(step))

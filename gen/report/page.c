@@ -91,8 +91,7 @@ static void print_determinant(FILE *to, const struct step *step)
 	int length = resolvent_determinant(step->written)->length;
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(step->written, B);
-	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n",
-		polynomial_text(length, (const mpq_t *)B));
+	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n", polynomial_text(length, B));
 }
 
 static void print_matrices(FILE *to, const struct step *step)
@@ -103,9 +102,9 @@ static void print_matrices(FILE *to, const struct step *step)
 	for (int i = 0; i < model->n; i++)
 		fprintf(to, "%s %s", i ? "," : "", escaped(model->coord_name[i]));
 	fputs(".</p>\n", to);
-	print_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
-	print_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
-	print_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
+	print_matrix(to, "M", model->n, model->system.M);
+	print_matrix(to, "C", model->n, model->system.C);
+	print_matrix(to, "K", model->n, model->system.K);
 	if (!is_nonlinear(step))
 		print_determinant(to, step);
 }

@@ -389,8 +389,7 @@ static void print_samples(struct picture *p, int count, const int *output)
 	RATIONAL t = ZERO, interval = ZERO;
 	unsigned long last = interval_of_samples(model, span_of(p->step), interval);
 	for (int i = 0; i < count; i++)
-		forms[i] = responses_of_output(r, &model->system, (const mpq_t *)model->initial,
-					       &model->output[output[i]], &form[i]);
+		forms[i] = responses_of_output(r, &model->system, model->initial, &model->output[output[i]], &form[i]);
 	fputs("$response << END\n", p->data);
 	for (unsigned long k = 0; k <= last; k++) {
 		progress("row", (int)k, (int)last);

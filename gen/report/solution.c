@@ -130,7 +130,7 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 /* What was not told with fewer bits, with so many; true: all is */
 static bool print_with(struct printing *p, int precision)
 {
-	struct through *t = through_start(p->model, NULL, (const mpq_t *)p->model->initial, precision);
+	struct through *t = through_start(p->model, NULL, p->model->initial, precision);
 	bool told = true;
 	RATIONAL time = ZERO;
 	for (; p->rows <= p->last && told; p->rows += told) {
@@ -182,7 +182,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++) {
-		form[j].count = responses_of_output(written, &model->system, (const mpq_t *)model->initial,
+		form[j].count = responses_of_output(written, &model->system, model->initial,
 						    &model->output[j], &form[j].list);
 		fprintf(to, ",%s", model->output[j].name);
 	}

@@ -23,8 +23,8 @@ static const mpq_t *force_of(const struct space *s, int drive, bool slope)
 	const struct linear *system = &s->model->system;
 	const struct drive *d = &s->drive[drive];
 	if (d->input >= 0)
-		return (const mpq_t *)system->input[d->input].force[slope];
-	return slope ? NULL : (const mpq_t *)system->load[d->load].force[d->column] + d->segment * system->n;
+		return system->input[d->input].force[slope];
+	return slope ? NULL : system->load[d->load].force[d->column] + d->segment * system->n;
 }
 
 /* Column `drive` of B: W^-1 force, where the highest derivatives are */
@@ -44,12 +44,12 @@ static void fill_inputs(struct space *s)
 	mpq_t *inverse = rationals((size_t)(n * n));
 	leading_inverse(&s->model->system, inverse, &column);
 	for (int d = 0; d < s->drives; d++) {
-		fill_column(s, (const mpq_t *)inverse, force_of(s, d, false), d, s->B);
+		fill_column(s, inverse, force_of(s, d, false), d, s->B);
 		const mpq_t *slope = force_of(s, d, true);
 		for (int i = 0; slope && i < n; i++)
 			s->slopes = s->slopes || mpq_sgn(slope[i]) != 0;
 		if (slope)
-			fill_column(s, (const mpq_t *)inverse, slope, d, s->B1);
+			fill_column(s, inverse, slope, d, s->B1);
 	}
 }
 
@@ -105,7 +105,7 @@ static double *held_matrix(const struct space *s)
 		for (int j = 0; j < size; j++)
 			mpq_set(whole[i * size + j], j < s->states ? s->A[i * s->states + j]
 								   : s->B[i * s->drives + j - s->states]);
-	struct taylor *t = taylor_of(size, (const mpq_t *)whole, s->model->h);
+	struct taylor *t = taylor_of(size, whole, s->model->h);
 	if (!taylor_enclose(t, 128))
 		return NULL;
 	INTERVAL value = OVER_BITS(192);

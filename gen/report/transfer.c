@@ -56,7 +56,7 @@ static struct response *image_of_load(struct resolvent *r, const struct model *m
 	for (int k = 0; k < system->n; k++)
 		mpq_set(e.force[k], system->load[drive->load].force[drive->column][drive->segment * system->n + k]);
 	mpq_set(e.direct[0], output->load[drive->load][drive->column * system->segments + drive->segment]);
-	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
+	return image_of(r, &(struct question){ NULL, 1, &e, output->state });
 }
 
 /* s^powers times an image, without common factors */

@@ -255,7 +255,7 @@ static struct block_source source_of_block(const struct step *step, const struct
 				       .layout = layout_of(system, 0) };
 	if (system->states > LIMIT_RESIDUE_STATES)
 		source.taylor = taylor_of(source.layout.size,
-					  (const mpq_t *)augmented_matrix(&source.layout, system, 0), step->model->h);
+					  augmented_matrix(&source.layout, system, 0), step->model->h);
 	return source;
 }
 

@@ -28,7 +28,7 @@ void through_value(const struct through *t, const struct output *output, mpfi_pt
 	RATIONALS *row = rationals((size_t)t->n);
 	mpfi_set_prec(value, t->precision);
 	through_row(t, output, row);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
+	through_dot(t, row, t->x, value);
 }
 
 void through_state(const struct through *t, int state, mpfi_ptr value)
@@ -87,11 +87,11 @@ static void add_gate(const struct through *t, struct area *area, struct gate gat
 	mpq_init(gate.limit);
 	mpq_set(gate.limit, limit);
 	gate.row = row;
-	gate.slope = through_times(t, (const mpq_t *)row, (const mpq_t *)area->A);
+	gate.slope = through_times(t, row, area->A);
 	gate.near_limit = mpq_get_d(limit);
-	gate.near_row = doubles(t->n, (const mpq_t *)row);
-	gate.near_slope = doubles(t->n, (const mpq_t *)gate.slope);
-	gate.fourth = fourth_of(t, gate.near_row, (const mpq_t *)area->A);
+	gate.near_row = doubles(t->n, row);
+	gate.near_slope = doubles(t->n, gate.slope);
+	gate.fourth = fourth_of(t, gate.near_row, area->A);
 	*MORE(area->gate, area->gates) = gate;
 }
 
@@ -152,7 +152,7 @@ static struct stream *stream_of_system(struct through *t, int system, mpq_t **A)
 {
 	if (!t->A[system]) {
 		t->A[system] = augmented_matrix(&t->layout, &t->s->system[system], 0);
-		t->flow[system] = stream_of(t->n, (const mpq_t *)t->A[system], t->model->h, t->precision);
+		t->flow[system] = stream_of(t->n, t->A[system], t->model->h, t->precision);
 		t->growth[system] = growth_of(t->flow[system]);
 	}
 	*A = t->A[system];
@@ -264,7 +264,7 @@ static bool is_multiple(int n, const mpq_t *a, const mpq_t *b)
 
 bool through_meets(const struct through *t, const struct gate *one, const struct gate *other)
 {
-	return one->release && other->release && is_multiple(t->n, (const mpq_t *)one->row, (const mpq_t *)other->row);
+	return one->release && other->release && is_multiple(t->n, one->row, other->row);
 }
 
 /* ---- what cannot be told ---- */

@@ -16,7 +16,7 @@ static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, b
 		sign = mpq_cmp(sum, less);
 	} else {
 		INTERVAL value = OVER_BITS(t->precision);
-		through_dot(t, row, (const mpfi_t *)t->x, value);
+		through_dot(t, row, t->x, value);
 		mpfi_sub_q(value, value, less);
 		sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 		*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right));
@@ -33,8 +33,8 @@ static int heading(struct through *t, int expression, bool *known)
 	*known = true;
 	through_row(t, t->s->expression[expression].row, row);
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
-		row = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-		sign = sign_at_start(t, (const mpq_t *)row, zero, known);
+		row = through_times(t, row, t->at->A);
+		sign = sign_at_start(t, row, zero, known);
 	}
 	return sign;
 }
@@ -49,7 +49,7 @@ static int interval_at_start(struct through *t, int expression, bool *on, bool *
 	*known = true;
 	through_row(t, e->row, row);
 	while (interval < e->breaks && *known) {
-		sign = sign_at_start(t, (const mpq_t *)row, e->at[interval], known);
+		sign = sign_at_start(t, row, e->at[interval], known);
 		*on = sign == 0;
 		if (sign <= 0)
 			break;
@@ -76,7 +76,7 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	RATIONAL zero = ZERO;
 	if (impact >= 0) {
 		through_row(t, t->s->impact[impact].in[t->segment].speed_row, row);
-		speed = sign_at_start(t, (const mpq_t *)row, zero, known);
+		speed = sign_at_start(t, row, zero, known);
 	}
 	*on = false;
 	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->segment].upward ? interval : interval + 2;

@@ -37,7 +37,7 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 		r->start[i] = round_rational(start[i]);
 	}
 	for (int i = 0; i < n; i++)
-		form[i] = closed_form_of(step, i, (const mpq_t *)start);
+		form[i] = closed_form_of(step, i, start);
 	return form;
 }
 

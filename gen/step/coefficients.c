@@ -34,7 +34,7 @@ static const mpq_t *impulse_of(struct filling *f, int channel)
 		f->impulse = ARRAY(mpq_t *, (size_t)f->system->channels);
 	if (!f->impulse[channel])
 		f->impulse[channel] = impulse_of_channel(f->system, channel);
-	return (const mpq_t *)f->impulse[channel];
+	return f->impulse[channel];
 }
 
 static struct exponential *exponential_at(const struct filling *f, mpq_srcptr tau)
@@ -58,7 +58,7 @@ static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 		here->segment[segment] = taylor_doubled(taylor_at(f, half));
 	} else {
 		RATIONALS *A = augmented_matrix(&f->layout, f->system, segment);
-		here->segment[segment] = taylor_of(f->layout.size, (const mpq_t *)A, tau);
+		here->segment[segment] = taylor_of(f->layout.size, A, tau);
 	}
 	return here->segment[segment];
 }

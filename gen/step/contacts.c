@@ -277,7 +277,7 @@ static bool invert(const struct together *t, int count, const int *which, mpq_t 
 		for (int j = 0; j < count; j++)
 			mpq_set(a[i * count + j], t->all->holder[which[i]].answer[which[j]]);
 	int column;
-	return rational_inverse(count, (const mpq_t *)a, inverse, &column);
+	return rational_inverse(count, a, inverse, &column);
 }
 
 /* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */

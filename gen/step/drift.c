@@ -30,7 +30,7 @@ static void run_program(const struct step *step, mpq_t *state)
 		mpq_set(old[i], state[i]);
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
-		const mpq_t *from = (const mpq_t *)(program->in_order ? state : old);
+		const mpq_t *from = (program->in_order ? state : old);
 		mpq_set_ui(sum, 0, 1);
 		for (int k = 0; k < a->terms; k++)
 			if (a->term[k].operand.kind == OPERAND_STATE)

@@ -10,9 +10,9 @@ static void expand_state(struct sequencing *w, int state)
 	RATIONALS *scale = integral_scale(w, true);
 	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
 	struct sequence made = w->x->sequence[state];
-	sum_numbers(w, &made, &sum, (const mpq_t *)scale);
+	sum_numbers(w, &made, &sum, scale);
 	if (w->system->segments > 1)
-		add_changing_loads(w, &made, state, (const mpq_t *)scale);
+		add_changing_loads(w, &made, state, scale);
 	w->x->sequence[state] = made;
 }
 

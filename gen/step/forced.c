@@ -45,7 +45,7 @@ static int moved_states(const struct linear *system, int load, int *state)
 static const mpq_t *shifted_inverse(const struct linear *system, const struct wave *wave, int m, const int *state)
 {
 	int trig = oscillates(wave) ? 2 : 1, size = trig * m, column;
-	const mpq_t *A = (const mpq_t *)state_matrix(system, false);
+	const mpq_t *A = state_matrix(system, false);
 	mpq_t *W = rationals((size_t)(size * size)), *inverse = rationals((size_t)(size * size));
 	for (int part = 0; part < trig; part++)
 		for (int i = 0; i < m; i++) {
@@ -56,7 +56,7 @@ static const mpq_t *shifted_inverse(const struct linear *system, const struct wa
 			if (trig == 2)
 				(part ? mpq_set : mpq_neg)(row[(1 - part) * m + i], wave->w);
 		}
-	return rational_inverse(size, (const mpq_t *)W, inverse, &column) ? (const mpq_t *)inverse : NULL;
+	return rational_inverse(size, W, inverse, &column) ? inverse : NULL;
 }
 
 /* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1)
@@ -72,8 +72,7 @@ static void solve_forced(const struct linear *system, int l, int segment, int m,
 	for (int k = load->powers - 1; k >= 0; k--) {
 		for (int p = 0; p < trig; p++) {
 			column = trig * k + p;
-			rational_product(n, n, 1, (const mpq_t *)W, (const mpq_t *)load->force[column] + segment * n,
-					 a);
+			rational_product(n, n, 1, W, load->force[column] + segment * n, a);
 			for (int i = 0; i < m; i++) {
 				mpq_ptr r = right[p * m + i];
 				mpq_set_si(r, k + 1, 1);
@@ -86,7 +85,7 @@ static void solve_forced(const struct linear *system, int l, int segment, int m,
 						mpq_sub(r, r, a[q]);
 			}
 		}
-		rational_product(size, size, 1, inverse, (const mpq_t *)right, part);
+		rational_product(size, size, 1, inverse, right, part);
 		for (int p = 0; p < trig; p++)
 			for (int i = 0; i < m; i++)
 				mpq_set(P[state[i] * columns + trig * k + p], part[p * m + i]);
@@ -159,7 +158,7 @@ static bool make_flow(const struct step *step, const struct layout *place, int s
 {
 	int size = place->size;
 	struct taylor *taylor =
-		taylor_of(size, (const mpq_t *)augmented_matrix(place, &step->branch->system, segment), step->model->h);
+		taylor_of(size, augmented_matrix(place, &step->branch->system, segment), step->model->h);
 	if (!taylor_enclose(taylor, BITS))
 		return false;
 	flow->E = ARRAY(mpfr_t, (size_t)(size * size));

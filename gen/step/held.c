@@ -20,15 +20,14 @@ static void normalize_loads(const struct linear *written, const mpq_t *inverse, 
 		split->load[l] = *load;
 		split->load[l].force = ARRAY(mpq_t *, (size_t)load->columns);
 		for (int k = 0; k < load->columns; k++)
-			split->load[l].force[k] =
-				normalized(n, written->segments, inverse, (const mpq_t *)load->force[k]);
+			split->load[l].force[k] = normalized(n, written->segments, inverse, load->force[k]);
 	}
 	split->inputs = written->inputs;
 	split->input = ARRAY(struct input, (size_t)written->inputs);
 	for (int i = 0; i < written->inputs; i++) {
 		split->input[i] = written->input[i];
 		for (int k = 0; k < 2; k++)
-			split->input[i].force[k] = normalized(n, 1, inverse, (const mpq_t *)written->input[i].force[k]);
+			split->input[i].force[k] = normalized(n, 1, inverse, written->input[i].force[k]);
 	}
 }
 
@@ -40,7 +39,7 @@ struct linear piecewise_laplace(const struct linear *written)
 	struct linear split = linear_like(written);
 	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)(n * states));
 	leading_inverse(written, inverse, &column);
-	highest_derivatives(written, (const mpq_t *)inverse, false, highest);
+	highest_derivatives(written, inverse, false, highest);
 	split.heldC = rationals((size_t)(n * n));
 	split.heldK = rationals((size_t)(n * n));
 	for (int i = 0; i < n; i++) {
@@ -51,11 +50,11 @@ struct linear piecewise_laplace(const struct linear *written)
 			mpq_neg(matrix[i * n + written->coord[j]], highest[i * states + j]);
 		}
 	}
-	normalize_loads(written, (const mpq_t *)inverse, &split);
+	normalize_loads(written, inverse, &split);
 	split.channels = written->channels;
 	split.channel = ARRAY(mpq_t *, (size_t)written->channels);
 	for (int e = 0; e < written->channels; e++)
-		split.channel[e] = normalized(n, 1, inverse, (const mpq_t *)written->channel[e]);
+		split.channel[e] = normalized(n, 1, inverse, written->channel[e]);
 	return split;
 }
 
@@ -66,12 +65,12 @@ struct linear modified_equation(const struct linear *written, const struct linea
 	int states = split->states;
 	mpq_t *L = state_matrix(written, false), *R = state_matrix(split, true),
 	      *RL = rationals((size_t)(states * states));
-	rational_product(states, states, states, (const mpq_t *)R, (const mpq_t *)L, RL);
+	rational_product(states, states, states, R, L, RL);
 	RATIONAL half = ZERO;
 	mpq_div_2exp(half, h, 1);
 	for (int i = 0; i < states * states; i++) {
 		mpq_mul(RL[i], RL[i], half);
 		mpq_sub(L[i], L[i], RL[i]);
 	}
-	return first_order_system(states, (const mpq_t *)L);
+	return first_order_system(states, L);
 }

@@ -58,7 +58,7 @@ static const mpq_t *unit(int count, int index)
 {
 	mpq_t *e = rationals((size_t)count);
 	mpq_set_ui(e[index], 1, 1);
-	return (const mpq_t *)e;
+	return e;
 }
 
 /* A held term is a constant force -heldK q_j(0) or -heldC v_j(0). */
@@ -135,7 +135,7 @@ mpq_t *impulse_of_channel(const struct linear *system, int channel)
 	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n),
 	      *B = rationals((size_t)system->states);
 	leading_inverse(system, inverse, &column);
-	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)system->channel[channel], highest);
+	rational_product(n, n, 1, inverse, system->channel[channel], highest);
 	for (int i = 0; i < n; i++)
 		mpq_set(B[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
 	return B;
@@ -158,7 +158,7 @@ struct response *response_of_kernel(struct resolvent *r, const struct linear *sy
 	}
 	for (int k = 0; k < system->states; k++)
 		mpq_mul(start[k], start[k], part->impulse);
-	return image_of(r, &(struct question){ (const mpq_t *)start, part->powers > 0, &e, unit(system->states, i) });
+	return image_of(r, &(struct question){ start, part->powers > 0, &e, unit(system->states, i) });
 }
 
 struct response *response_of_load_state(const struct load *load, int to, int from)
@@ -167,7 +167,7 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 	for (struct kept_response *k = *kept; k; k = k->next)
 		if (k->to == to && k->from == from)
 			return k->response;
-	struct linear scalar = first_order_system(1, (const mpq_t *)rationals(1));
+	struct linear scalar = first_order_system(1, rationals(1));
 	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
 	struct transition t = transition_of(load, to, from);
 	RATIONAL one = ZERO;
@@ -176,7 +176,7 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 		add_scaled(e.direct[2 * t.m], one, t.cosine, t.binomial);
 		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
 	}
-	struct question question = { NULL, 1, &e, (const mpq_t *)rationals(1) };
+	struct question question = { NULL, 1, &e, rationals(1) };
 	struct response *response = image_of(resolvent_of(&scalar), &question);
 	struct kept_response *first = NEW(struct kept_response);
 	*first = (struct kept_response){ to, from, response, *kept };
@@ -220,7 +220,7 @@ struct output state_as_output(const struct linear *system, int state)
 
 struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial)
 {
-	return image_of(r, &(struct question){ initial, 0, NULL, (const mpq_t *)output->state });
+	return image_of(r, &(struct question){ initial, 0, NULL, output->state });
 }
 
 /* Of the first segment of time, the load's own part in the output included */
@@ -231,8 +231,8 @@ struct response *output_of_load(struct resolvent *r, const struct linear *system
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
-	add_load(&e, system, 0, load, (const mpq_t *)output->load[l], column, one);
-	return image_of(r, &(struct question){ initial, 1, &e, (const mpq_t *)output->state });
+	add_load(&e, system, 0, load, output->load[l], column, one);
+	return image_of(r, &(struct question){ initial, 1, &e, output->state });
 }
 
 /* u = value + slope tau, u' = slope: its force, and its own part in the output */
@@ -251,7 +251,7 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	mpq_mul(e.direct[0], output->input[0][index], value);
 	rational_addmul(e.direct[0], output->input[1][index], slope);
 	mpq_mul(e.direct[2], output->input[0][index], slope);
-	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
+	return image_of(r, &(struct question){ NULL, 1, &e, output->state });
 }
 
 /* All loads of one segment from time t on, times `sign` */
@@ -265,8 +265,7 @@ static void add_loads(struct excitation *e, const struct linear *system, const s
 			if (sign < 0)
 				mpq_neg(z, z);
 			if (mpq_sgn(z) != 0)
-				add_load(&e[l], system, segment, &system->load[l], (const mpq_t *)output->load[l],
-					 column, z);
+				add_load(&e[l], system, segment, &system->load[l], output->load[l], column, z);
 		}
 }
 
@@ -294,10 +293,10 @@ int responses_of_output(struct resolvent *r, const struct linear *system, const 
 		add_loads(e, system, output, s, start, 1);
 		if (s > first)
 			add_loads(e, system, output, s - 1, start, -1);
-		const mpq_t *none = (const mpq_t *)rationals((size_t)system->states);
+		const mpq_t *none = rationals((size_t)system->states);
 		bool from_rest = s > first;
 		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e,
-									  (const mpq_t *)output->state });
+									  output->state });
 		mpq_init((*list)[count].start);
 		mpq_set((*list)[count].start, start);
 	}

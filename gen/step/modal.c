@@ -142,8 +142,8 @@ static bool complete_vectors(const struct linear *system, const struct mode_vect
 	const int n = system->n, precision = m->precision;
 	struct rectangle *mass = rectangles(n, precision), *damping = rectangles(n, precision);
 	RECTANGLE d = new_rectangle(precision);
-	weigh(system, m, (const mpq_t *)system->M, mass);
-	weigh(system, m, (const mpq_t *)system->C, damping);
+	weigh(system, m, system->M, mass);
+	weigh(system, m, system->C, damping);
 	for (int j = 0; j < n; j++) {
 		struct rectangle *row = &m->w[j];
 		rectangle_add_product(row, &mass[j], &m->p);
@@ -295,8 +295,7 @@ static bool put_outputs(const struct filling *f, const struct mode_vectors *m)
 	bool good = true;
 	for (int o = 0; o < model->outputs && f->modal->output && good; o++) {
 		RECTANGLE sum = new_rectangle(m->precision);
-		const long largest =
-			add_terms(m->states, m->v, (const mpq_t *)model->output[o].state, f->block->state, &sum);
+		const long largest = add_terms(m->states, m->v, model->output[o].state, f->block->state, &sum);
 		good = put_columns(f, &sum, largest, &f->modal->output[o * f->modal->states]);
 	}
 	return good;
@@ -317,8 +316,8 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 	for (int k = 0, column = 0; k < system->inputs && good; column += system->input[k++].hold ? 2 : 1) {
 		for (int i = 2; i < 5; i++)
 			mpfi_set_ui(all[i]->re, 0), mpfi_set_ui(all[i]->im, 0);
-		long largest = driven(system, m, (const mpq_t *)system->input[k].force[0], &force);
-		const long other = driven(system, m, (const mpq_t *)system->input[k].force[1], &slope);
+		long largest = driven(system, m, system->input[k].force[0], &force);
+		const long other = driven(system, m, system->input[k].force[1], &slope);
 		largest = (other > largest ? other : largest) + rectangle_size(&held);
 		if (!system->input[k].hold) {
 			rectangle_mul(&z, &force, &held);
@@ -356,7 +355,7 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 	good = good && convolve(m, f->step->model->h, &q, &minus);
 	long largest = NO_SIZE;
 	for (int k = 0; k < 2; k++) {
-		const long size = driven(system, m, (const mpq_t *)load->force[k], &force[k]) + rectangle_size(&plus);
+		const long size = driven(system, m, load->force[k], &force[k]) + rectangle_size(&plus);
 		largest = size > largest ? size : largest;
 	}
 	if (good) {                     /* cos = (plus + minus)/2, sin = (plus - minus)/(2 i) */
@@ -395,7 +394,7 @@ static bool put_growth(const struct filling *f, const struct mode_vectors *m, co
 		convolve_ramp(m, f->step->model->h, &z, &ramp);
 	else
 		good = convolve(m, f->step->model->h, &q, &z);
-	const long largest = driven(&f->block->system, m, (const mpq_t *)load->force[0], &force) + rectangle_size(&z);
+	const long largest = driven(&f->block->system, m, load->force[0], &force) + rectangle_size(&z);
 	rectangle_mul(&z, &z, &force);
 	good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
 	for (int i = 0; i < 4; i++)

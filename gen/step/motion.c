@@ -98,7 +98,7 @@ struct motion *motion_of(const struct step *step)
 	m->force = ARRAY(const struct form *, (size_t)system->n);
 	m->driven = ARRAY(bool, (size_t)system->n);
 	for (int i = 0; i < system->n; i++) {
-		const mpq_t *row = (const mpq_t *)slopes[0] + highest_state(system, i) * layout.size;
+		const mpq_t *row = slopes[0] + highest_state(system, i) * layout.size;
 		m->force[i] = force_of(step, &layout, row);
 		add_entries(m, step, &layout, row, i);
 	}

@@ -101,15 +101,15 @@ static void find_modes(struct normal_work *w, int bank)
 	int n = w->model->n;
 	size_t cells = (size_t)n * (size_t)n;
 	const struct operator *operator = &w->model->operator[bank];
-	mpq_t *K = by_coordinates(w->model, (const mpq_t *)operator->K);
-	mpq_t *C = by_coordinates(w->model, (const mpq_t *)operator->C), *both = rationals(cells);
-	bool damped = any_entry(cells, (const mpq_t *)C);
+	mpq_t *K = by_coordinates(w->model, operator->K);
+	mpq_t *C = by_coordinates(w->model, operator->C), *both = rationals(cells);
+	bool damped = any_entry(cells, C);
 	for (size_t i = 0; i < cells; i++) {
 		mpq_set_ui(both[i], 7, 5);
 		mpq_mul(both[i], both[i], C[i]);
 		mpq_add(both[i], both[i], K[i]);
 	}
-	if (!symmetric_eigenpairs(n, (const mpq_t *)w->M, (const mpq_t *)both, NORMAL_BITS, &w->pairs[bank]))
+	if (!symmetric_eigenpairs(n, w->M, both, NORMAL_BITS, &w->pairs[bank]))
 		error(scheme_place(w->step), NULL, "scheme %s needs a mass matrix that is positive definite",
 		      name_of(w->step));
 	for (int j = 0; j < n; j++) {
@@ -120,8 +120,8 @@ static void find_modes(struct normal_work *w, int bank)
 			mpfr_set_zero(mode->delta, 1);
 			continue;
 		}
-		quadratic(&w->pairs[bank], (const mpq_t *)K, j, mode->lambda);
-		quadratic(&w->pairs[bank], (const mpq_t *)C, j, mode->delta);
+		quadratic(&w->pairs[bank], K, j, mode->lambda);
+		quadratic(&w->pairs[bank], C, j, mode->delta);
 		mpfr_div_2ui(mode->delta, mode->delta, 1, MPFR_RNDN);
 	}
 }
@@ -203,7 +203,7 @@ static void find_multistep(struct normal_work *w)
 	mpq_t *node = past_nodes(points + 1);
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
-	struct lagrange past = lagrange_of(points, (const mpq_t *)node);
+	struct lagrange past = lagrange_of(points, node);
 	mpfr_t *value = reals((size_t)points, NORMAL_BITS);
 	normal->step = stage_of(w, one, &past);
 	lagrange_at(&past, one, value);
@@ -211,7 +211,7 @@ static void find_multistep(struct normal_work *w)
 	for (int k = 0; k < points; k++)
 		normal->extrapolate[k] = round_real(value[k]);
 	mpq_set_ui(node[points], 1, 1);
-	struct lagrange all = lagrange_of(points + 1, (const mpq_t *)node);
+	struct lagrange all = lagrange_of(points + 1, node);
 	struct normal_stage corrector = stage_of(w, one, &all);
 	normal->correct = ARRAY(double, (size_t)(normal->banks * 2 * width));
 	for (int b = 0; b < normal->banks; b++)
@@ -224,7 +224,7 @@ static void find_stages(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	normal->node = lobatto_nodes(normal->stages);
-	struct lagrange l = lagrange_of(normal->stages + 1, (const mpq_t *)normal->node);
+	struct lagrange l = lagrange_of(normal->stages + 1, normal->node);
 	normal->stage = ARRAY(struct normal_stage, (size_t)normal->stages);
 	for (int i = 0; i < normal->stages; i++)
 		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
@@ -274,10 +274,8 @@ static void find_settled(struct normal_work *w)
 		normal->period[normal->place[j]] = round_real(omega[j]);
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
 	}
-	Phi = settled_matrix(model, (const mpq_t *)w->M,
-			     (const mpq_t *)by_coordinates(model, (const mpq_t *)model->operator[0].C),
-			     (const mpq_t *)by_coordinates(model, (const mpq_t *)model->operator[0].K), &w->pairs[bank],
-			     omega);
+	Phi = settled_matrix(model, w->M, by_coordinates(model, model->operator[0].C),
+			     by_coordinates(model, model->operator[0].K), &w->pairs[bank], omega);
 	for (int i = 0; i < 2 * n; i++)
 		for (int j = 0; j < size; j++)
 			normal->settled[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
@@ -358,7 +356,7 @@ struct normal *normal_of(struct step *step)
 	check_left(step);
 	check_changes(step);
 	check_turns(step);
-	w.M = by_coordinates(model, (const mpq_t *)model->system.M);
+	w.M = by_coordinates(model, model->system.M);
 	check_symmetry(&w);
 	normal->modes = model->n;
 	normal->banks = model->operators;

@@ -229,14 +229,14 @@ static const mpq_t **constant_matrices(const struct normal_work *w, const mpq_t 
 	const struct operator *operator = w->model->operator;
 	int n = w->model->n;
 	for (int b = 0; b < w->normal->banks; b++) {
-		mpq_t *X = by_coordinates(w->model, (const mpq_t *)(velocity ? operator[b].C : operator[b].K));
-		mpq_t *base = by_coordinates(w->model, (const mpq_t *)(velocity ? operator[0].C : operator[0].K));
+		mpq_t *X = by_coordinates(w->model, (velocity ? operator[b].C : operator[b].K));
+		mpq_t *base = by_coordinates(w->model, (velocity ? operator[0].C : operator[0].K));
 		for (int i = 0; i < n * n; i++) {
 			mpq_sub(X[i], X[i], base[i]);
 			if (first)
 				mpq_add(X[i], X[i], first[i]);
 		}
-		all[b] = (const mpq_t *)X;
+		all[b] = X;
 	}
 	return all;
 }
@@ -250,13 +250,13 @@ void find_matrices(struct normal_work *w)
 	for (int f = 1; f < split->functions; f++) {
 		const struct time_function *function = &split->function[f];
 		if (function->position)
-			add_matrix(w, &list, f, false, same_in_all(w, (const mpq_t *)function->position));
+			add_matrix(w, &list, f, false, same_in_all(w, function->position));
 		if (function->velocity)
-			add_matrix(w, &list, f, true, same_in_all(w, (const mpq_t *)function->velocity));
+			add_matrix(w, &list, f, true, same_in_all(w, function->velocity));
 	}
 	const struct time_function *one = &split->function[0];
-	add_matrix(w, &list, 0, false, constant_matrices(w, (const mpq_t *)one->position, false));
-	add_matrix(w, &list, 0, true, constant_matrices(w, (const mpq_t *)one->velocity, true));
+	add_matrix(w, &list, 0, false, constant_matrices(w, one->position, false));
+	add_matrix(w, &list, 0, true, constant_matrices(w, one->velocity, true));
 	for (int k = 0; k < list.count; k++) {
 		normal->matrix[k].value = ARRAY(double, (size_t)normal->banks * cells);
 		for (int b = 0; b < normal->banks; b++)

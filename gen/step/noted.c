@@ -18,7 +18,7 @@ void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
 	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
 	INTERVAL slope = OVER_BITS(t->precision);
-	through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->x, slope);
+	through_dot(t, gate->slope, t->x, slope);
 	p->speed = t->speed = fabs(mpfi_get_d(slope));
 	t->size = 0;
 	for (int i = 0; i < t->n; i++)
@@ -43,7 +43,7 @@ int through_side(const struct through *t, int expression, mpq_srcptr at)
 	RATIONALS *row = rationals((size_t)t->n);
 	INTERVAL value = OVER_BITS(t->precision);
 	through_row(t, t->s->expression[expression].row, row);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, value);
+	through_dot(t, row, t->x, value);
 	mpfi_sub_q(value, value, at);
 	return mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 }

@@ -285,7 +285,7 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 {
 	RATIONALS *near = start_beside(step, start);
 	double *other = ARRAY(double, (size_t)r->states);
-	struct ways a = ways_of(step, start, bits), b = ways_of(step, (const mpq_t *)near, bits);
+	struct ways a = ways_of(step, start, bits), b = ways_of(step, near, bits);
 	bool known = true, goes = true;
 	RATIONAL time = ZERO;
 	REAL width = WITH_BITS(53), unused = WITH_BITS(53);
@@ -341,7 +341,7 @@ struct reference reference_through(const struct step *step)
 	for (int number = 0; number < STARTS && best.crossings < ENOUGH; number++) {
 		struct reference r = new_reference(step);
 		start_of(step, number, start);
-		for (int bits = FEWEST_BITS; !try_start(step, &r, (const mpq_t *)start, bits) && bits < MOST_BITS;)
+		for (int bits = FEWEST_BITS; !try_start(step, &r, start, bits) && bits < MOST_BITS;)
 			bits *= 2;
 		if (r.rows > 0 && (r.crossings > best.crossings || best.rows == 0))
 			best = r;

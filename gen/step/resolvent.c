@@ -120,7 +120,7 @@ static void expect_eigenvalues(const struct resolvent *r, struct spectrum *spect
 	size_t n = (size_t)r->system->states;
 	RATIONALS *A = state_matrix(r->system, false);
 	SCRATCH double *re = ARRAY(double, n), *im = ARRAY(double, n);
-	if (eigenvalues((int)n, (const mpq_t *)A, re, im))
+	if (eigenvalues((int)n, A, re, im))
 		spectrum_expect(spectrum, (int)n, re, im);
 }
 
@@ -235,8 +235,8 @@ static void question_scale(const struct question *ask, const struct linear *syst
 	common_denominator(scale, system->states, ask->initial);
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
-		common_denominator(scale, 2 * e->powers * system->n, (const mpq_t *)e->force);
-		common_denominator(scale, 2 * e->powers, (const mpq_t *)e->direct);
+		common_denominator(scale, 2 * e->powers * system->n, e->force);
+		common_denominator(scale, 2 * e->powers, e->direct);
 	}
 }
 
@@ -268,7 +268,7 @@ static struct poly right_side(const struct resolvent *r, const struct question *
 	}
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
-		struct poly image = excitation_image(e, &p->o[l], (const mpq_t *)e->force + k, r->system->n, scale);
+		struct poly image = excitation_image(e, &p->o[l], e->force + k, r->system->n, scale);
 		sum = poly_add(sum, poly_mul(poly_scale(image, r->row[k]), p->without[l]));
 	}
 	return poly_add(sum, poly_mul(start, p->all));
@@ -314,8 +314,7 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 	}
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
-		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], (const mpq_t *)e->direct, 1, scale),
-						   p.without[l]));
+		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], e->direct, 1, scale), p.without[l]));
 	}
 	N = poly_add(N, poly_scale(poly_mul(direct, r->B), rows));
 	RATIONAL unit = ZERO;

@@ -83,8 +83,7 @@ static struct share share_of_state(const struct step *step, const struct output 
 	mpq_set_ui(initial[state], 1, 1);
 	if (step->momenta && state >= system->n)
 		mpq_inv(initial[state], step->mass[system->coord[state]]);
-	add_started(&share, output_of_states(step->branch->resolvent, output, (const mpq_t *)initial), 0,
-		    step->model->h);
+	add_started(&share, output_of_states(step->branch->resolvent, output, initial), 0, step->model->h);
 	return share;
 }
 
@@ -97,8 +96,7 @@ static struct share share_of_load(const struct step *step, const struct output *
 	mpq_t *initial = is_forced(step, column) ? rationals((size_t)system->states) : NULL;
 	for (int i = 0; i < system->states && initial; i++)
 		mpq_set(initial[i], step->forced->exact[i * columns + column]);
-	add_started(&share,
-		    output_of_load(step->branch->resolvent, system, output, l, column - first, (const mpq_t *)initial),
+	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, column - first, initial),
 		    0, step->model->h);
 	return share;
 }

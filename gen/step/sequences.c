@@ -76,7 +76,7 @@ int sum_sequence(struct sequencing *w, const struct sum *sum)
 {
 	struct sequence s = { .kind = SEQUENCE_SUM, .state = NONE, .a = NONE, .b = NONE };
 	RATIONALS *scale = plain_scale(w);
-	sum_numbers(w, &s, sum, (const mpq_t *)scale);
+	sum_numbers(w, &s, sum, scale);
 	return new_sequence(w, s);
 }
 
@@ -265,7 +265,7 @@ static void set_integrand(struct sequencing *w, int sequence, const struct sum *
 {
 	struct sequence made = w->x->sequence[sequence];
 	RATIONALS *scale = integral_scale(w, false);
-	sum_numbers(w, &made, sum, (const mpq_t *)scale);
+	sum_numbers(w, &made, sum, scale);
 	w->x->sequence[sequence] = made;
 }
 

@@ -128,7 +128,7 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
 			RATIONALS *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);
-			add_envelope(A, cells, (const mpq_t *)matrix);
+			add_envelope(A, cells, matrix);
 		}
 	for (int i = 0; i < cells; i++) {
 		mpfr_mul_q(A[i], A[i], step->model->h, MPFR_RNDN);

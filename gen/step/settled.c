@@ -52,9 +52,9 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 	add_multiple(cells, of[1], minus, C);
 	for (int f = 0; f < split->functions; f++) {
 		const struct time_function *function = &split->function[f];
-		add_multiple(cells, of[0], function->last, (const mpq_t *)function->position);
-		add_multiple(cells, of[1], function->last, (const mpq_t *)function->velocity);
-		add_multiple((size_t)n, of[2], function->last, (const mpq_t *)function->force);
+		add_multiple(cells, of[0], function->last, function->position);
+		add_multiple(cells, of[1], function->last, function->velocity);
+		add_multiple((size_t)n, of[2], function->last, function->force);
 	}
 	rational_inverse(n, M, inverse, &column);
 	for (int i = 0; i < n; i++) {
@@ -68,7 +68,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 					rational_addmul(entry, inverse[i * n + k], of[d][k * (d < 2 ? n : 1) + j]);
 				}
 	}
-	add_waves(model, A, (const mpq_t *)inverse);
+	add_waves(model, A, inverse);
 	return A;
 }
 
@@ -119,7 +119,7 @@ mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C
 {
 	int size = settled_size(model);
 	size_t cells = (size_t)size * (size_t)size;
-	struct taylor *taylor = taylor_of(size, (const mpq_t *)last_matrix(model, M, C, K), model->h);
+	struct taylor *taylor = taylor_of(size, last_matrix(model, M, C, K), model->h);
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);
 	INTERVAL entry = OVER_BITS(ENTRY_BITS);
 	if (!taylor_enclose(taylor, ENTRY_BITS))

@@ -40,7 +40,7 @@ double through_size(const struct through *t, const mpq_t *row)
 int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, row, (const mpfi_t *)t->x, value);
+	through_dot(t, row, t->x, value);
 	if (less)
 		mpfi_sub_q(value, value, less);
 	int sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
@@ -60,7 +60,7 @@ mpq_t *through_row_of(const struct through *t, const struct output *output)
 void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh)
 {
 	RATIONALS *row = through_row_of(t, output);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, fresh[state]);
+	through_dot(t, row, t->x, fresh[state]);
 }
 
 void through_hold(struct through *t)
@@ -106,9 +106,9 @@ static int is_held(struct through *t, struct area *area, const struct idle *idle
 			continue;
 		if (idle->goes == (gate->upward ? 1 : -1))
 			return 0;
-		int sign = through_sign(t, (const mpq_t *)gate->row, gate->limit, &known);
+		int sign = through_sign(t, gate->row, gate->limit, &known);
 		if (known && sign == 0)
-			sign = through_sign(t, (const mpq_t *)gate->slope, NULL, &known);
+			sign = through_sign(t, gate->slope, NULL, &known);
 		if (!known)
 			return -1;
 		if (sign > 0)
@@ -124,10 +124,10 @@ int through_heads(struct through *t, const struct area *area, int expression, bo
 	int sign = 0;
 	*known = true;
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
-		mpq_t *next = through_times(t, (const mpq_t *)row, (const mpq_t *)area->A);
+		mpq_t *next = through_times(t, row, area->A);
 		rationals_free(row, (size_t)t->n);
 		row = next;
-		sign = through_sign(t, (const mpq_t *)row, NULL, known);
+		sign = through_sign(t, row, NULL, known);
 	}
 	rationals_free(row, (size_t)t->n);
 	return sign;
@@ -191,8 +191,8 @@ static int order_of(struct through *t, const struct gate *gate)
 			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
 		return 3;
 	RATIONALS *row = through_row_of(t, t->s->expression[gate->expression].row);
-	RATIONALS *slope = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	int sign = through_sign(t, (const mpq_t *)slope, NULL, &known);
+	RATIONALS *slope = through_times(t, row, t->at->A);
+	int sign = through_sign(t, slope, NULL, &known);
 	return known && sign != 0 ? 0 : 2;
 }
 
@@ -212,12 +212,12 @@ static int slides_back(const struct through *t, const struct gate *met, const st
 		if (!gate->release || is_stick(&t->s->expression[gate->expression],
 					       interval_of(t->s, t->region, gate->expression)))
 			continue;
-		int sign = through_sign(t, (const mpq_t *)gate->row, NULL, &known);
+		int sign = through_sign(t, gate->row, NULL, &known);
 		bool none = known && sign == 0;
 		if (!known && met)
 			none = through_meets(t, met, gate);
 		if (none)
-			sign = through_sign(t, (const mpq_t *)gate->slope, NULL, &known);
+			sign = through_sign(t, gate->slope, NULL, &known);
 		*release = gate;
 		if (!known)
 			return -2;

@@ -69,7 +69,7 @@ static const mpq_t *relative_masses(const struct linear *system, const mpq_t *a)
 		if (!spread_masses(n, a, i, mass))
 			return NULL;
 	}
-	return (const mpq_t *)mass;
+	return mass;
 }
 
 /* Accelerations over the coordinates, n x n; false: velocities act too, or a coordinate has none */
@@ -80,7 +80,7 @@ static bool accelerations(const struct linear *system, mpq_t *a)
 	if (states != 2 * n)
 		return false;
 	leading_inverse(system, inverse, &column);
-	highest_derivatives(system, (const mpq_t *)inverse, false, row);
+	highest_derivatives(system, inverse, false, row);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
 			mpq_set(a[i * n + j], row[i * states + j]);
@@ -114,7 +114,7 @@ static const char *kick_objection(struct step *step)
 	if (!accelerations(system, a))
 		return system->states == 2 * n ? "there is damping, or a term that depends on velocities"
 					       : "a coordinate has no velocity";
-	step->mass = relative_masses(system, (const mpq_t *)a);
+	step->mass = relative_masses(system, a);
 	if (!step->mass)
 		return "its stiffness is not symmetric, whatever the masses";
 	if (largest_pole_angle(step) > 2.5)
@@ -211,10 +211,9 @@ static bool *readings(const struct step *step)
 	bool *reads = ARRAY(bool, (size_t)(n * n));
 	const struct switching *there = model->retuned ? model->retuned->other->switching : NULL;
 	for (int k = 0; k < (there ? there->systems : step->branches); k++) {
-		const mpq_t *A = (const mpq_t *)state_matrix(there           ? &there->system[k]
+		const mpq_t *A = state_matrix(there           ? &there->system[k]
 							     : model->tuning ? &model->tuning->other->system
-									     : &step->branch[k].system,
-							     false);
+									     : &step->branch[k].system, false);
 		for (int i = 0; i < n * n; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
 	}

@@ -264,7 +264,7 @@ static int load_terms(struct tape *t, const struct step *step, const struct outp
 	int terms = 0;
 	for (int l = 0, column = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++, column++) {
-			const mpq_t *factor = (const mpq_t *)output->load[l] + k * system->segments;
+			const mpq_t *factor = output->load[l] + k * system->segments;
 			const bool differs = differs_in_time(factor, system->segments);
 			if (!differs && mpq_sgn(factor[0]) == 0)
 				continue;

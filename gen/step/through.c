@@ -38,14 +38,14 @@ static void step_on_grid(struct through *t, mpfi_t *y)
 	if (!t->gridded) {
 		t->gridded = true;
 		t->pieces = 0;
-		keep(t, (const mpfi_t *)t->x, t->slot[THROUGH_SLOTS]);
+		keep(t, t->x, t->slot[THROUGH_SLOTS]);
 	}
 	unsigned long next = t->pieces + 1;
 	unsigned long from = next & (next - 1);
 	int power = __builtin_ctzl(next);
-	const mpfi_t *x = (const mpfi_t *)t->slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
+	const mpfi_t *x = t->slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
 	stream_pieces(t->at->flow, power, x, y);
-	keep(t, (const mpfi_t *)y, t->slot[power]);
+	keep(t, y, t->slot[power]);
 }
 
 static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
@@ -69,18 +69,18 @@ static bool move(struct through *t, mpq_srcptr target)
 	piece_at(t, target, tau, &whole);
 	if (whole) {
 		step_on_grid(t, t->y);
-		if (through_clear(t, (const mpfi_t *)t->y, mpq_get_d(tau))) {
-			arrive(t, tau, true, (const mpfi_t *)t->y);
+		if (through_clear(t, t->y, mpq_get_d(tau))) {
+			arrive(t, tau, true, t->y);
 			return true;
 		}
 	}
 	INTERVAL at = OVER_BITS(t->precision);
-	int degree = stream_expand(t->at->flow, (const mpfi_t *)t->x, tau, &t->room);
+	int degree = stream_expand(t->at->flow, t->x, tau, &t->room);
 	int found = through_first(t, degree, tau, &gate, at);
 	if (found == 0 && !whole)
 		stream_sum(t->at->flow, &t->room, degree, t->one, t->y);
 	if (found == 0)
-		arrive(t, tau, whole, (const mpfi_t *)t->y);
+		arrive(t, tau, whole, t->y);
 	return found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
 }
 
@@ -203,7 +203,7 @@ struct through *through_start(const struct model *whole, const struct region_par
 	t->layout = layout_of_columns(t->system);
 	t->n = t->layout.size;
 	t->segments = whole->system.segments;
-	t->change = (const mpq_t *)whole->system.change;
+	t->change = whole->system.change;
 	make_room(t);
 	take_start(t, initial);
 	while (t->segment + 1 < t->segments && mpq_sgn(t->change[t->segment]) <= 0)

@@ -124,7 +124,7 @@ void find_waves(struct normal_work *w)
 	normal->wave = ARRAY(double, (size_t)(normal->banks * waves * 2 * width));
 	for (int i = 0; i < normal->banks * waves * 2; i++)
 		for (int j = 0; j < normal->modes; j++) {
-			const mpq_t *own = (const mpq_t *)split->wave[i / 2 % waves].force[i % 2];
+			const mpq_t *own = split->wave[i / 2 % waves].force[i % 2];
 			project(w, i / 2 / waves, own, j, force);
 			normal->wave[i * width + normal->place[j]] = round_real(force);
 		}
@@ -138,8 +138,8 @@ static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_
 	REAL of_cos = WITH_BITS(WAVE_BITS), of_sin = WITH_BITS(WAVE_BITS), sum = WITH_BITS(WAVE_BITS),
 	     part = WITH_BITS(WAVE_BITS);
 	swing_of(&w->mode[bank * w->normal->modes + j], own->wave, w->model->h, theta, R);
-	project(w, bank, (const mpq_t *)own->force[0], j, of_cos);
-	project(w, bank, (const mpq_t *)own->force[1], j, of_sin);
+	project(w, bank, own->force[0], j, of_cos);
+	project(w, bank, own->force[1], j, of_sin);
 	for (int d = 0; d < 2; d++) {
 		mpfr_mul(sum, of_cos, R[d], MPFR_RNDN);
 		mpfr_mul(part, of_sin, R[2 + d], MPFR_RNDN);

@@ -96,10 +96,10 @@ void find_within(struct normal_work *w)
 		damped = damped || within->damping[at] != 0;
 	}
 	within->damping = damped ? within->damping : NULL;
-	within->nodes = powers_of(m->stages + 1, (const mpq_t *)m->node);
+	within->nodes = powers_of(m->stages + 1, m->node);
 	if (m->points) {
 		mpq_t *node = past_nodes(m->points + 1);
 		mpq_set_ui(node[m->points], 1, 1);
-		within->past = powers_of(m->points + 1, (const mpq_t *)node);
+		within->past = powers_of(m->points + 1, node);
 	}
 }

@@ -2,16 +2,11 @@
 /* The equations as written, for NAME_rhs: residuals without the highest derivatives, and how those follow from them. */
 #include "step/step.h"
 
-static bool is_highest(const struct model *model, const struct basis *basis)
-{
-	return basis->kind == BASIS_COORD && basis->order == model->written->frame.coord[basis->index]->highest;
-}
-
 const struct form *without_highest(const struct model *model, const struct form *form)
 {
 	struct form *rest = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
-		if (!is_highest(model, &form->term[i].basis))
+		if (!is_highest(&model->written->frame, &form->term[i].basis))
 			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
 	return rest;
 }
