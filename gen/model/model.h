@@ -52,7 +52,7 @@ bool load_acts(const struct linear *system, const struct load *load);
 struct output {
 	const char *name;
 	struct node *value;         /* as written */
-	bool peak;                  /* the largest size so far is asked for */
+	bool peak, bears;           /* the largest size so far is asked for; reads what friction without mass bears */
 	int statement, cell;        /* which output statement, and which cell of its value */
 	struct form *form;          /* in the first segment of time; NULL where it is not linear in states and loads */
 	struct form *left;          /* then: for all time, with atoms; highest derivatives stand for themselves */

@@ -168,12 +168,14 @@ static void collect_left(void *context)
 }
 
 /* The friction of what has no mass is what it bears: then it may be a row after all. */
-static bool becomes_row(struct building *b, int index, struct value *value)
+static bool becomes_row(struct building *b, int index, struct value *value, bool *bears)
 {
 	bool row = b->model->bearings > 0 && value;
-	for (int i = 0; row && i < value->rows * value->columns; i++) {
-		value->cell[i] = borne_form(b, value->cell[i]);
-		row = value->cell[i]->terms == 0 || !value->cell[i]->term[value->cell[i]->terms - 1].basis.atom;
+	for (int i = 0; b->model->bearings > 0 && value && i < value->rows * value->columns; i++) {
+		const struct form *written = value->cell[i];
+		const struct form *borne = value->cell[i] = borne_form(b, written);
+		*bears = *bears || !same_form(written, borne);
+		row = row && (borne->terms == 0 || !borne->term[borne->terms - 1].basis.atom);
 	}
 	for (int s = 0; row && s < b->model->system.segments; s++)
 		b->snapshot[s].output[index] = value;
@@ -187,16 +189,17 @@ static void name_outputs(struct building *b)
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
-		bool row = is_row(b, index);
+		bool row = is_row(b, index), bears = false;
 		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
-		row = row || becomes_row(b, index, work.value);
+		row = row || becomes_row(b, index, work.value, &bears);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
 			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
 				   row ? work.value->cell[i] : NULL);
 			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
+			model->output[model->outputs - 1].bears = bears;
 			model->output[model->outputs - 1].peak = s->peak;
 			model->output[model->outputs - 1].statement = index;
 			model->output[model->outputs - 1].cell = i;

@@ -5,6 +5,8 @@
  * region is which has to keep its sign on the target. */
 #include "model/model.h"
 
+#include <string.h>
+
 /* ---- the model at other values ---- */
 
 struct search {
@@ -59,11 +61,25 @@ static bool same_regions(const struct model *model, const struct model *other)
 	return same;
 }
 
+/* Formulas of outputs read the instance's own params; what friction without mass bears beside a damper has numbers. */
+static bool same_outputs(const struct model *model, const struct model *other)
+{
+	bool same = true;
+	for (int i = 0; i < model->outputs && same; i++) {
+		const struct form *a = model->output[i].left, *b = other->output[i].left;
+		if (model->output[i].bears && a)
+			same = b && strcmp(form_text(model, a), form_text(other, b)) == 0;
+	}
+	return same;
+}
+
 static const struct difference difference[] = {
 	{ same_loads_there, "the model has other loads",
 	  "a load is there only where its factor is not 0; its frequency, phase and growth are fixed" },
 	{ same_regions, "the model has other regions",
-	  "what is equal at the spec's values has to stay equal: breakpoints, factors, forces" }
+	  "what is equal at the spec's values has to stay equal: breakpoints, factors, forces" },
+	{ same_outputs, "an output of friction would be another formula",
+	  "what it holds without mass is no output then; a small mass slides with its own inertia" }
 };
 
 /* Their rows are those of the first. */

@@ -219,23 +219,25 @@ static void leaning(int step)
 	run_free(&r);
 }
 
-/* The same equations by Runge and Kutta's method of order 4 in long double */
-static void pressed_slopes(wide t, const wide *z, wide *slope)
+/* The same equations by Runge and Kutta's method of order 4 in long double; the forces of friction */
+static void pressed_slopes(wide t, const wide *z, wide *slope, wide *force)
 {
 	wide x = 0.3L * cosl(3 * t), v = -0.9L * sinl(3 * t), q = 50 * (x - z[0]), p = 40 * (x - z[1]) + 0.4L * v;
 	wide F = 1 + 5 * x > 0 ? 1 + 5 * x : 0;
-	slope[0] = (q - held_to(q, 2 + cosl(5 * t))) / 0.3L;
-	slope[1] = (p - held_to(p, F)) / 0.4L;
+	force[0] = held_to(q, 2 + cosl(5 * t));
+	force[1] = held_to(p, F);
+	slope[0] = (q - force[0]) / 0.3L;
+	slope[1] = (p - force[1]) / 0.4L;
 }
 
 static void pressed_step(wide t, wide h, wide *z)
 {
-	wide k[4][2], at[2];
+	wide k[4][2], at[2], force[2];
 	for (int s = 0; s < 4; s++) {
 		wide c = s == 3 ? h : s > 0 ? h / 2 : 0;
 		for (int i = 0; i < 2; i++)
 			at[i] = z[i] + (s > 0 ? c * k[s - 1][i] : 0);
-		pressed_slopes(t + c, at, k[s]);
+		pressed_slopes(t + c, at, k[s], force);
 	}
 	for (int i = 0; i < 2; i++)
 		z[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
@@ -244,8 +246,8 @@ static void pressed_step(wide t, wide h, wide *z)
 static void pressed(int step)
 {
 	struct run r = run_new(variant_of(joint_closed_table, "pressed_%d", step));
-	double off = 0, y[4], h = r.of->model->h;
-	wide z[2] = { 0, 0 };
+	double off = 0, bears = 0, y[4], out[2], h = r.of->model->h;
+	wide z[2] = { 0, 0 }, slope[2], force[2];
 	int parts = (int)lround(h / 2e-5);
 	for (int n = 0; n * h < 3.95; n++) {
 		for (int k = 0; k < parts; k++)
@@ -253,8 +255,13 @@ static void pressed(int step)
 		run_step(&r, NULL);
 		run_state(&r, y);
 		off = worse(off, worse(fabs(y[1] - (double)z[0]), fabs(y[2] - (double)z[1])));
+		r.of->model->out(r.state, out);
+		pressed_slopes((n + 1) * (wide)h, z, slope, force);
+		for (int i = 0; i < 2; i++)
+			bears = worse(bears, fabs(out[i] - (double)force[i]));
 	}
 	is_close(off, 0, 1e-8, "pressed %d: where both are, beside steps of 2e-5 s", step);
+	is_close(bears, 0, 5e-7, "pressed %d: what both bear", step);
 	is_close(r.of->model->status(r.state), 0, 0, "pressed %d: status", step);
 	run_free(&r);
 }
