@@ -101,14 +101,14 @@ static const char *renamed(const struct runtime *r, const struct piece *p)
 
 static void rename_all(struct runtime *r)
 {
-	const char **text = ARRAY(const char *, (size_t)r->pieces);
-	const char ***name = ARRAY(const char **, (size_t)r->pieces);
+	const char **text = ARRAY(const char *, r->pieces);
+	const char ***name = ARRAY(const char **, r->pieces);
 	for (int i = 0; i < r->pieces; i++) {
 		const struct piece *p = &r->piece[i];
 		if (p->shared && !p->typed)
 			continue;
 		text[i] = renamed(r, p);
-		name[i] = ARRAY(const char *, (size_t)p->names + 1);
+		name[i] = ARRAY(const char *, p->names + 1);
 		for (int k = 0; k < p->names; k++)
 			name[i][k] = new_name(r, p, p->name[k], strlen(p->name[k]));
 	}

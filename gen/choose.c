@@ -68,7 +68,7 @@ static void certify(struct choosing *c)
 {
 	struct alternative *a = c->now;
 	const struct step *exact = c->step->modal ? c->variant->modes : c->variant->states;
-	a->certificate = ARRAY(struct certificate, (size_t)c->stepped->requirements);
+	a->certificate = ARRAY(struct certificate, c->stepped->requirements);
 	a->cost = cost_of_step(c->step, c->stepped->target);
 	for (int i = 0; i < c->stepped->requirements; i++) {
 		const struct requirement *r = &c->stepped->requirement[i];
@@ -159,7 +159,7 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 {
 	struct variant *v = NEW(struct variant);
 	v->model = model;
-	v->dropped = ARRAY(double, (size_t)c->stepped->requirements);
+	v->dropped = ARRAY(double, c->stepped->requirements);
 	if (!model->shortened || c->request->form == FORM_MODAL)
 		v->modes = built(c, model, FORM_MODAL);
 	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
@@ -187,7 +187,7 @@ static bool loses_less(const struct choosing *c, const struct dropping *d, int c
 /* As many modes as are asked for first */
 static struct model *model_of_modes(const struct dropping *d, int count)
 {
-	bool *kept = ARRAY(bool, (size_t)d->modes->count);
+	bool *kept = ARRAY(bool, d->modes->count);
 	for (int i = 0; i < count; i++)
 		kept[d->order[i]] = true;
 	target_double();
@@ -209,9 +209,9 @@ static void try_modes(struct choosing *c, const struct dropping *d, int count)
 static void walk_losses(struct choosing *c, struct dropping *d)
 {
 	const int requirements = c->stepped->requirements, all = d->modes->count;
-	struct certificate *found = ARRAY(struct certificate, (size_t)requirements);
+	struct certificate *found = ARRAY(struct certificate, requirements);
 	for (int i = 0; i < requirements; i++)
-		d->lost[i] = ARRAY(double, (size_t)all + 1);
+		d->lost[i] = ARRAY(double, all + 1);
 	for (int count = 0, more = MORE_MODES; count < all && more >= 0; count++) {
 		struct model *model = count > 0 ? model_of_modes(d, count) : NULL;
 		const struct step *step = model && c->exact ? built(c, model, FORM_DIRECT) : NULL;
@@ -226,7 +226,7 @@ static void drop_modes(struct choosing *c, struct dropping *d)
 {
 	const int requirements = c->stepped->requirements, all = d->modes->count;
 	target_double();
-	d->lost = ARRAY(double *, (size_t)requirements);
+	d->lost = ARRAY(double *, requirements);
 	for (int i = 0; i < requirements && c->stepped->system.segments == 1; i++)
 		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->requirement[i]);
 	if (c->stepped->system.segments > 1)
@@ -275,7 +275,7 @@ static void count_written(struct choosing *c)
 {
 	const struct shortening *s = c->written->shortened;
 	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
-	int *order = ARRAY(int, (size_t)modes->count), kept = 0;
+	int *order = ARRAY(int, modes->count), kept = 0;
 	for (int which = 1; which >= 0; which--)
 		for (int i = 0; i < modes->count; i++)
 			if (s->kept[i] == which)
@@ -381,7 +381,7 @@ static void try_all(struct choosing *c)
 		*whole = *full;
 		exact = built(c, whole, FORM_DIRECT);
 	}
-	c->largest = ARRAY(double, (size_t)c->stepped->requirements);
+	c->largest = ARRAY(double, c->stepped->requirements);
 	c->exact = exact_run_of(full, c->stepped);
 	for (int i = 0; i < c->stepped->requirements; i++)
 		c->largest[i] = c->exact ? exact_largest(c->exact, i)

@@ -180,8 +180,8 @@ static bool is_over_budget(const struct measuring *m, const struct alternative *
 
 static void find_ends(struct measuring *m)
 {
-	m->ends = ARRAY(double, (size_t)m->model->outputs + 1);
-	m->largest = ARRAY(double, (size_t)m->model->outputs + 1);
+	m->ends = ARRAY(double, m->model->outputs + 1);
+	m->largest = ARRAY(double, m->model->outputs + 1);
 	for (int i = 0; i < m->model->outputs; i++)
 		m->ends[i] = -1;
 	for (int i = 0; i < m->model->requirements; i++) {

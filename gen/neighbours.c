@@ -18,7 +18,7 @@ static const char *value_of_param(const struct measuring *m, const struct symbol
 
 static struct request with_param(const struct measuring *m, struct request as, const struct symbol *s, const char *by)
 {
-	const char **definition = ARRAY(const char *, (size_t)as.definitions + 1);
+	const char **definition = ARRAY(const char *, as.definitions + 1);
 	for (int i = 0; i < as.definitions; i++)
 		definition[i] = as.definition[i];
 	definition[as.definitions++] = format("%s=%s*(%s)", s->name, by, value_of_param(m, s));
@@ -65,7 +65,7 @@ static void try_starts(struct measuring *m, struct alternative *a, struct runnin
 {
 	const struct model *written = m->model->written;
 	const int states = written->system.states;
-	double *start = ARRAY(double, (size_t)states);
+	double *start = ARRAY(double, states);
 	running_start(m->roads.r, 0, NULL);
 	running_state(m->roads.r, start);
 	for (int i = 0; i < states; i++) {
@@ -112,7 +112,7 @@ static void try_smaller_inputs(struct measuring *m, struct alternative *a, struc
 		return;
 	struct sampled *drive = &m->drive[a->worst_input], as_found = *drive;
 	const long numbers = (drive->samples + 2) * drive->inputs;
-	drive->sample = ARRAY(double, (size_t)numbers);
+	drive->sample = ARRAY(double, numbers);
 	for (long i = 0; i < numbers; i++)
 		drive->sample[i] = 0.9 * as_found.sample[i];
 	struct alternative copy = *a;

@@ -54,17 +54,7 @@ static bool is_second(const char *option, const char *value, const char *first, 
 	return strcmp(value, second) == 0;
 }
 
-static void take_output(struct options *options, const char *value) { options->output = value; }
 static void take_header(struct options *options, const char *value) { (void)value; set_print(options, PRINT_HEADER); }
-static void take_rhs(struct options *options, const char *value) { (void)value; options->rhs = true; }
-static void take_fmu(struct options *options, const char *value) { options->fmu = value; }
-static void take_step(struct options *options, const char *value) { options->request.step = value; }
-static void take_scheme(struct options *options, const char *value) { options->request.scheme = value; }
-static void take_tolerance(struct options *options, const char *value) { options->request.tolerance = value; }
-static void take_modes(struct options *options, const char *value) { options->request.modes = value; }
-static void take_prefix(struct options *options, const char *value) { options->request.prefix = value; }
-static void take_amplitude(struct options *options, const char *value) { options->amplitude = value; }
-static void take_depfile(struct options *options, const char *value) { options->depfile = value; }
 
 static void take_explain(struct options *options, const char *value)
 {
@@ -153,12 +143,6 @@ static void take_reduce(struct options *options, const char *value)
 	note_in_banner(options, "--reduce");
 }
 
-static void take_selftest(struct options *options, const char *value)
-{
-	(void)value;
-	options->request.selftest = true;
-}
-
 static void take_fmu_version(struct options *options, const char *value)
 {
 	options->fmu_version = is_second("--fmu-version", value, "2", "3") ? 3 : 2;
@@ -177,24 +161,6 @@ static void take_rows(struct options *options, const char *value)
 	if (*end || end == value || rows < 1 || rows > LIMIT_BLOCK_ROWS)
 		wrong_usage(format("--rows takes a number from 1 to %d, found '%s'", LIMIT_BLOCK_ROWS, value));
 	options->request.rows = (int)rows;
-}
-
-static void take_batch(struct options *options, const char *value)
-{
-	(void)value;
-	options->request.batch = true;
-}
-
-static void take_bundle(struct options *options, const char *value)
-{
-	(void)value;
-	options->bundle = true;
-}
-
-static void take_strict(struct options *options, const char *value)
-{
-	(void)value;
-	options->strict = true;
 }
 
 static void print_usage(struct options *options, const char *value);
@@ -247,53 +213,58 @@ static void print_version(struct options *options, const char *value)
 
 /* ---- the options, in the order of usage ---- */
 
+#define AT(member) offsetof(struct options, member)
+
 static const struct row {
 	const char *name;               /* of one letter: -o; else --name */
 	const char *argument;           /* in brackets: optional; NULL: none */
 	const char *help;               /* NULL: of the last line, which lists those that need no words */
-	void (*take)(struct options *options, const char *value); /* NULL: a line of usage only */
+	void (*take)(struct options *options, const char *value);
 	const char *(*values)(const char *separator); /* closes the help */
+	/* without `take`: what is set to the value, to true. 0: neither is, it is a line of usage only */
+	size_t text, flag;
 } rows[] = {
-	{ "o", "FILE.c", "write FILE.c and the header FILE.h beside it", take_output, NULL },
-	{ "header", NULL, "print the header instead of the C", take_header, NULL },
-	{ "explain", "[=json]", "print what was derived: matrices, B(s), poles, Phi, cost", take_explain, NULL },
-	{ "explain", "=program", "print what a step does, before it is C", NULL, NULL },
-	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", take_solution, NULL },
+	{ "o", "FILE.c", "write FILE.c and the header FILE.h beside it", .text = AT(output) },
+	{ "header", NULL, "print the header instead of the C", .take = take_header },
+	{ "explain", "[=json]", "print what was derived: matrices, B(s), poles, Phi, cost", .take = take_explain },
+	{ "explain", "=program", "print what a step does, before it is C", .take = NULL },
+	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", .take = take_solution },
 	{ "response", "F0:F1[:N]", "print the frequency response from F0 to F1 Hz as CSV, N frequencies (200)",
-	  take_response, NULL },
+	  .take = take_response },
 	{ "amplitude", "A", "of an excitation: clearances are swept by it, up and down (--response, --plot frf)",
-	  take_amplitude, NULL },
-	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf", take_plot,
-	  NULL },
-	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", take_report, NULL },
-	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", take_rhs, NULL },
-	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
-	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
+	  .text = AT(amplitude) },
+	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
+	  .take = take_plot },
+	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .take = take_report },
+	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", .flag = AT(rhs) },
+	{ "step", "EXPR", "instead of the spec's step", .text = AT(request.step) },
+	{ "scheme", "NAME", "instead of the spec's: ", .values = all_schemes, .text = AT(request.scheme) },
 	{ "tolerance", "EXPR", "of taylor, radau, auto: the error that a step may make, relative to each state",
-	  take_tolerance, NULL },
-	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
-	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", take_form, NULL },
+	  .text = AT(request.tolerance) },
+	{ "real", "float", "numbers and arithmetic of type float (default: double)", .take = take_real },
+	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", .take = take_form },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
-	  take_accuracy, NULL },
-	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", take_loads, NULL },
-	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", take_anchors, NULL },
-	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
-	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
-	{ "reduce", NULL, "leave out what the outputs cannot see", take_reduce, NULL },
-	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", take_modes, NULL },
-	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", take_rows, NULL },
-	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
-	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
-	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call", take_batch, NULL },
-	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", take_fmu, NULL },
-	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", take_fmu_version, NULL },
-	{ "fmu-binary", "[=DIR]", "compiled too, with the standard's headers in DIR", take_fmu_binary, NULL },
-	{ "bundle", NULL, "the C with what it needs of the runtime inside", take_bundle, NULL },
-	{ "runtime-dir", NULL, "print the folder of the runtime", print_runtime_folder, NULL },
-	{ "strict", NULL, "warnings are errors", take_strict, NULL },
-	{ "h", NULL, NULL, print_usage, NULL },
-	{ "help", NULL, NULL, print_usage, NULL },
-	{ "version", NULL, NULL, print_version, NULL }
+	  .take = take_accuracy },
+	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
+	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", .take = take_anchors },
+	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", .take = take_definition },
+	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
+	{ "reduce", NULL, "leave out what the outputs cannot see", .take = take_reduce },
+	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", .text = AT(request.modes) },
+	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", .take = take_rows },
+	{ "depfile", "FILE", "also write a make/ninja dependency file", .text = AT(depfile) },
+	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", .flag = AT(request.selftest) },
+	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call",
+	  .flag = AT(request.batch) },
+	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", .text = AT(fmu) },
+	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", .take = take_fmu_version },
+	{ "fmu-binary", "[=DIR]", "compiled too, with the standard's headers in DIR", .take = take_fmu_binary },
+	{ "bundle", NULL, "the C with what it needs of the runtime inside", .flag = AT(bundle) },
+	{ "runtime-dir", NULL, "print the folder of the runtime", .take = print_runtime_folder },
+	{ "strict", NULL, "warnings are errors", .flag = AT(strict) },
+	{ "h", .take = print_usage },
+	{ "help", .take = print_usage },
+	{ "version", .take = print_version }
 };
 /* LONG + its row is what getopt_long returns for a long option. */
 enum { ROWS = sizeof rows / sizeof *rows, LONG = 256 };
@@ -346,9 +317,9 @@ static const char *fill_known(struct option *known)
 	const char *letters = ":";
 	for (int i = 0; i < ROWS; i++) {
 		const struct row *row = &rows[i];
-		if (row->take && is_short(row))
+		if (is_short(row))
 			letters = format("%s%s%s", letters, row->name, row->argument ? ":" : "");
-		else if (row->take)
+		else if (row->take || row->text || row->flag)
 			*known++ = (struct option){ row->name, values_of(row), NULL, LONG + i };
 	}
 	return letters;
@@ -402,6 +373,16 @@ static _Noreturn void not_taken(int option, const char *word)
 			   : format("unknown option or surplus value: %s", shown));
 }
 
+static void take(const struct row *row, struct options *options, const char *value)
+{
+	if (row->take)
+		row->take(options, value);
+	else if (row->text)
+		*(const char **)((char *)options + row->text) = value;
+	else
+		*(bool *)((char *)options + row->flag) = true;
+}
+
 static void take_all(int argc, char **argv, struct options *options)
 {
 	struct option known[ROWS + 1] = { 0 };
@@ -411,7 +392,7 @@ static void take_all(int argc, char **argv, struct options *options)
 	for (int before = optind; (option = getopt_long(argc, argv, letters, known, NULL)) != -1; before = optind) {
 		if (option == '?' || option == ':')
 			not_taken(option, argv[before]);
-		row_of(option)->take(options, optarg);
+		take(row_of(option), options, optarg);
 	}
 	for (int i = optind; i < argc && options->print == PRINT_EXPLAIN; i++)
 		if (strcmp(argv[i], "json") == 0 || strcmp(argv[i], "program") == 0)
@@ -423,38 +404,36 @@ static void take_all(int argc, char **argv, struct options *options)
 	options->spec = argv[optind];
 }
 
+static void note_value(struct options *options, const char *option, const char *value)
+{
+	if (value)
+		note_in_banner(options, format("%s %s", option, value));
+}
+
+static void note_flag(struct options *options, const char *option, bool is)
+{
+	if (is)
+		note_in_banner(options, option);
+}
+
 /* Those that change the model come as they are given; these in one order, so that they are told alike. */
 static void note_all(struct options *options)
 {
 	const struct request *request = &options->request;
-	if (request->scheme)
-		note_in_banner(options, format("--scheme %s", request->scheme));
-	if (request->tolerance)
-		note_in_banner(options, format("--tolerance %s", request->tolerance));
-	if (request->modes)
-		note_in_banner(options, format("--modes \"%s\"", request->modes));
-	if (request->step)
-		note_in_banner(options, format("--step %s", request->step));
-	if (request->prefix)
-		note_in_banner(options, format("--prefix %s", request->prefix));
-	if (request->loads_left)
-		note_in_banner(options, "--loads leftover");
-	if (request->single)
-		note_in_banner(options, "--real float");
-	if (request->form != FORM_AUTO)
-		note_in_banner(options, format("--form %s", step_form_name(request->form)));
-	if (request->compensated)
-		note_in_banner(options, "--accuracy compensated");
-	if (request->anchors)
-		note_in_banner(options, format("--anchors %d", request->anchors));
-	if (request->rows)
-		note_in_banner(options, format("--rows %d", request->rows));
-	if (request->selftest)
-		note_in_banner(options, "--selftest");
-	if (options->rhs)
-		note_in_banner(options, "--rhs");
-	if (options->bundle)
-		note_in_banner(options, "--bundle");
+	note_value(options, "--scheme", request->scheme);
+	note_value(options, "--tolerance", request->tolerance);
+	note_value(options, "--modes", request->modes ? format("\"%s\"", request->modes) : NULL);
+	note_value(options, "--step", request->step);
+	note_value(options, "--prefix", request->prefix);
+	note_flag(options, "--loads leftover", request->loads_left);
+	note_flag(options, "--real float", request->single);
+	note_value(options, "--form", request->form != FORM_AUTO ? step_form_name(request->form) : NULL);
+	note_flag(options, "--accuracy compensated", request->compensated);
+	note_value(options, "--anchors", request->anchors ? format("%d", request->anchors) : NULL);
+	note_value(options, "--rows", request->rows ? format("%d", request->rows) : NULL);
+	note_flag(options, "--selftest", request->selftest);
+	note_flag(options, "--rhs", options->rhs);
+	note_flag(options, "--bundle", options->bundle);
 }
 
 static void find_header(struct options *options)

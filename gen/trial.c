@@ -133,7 +133,7 @@ static bool find_tolerance(struct measuring *m)
 static void find_changes(struct measuring *m)
 {
 	const struct linear *system = &m->model->written->system;
-	double *change = ARRAY(double, (size_t)system->segments);
+	double *change = ARRAY(double, system->segments);
 	m->roads.changes = system->segments - 1;
 	for (int k = 0; k < m->roads.changes; k++)
 		change[k] = mpq_get_d(system->change[k]);
@@ -168,7 +168,7 @@ static void find_drives(struct measuring *m, const struct step *step)
 		return;
 	const int count = frequencies_of(m, step, w, FREQUENCIES);
 	m->drives = drive_kinds(count);
-	m->drive = ARRAY(struct sampled, (size_t)m->drives);
+	m->drive = ARRAY(struct sampled, m->drives);
 	for (int i = 0; i < m->drives; i++)
 		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h), m->model->requirement[0].most);
 }
@@ -293,7 +293,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 	struct running *r = step ? running_of(m, step, &a->refused) : NULL;
 	a->measured = true;
 	a->name = a->scheme && !step ? a->scheme : scheme_name((step ? step->model : m->model)->scheme);
-	a->certificate = ARRAY(struct certificate, (size_t)m->model->requirements);
+	a->certificate = ARRAY(struct certificate, m->model->requirements);
 	a->excess = HUGE_VAL;
 	if (r) {
 		struct roads roads = m->roads;

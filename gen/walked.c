@@ -49,7 +49,7 @@ static void make_output(void *context)
 static void find_ends(struct exact_run *run)
 {
 	const struct model *model = run->model;
-	run->end = ARRAY(long, (size_t)model->requirements);
+	run->end = ARRAY(long, model->requirements);
 	for (int i = 0; i < model->requirements && run->samples >= 0; i++) {
 		run->end[i] = samples_until(&model->requirement[i], model->h);
 		run->samples = run->end[i] < 0 || run->end[i] > run->samples ? run->end[i] : run->samples;
@@ -60,7 +60,7 @@ struct exact_run *exact_run_of(const struct model *full, const struct model *ste
 {
 	struct exact_run *run = NEW(struct exact_run);
 	const struct linear *system = &full->system;
-	*run = (struct exact_run){ .model = stepped, .place = ARRAY(int, (size_t)full->outputs) };
+	*run = (struct exact_run){ .model = stepped, .place = ARRAY(int, full->outputs) };
 	find_ends(run);
 	for (int i = 0; i < full->outputs; i++)
 		run->place[i] = -1;
@@ -130,7 +130,7 @@ bool walk_beside(const struct exact_run *run, const struct step *step, struct ce
 {
 	const char *why;
 	const int requirements = run->model->requirements;
-	double *out = ARRAY(double, (size_t)step->model->outputs + 1), *error = ARRAY(double, (size_t)requirements);
+	double *out = ARRAY(double, step->model->outputs + 1), *error = ARRAY(double, requirements);
 	struct running *r = running_new(run->model->requirement[0].need->at, step, 0, &why);
 	if (!r)
 		return false;

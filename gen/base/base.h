@@ -102,7 +102,7 @@ void  discard(void *block);                                /* gives it back befo
 /* from the budget of LIMIT_TERMS; gives up when it is spent */
 void  spend_terms(size_t count);
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
-#define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
+#define ARRAY(type, count) ((type *)allocate((size_t)(count), sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
 /* One more element: where it is */
 #define MORE(array, count) (ENLARGE(array, (size_t)(count) + 1), &(array)[(count)++])

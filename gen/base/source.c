@@ -29,7 +29,7 @@ static void say(struct place at, const char *severity, const char *note, const c
 	va_list again;
 	va_copy(again, args);
 	int length = vsnprintf(NULL, 0, fmt, args);
-	char *message = ARRAY(char, (size_t)length + 1);
+	char *message = ARRAY(char, length + 1);
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
 	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */

@@ -150,7 +150,7 @@ static struct form *new_atom(struct collector *c, const struct node *node, struc
 			     const struct form *const *operand)
 {
 	wanted.operands = count;
-	wanted.operand = ARRAY(const struct form *, (size_t)count);
+	wanted.operand = ARRAY(const struct form *, count);
 	for (int i = 0; i < count; i++)
 		wanted.operand[i] = share(c, operand[i])->form;
 	return form_of_atom(c, node, wanted);
@@ -261,7 +261,7 @@ static struct form *form_of_powers(struct collector *c, const struct node *node,
 		return form_sum(base[0]->form, NEW(struct form), false);
 	struct atom atom = { .kind = ATOM_PRODUCT,
 			     .operands = count,
-			     .operand = ARRAY(const struct form *, (size_t)count),
+			     .operand = ARRAY(const struct form *, count),
 			     .exponent = exponent };
 	for (int i = 0; i < count; i++)
 		atom.operand[i] = base[i]->form;
@@ -444,7 +444,7 @@ static const struct node *call_at(const struct node *node, enum function functio
 	*call = *node;
 	call->function = function;
 	if (call->children < count || call->kind != NODE_CALL) {
-		call->child = ARRAY(struct node *, (size_t)count);
+		call->child = ARRAY(struct node *, count);
 		struct node *place = NEW(struct node);
 		*place = *node;
 		for (int i = 0; i < count; i++)

@@ -201,8 +201,8 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order)
 {
 	int atoms = atoms_count(c->atoms);
-	struct differentiation d = { c, coord, order, ARRAY(struct form *, (size_t)atoms), atoms };
-	struct form **slope = ARRAY(struct form *, (size_t)count);
+	struct differentiation d = { c, coord, order, ARRAY(struct form *, atoms), atoms };
+	struct form **slope = ARRAY(struct form *, count);
 	for (int i = 0; i < count; i++)
 		slope[i] = derive(&d, form[i]);
 	return slope;
@@ -290,7 +290,7 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	struct collector *c = p->c;
 	if (a->kind == ATOM_PARAM)
 		return place_param(p, a);
-	struct form **x = ARRAY(struct form *, (size_t)a->operands);
+	struct form **x = ARRAY(struct form *, a->operands);
 	x[0] = place_form(p, a->operand[0]);
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
 		RATIONAL truth = ZERO;
@@ -363,8 +363,8 @@ struct form *form_at(struct point *p, const struct form *form)
 {
 	int count = atoms_count(p->c->atoms);
 	if (count > p->count) {
-		struct form **known = ARRAY(struct form *, (size_t)count);
-		struct span *span = ARRAY(struct span, (size_t)count);
+		struct form **known = ARRAY(struct form *, count);
+		struct span *span = ARRAY(struct span, count);
 		for (int i = 0; i < p->count; i++) {
 			known[i] = p->known[i];
 			span[i] = p->span[i];

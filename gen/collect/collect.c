@@ -174,7 +174,7 @@ static struct form *piecewise_cell(struct collector *c, struct node *node, struc
 /* Cell by cell; a scalar goes with every cell of the others */
 static struct value *collect_piecewise(struct collector *c, struct node *node)
 {
-	struct value **argument = ARRAY(struct value *, (size_t)node->children), *shape = NULL;
+	struct value **argument = ARRAY(struct value *, node->children), *shape = NULL;
 	const bool reading = c->reading;
 	for (int i = 0; i < node->children; i++) {
 		/* in an output it is known again by what it reads in the equations */
@@ -188,7 +188,7 @@ static struct value *collect_piecewise(struct collector *c, struct node *node)
 		shape = single ? shape : argument[i];
 	}
 	struct value *result = shape ? value_new(shape->rows, shape->columns) : value_new(1, 1);
-	struct form **x = ARRAY(struct form *, (size_t)node->children);
+	struct form **x = ARRAY(struct form *, node->children);
 	for (int k = 0; k < result->rows * result->columns; k++) {
 		for (int i = 0; i < node->children; i++)
 			x[i] = argument[i]->cell[is_scalar(argument[i]) ? 0 : k];

@@ -21,7 +21,7 @@ static mpq_srcptr add_change(struct collector *c, mpq_srcptr t)
 	}
 	if (c->changes == LIMIT_CHANGES)
 		error(c->term->start, NULL, "more changes of formula than the limit of %d", LIMIT_CHANGES);
-	mpq_t *change = ARRAY(mpq_t, (size_t)c->changes + 1);
+	mpq_t *change = ARRAY(mpq_t, c->changes + 1);
 	if (low > 0)
 		memcpy(change, c->change, (size_t)low * sizeof *change);
 	if (low < c->changes)
@@ -168,7 +168,7 @@ static mpq_srcptr constant_point(struct collector *c, const struct node *node, c
 /* The numbers of a table at their arguments' places; its breakpoints rise. */
 static mpq_srcptr *table_points(struct collector *c, const struct node *node, struct form *const *x, mpq_t *room)
 {
-	mpq_srcptr *v = ARRAY(mpq_srcptr, (size_t)node->children);
+	mpq_srcptr *v = ARRAY(mpq_srcptr, node->children);
 	for (int i = 1; i < node->children; i++)
 		v[i] = constant_point(c, node->child[i], x[i], room[i]);
 	for (int i = 3; i < node->children; i += 2)
@@ -180,7 +180,7 @@ static mpq_srcptr *table_points(struct collector *c, const struct node *node, st
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x)
 {
 	if (node->function == FN_TABLE)
-		table_points(c, node, x, ARRAY(mpq_t, (size_t)node->children));
+		table_points(c, node, x, ARRAY(mpq_t, node->children));
 	else if (is_constant(x[1]) && is_constant(x[2]) && order_now(c, node, x[1], x[2]) > 0)
 		error(node->child[1]->start, NULL, "the lower breakpoint is above the upper one");
 }
@@ -197,7 +197,7 @@ void slope_between(const mpq_srcptr *point, mpq_ptr slope)
 static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
 {
 	int points = (node->children - 1) / 2, left = 0;
-	SCRATCH mpq_t *room = ARRAY(mpq_t, (size_t)node->children);
+	SCRATCH mpq_t *room = ARRAY(mpq_t, node->children);
 	SCRATCH mpq_srcptr *v = table_points(c, node, x, room);
 	RATIONAL slope = ZERO;
 	/* all breakpoints at the first sight */

@@ -5,7 +5,7 @@
 /* v: x0, y0, x1, y1, ... */
 static int pieces_between(int points, mpq_t *v, struct straight **list)
 {
-	struct straight *piece = ARRAY(struct straight, (size_t)points);
+	struct straight *piece = ARRAY(struct straight, points);
 	for (int i = 0; i + 1 < points; i++) {
 		mpq_srcptr p[4] = { v[2 * i], v[2 * i + 1], v[2 * i + 2], v[2 * i + 3] };
 		piece[i] = (struct straight){ .x = p[0], .y = p[1], .end = i + 2 < points ? p[2] : NULL };

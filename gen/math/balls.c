@@ -96,7 +96,7 @@ void balls_init_matrix(struct balls *x, int n, int limbs)
 {
 	balls_init(x, (size_t)n * (size_t)n, limbs);
 	x->n = n;
-	x->count = ARRAY(int, (size_t)n);
+	x->count = ARRAY(int, n);
 	x->column = ARRAY(int, (size_t)n * (size_t)n);
 }
 
@@ -175,8 +175,8 @@ void row_init(struct row *row, int n, int capacity, int limbs)
 {
 	*row = (struct row){ .n = n,
 			     .limbs = limbs,
-			     .part = ARRAY(struct part, (size_t)capacity),
-			     .cell = ARRAY(struct cell, (size_t)n),
+			     .part = ARRAY(struct part, capacity),
+			     .cell = ARRAY(struct cell, n),
 			     .accumulator = ARRAY(mp_limb_t, (size_t)n * ((size_t)limbs + 2)),
 			     .product = ARRAY(mp_limb_t, 2 * (size_t)limbs) };
 }

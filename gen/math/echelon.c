@@ -4,7 +4,7 @@
 
 struct echelon echelon_new(int width)
 {
-	return (struct echelon){ width, 0, ARRAY(mpq_t *, (size_t)width), ARRAY(int, (size_t)width) };
+	return (struct echelon){ width, 0, ARRAY(mpq_t *, width), ARRAY(int, width) };
 }
 
 void echelon_add(struct echelon *e, mpq_t *row)
@@ -35,14 +35,14 @@ void echelon_add(struct echelon *e, mpq_t *row)
 int echelon_null_space(const struct echelon *e, mpq_t ***basis)
 {
 	int count = 0;
-	bool *pivot = ARRAY(bool, (size_t)e->width);
-	*basis = ARRAY(mpq_t *, (size_t)e->width);
+	bool *pivot = ARRAY(bool, e->width);
+	*basis = ARRAY(mpq_t *, e->width);
 	for (int r = 0; r < e->rank; r++)
 		pivot[e->pivot[r]] = true;
 	for (int j = 0; j < e->width; j++) {
 		if (pivot[j])
 			continue;
-		mpq_t *v = rationals((size_t)e->width);
+		mpq_t *v = rationals(e->width);
 		mpq_set_ui(v[j], 1, 1);
 		for (int r = 0; r < e->rank; r++)
 			mpq_neg(v[e->pivot[r]], e->row[r][j]);

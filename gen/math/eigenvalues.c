@@ -42,7 +42,7 @@ bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
 
 double spectral_radius(int n, const double *A)
 {
-	SCRATCH double *re = ARRAY(double, (size_t)n), *im = ARRAY(double, (size_t)n);
+	SCRATCH double *re = ARRAY(double, n), *im = ARRAY(double, n);
 	double radius = 0;
 	bool found = find(n, A, re, im);
 	for (int i = 0; i < n; i++)

@@ -21,7 +21,7 @@ static void set_value(mpq_ptr value, int index)
 /* Point 0 is the base of the lines and pairs; the others are for fitting and checking. */
 mpq_t *scattered_values(int params, int number)
 {
-	mpq_t *values = rationals((size_t)params);
+	mpq_t *values = rationals(params);
 	for (int k = 0; k < params; k++)
 		set_value(values[k], number * LIMIT_TUNABLES + k);
 	return values;
@@ -87,7 +87,7 @@ static bool try_exponents(struct fit *f, int k, int most)
 	const int count = 2 * most + 1;
 	int unused;
 	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
-	      *y = rationals((size_t)count), *c = rationals((size_t)count), *sum = rationals(2);
+	      *y = rationals(count), *c = rationals(count), *sum = rationals(2);
 	for (int i = 0; i < count; i++) {
 		mpq_t *at = near_base(f, k, i, k, 0);
 		mpq_set(y[i], value_at(f, at));
@@ -169,8 +169,8 @@ static bool fit_products(struct fit *f)
 {
 	int count = f->products, unused;
 	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
-	      *y = rationals((size_t)count), *sum = rationals(2);
-	f->factor = rationals((size_t)count);
+	      *y = rationals(count), *sum = rationals(2);
+	f->factor = rationals(count);
 	for (int i = 0; i < count; i++) {
 		const mpq_t *at = scattered(f, i + 1);
 		mpq_set(y[i], value_at(f, at));

@@ -24,16 +24,16 @@ static struct invariants *invariants_new(int n, const mpq_t *A)
 	struct invariants *of = NEW(struct invariants);
 	const size_t cells = (size_t)n * (size_t)n;
 	*of = (struct invariants){ .n = n, .A = A };
-	of->scale = ARRAY(double, (size_t)n);
-	of->re = ARRAY(double, (size_t)n);
-	of->im = ARRAY(double, (size_t)n);
+	of->scale = ARRAY(double, n);
+	of->re = ARRAY(double, n);
+	of->im = ARRAY(double, n);
 	of->V_re = ARRAY(double, cells);
 	of->V_im = ARRAY(double, cells);
 	of->W_re = ARRAY(double, cells);
 	of->W_im = ARRAY(double, cells);
 	for (int i = 0; i < n * n; i++)
 		of->cells += mpq_sgn(A[i]) != 0;
-	of->cell = ARRAY(struct cell, (size_t)of->cells + 1);
+	of->cell = ARRAY(struct cell, of->cells + 1);
 	for (int i = 0, c = 0; i < n * n; i++)
 		if (mpq_sgn(A[i]) != 0)
 			of->cell[c++] = (struct cell){ i / n, i % n };
@@ -190,10 +190,10 @@ static int by_size(const void *a, const void *b)
 
 static void find_parts(struct invariants *of, bool symmetric)
 {
-	SCRATCH int *parent = ARRAY(int, (size_t)of->n);
+	SCRATCH int *parent = ARRAY(int, of->n);
 	double largest = 0;
-	of->part = ARRAY(struct invariant, (size_t)of->n);
-	of->member = ARRAY(int, (size_t)of->n);
+	of->part = ARRAY(struct invariant, of->n);
+	of->member = ARRAY(int, of->n);
 	for (int i = 0; i < of->n; i++) {
 		parent[i] = i;
 		largest = hypot(of->re[i], of->im[i]) > largest ? hypot(of->re[i], of->im[i]) : largest;
@@ -341,7 +341,7 @@ static bool conjugate_column(struct invariants *of, int j, bool *taken)
 
 static bool find_bases(struct invariants *of, int leading)
 {
-	SCRATCH bool *taken = ARRAY(bool, (size_t)of->n);
+	SCRATCH bool *taken = ARRAY(bool, of->n);
 	bool good = true;
 	for (int i = 0; i < of->n; i++)
 		taken[i] = of->im[i] >= 0;      /* not one of those that are nobody's */
@@ -354,7 +354,7 @@ static bool find_bases(struct invariants *of, int leading)
 		else
 			scale_to_largest(of, of->member[part->first], leading);
 	}
-	SCRATCH bool *nobody = ARRAY(bool, (size_t)of->n);
+	SCRATCH bool *nobody = ARRAY(bool, of->n);
 	for (int i = 0; i < of->n; i++)
 		nobody[i] = of->im[i] < 0 && !taken[i];
 	for (int i = 0; i < of->n && good; i++)

@@ -113,7 +113,7 @@ struct members {                    /* the rows and columns of one block */
 
 static struct members members_of(int n, const int *block, int which)
 {
-	struct members m = { 0, 0, ARRAY(int, (size_t)n), ARRAY(int, (size_t)n) };
+	struct members m = { 0, 0, ARRAY(int, n), ARRAY(int, n) };
 	for (int i = 0; i < n; i++) {
 		if (block[i] == which)
 			m.row[m.rows++] = i;
@@ -129,7 +129,7 @@ static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t 
 {
 	int size = m->columns, width = 2 * size, dependent;
 	mpz_t *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size);
-	RATIONALS *row = rationals((size_t)size);
+	RATIONALS *row = rationals(size);
 	INTEGER det = INTEGER_ZERO;
 	for (int i = 0; i < size; i++) {
 		for (int j = 0; j < size && i < m->rows; j++)

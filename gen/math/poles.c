@@ -42,7 +42,7 @@ static bool start_by_gsl(struct poly g, struct iteration *it)
 {
 	int d = it->degree;
 	long scale = root_scale(g), top = 0;
-	double *a = ARRAY(double, (size_t)d + 1), *z = ARRAY(double, 2 * (size_t)d);
+	double *a = ARRAY(double, d + 1), *z = ARRAY(double, 2 * (size_t)d);
 	for (int k = 0; k <= d; k++) {
 		long exponent;
 		if (mpz_sgn(g.c[k]) == 0)
@@ -120,9 +120,9 @@ static void iteration_new(struct poly g, struct iteration *it)
 {
 	it->degree = g.length - 1;
 	it->bits = START_BITS;
-	it->z = ARRAY(mpc_t, (size_t)it->degree);
-	it->center = ARRAY(struct rectangle, (size_t)it->degree);
-	it->radius = ARRAY(mpfr_t, (size_t)it->degree);
+	it->z = ARRAY(mpc_t, it->degree);
+	it->center = ARRAY(struct rectangle, it->degree);
+	it->radius = ARRAY(mpfr_t, it->degree);
 	for (int i = 0; i < it->degree; i++) {
 		mpc_init2(it->z[i], START_BITS);
 		rectangle_init(&it->center[i], START_BITS);
@@ -263,7 +263,7 @@ static bool stick_together(mpc_srcptr a, mpc_srcptr b, int bits)
  * than two bits each. */
 static void part_cluster(struct poly g, struct iteration *it, const int *member, int m, int bits)
 {
-	SCRATCH mpc_t *c = ARRAY(mpc_t, (size_t)m + 1);
+	SCRATCH mpc_t *c = ARRAY(mpc_t, m + 1);
 	mpc_t mean, step;
 	mpc_init2(mean, bits);
 	mpc_init2(step, bits);
@@ -299,8 +299,8 @@ static void part_cluster(struct poly g, struct iteration *it, const int *member,
 /* Before a round with more bits: roots that those so far did not part */
 static void part_clusters(struct poly g, struct iteration *it, int bits)
 {
-	SCRATCH int *member = ARRAY(int, (size_t)it->degree);
-	SCRATCH bool *done = ARRAY(bool, (size_t)it->degree);
+	SCRATCH int *member = ARRAY(int, it->degree);
+	SCRATCH bool *done = ARRAY(bool, it->degree);
 	for (int i = 0; i < it->degree; i++) {
 		int m = 0;
 		for (int j = i; j < it->degree && !done[i]; j++)
@@ -507,7 +507,7 @@ static void make_room_for_poles(struct spectrum *spectrum)
 	for (int f = 0; f < spectrum->factors; f++) {
 		int degree = spectrum->factor[f].g.length - 1;
 		iteration_new(spectrum->factor[f].g, &spectrum->iteration[f]);
-		spectrum->pole[f] = ARRAY(struct pole, (size_t)degree);
+		spectrum->pole[f] = ARRAY(struct pole, degree);
 		for (int i = 0; i < degree; i++)
 			rectangle_init(&spectrum->pole[f][i].at, START_BITS);
 	}
@@ -583,7 +583,7 @@ void spectrum_expect(struct spectrum *spectrum, int count, const double *re, con
 	    spectrum->iteration->degree + spectrum->zero != count)
 		return;
 	struct iteration *it = spectrum->iteration;
-	SCRATCH bool *zero = ARRAY(bool, (size_t)count);
+	SCRATCH bool *zero = ARRAY(bool, count);
 	for (int k = 0; k < spectrum->zero; k++) {
 		int least = -1;
 		for (int i = 0; i < count; i++)

@@ -4,7 +4,7 @@
 
 struct poly poly_new(int length)
 {
-	struct poly p = { length, ARRAY(mpz_t, (size_t)length) };
+	struct poly p = { length, ARRAY(mpz_t, length) };
 	for (int i = 0; i < length; i++)
 		mpz_init(p.c[i]);
 	return p;
@@ -213,7 +213,7 @@ static uint64_t inverse_mod(uint64_t a)
 
 static uint64_t *reduce(struct poly a)
 {
-	uint64_t *r = ARRAY(uint64_t, (size_t)a.length);
+	uint64_t *r = ARRAY(uint64_t, a.length);
 	for (int i = 0; i < a.length; i++)
 		r[i] = mpz_fdiv_ui(a.c[i], SCREEN_PRIME);
 	return r;

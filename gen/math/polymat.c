@@ -50,7 +50,7 @@ static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 /* Newton's divided differences, over Q, then the powers of s; the result is integral. */
 static struct poly interpolate(int count, const long *point, const mpz_t *value)
 {
-	mpq_t *difference = rationals((size_t)count), *c = rationals((size_t)count);
+	mpq_t *difference = rationals(count), *c = rationals(count);
 	RATIONAL factor = ZERO;
 	for (int i = 0; i < count; i++)
 		mpq_set_z(difference[i], value[i]);
@@ -127,8 +127,8 @@ static struct poly determinant(struct polymat P, struct polymat *adj);
 int polymat_determinants(struct polymat P, struct poly **det)
 {
 	int *block = ARRAY(int, 2 * (size_t)P.n), blocks = find_blocks(P, block);
-	struct polymat *part = ARRAY(struct polymat, (size_t)blocks);
-	*det = ARRAY(struct poly, (size_t)blocks + 1);
+	struct polymat *part = ARRAY(struct polymat, blocks);
+	*det = ARRAY(struct poly, blocks + 1);
 	for (int k = 0; k < blocks; k++) {
 		int same = 0;
 		if (!part_of(P, block, k, &part[k])) {
@@ -160,13 +160,12 @@ void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 static struct poly determinant(struct polymat P, struct polymat *adj)
 {
 	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
-	long *point = ARRAY(long, (size_t)count);
-	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count),
-	      **adjs = ARRAY(mpz_t *, (size_t)count);
+	long *point = ARRAY(long, count);
+	mpz_t *dets = ARRAY(mpz_t, count), *column = ARRAY(mpz_t, count), **adjs = ARRAY(mpz_t *, count);
 	for (int found = 0, tried = 0; found < count; tried++) {        /* 0, 1, -1, 2, -2, ... where P is regular */
 		point[found] = tried % 2 ? (tried + 1) / 2 : -(tried / 2);
 		progress("B(s), point", found, count);
-		adjs[found] = ARRAY(mpz_t, (size_t)cells);
+		adjs[found] = ARRAY(mpz_t, cells);
 		mpz_init(dets[found]);
 		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
 	}

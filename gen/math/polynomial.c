@@ -23,7 +23,7 @@ static struct taylor *shortest_time(struct taylor *t)
 
 static bool *find_cyclic(const struct taylor *t)
 {
-	bool *cyclic = ARRAY(bool, (size_t)t->n);
+	bool *cyclic = ARRAY(bool, t->n);
 	for (int i = 0; i < t->n; i++)
 		for (int j = 0; j < t->n; j++)
 			cyclic[i] = cyclic[i] || (t->B_size[i * t->n + j].m && leads(t, j, i));
@@ -109,10 +109,9 @@ static bool *find_survivors(const struct taylor *t)
 	int n = t->n;
 	size_t cells = (size_t)n * (size_t)n;
 	bool *survivor = ARRAY(bool, cells);
-	SCRATCH uint64_t *A = ARRAY(uint64_t, cells), *power = ARRAY(uint64_t, cells),
-			 *row = ARRAY(uint64_t, (size_t)n);
-	SCRATCH unsigned __int128 *sum = ARRAY(unsigned __int128, (size_t)n);
-	SCRATCH int *state = ARRAY(int, (size_t)n);
+	SCRATCH uint64_t *A = ARRAY(uint64_t, cells), *power = ARRAY(uint64_t, cells), *row = ARRAY(uint64_t, n);
+	SCRATCH unsigned __int128 *sum = ARRAY(unsigned __int128, n);
+	SCRATCH int *state = ARRAY(int, n);
 	uint64_t prime = reduce(t, A);
 	modular_power(n, prime, A, n, sum, power);
 	for (int i = 0; i < n; i++) {
@@ -244,7 +243,7 @@ static void find_row(const struct taylor *t, struct exact_row *found)
 static struct exact_row *exact_row_of(const struct taylor *t, int i, int N, const int *state, bool cycle)
 {
 	struct exact_row *found = NEW(struct exact_row);
-	*found = (struct exact_row){ i, N, ARRAY(int, (size_t)N), ARRAY(bool, (size_t)N), rationals((size_t)N) };
+	*found = (struct exact_row){ i, N, ARRAY(int, N), ARRAY(bool, N), rationals(N) };
 	for (int a = 0; a < N; a++) {
 		found->state[a] = state[a];
 		found->polynomial[a] = !cycle || t->survivor[i * t->n + state[a]];
@@ -288,7 +287,7 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact)
 	struct taylor *first = shortest_time(t);
 	if (!t->cyclic)
 		t->cyclic = first->cyclic = first->cyclic ? first->cyclic : find_cyclic(first);
-	SCRATCH int *state = ARRAY(int, (size_t)t->n);
+	SCRATCH int *state = ARRAY(int, t->n);
 	bool cycle;
 	int N = walked_states(t, i, j, state, &cycle);
 	if (cycle && !t->survivor)

@@ -4,7 +4,7 @@
 
 struct rectangle *rectangles(int count, int precision)
 {
-	struct rectangle *z = ARRAY(struct rectangle, (size_t)count);
+	struct rectangle *z = ARRAY(struct rectangle, count);
 	for (int i = 0; i < count; i++)
 		rectangle_init(&z[i], precision);
 	return z;
@@ -99,7 +99,7 @@ static void eliminate(int n, struct rectangle *P, int k)
 
 bool null_rectangles(int n, struct rectangle *P, struct rectangle *v)
 {
-	SCRATCH int *column = ARRAY(int, (size_t)n);
+	SCRATCH int *column = ARRAY(int, n);
 	bool good = true;
 	for (int i = 0; i < n; i++)
 		column[i] = i;

@@ -49,13 +49,13 @@ static void set_coefficient(mpq_ptr q, struct poly p, int k)
 static void residue_at_zero(struct response *response)
 {
 	int m = response->spectrum->zero;
-	mpq_t *n = rationals((size_t)m), *v = rationals((size_t)m), *a = rationals((size_t)m);
+	mpq_t *n = rationals(m), *v = rationals(m), *a = rationals(m);
 	for (int k = 0; k < m; k++) {
 		set_coefficient(n[k], response->N, k);
 		set_coefficient(v[k], response->spectrum->D, m + k);
 	}
 	series_quotient(m, n, v, a);
-	response->at_zero = rationals((size_t)m);
+	response->at_zero = rationals(m);
 	for (int k = 0; k < m; k++)
 		mpq_set(response->at_zero[k], a[m - 1 - k]);
 }
@@ -101,8 +101,8 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 static bool residue_vanishes(const struct response *response, const struct factor *factor, mpq_srcptr tau)
 {
 	int m = factor->multiplicity;
-	struct poly *v = ARRAY(struct poly, (size_t)m), *v0 = ARRAY(struct poly, (size_t)m + 1),
-		    *w = ARRAY(struct poly, (size_t)m);
+	struct poly *v = ARRAY(struct poly, m), *v0 = ARRAY(struct poly, m + 1),
+		    *w = ARRAY(struct poly, m);
 	v0[0] = poly_new(1);
 	mpz_set_ui(v0[0].c[0], 1);
 	for (int k = 0; k < m; k++) {
@@ -163,10 +163,10 @@ static struct growth *denominator_series(struct spectrum *spectrum, int precisio
 	growth->precision = precision;
 	growth->course = ARRAY(struct course, LIMIT_COURSES);
 	mpq_init(growth->stride);
-	growth->series = ARRAY(struct rectangle **, (size_t)spectrum->factors);
+	growth->series = ARRAY(struct rectangle **, spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++) {
 		int m = spectrum->factor[f].multiplicity;
-		growth->series[f] = ARRAY(struct rectangle *, (size_t)spectrum->poles[f]);
+		growth->series[f] = ARRAY(struct rectangle *, spectrum->poles[f]);
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			growth->series[f][i] = rectangles(m, precision + GUARD_BITS);
 		for (int k = 0; k < m; k++) {
@@ -187,7 +187,7 @@ static void exponentials_at(const struct spectrum *spectrum, mpq_srcptr tau, str
 
 static struct rectangle **room_for_exponentials(const struct spectrum *spectrum, int precision)
 {
-	struct rectangle **room = ARRAY(struct rectangle *, (size_t)spectrum->factors);
+	struct rectangle **room = ARRAY(struct rectangle *, spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++)
 		room[f] = rectangles(spectrum->poles[f], precision);
 	return room;
@@ -302,9 +302,9 @@ static void find_residues(struct response *response, int precision)
 	const struct spectrum *spectrum = response->spectrum;
 	if (response->precision >= precision)
 		return;
-	response->residue = ARRAY(struct rectangle **, (size_t)spectrum->factors);
+	response->residue = ARRAY(struct rectangle **, spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++) {
-		response->residue[f] = ARRAY(struct rectangle *, (size_t)spectrum->poles[f]);
+		response->residue[f] = ARRAY(struct rectangle *, spectrum->poles[f]);
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			response->residue[f][i] = residue_series(response, f, i, precision);
 	}

@@ -52,7 +52,7 @@ static double largest_row(const struct stream *f, const double *A)
 
 static mpfi_t *enclosures(int count, int precision)
 {
-	mpfi_t *x = ARRAY(mpfi_t, (size_t)count);
+	mpfi_t *x = ARRAY(mpfi_t, count);
 	for (int i = 0; i < count; i++) {
 		mpfi_init2(x[i], precision);
 		mpfi_set_ui(x[i], 0);
@@ -63,7 +63,7 @@ static mpfi_t *enclosures(int count, int precision)
 static void take_entries(struct stream *f, const mpq_t *A)
 {
 	int count = 0;
-	f->first = ARRAY(int, (size_t)f->n + 1);
+	f->first = ARRAY(int, f->n + 1);
 	f->column = ARRAY(int, (size_t)(f->n * f->n));
 	for (int i = 0; i < f->n; i++) {
 		for (int j = 0; j < f->n; j++)
@@ -83,7 +83,7 @@ struct stream *stream_of(int n, const mpq_t *A, mpq_srcptr h, int precision)
 	double *size = ARRAY(double, (size_t)(n * n)), whole = mpq_get_d(h);
 	f->n = n;
 	f->precision = precision;
-	f->scale = ARRAY(double, (size_t)n);
+	f->scale = ARRAY(double, n);
 	for (int i = 0; i < n * n; i++)
 		size[i] = fabs(mpq_get_d(A[i])) * (1 + 1e-15);
 	for (int i = 0; i < n; i++)

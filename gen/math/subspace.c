@@ -190,7 +190,7 @@ static void correct(const struct correcting *w, bool transposed, mpfr_t *X, mpfr
 	SCRATCH double *r = ARRAY(double, 4 * (size_t)n);
 	double *r_im = r + n, *e = r + 2 * n, *e_im = r + 3 * n;
 	const double sign = transposed ? -1 : 1;        /* y = y1 - i y2 */
-	SCRATCH bool *own = ARRAY(bool, (size_t)n);
+	SCRATCH bool *own = ARRAY(bool, n);
 	for (int a = 0; a < w->part->members; a++)
 		own[of->member[w->part->first + a]] = true;
 	for (int a = 0; a < w->part->members; a++) {

@@ -195,7 +195,7 @@ static int largest_entry(const struct rotating *r, int j)
 
 static void place_block(const struct rotating *r, int first, struct eigenpairs *pairs)
 {
-	int n = r->n, *rank = ARRAY(int, (size_t)n);
+	int n = r->n, *rank = ARRAY(int, n);
 	for (int j = 0; j < n; j++)
 		for (int k = 0; k < n; k++) {
 			int order = mpfr_cmp(r->A[k * n + k], r->A[j * n + j]);
@@ -265,7 +265,7 @@ static bool is_residual_small(const struct eigenpairs *pairs, const mpq_t *M, co
 static bool solve(int n, const mpq_t *M, const mpq_t *K, const int *block, int blocks, int precision,
 		  struct eigenpairs *pairs)
 {
-	struct rotating r = { .precision = precision, .coord = ARRAY(int, (size_t)n) };
+	struct rotating r = { .precision = precision, .coord = ARRAY(int, n) };
 	size_t cells = (size_t)n * (size_t)n;
 	bool good = true;
 	int first = 0;
@@ -274,7 +274,7 @@ static bool solve(int n, const mpq_t *M, const mpq_t *K, const int *block, int b
 	r.A = reals(cells, precision);
 	r.V = reals(cells, precision);
 	*pairs = (struct eigenpairs){ .n = n, .value = reals((size_t)n, precision),
-				      .vector = reals(cells, precision), .block = ARRAY(int, (size_t)n) };
+				      .vector = reals(cells, precision), .block = ARRAY(int, n) };
 	for (int b = 0; b < blocks && good; b++, first += r.n) {
 		r.n = 0;
 		for (int i = 0; i < n; i++)

@@ -138,8 +138,8 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau)
 			      .B = rationals(cells),
 			      .B_size = ARRAY(struct magnitude, cells),
 			      .distance = ARRAY(int, cells),
-			      .scale = ARRAY(long, (size_t)n),
-			      .least = ARRAY(long, (size_t)n + 1) };
+			      .scale = ARRAY(long, n),
+			      .least = ARRAY(long, n + 1) };
 	mpq_init(t->tau);
 	mpq_set(t->tau, tau);
 	for (size_t i = 0; i < cells; i++) {
@@ -288,7 +288,7 @@ static void sum_series(struct row *row, const struct taylor *t, const struct pla
 {
 	int n = t->n, q = plan->block;
 	size_t cells = (size_t)n * (size_t)n;
-	struct balls *power = ARRAY(struct balls, (size_t)q + 1), leading, c;   /* power[r] = B^r, r >= 1 */
+	struct balls *power = ARRAY(struct balls, q + 1), leading, c;   /* power[r] = B^r, r >= 1 */
 	for (int r = 1; r <= q; r++)
 		balls_init_matrix(&power[r], n, row->limbs);
 	balls_init_matrix(&leading, n, row->limbs);

@@ -135,7 +135,7 @@ struct spread spread_of(int n, const double *A, long steps)
 struct sparse sparse_of(int rows, int columns, const double *A)
 {
 	struct sparse s = { .rows = rows,
-			    .start = ARRAY(int, (size_t)rows + 1),
+			    .start = ARRAY(int, rows + 1),
 			    .column = ARRAY(int, (size_t)(rows * columns)),
 			    .value = ARRAY(double, (size_t)(rows * columns)) };
 	for (int i = 0; i < rows; i++) {
@@ -199,8 +199,7 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 	enum { LOOKS = 64, WALKED = 30000000, HEAD = 2000000 }; /* products: of all steps, else of the first */
 	const int n = s->n;
 	const long last = s->steps <= WALKED / (n * n) ? s->steps : HEAD / (n * n) + 1;
-	SCRATCH double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n),
-		       *tail = ARRAY(double, (size_t)n);
+	SCRATCH double *x = ARRAY(double, n), *next = ARRAY(double, n), *tail = ARRAY(double, n);
 	const struct sparse matrix = sparse_of(n, n, A);
 	double largest = 0;
 	long m = 0;

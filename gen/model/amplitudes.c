@@ -49,8 +49,8 @@ static bool same_breakpoints(const struct switching *a, const struct switching *
 		    a->parts == b->parts;
 	for (int i = 0; i < a->expressions && same; i++) {
 		const struct expression *e = &a->expression[i], *f = &b->expression[i];
-		same = e->breaks == f->breaks && rationals_equal((size_t)e->breaks, e->at, f->at) &&
-		       rationals_equal((size_t)states, e->row->state, f->row->state);
+		same = e->breaks == f->breaks && rationals_equal(e->breaks, e->at, f->at) &&
+		       rationals_equal(states, e->row->state, f->row->state);
 	}
 	return same;
 }
@@ -94,6 +94,6 @@ bool differ_in_loads(const struct model *a, const struct model *b)
 {
 	bool loads = false;
 	return mpq_equal(a->h, b->h) && same_but_loads(&a->system, &b->system, &loads) &&
-	       rationals_equal((size_t)a->system.states, a->initial, b->initial) && same_leftovers(a, b) &&
+	       rationals_equal(a->system.states, a->initial, b->initial) && same_leftovers(a, b) &&
 	       same_regions(a, b, &loads) && loads;
 }

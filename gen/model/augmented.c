@@ -11,13 +11,13 @@ static struct layout place(const struct linear *system, int powers, const bool *
 		x.size += system->n;
 	}
 	x.first_load = x.size;
-	x.load = ARRAY(int, (size_t)system->loads);
+	x.load = ARRAY(int, system->loads);
 	for (int l = 0; l < system->loads; l++) {
 		x.load[l] = needed[l] ? x.first_load + x.loads : -1;
 		x.loads += needed[l] ? system->load[l].columns : 0;
 	}
 	x.size += segments * x.loads;
-	x.input = ARRAY(int, (size_t)system->inputs);
+	x.input = ARRAY(int, system->inputs);
 	for (int i = 0; i < system->inputs; i++) {
 		x.input[i] = x.size;
 		x.size += system->input[i].hold + 1;
@@ -29,7 +29,7 @@ static struct layout place(const struct linear *system, int powers, const bool *
 
 struct layout layout_of(const struct linear *system, int powers)
 {
-	bool *acting = ARRAY(bool, (size_t)system->loads);
+	bool *acting = ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		acting[l] = load_acts(system, &system->load[l]);
 	return place(system, powers, acting, 1, system->heldK);
@@ -40,7 +40,7 @@ struct layout layout_of_segments(const struct linear *system, int powers)
 	struct layout one = layout_of(system, powers);
 	if (system->segments * one.loads > one.size)
 		return one;
-	bool *acting = ARRAY(bool, (size_t)system->loads);
+	bool *acting = ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		acting[l] = one.load[l] >= 0;
 	return place(system, powers, acting, system->segments, system->heldK);
@@ -53,7 +53,7 @@ struct layout layout_with(const struct linear *system, int powers, const bool *n
 
 struct layout layout_of_columns(const struct linear *system)
 {
-	bool *all = ARRAY(bool, (size_t)system->loads);
+	bool *all = ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		all[l] = true;
 	return place(system, 0, all, system->segments, false);
@@ -71,7 +71,7 @@ static void name_loads(const struct layout *x, const struct linear *system, cons
 
 const char **layout_names(const struct layout *x, const struct linear *system, const struct model *model)
 {
-	const char **name = ARRAY(const char *, (size_t)x->size);
+	const char **name = ARRAY(const char *, x->size);
 	for (int i = 0; i < system->states; i++)
 		name[i] = model->state_name[i];
 	for (int i = 0; i < system->n && x->held >= 0; i++)
@@ -108,7 +108,7 @@ static void fill_force(mpq_t *A, int size, int at, const struct linear *system, 
 		       const mpq_t *force)
 {
 	int n = system->n;
-	mpq_t *product = rationals((size_t)n);
+	mpq_t *product = rationals(n);
 	rational_product(n, n, 1, inverse, force, product);
 	for (int i = 0; i < n; i++) {
 		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
@@ -128,7 +128,7 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 {
 	int n = system->n, size = x->size, states = system->states, column;
 	RATIONALS *inverse = rationals((size_t)(n * n));
-	mpq_t *A = rationals((size_t)size * (size_t)size), *unit = rationals((size_t)n);
+	mpq_t *A = rationals((size_t)size * (size_t)size), *unit = rationals(n);
 	RATIONALS *own = state_matrix(system, false);
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < states; i++)

@@ -67,20 +67,20 @@ static void restrict_system(const struct linear *whole, struct block *b)
 	system->K = submatrix(whole->K, n, b);
 	system->heldC = submatrix(whole->heldC, n, b);
 	system->heldK = submatrix(whole->heldK, n, b);
-	system->load = ARRAY(struct load, (size_t)whole->loads);
+	system->load = ARRAY(struct load, whole->loads);
 	for (int l = 0; l < whole->loads; l++) {
 		system->load[l] = whole->load[l];
-		system->load[l].force = ARRAY(mpq_t *, (size_t)whole->load[l].columns);
+		system->load[l].force = ARRAY(mpq_t *, whole->load[l].columns);
 		for (int k = 0; k < whole->load[l].columns; k++)
 			system->load[l].force[k] = subvector(whole->load[l].force[k], whole->segments, n, b);
 	}
-	system->input = ARRAY(struct input, (size_t)whole->inputs);
+	system->input = ARRAY(struct input, whole->inputs);
 	for (int i = 0; i < whole->inputs; i++) {
 		system->input[i] = whole->input[i];
 		for (int k = 0; k < 2; k++)
 			system->input[i].force[k] = subvector(whole->input[i].force[k], 1, n, b);
 	}
-	system->channel = ARRAY(mpq_t *, (size_t)whole->channels);
+	system->channel = ARRAY(mpq_t *, whole->channels);
 	for (int e = 0; e < whole->channels; e++)
 		system->channel[e] = subvector(whole->channel[e], 1, n, b);
 }
@@ -88,7 +88,7 @@ static void restrict_system(const struct linear *whole, struct block *b)
 struct block block_at(const struct linear *system, int *parent, int coord)
 {
 	int n = system->n, equations = 0, of = root_of_node(parent, n + coord);
-	struct block b = { .system = *system, .equation = ARRAY(int, (size_t)n), .coord = ARRAY(int, (size_t)n) };
+	struct block b = { .system = *system, .equation = ARRAY(int, n), .coord = ARRAY(int, n) };
 	b.system.n = 0;
 	for (int i = 0; i < n; i++) {
 		if (root_of_node(parent, n + i) == of)
@@ -112,7 +112,7 @@ bool is_seen_before(int n, int *parent, int coord)
 int blocks_of(const struct linear *system, struct block **blocks)
 {
 	int n = system->n, count = 0, *parent = components(system);
-	*blocks = ARRAY(struct block, (size_t)n);
+	*blocks = ARRAY(struct block, n);
 	/* a block for each component, in the order of their first coordinates */
 	for (int j = 0; j < n; j++)
 		if (!is_seen_before(n, parent, j))

@@ -99,7 +99,7 @@ void evaluate_absolutes(struct building *b)
 	struct model *model = b->model;
 	if (!b->spec->absolute && b->spec->absolutes == 0)
 		return;
-	model->truncation.absolute = rationals((size_t)model->system.states);
+	model->truncation.absolute = rationals(model->system.states);
 	if (model->relative) {
 		relative_absolutes(model);
 		return;

@@ -108,10 +108,10 @@ static void build_delays(void *context)
 	check_request(b, s);
 	number_inputs(spec);
 	delays->name = b->model->name;
-	delays->delay = ARRAY(struct delay, (size_t)spec->inputs);
+	delays->delay = ARRAY(struct delay, spec->inputs);
 	mpq_init(delays->h);
 	mpq_set(delays->h, b->model->h);
-	mpq_t *d = rationals((size_t)spec->inputs);
+	mpq_t *d = rationals(spec->inputs);
 	bool good = true;
 	for (; s; s = next_delayed(s->next)) {
 		struct delaying work = { b, s, d[delays->count] };

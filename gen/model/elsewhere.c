@@ -56,7 +56,7 @@ static const struct tunable *suspect(struct elsewhere *s, bool (*same)(const str
 		if (s->factor && !s->factor[k])
 			continue;
 		first = first < 0 ? k : first;
-		s->values = rationals_copied((size_t)t->params, t->nominal);
+		s->values = rationals_copied(t->params, t->nominal);
 		mpq_set(s->values[k], scattered_near(t->params, 0, s->near)[k]);
 		if (silent_guard(build_there, s) && !same(pattern(s), s->found))
 			return &t->param[k];
@@ -72,7 +72,7 @@ void tell_difference(struct elsewhere *s, const struct difference *difference)
 
 static void find_changing(struct elsewhere *s)
 {
-	s->place = ARRAY(ptrdiff_t, (size_t)s->entries);
+	s->place = ARRAY(ptrdiff_t, s->entries);
 	for (ptrdiff_t i = 0; i < s->entries; i++) {
 		bool changes = false;
 		for (int p = 1; p < s->points; p++)
@@ -112,7 +112,7 @@ static void forget(struct elsewhere *s)
 static int point_with(const struct elsewhere *s, const mpq_t *values)
 {
 	for (int i = 0; i < s->points; i++)
-		if (rationals_equal((size_t)s->tuning->params, s->point[i], values))
+		if (rationals_equal(s->tuning->params, s->point[i], values))
 			return i;
 	return -1;
 }
@@ -123,7 +123,7 @@ static int look(struct elsewhere *s, const mpq_t *values)
 	const int known = point_with(s, values);
 	if (known >= 0)
 		return known;
-	mpq_t *at = s->values = rationals_copied((size_t)s->tuning->params, values);
+	mpq_t *at = s->values = rationals_copied(s->tuning->params, values);
 	if (!silent_guard(build_there, s))
 		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model");
 	for (int i = 0; i < s->differences; i++)

@@ -88,7 +88,7 @@ void collect_equations(struct building *b, struct snapshot *snapshot)
 		if (b->spec->equation[i].right)
 			statement_guard(collect_equation, &(struct indexed){ b, snapshot, i });
 	snapshot->written = snapshot->residuals;
-	snapshot->element = ARRAY(struct form *, (size_t)b->spec->elements);
+	snapshot->element = ARRAY(struct form *, b->spec->elements);
 	for (int i = 0; i < b->spec->elements && *changes == known; i++)
 		statement_guard(collect_element, &(struct indexed){ b, snapshot, i });
 }
@@ -241,13 +241,13 @@ bool assign_equations(struct building *b)
 		return true;
 	}
 	int n = b->model->n, written = b->snapshot->written, all = written, surplus = -1, missing = -1;
-	b->owner = ARRAY(int, (size_t)n);
+	b->owner = ARRAY(int, n);
 	for (int j = 0; j < n; j++)
 		b->owner[j] = -1;
-	bool *owns = ARRAY(bool, (size_t)written);
+	bool *owns = ARRAY(bool, written);
 	for (enum choice choice = UNTOUCHED; choice <= ANY; choice++)
 		for (int i = 0; i < written; i++)
-			owns[i] = owns[i] || augment(b, i, choice, ARRAY(bool, (size_t)n));
+			owns[i] = owns[i] || augment(b, i, choice, ARRAY(bool, n));
 	for (int i = written - 1; i >= 0; i--)
 		surplus = owns[i] ? surplus : i;
 	for (int j = 0; j < n; j++) {
@@ -270,7 +270,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->components;
-	struct form **equation = ARRAY(struct form *, (size_t)written);
+	struct form **equation = ARRAY(struct form *, written);
 	for (int j = 0; j < written; j++)
 		equation[j] = s->residual[b->owner[j]].form;
 	for (int j = 0; j < written; j++)

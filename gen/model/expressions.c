@@ -104,7 +104,7 @@ static void add_term(const struct switching *s, struct expression *e, int segmen
 		     mpq_srcptr at)
 {
 	struct comparing *term = MORE(e->term, e->terms);
-	*term = (struct comparing){ .node = what->node, .seen = ARRAY(bool, (size_t)s->segments) };
+	*term = (struct comparing){ .node = what->node, .seen = ARRAY(bool, s->segments) };
 	term->seen[segment] = true;
 	mpq_init(term->first);
 	mpq_set(term->first, at);
@@ -225,8 +225,8 @@ static int new_expression(struct switching *s, int segment, const struct compare
 	ENLARGE(s->expression, (size_t)s->expressions + 1);
 	struct expression *e = &s->expression[s->expressions];
 	*e = (struct expression){ .form = what->form,
-				  .in = ARRAY(struct form *, (size_t)s->segments),
-				  .shift = rationals((size_t)s->segments),
+				  .in = ARRAY(struct form *, s->segments),
+				  .shift = rationals(s->segments),
 				  .segments = s->segments,
 				  .node = what->node,
 				  .met = what->met };

@@ -49,8 +49,8 @@ static bool sum_of_time(const struct form *force, bool minus, struct summand *su
 
 static bool stays_positive(const struct form *force, bool minus, mpq_srcptr from, mpq_srcptr to)
 {
-	struct summand *sum = ARRAY(struct summand, (size_t)force->terms + 1);
-	mpq_t *number = rationals((size_t)force->terms + 1);
+	struct summand *sum = ARRAY(struct summand, force->terms + 1);
+	mpq_t *number = rationals(force->terms + 1);
 	int summands;
 	return sum_of_time(force, minus, sum, &summands, number) && sum_stays_positive(summands, sum, from, to);
 }

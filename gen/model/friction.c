@@ -238,7 +238,7 @@ static struct place place_of_stuck(const struct stuck *stuck)
 
 static struct stuck *find_stuck(struct building *b, const struct switching *s, int index, int *count)
 {
-	struct stuck *stuck = ARRAY(struct stuck, (size_t)s->expressions);
+	struct stuck *stuck = ARRAY(struct stuck, s->expressions);
 	int segment = segment_of_region(s, index);
 	*count = 0;
 	for (int e = 0; e < s->expressions; e++) {
@@ -247,8 +247,8 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 		if (!is_stick(expression, interval))
 			continue;
 		struct stuck *new = &stuck[(*count)++];
-		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows),
-				       .share = rationals((size_t)s->frictions), .pivot = -1 };
+		*new = (struct stuck){ .expression = e, .direction = rationals(s->rows),
+				       .share = rationals(s->frictions), .pivot = -1 };
 		new->velocity = form_difference(form_in(expression, segment), form_constant(expression->at[interval]));
 		new->rate = rate_of_form(b, new->velocity);
 		int impact = impact_resting(s, segment, e, interval);
@@ -520,7 +520,7 @@ static void find_felt(void *context)
 
 static int *felt_in_segments(struct building *b, const struct switching *s, const struct atom *a)
 {
-	int *index = ARRAY(int, (size_t)s->segments);
+	int *index = ARRAY(int, s->segments);
 	bool any = false;
 	for (int k = 0; k < s->segments; k++) {
 		index[k] = friction_of(s, k, a);
@@ -567,7 +567,7 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int c = 0; c < model->channels && reads_leftover(model); c++)
 		feel(s, seen, model->operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
-		s->region[r].grip = ARRAY(struct output *, (size_t)s->felts);
+		s->region[r].grip = ARRAY(struct output *, s->felts);
 	for (int i = 0; i < s->felts; i++) {
 		bool slides = s->felt[i]->function == FN_SLIDE;
 		const int *index = slides ? NULL : felt_in_segments(b, s, s->felt[i]);

@@ -107,7 +107,7 @@ static void collect_impact(void *context)
 void collect_impacts(struct building *b, struct snapshot *snapshot)
 {
 	const struct spec *spec = b->spec;
-	snapshot->strike = ARRAY(struct strike *, (size_t)spec->whens);
+	snapshot->strike = ARRAY(struct strike *, spec->whens);
 	for (int i = 0; i < spec->whens; i++) {
 		struct strike *strike = NEW(struct strike);
 		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], strike }))
@@ -135,13 +135,13 @@ void gather_impacts(struct building *b)
 	const int segments = model->system.segments;
 	if (spec->whens > LIMIT_IMPACTS)
 		error(spec->when[LIMIT_IMPACTS].at, NULL, "more impacts than the limit of %d", LIMIT_IMPACTS);
-	model->impact = ARRAY(struct impact, (size_t)spec->whens);
+	model->impact = ARRAY(struct impact, spec->whens);
 	if (diagnostics_errors())
 		return;
 	model->impacts = spec->whens;
 	for (int i = 0; i < spec->whens; i++) {
 		struct impact *impact = &model->impact[i];
-		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, (size_t)segments) };
+		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, segments) };
 		for (int s = 0; s < segments; s++)
 			impact->in[s] = copied(b, impact->when, b->snapshot[s].strike[i]);
 	}
@@ -252,7 +252,7 @@ static void check_jump(struct building *b, const struct when *when, const struct
 static bool find_bounce(struct building *b, struct strike *strike)
 {
 	const struct linear *system = &b->model->system;
-	mpq_t *part = rationals((size_t)b->model->n);
+	mpq_t *part = rationals(b->model->n);
 	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
 	RATIONAL turned = ZERO, product = ZERO, rest = ZERO;
 	for (int i = 0; i < strike->jumps && bounce; i++) {
@@ -335,7 +335,7 @@ static mpq_t *inverse_masses(const struct building *b)
 static void find_jumps(struct building *b, const struct when *when, struct strike *strike)
 {
 	int n = b->model->n;
-	mpq_t *inverse = inverse_masses(b), *force = rationals((size_t)n), *d = rationals((size_t)n);
+	mpq_t *inverse = inverse_masses(b), *force = rationals(n), *d = rationals(n);
 	RATIONAL speed = ZERO, factor = ZERO;
 	add_row(b, when->from, 1, force);
 	add_row(b, when->to, -1, force);
@@ -360,8 +360,8 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 static void still_jumps(struct building *b, struct strike *strike)
 {
 	RATIONAL none = ZERO;
-	strike->still = ARRAY(struct jump, (size_t)b->model->n);
-	strike->jump = ARRAY(struct jump, (size_t)b->model->n);
+	strike->still = ARRAY(struct jump, b->model->n);
+	strike->jump = ARRAY(struct jump, b->model->n);
 	velocity_jumps(b, strike, none, strike->still);
 	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
 }

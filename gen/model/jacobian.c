@@ -8,7 +8,7 @@
 
 static struct form **columns(struct building *b, int coord, int order)
 {
-	const struct form **row = ARRAY(const struct form *, (size_t)b->model->n);
+	const struct form **row = ARRAY(const struct form *, b->model->n);
 	for (int i = 0; i < b->model->n; i++)
 		row[i] = b->whole->residual[i].form;
 	return form_derivatives(&b->collector, b->model->n, row, coord, order);
@@ -18,8 +18,8 @@ void jacobian_forms(void *context)
 {
 	struct jacobian *j = context;
 	const struct model *model = j->b->model;
-	j->C = ARRAY(struct form **, (size_t)model->n);
-	j->K = ARRAY(struct form **, (size_t)model->n);
+	j->C = ARRAY(struct form **, model->n);
+	j->K = ARRAY(struct form **, model->n);
 	for (int k = 0; k < model->n; k++) {
 		j->C[k] = columns(j->b, k, 1);
 		j->K[k] = columns(j->b, k, 0);
@@ -57,7 +57,7 @@ void jacobian_evaluate(void *context)
 	const struct model *model = j->b->model;
 	struct collector *c = &j->b->collector;
 	int n = model->n;
-	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	struct fixing *fixing = ARRAY(struct fixing, model->system.states + 1);
 	struct point *point = point_new(c, jacobian_point(j, fixing), fixing);
 	point_at_values(point);
 	for (int k = 0; k < n; k++)
@@ -80,7 +80,7 @@ static int ascending(const void *left, const void *right)
 /* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
 static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
 {
-	SCRATCH double *im = ARRAY(double, (size_t)n);
+	SCRATCH double *im = ARRAY(double, n);
 	bool found = eigenvalues(n, A, value, im);
 	for (int i = 0; i < n && found && sizes; i++)
 		value[i] = hypot(value[i], im[i]);
@@ -101,14 +101,14 @@ bool squared_frequencies(const struct linear *system, double *value)
 
 double fastest_pole(const struct linear *system)
 {
-	double *value = ARRAY(double, (size_t)system->states);
+	double *value = ARRAY(double, system->states);
 	bool found = sorted_eigenvalues(system->states, state_matrix(system, false), true, value);
 	return found ? value[system->states - 1] : 0;
 }
 
 double fastest_decay(const struct linear *system)
 {
-	double *value = ARRAY(double, (size_t)system->states);
+	double *value = ARRAY(double, system->states);
 	bool found = sorted_eigenvalues(system->states, state_matrix(system, false), false, value);
 	return found ? fmax(-value[0], 0) : 0;
 }

@@ -23,8 +23,8 @@ struct linear first_order_system(int n, const mpq_t *A)
 	struct linear shape = { .n = n,
 				.states = n,
 				.segments = 1,
-				.velocity = ARRAY(int, (size_t)n),
-				.coord = ARRAY(int, (size_t)n) };
+				.velocity = ARRAY(int, n),
+				.coord = ARRAY(int, n) };
 	for (int i = 0; i < n; i++) {
 		shape.velocity[i] = -1;
 		shape.coord[i] = i;

@@ -269,7 +269,7 @@ static void check_step(const struct lint *lint)
 static double amplitude(const struct linear *s, const struct load *load, double w)
 {
 	int n = s->n, segment = s->segments - 1;
-	SCRATCH double complex *P = ARRAY(double complex, (size_t)n * (size_t)n), *x = ARRAY(double complex, (size_t)n);
+	SCRATCH double complex *P = ARRAY(double complex, (size_t)n * (size_t)n), *x = ARRAY(double complex, n);
 	bool acts = false;
 	for (; !acts && segment >= 0; segment--)
 		for (int i = 0; i < n; i++)
@@ -400,8 +400,8 @@ static void check_symmetry(const struct lint *lint)
 	int n = s->n, reached = 0;
 	if (n > MOST_POLES || lint->model->spec->equations == 0 || !shows_energy(lint))
 		return;
-	double *factor = ARRAY(double, (size_t)n);
-	int *queue = ARRAY(int, (size_t)n);
+	double *factor = ARRAY(double, n);
+	int *queue = ARRAY(int, n);
 	for (int first = 0; first < n; first++) {
 		if (factor[first] != 0)
 			continue;
@@ -433,7 +433,7 @@ static void check_symmetry(const struct lint *lint)
 /* Rows of n x width with the force in the last column: the row that is left with nothing but a force; -1: none */
 static int unopposed_row(int n, int width, mpq_t *A)
 {
-	int *row = ARRAY(int, (size_t)n), rank = 0, listed = 0;
+	int *row = ARRAY(int, n), rank = 0, listed = 0;
 	RATIONAL factor = ZERO;
 	for (int with = 0; with < 2; with++)    /* what has a force comes last, so that it is what is left */
 		for (int i = 0; i < n; i++)
@@ -511,8 +511,8 @@ void lint(struct building *b)
 		return;
 	int states = model->system.states;
 	if (states <= MOST_POLES) {
-		lint.re = ARRAY(double, (size_t)states);
-		lint.im = ARRAY(double, (size_t)states);
+		lint.re = ARRAY(double, states);
+		lint.im = ARRAY(double, states);
 		const mpq_t *A = state_matrix(&model->system, false);
 		lint.size = size_of(&model->system, A);
 		if (eigenvalues(states, A, lint.re, lint.im))

@@ -399,7 +399,7 @@ static void part_snapshots(struct snapshot *snapshot, int count)
 		struct residual *residual = s->residual;
 		if (residual != s[-1].residual)
 			continue;
-		s->residual = ARRAY(struct residual, (size_t)s->residuals);
+		s->residual = ARRAY(struct residual, s->residuals);
 		for (int k = 0; k < s->residuals; k++)
 			s->residual[k] = residual[k];
 	}
@@ -417,7 +417,7 @@ static void collect_intervals(struct building *b)
 	do {
 		const mpq_t *list = c->change;
 		known = c->changes;
-		b->snapshot = ARRAY(struct snapshot, (size_t)known + 1);
+		b->snapshot = ARRAY(struct snapshot, known + 1);
 		int within = 0;                 /* the old interval in which this one lies */
 		for (c->interval = 0;
 		     c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors());
@@ -446,7 +446,7 @@ static void part_factors(struct building *b)
 	const struct request *request = b->request;
 	const bool *factor = request->factor         ? request->factor
 			     : request->find_factors ? request->find_factors(b)
-						     : ARRAY(bool, (size_t)b->spec->tunables);
+						     : ARRAY(bool, b->spec->tunables);
 	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
 		b->spec->tunable[i].symbol->factor = factor[i];
 		b->spec->tunable[i].symbol->acting = factor[i] ? acting : acting++;
@@ -515,7 +515,7 @@ static void evaluate_modes(void *context)
 		abandon();
 	if (b->spec->ranges > 0)
 		error(b->spec->range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
-	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, (size_t)list.count), list.each,
+	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, list.count), list.each,
 					 !list.without_static };
 	for (int i = 0; i < list.count; i++) {
 		wanted->number[i] = whole_number(b, list.number[i], 1, LIMIT_STATES,
@@ -547,7 +547,7 @@ static void collect_model(struct building *b)
 	gather_impacts(b);
 	if (all)
 		evaluate_lets(b);
-	model->initial = rationals((size_t)model->system.states);
+	model->initial = rationals(model->system.states);
 	if (all && model->relative)
 		relative_values(model, model->written->initial, model->initial);
 	else if (all)

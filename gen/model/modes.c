@@ -151,7 +151,7 @@ static void find_shares(struct modes *modes)
 
 int *modes_by_share(const struct modes *modes)
 {
-	int *order = ARRAY(int, (size_t)modes->count + 1);
+	int *order = ARRAY(int, modes->count + 1);
 	for (int i = 0; i < modes->count; i++) {
 		int at = i;
 		for (; at > 0; at--) {
@@ -294,7 +294,7 @@ static int by_frequency(const void *a, const void *b)
 static void list_modes(struct modes *modes, const struct survey *survey)
 {
 	modes->count = invariants_count(modes->basis->invariants);
-	modes->mode = ARRAY(struct mode, (size_t)modes->count + 1);
+	modes->mode = ARRAY(struct mode, modes->count + 1);
 	for (int i = 0; i < modes->count; i++) {
 		const struct invariant *part = invariant_part(modes->basis->invariants, i);
 		struct mode *mode = &modes->mode[i];

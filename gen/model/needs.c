@@ -118,8 +118,8 @@ static bool is_read(const struct spec *spec, const char *input)
 static void find_inputs(const struct finding *f)
 {
 	const struct linear *system = &f->model->system;
-	f->found->most = rationals((size_t)system->inputs);
-	bool *bounded = ARRAY(bool, (size_t)system->inputs);
+	f->found->most = rationals(system->inputs);
+	bool *bounded = ARRAY(bool, system->inputs);
 	for (int k = 0; k < f->need->inputs; k++) {
 		const struct need_input *given = &f->need->input[k];
 		int i = 0;
@@ -191,7 +191,7 @@ bool find_requirements(struct model *model)
 {
 	const struct spec *spec = model->spec;
 	bool good = true;
-	model->requirement = ARRAY(struct requirement, (size_t)spec->needs);
+	model->requirement = ARRAY(struct requirement, spec->needs);
 	model->requirements = spec->needs;
 	for (int i = 0; i < spec->needs; i++) {
 		struct finding f = { model, &spec->need[i], &model->requirement[i] };

@@ -70,7 +70,7 @@ static void fix_relative(struct point_work *work)
 	const struct model *model = work->b->model;
 	int written = work->b->spec->components;
 	for (int order = 0; order < 2; order++) {
-		mpq_t **value = ARRAY(mpq_t *, (size_t)written), *kept = rationals((size_t)written);
+		mpq_t **value = ARRAY(mpq_t *, written), *kept = rationals(written);
 		for (int j = 0; j < written; j++)
 			value[j] = find_fixed(work, j, order);
 		for (int j = 0; j < written; j++)
@@ -278,7 +278,7 @@ static void find_jacobian(void *context)
 	const struct linear *system = &b->model->system;
 	int n = b->model->n;
 	const struct snapshot *equations = fixed_equations(work->point);
-	const struct form **residual = ARRAY(const struct form *, (size_t)n);
+	const struct form **residual = ARRAY(const struct form *, n);
 	struct point *point = point_new(c, work->point->fixings, work->point->fixing);
 	point_at_values(point);
 	for (int i = 0; i < n; i++)
@@ -345,7 +345,7 @@ static void find_channels(struct building *b)
 	struct model *model = b->model;
 	int n = model->n;
 	struct form **all = ARRAY(struct form *, (size_t)(model->operators * n));
-	model->channel_row = ARRAY(int, (size_t)n);
+	model->channel_row = ARRAY(int, n);
 	for (int i = 0; i < n; i++) {
 		bool any = false;
 		for (int k = 0; k < model->operators; k++) {
@@ -357,7 +357,7 @@ static void find_channels(struct building *b)
 	}
 	for (int k = 0; k < model->operators; k++) {
 		struct operator *operator = &model->operator[k];
-		operator->left = ARRAY(struct form *, (size_t)model->channels);
+		operator->left = ARRAY(struct form *, model->channels);
 		for (int e = 0; e < model->channels; e++)
 			operator->left[e] = all[k * n + model->channel_row[e]];
 	}
@@ -547,7 +547,7 @@ void build_operators(struct building *b)
 	if (chooses_operator(model->scheme) && !statement_guard(divide_range, &work))
 		return;
 	model->operators = work.operators;
-	model->operator = ARRAY(struct operator, (size_t)model->operators);
+	model->operator = ARRAY(struct operator, model->operators);
 	for (int k = 0; k < model->operators && good; k++) {
 		good = add_operator(&work, k);
 		if (good && scheme_row(model->scheme)->modes)
@@ -574,9 +574,9 @@ struct linear operator_system(const struct model *model, int k)
 	system.C = model->operator[k].C;
 	system.K = model->operator[k].K;
 	system.channels = model->channels;
-	system.channel = ARRAY(mpq_t *, (size_t)model->channels);
+	system.channel = ARRAY(mpq_t *, model->channels);
 	for (int e = 0; e < model->channels; e++) {
-		system.channel[e] = rationals((size_t)model->n);
+		system.channel[e] = rationals(model->n);
 		mpq_set_ui(system.channel[e][model->channel_row[e]], 1, 1);
 	}
 	return system;

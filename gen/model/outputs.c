@@ -123,7 +123,7 @@ static const char *component_name(const char *name, int component)
 void collect_outputs(struct building *b, struct snapshot *snapshot)
 {
 	int index = 0;
-	snapshot->output = ARRAY(struct value *, (size_t)b->spec->outputs);
+	snapshot->output = ARRAY(struct value *, b->spec->outputs);
 	b->collector.tolerant = b->collector.reading = true;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		struct output_work work = { b, s, NULL };
@@ -241,13 +241,13 @@ static bool check_output(const struct model *model, const struct output *output)
 
 static void make_rows(const struct linear *system, int channels, struct output *output)
 {
-	output->state = rationals((size_t)system->states);
-	output->load = ARRAY(mpq_t *, (size_t)system->loads);
+	output->state = rationals(system->states);
+	output->load = ARRAY(mpq_t *, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		output->load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
 	for (int k = 0; k < 2; k++)
-		output->input[k] = rationals((size_t)system->inputs);
-	output->channel = rationals((size_t)channels);
+		output->input[k] = rationals(system->inputs);
+	output->channel = rationals(channels);
 }
 
 /* ---- an expression as a row ---- */
@@ -338,7 +338,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 	struct model *model = b->model;
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
-	model->highest = ARRAY(struct output *, (size_t)model->n);
+	model->highest = ARRAY(struct output *, model->n);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		struct reads reads = reads_of(model, left != NULL, &left);

@@ -67,7 +67,7 @@ void list_held(struct model *model)
 	struct tuning *t = NEW(struct tuning);
 	t->params = model->spec->tunables;
 	t->param = model->spec->tunable;
-	t->nominal = rationals((size_t)t->params);
+	t->nominal = rationals(t->params);
 	for (int k = 0; k < t->params; k++)
 		param_value(t->param[k].symbol, t->nominal[k]);
 	model->held = t;

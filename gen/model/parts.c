@@ -51,7 +51,7 @@ struct parting {
 
 static struct switching *regions_of_component(const struct parting *p, int coord)
 {
-	int n = p->b->model->n, rows = 0, *row = ARRAY(int, (size_t)n);
+	int n = p->b->model->n, rows = 0, *row = ARRAY(int, n);
 	for (int i = 0; i < n; i++)
 		if (root_of_node(p->parent, i) == root_of_node(p->parent, n + coord))
 			row[rows++] = i;
@@ -130,12 +130,12 @@ static int next_expression(const struct switching *s, const int *next)
 /* Numbers the expressions of all parts, and the regions that they make together. */
 static void number_expressions(struct switching *s)
 {
-	int *next = ARRAY(int, (size_t)s->parts);
+	int *next = ARRAY(int, s->parts);
 	long regions = 1;
 	s->expressions = expressions_of_parts(s);
-	s->expression = ARRAY(struct expression, (size_t)s->expressions);
+	s->expression = ARRAY(struct expression, s->expressions);
 	for (int p = 0; p < s->parts; p++)
-		s->part[p].expression = ARRAY(int, (size_t)s->part[p].model->switching->expressions);
+		s->part[p].expression = ARRAY(int, s->part[p].model->switching->expressions);
 	for (int i = 0; i < s->expressions; i++) {
 		int of = next_expression(s, next);
 		const struct expression *e = &s->part[of].model->switching->expression[next[of]];
@@ -188,7 +188,7 @@ int share_of_region(const struct region_part *part, const struct switching *whol
 static void search(void *context)
 {
 	struct building *b = context;
-	int n = b->model->n, *all = ARRAY(int, (size_t)n);
+	int n = b->model->n, *all = ARRAY(int, n);
 	bool together = b->factor || b->model->relative || b->request->undivided || b->request->solution ||
 			holds_friction(b) || b->model->impacts > 0;
 	struct switching *s = together ? NULL : regions_of_parts(b);
@@ -267,7 +267,7 @@ static bool input_acts(const struct linear *system, int input)
 static void find_inputs(struct region_part *part)
 {
 	const struct switching *s = part->model->switching;
-	part->input = ARRAY(int, (size_t)s->system->inputs);
+	part->input = ARRAY(int, s->system->inputs);
 	for (int i = 0; i < s->system->inputs; i++) {
 		bool needed = false;
 		for (int k = 0; k < s->systems; k++)
@@ -284,14 +284,14 @@ static void take_inputs(const struct region_part *part, struct linear *system)
 {
 	const struct input *all = system->input;
 	system->inputs = part->model->system.inputs;
-	system->input = ARRAY(struct input, (size_t)system->inputs);
+	system->input = ARRAY(struct input, system->inputs);
 	for (int i = 0; i < system->inputs; i++)
 		system->input[i] = all[part->input[i]];
 }
 
 static mpq_t *picked(const mpq_t *all, int count, const int *place)
 {
-	mpq_t *some = rationals((size_t)count);
+	mpq_t *some = rationals(count);
 	for (int i = 0; i < count; i++)
 		mpq_set(some[i], all[place[i]]);
 	return some;
@@ -320,8 +320,8 @@ static void take_model(struct building *b, struct region_part *part, const struc
 	model->system = block->system;
 	model->system.inputs = 0;               /* find_inputs counts them */
 	model->outputs = model->channels = model->operators = 0;
-	model->coord_name = ARRAY(const char *, (size_t)model->n);
-	model->state_name = ARRAY(const char *, (size_t)model->system.states);
+	model->coord_name = ARRAY(const char *, model->n);
+	model->state_name = ARRAY(const char *, model->system.states);
 	for (int i = 0; i < model->n; i++)
 		model->coord_name[i] = whole->coord_name[block->coord[i]];
 	for (int i = 0; i < model->system.states; i++)

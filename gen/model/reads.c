@@ -53,13 +53,9 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 
 struct reads reads_of(const struct model *model, int count, const struct form *const *form)
 {
-	struct reads reading = { ARRAY(bool, (size_t)model->system.states),
-				 ARRAY(bool, 2 * (size_t)model->system.inputs),
-				 ARRAY(bool, (size_t)model->system.loads),
-				 ARRAY(bool, (size_t)model->n),
-				 ARRAY(bool, (size_t)held_values(model) + 1),
-				 false,
-				 false };
+	struct reads reading = { ARRAY(bool, model->system.states),
+				 ARRAY(bool, 2 * (size_t)model->system.inputs), ARRAY(bool, model->system.loads),
+				 ARRAY(bool, model->n), ARRAY(bool, held_values(model) + 1), false, false };
 	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);
 	for (int i = 0; i < count; i++)
 		look_at_form(&reading, model, seen, form[i]);

@@ -104,7 +104,7 @@ static void see_expression(struct observable *o, const struct model *model, cons
 {
 	struct reads reads = reads_of(model, 1, &form);
 	for (int i = 0; i < model->system.states; i++) {
-		RATIONALS *row = rationals((size_t)o->states);
+		RATIONALS *row = rationals(o->states);
 		mpq_set_ui(row[i], 1, 1);
 		if (reads.state[i])
 			add_row(o, row);
@@ -140,7 +140,7 @@ static struct observable observe(const struct model *model)
 
 static mpq_t *coefficients_of(const struct observable *o, const mpq_t *row)
 {
-	mpq_t *coefficient = rationals((size_t)o->rank);
+	mpq_t *coefficient = rationals(o->rank);
 	for (int r = 0; r < o->rank; r++)
 		mpq_set(coefficient[r], row[o->pivot[r]]);
 	return coefficient;
@@ -150,7 +150,7 @@ static mpq_t *coefficients_of(const struct observable *o, const mpq_t *row)
 static mpq_t *force_column(const struct linear *written, const mpq_t *inverse, const mpq_t *force)
 {
 	int n = written->n;
-	mpq_t *highest = rationals((size_t)n), *column = rationals((size_t)written->states);
+	mpq_t *highest = rationals(n), *column = rationals(written->states);
 	rational_product(n, n, 1, inverse, force, highest);
 	for (int i = 0; i < n; i++)
 		mpq_set(column[written->velocity[i] >= 0 ? written->velocity[i] : i], highest[i]);
@@ -172,11 +172,11 @@ static void project_loads(const struct observable *o, const struct linear *writt
 	system->segments = written->segments;
 	system->change = written->change;
 	system->loads = written->loads;
-	system->load = ARRAY(struct load, (size_t)written->loads);
+	system->load = ARRAY(struct load, written->loads);
 	for (int l = 0; l < written->loads; l++) {
 		const struct load *load = &written->load[l];
 		system->load[l] = *load;
-		system->load[l].force = ARRAY(mpq_t *, (size_t)load->columns);
+		system->load[l].force = ARRAY(mpq_t *, load->columns);
 		for (int k = 0; k < load->columns; k++) {
 			system->load[l].force[k] = rationals((size_t)written->segments * (size_t)o->rank);
 			for (int s = 0; s < written->segments; s++)
@@ -185,11 +185,11 @@ static void project_loads(const struct observable *o, const struct linear *writt
 		}
 	}
 	system->inputs = written->inputs;
-	system->input = ARRAY(struct input, (size_t)written->inputs);
+	system->input = ARRAY(struct input, written->inputs);
 	for (int i = 0; i < written->inputs; i++) {
 		system->input[i] = written->input[i];
 		for (int k = 0; k < 2; k++) {
-			system->input[i].force[k] = rationals((size_t)o->rank);
+			system->input[i].force[k] = rationals(o->rank);
 			project_force(o, written, inverse, written->input[i].force[k], system->input[i].force[k]);
 		}
 	}
@@ -246,7 +246,7 @@ static bool is_position(const struct model *model, const struct output *output)
 /* Is state r the derivative of state i: all that is on the right of it? */
 static bool is_derivative(const struct linear *system, int i, int r)
 {
-	RATIONALS *to = rationals((size_t)system->n);
+	RATIONALS *to = rationals(system->n);
 	bool is = true;
 	mpq_set_si(to[r], -1, 1);
 	for (int j = 0; j < system->n; j++)
@@ -278,8 +278,8 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 static void place_states(const struct observable *o, struct model *reduced)
 {
 	struct reduction *reduction = &reduced->reduction;
-	reduction->place = ARRAY(int, (size_t)o->states);
-	reduction->dropped_name = ARRAY(const char *, (size_t)o->states);
+	reduction->place = ARRAY(int, o->states);
+	reduction->dropped_name = ARRAY(const char *, o->states);
 	for (int j = 0; j < o->states; j++)
 		reduction->place[j] = -1;
 	for (int r = 0; r < o->rank; r++)
@@ -306,13 +306,13 @@ struct model *model_reduce(struct model *model)
 	reduced->written = model;
 	reduced->n = o.rank;
 	reduced->system = project_system(&o, &model->system);
-	reduced->state_name = reduced->coord_name = ARRAY(const char *, (size_t)o.rank);
+	reduced->state_name = reduced->coord_name = ARRAY(const char *, o.rank);
 	for (int r = 0; r < o.rank; r++)
 		reduced->state_name[r] = name_of(&o, reduced, r);
-	reduced->initial = rationals((size_t)o.rank);
+	reduced->initial = rationals(o.rank);
 	rational_product(o.rank, o.states, 1, o.row, model->initial, reduced->initial);
-	reduced->highest = ARRAY(struct output *, (size_t)o.rank); /* none: that was refused */
-	reduced->output = ARRAY(struct output, (size_t)model->outputs);
+	reduced->highest = ARRAY(struct output *, o.rank); /* none: that was refused */
+	reduced->output = ARRAY(struct output, model->outputs);
 	for (int i = 0; i < model->outputs; i++) {
 		reduced->output[i] = model->output[i];
 		reduced->output[i].state = coefficients_of(&o, model->output[i].state);

@@ -56,7 +56,7 @@ int possible_regions(const struct switching *s)
 
 static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 {
-	mpq_t *breaks = rationals((size_t)e->breaks + 1);
+	mpq_t *breaks = rationals(e->breaks + 1);
 	int below = 0;
 	while (below < e->breaks && mpq_cmp(e->at[below], at) < 0)
 		below++;
@@ -367,7 +367,7 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 		return form_number(comparison_here(l, a));
 	if (a->kind == ATOM_CHOOSE)
 		return form_here(l, a->operand[comparison_here(l, a->operand[0]->term[0].basis.atom) ? 1 : 2]);
-	struct form **x = ARRAY(struct form *, (size_t)a->operands);
+	struct form **x = ARRAY(struct form *, a->operands);
 	for (int i = 0; i < a->operands; i++)
 		x[i] = form_here(l, a->operand[i]);
 	return call_here(l, a, x);
@@ -398,7 +398,7 @@ static struct form *form_here(struct looking *l, const struct form *form)
 
 static int *intervals_of(const struct switching *s, int region)
 {
-	int *interval = ARRAY(int, (size_t)s->expressions + 1);
+	int *interval = ARRAY(int, s->expressions + 1);
 	for (int i = 0; i < s->expressions; i++)
 		interval[i] = interval_of(s, region, i);
 	return interval;
@@ -490,7 +490,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 	if (in_one > LIMIT_CANDIDATES)
 		too_many(b, s);
 	s->regions = in_one * s->segments;
-	s->region = ARRAY(struct region, (size_t)s->regions);
+	s->region = ARRAY(struct region, s->regions);
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
 	for (int r = *known; r < s->regions; r++) {
@@ -498,16 +498,16 @@ static bool look(struct building *b, struct switching *s, int *known)
 		struct looking l = { .b = b,
 				     .s = s,
 				     .interval = interval,
-				     .known = ARRAY(struct form *, (size_t)atoms),
+				     .known = ARRAY(struct form *, atoms),
 				     .count = atoms,
 				     .region = r,
 				     .segment = segment_of_region(s, r),
 				     .lowest = r };
-		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
-		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
-		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
-		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
-		s->region[r].slide = ARRAY(struct slide, (size_t)atoms);
+		s->region[r].residual = ARRAY(struct form *, b->model->n);
+		s->region[r].force = ARRAY(struct form *, atoms);
+		s->region[r].rest = ARRAY(struct form *, atoms);
+		s->region[r].carried = ARRAY(struct form *, atoms);
+		s->region[r].slide = ARRAY(struct slide, atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
@@ -542,7 +542,7 @@ static void add_inequality(struct inequalities *set, mpq_t *a)
 /* upper and lower bound on variable v combined, so that it drops out */
 static mpq_t *combined(int size, int v, const mpq_t *upper, const mpq_t *lower)
 {
-	mpq_t *a = rationals((size_t)size + 1);
+	mpq_t *a = rationals(size + 1);
 	RATIONAL product = ZERO, factor = ZERO;
 	for (int i = 0; i <= size; i++) {
 		mpq_div(product, upper[i], upper[v]);
@@ -593,7 +593,7 @@ static int find_bases(const struct switching *s, int segment, struct basis **bas
 static mpq_t *bound_row(const struct expression *e, int segment, int bases, const struct basis *basis, mpq_srcptr at,
 			bool below)
 {
-	mpq_t *a = rationals((size_t)bases + 1);
+	mpq_t *a = rationals(bases + 1);
 	const struct form *form = e->in[segment];
 	for (int k = 0; k < form->terms; k++)
 		for (int j = 0; j < bases; j++)
@@ -793,16 +793,16 @@ static void remove_break(struct switching *s, int expression, int at)
 {
 	struct switching old = *s;
 	struct expression *e = &s->expression[expression];
-	old.expression = ARRAY(struct expression, (size_t)s->expressions);
+	old.expression = ARRAY(struct expression, s->expressions);
 	for (int i = 0; i < s->expressions; i++)
 		old.expression[i] = s->expression[i];
-	e->at = rationals((size_t)e->breaks);
+	e->at = rationals(e->breaks);
 	for (int i = 0, k = 0; i < e->breaks; i++)
 		if (i != at)
 			mpq_set(e->at[k++], old.expression[expression].at[i]);
 	e->breaks--;
 	s->regions = count_candidates(s) * s->segments;
-	s->region = ARRAY(struct region, (size_t)s->regions);
+	s->region = ARRAY(struct region, s->regions);
 	for (int r = 0; r < old.regions; r++) {
 		int merged = segment_of_region(&old, r) * regions_at_once(s);
 		for (int i = 0; i < s->expressions; i++) {

@@ -57,7 +57,7 @@ static void join_terms(struct look *l, const struct form *form)
 static void look_at(struct look *l, const struct form *form, int own)
 {
 	int n = l->model->n;
-	mpq_t *place = rationals((size_t)n), *rate = rationals((size_t)n);
+	mpq_t *place = rationals(n), *rate = rationals(n);
 	join_terms(l, form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
@@ -143,7 +143,7 @@ static void weigh(struct balance *b, int n, int from, int row, const struct form
 		ENLARGE(b->basis, (size_t)b->bases);
 		ENLARGE(b->factor, (size_t)b->bases);
 		b->basis[at] = term->basis;
-		b->factor[at] = rationals((size_t)n);
+		b->factor[at] = rationals(n);
 	}
 	mpq_set(b->factor[at][row], term->factor);
 }
@@ -173,7 +173,7 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 static mpq_t *weights_of(const struct model *model, const mpq_t *u)
 {
 	int n = model->n;
-	mpq_t *w = rationals((size_t)n);
+	mpq_t *w = rationals(n);
 	RATIONAL product = ZERO;
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
@@ -228,7 +228,7 @@ static void spread(const bool *joined, int n, int from, int number, int *compone
 
 static int *components_of(const struct look *l, int *count)
 {
-	int n = l->model->n, *component = ARRAY(int, (size_t)n);
+	int n = l->model->n, *component = ARRAY(int, n);
 	*count = 0;
 	for (int j = 0; j < n; j++)
 		component[j] = -1;
@@ -241,7 +241,7 @@ static int *components_of(const struct look *l, int *count)
 /* Whatever acts through others acts too. */
 static void close_acts(struct look *l)
 {
-	int n = l->model->n, *reached = ARRAY(int, (size_t)n);
+	int n = l->model->n, *reached = ARRAY(int, n);
 	bool *direct = ARRAY(bool, (size_t)(n * n));
 	memcpy(direct, l->acts, (size_t)(n * n) * sizeof *direct);
 	for (int i = 0; i < n; i++) {
@@ -264,7 +264,7 @@ static int first_entry(int n, const mpq_t *v)
 /* The sum of the vectors that lie in a component; a vector may be 0: of weights that change with tunable params */
 static mpq_t *sum_in(int n, int vectors, mpq_t **vector, const int *component, int number, int *count)
 {
-	mpq_t *sum = rationals((size_t)n);
+	mpq_t *sum = rationals(n);
 	*count = 0;
 	for (int v = 0; v < vectors; v++) {
 		int first = first_entry(n, vector[v]);
@@ -288,7 +288,7 @@ static void scale(int n, mpq_t *v, mpq_srcptr divisor)
 static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rate, const int *component, int number)
 {
 	int count, several = 0;
-	mpq_t *motion = sum_in(n, rates, rate, component, number, &count), **shared = ARRAY(mpq_t *, (size_t)n);
+	mpq_t *motion = sum_in(n, rates, rate, component, number, &count), **shared = ARRAY(mpq_t *, n);
 	if (support(n, motion) > 1)
 		return motion;
 	for (int v = 0; v < places; v++)
@@ -416,8 +416,8 @@ static void link_to(struct relative *r, const struct group *g, int coord, int pa
 /* Breadth first from the root: neighbours in a sum, then in an equation, then the rest; none that it does not act on */
 static void grow_tree(struct relative *r, const struct look *l, const struct group *g)
 {
-	int n = g->n, *queue = ARRAY(int, (size_t)n), done = 0, count = 1;
-	bool *in = ARRAY(bool, (size_t)n);
+	int n = g->n, *queue = ARRAY(int, n), done = 0, count = 1;
+	bool *in = ARRAY(bool, n);
 	queue[0] = g->root;
 	in[g->root] = true;
 	for (int stage = 0; stage < 3; stage++) {
@@ -444,7 +444,7 @@ static void place_root(struct relative *r, const struct group *g, int first)
 	mpq_init(product);
 	root->kind = LINK_CENTRE;
 	root->weight = g->weight;
-	root->shift = rationals((size_t)n);
+	root->shift = rationals(n);
 	for (int j = 0; j < n; j++)
 		if (mpq_sgn(g->motion[j]) == 0)
 			mpq_set_ui(d[j * n + j], 1, 1);
@@ -560,7 +560,7 @@ static void write_forms(struct relative *r)
 {
 	int n = r->written->n;
 	for (int order = 0; order < 3; order++) {
-		r->form[order] = ARRAY(struct form *, (size_t)n);
+		r->form[order] = ARRAY(struct form *, n);
 		for (int j = 0; j < n; j++)
 			if (r->link[j].kind != LINK_PARENT)
 				r->form[order][j] = written_form(r, j, order);
@@ -617,7 +617,7 @@ static struct relative *relative_new(const struct model *model)
 static mpq_t *leading_factors(const struct model *model)
 {
 	int n = model->n;
-	mpq_t *factor = rationals((size_t)n);
+	mpq_t *factor = rationals(n);
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
 			mpq_srcptr entry =
@@ -706,13 +706,13 @@ struct relative *relative_of(const struct model *model)
 	if (places == 0)
 		return NULL;
 	close_acts(&l);
-	both.row = ARRAY(mpq_t *, (size_t)n);
-	both.pivot = ARRAY(int, (size_t)n);
+	both.row = ARRAY(mpq_t *, n);
+	both.pivot = ARRAY(int, n);
 	both.rank = 0;
 	for (int k = 0; k < 2; k++) {
 		const struct echelon *from = k ? &l.rate : &l.place;
 		for (int i = 0; i < from->rank; i++)
-			echelon_add(&both, rationals_copied((size_t)n, from->row[i]));
+			echelon_add(&both, rationals_copied(n, from->row[i]));
 	}
 	int rates = echelon_null_space(&both, &rate), sums = free_sums(model, &sum);
 	int *component = components_of(&l, &count);
@@ -720,10 +720,10 @@ struct relative *relative_of(const struct model *model)
 		const mpq_t *u = sum[s];
 		sum[s] = weights_of(model, u);
 		if (model_elsewhere(model) && retunes(model, sum[s], weights_of(model_elsewhere(model), u)))
-			sum[s] = rationals((size_t)n);
+			sum[s] = rationals(n);
 	}
 	struct relative *r = relative_new(model);
-	bool *moved = ARRAY(bool, (size_t)n);
+	bool *moved = ARRAY(bool, n);
 	for (int c = 0; c < count; c++) {
 		int found;
 		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c),
@@ -787,7 +787,7 @@ void relative_values(const struct model *model, mpq_t *written, mpq_t *kept)
 {
 	const struct relative *r = model->relative;
 	const struct linear *from = &r->written->system;
-	mpq_t **place = ARRAY(mpq_t *, (size_t)from->n), **rate = ARRAY(mpq_t *, (size_t)from->n);
+	mpq_t **place = ARRAY(mpq_t *, from->n), **rate = ARRAY(mpq_t *, from->n);
 	for (int j = 0; j < from->n; j++) {
 		place[j] = &written[j];
 		rate[j] = from->velocity[j] >= 0 ? &written[from->velocity[j]] : &written[j];

@@ -134,8 +134,8 @@ static bool systems_agree(const struct search *s, int a, int b)
 static void merge_systems(struct search *s)
 {
 	struct switching *w = s->model->switching;
-	int kept = 0, *number = ARRAY(int, (size_t)w->systems);
-	s->merged = ARRAY(int, (size_t)w->systems);
+	int kept = 0, *number = ARRAY(int, w->systems);
+	s->merged = ARRAY(int, w->systems);
 	for (int k = 0; k < w->systems; k++) {
 		s->merged[k] = k;
 		for (int i = 0; i < k && s->merged[k] == k; i++)
@@ -339,7 +339,7 @@ static void find(void *context)
 {
 	struct search *s = context;
 	check_model(s->model);
-	bool *all = ARRAY(bool, (size_t)s->model->system.loads + 1);
+	bool *all = ARRAY(bool, s->model->system.loads + 1);
 	for (int l = 0; l < s->model->system.loads; l++)
 		all[l] = true;
 	s->t->x = layout_with(&s->model->system, 0, all);

@@ -179,7 +179,7 @@ static void part_loads(void *context)
 	struct collector *c = &b->collector;
 	int n = b->model->n, segments = b->model->system.segments;
 	b->load = ARRAY(struct form *, (size_t)(segments * n));
-	b->time_left = ARRAY(struct form *, (size_t)n);
+	b->time_left = ARRAY(struct form *, n);
 	struct point *point = point_new(c, 0, NULL);
 	for (int i = 0; i < n; i++) {
 		const struct form *whole = time_part(b->whole->residual[i].form, false);

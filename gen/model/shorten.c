@@ -24,7 +24,7 @@ static int place_of(const struct selection *s, int mode, int i)
 static bool select_modes(struct selection *s)
 {
 	const struct modes *modes = s->modes;
-	s->first = ARRAY(int, (size_t)modes->count + 1);
+	s->first = ARRAY(int, modes->count + 1);
 	for (int i = 0; i < modes->count; i++) {
 		const struct mode *mode = &modes->mode[i];
 		s->first[i] = s->of[i] ? s->coords : -1;
@@ -42,7 +42,7 @@ static struct linear shape_of(const struct selection *s)
 {
 	const bool moves = s->states > s->coords;
 	struct linear shape = { .n = s->coords, .states = s->states, .segments = 1,
-				.velocity = ARRAY(int, (size_t)s->coords), .coord = ARRAY(int, (size_t)s->states) };
+				.velocity = ARRAY(int, s->coords), .coord = ARRAY(int, s->states) };
 	for (int i = 0; i < s->coords; i++) {
 		shape.velocity[i] = moves ? s->coords + i : -1;
 		shape.coord[i] = i;
@@ -74,8 +74,8 @@ static void fill_block(const struct selection *s, int index, struct linear *syst
 static mpq_t *force_column(const struct modes *modes, const mpq_t *inverse, const mpq_t *force)
 {
 	const struct linear *system = &modes->model->system;
-	RATIONALS *highest = rationals((size_t)system->n);
-	mpq_t *column = rationals((size_t)system->states);
+	RATIONALS *highest = rationals(system->n);
+	mpq_t *column = rationals(system->states);
 	rational_product(system->n, system->n, 1, inverse, force, highest);
 	for (int i = 0; i < system->n; i++)
 		mpq_swap(column[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
@@ -97,7 +97,7 @@ static void project_force(const struct selection *s, const mpq_t *inverse, const
 		const struct mode *mode = &modes->mode[i];
 		if (!s->of[i])
 			continue;
-		RATIONALS *b = rationals((size_t)mode->states);
+		RATIONALS *b = rationals(mode->states);
 		drive(modes, mode, column, b);
 		const int from = mode->moves ? mode->columns : 0;
 		for (int j = from; j < mode->states; j++)
@@ -112,11 +112,11 @@ static void project_loads(const struct selection *s, const mpq_t *inverse, struc
 	system->segments = whole->segments;
 	system->change = whole->change;
 	system->loads = whole->loads;
-	system->load = ARRAY(struct load, (size_t)whole->loads);
+	system->load = ARRAY(struct load, whole->loads);
 	for (int l = 0; l < whole->loads; l++) {
 		struct load *load = &system->load[l];
 		*load = whole->load[l];
-		load->force = ARRAY(mpq_t *, (size_t)load->columns);
+		load->force = ARRAY(mpq_t *, load->columns);
 		for (int k = 0; k < load->columns; k++) {
 			load->force[k] = rationals((size_t)whole->segments * (size_t)s->coords);
 			for (int part = 0; part < whole->segments; part++)
@@ -125,11 +125,11 @@ static void project_loads(const struct selection *s, const mpq_t *inverse, struc
 		}
 	}
 	system->inputs = whole->inputs;
-	system->input = ARRAY(struct input, (size_t)whole->inputs);
+	system->input = ARRAY(struct input, whole->inputs);
 	for (int i = 0; i < whole->inputs; i++) {
 		system->input[i] = whole->input[i];
 		for (int k = 0; k < 2; k++) {
-			system->input[i].force[k] = rationals((size_t)s->coords);
+			system->input[i].force[k] = rationals(s->coords);
 			project_force(s, inverse, whole->input[i].force[k], system->input[i].force[k]);
 		}
 	}
@@ -189,12 +189,12 @@ static void follow_load(const struct following *f, int l, int segment)
 	const struct load *load = &system->load[l];
 	const int trig = oscillates(load->wave) ? 2 : 1, k = f->mode->states, size = trig * k;
 	const size_t cells = (size_t)size * (size_t)size;
-	RATIONALS *inverse = rationals(cells), *b = rationals((size_t)size);
+	RATIONALS *inverse = rationals(cells), *b = rationals(size);
 	mpq_t *x = NULL;
 	const bool regular = inverse_of(f->mode, load->wave->a, load->wave->w, trig, inverse);
 	for (int power = load->powers - 1; power >= 0 && regular; power--) {
 		mpq_t *above = x;
-		x = rationals((size_t)size);
+		x = rationals(size);
 		for (int t = 0; t < trig; t++) {
 			const mpq_t *force = load->force[power * trig + t] + segment * system->n;
 			RATIONALS *column = force_column(f->modes, f->inverse, force);
@@ -216,7 +216,7 @@ static void follow_load(const struct following *f, int l, int segment)
 static void follow_input(const struct following *f, int input)
 {
 	const int k = f->mode->states;
-	RATIONALS *inverse = rationals((size_t)k * (size_t)k), *b = rationals((size_t)k), *x = rationals((size_t)k);
+	RATIONALS *inverse = rationals((size_t)k * (size_t)k), *b = rationals(k), *x = rationals(k);
 	mpq_srcptr zero = rationals(1)[0];
 	const bool regular = inverse_of(f->mode, zero, zero, 1, inverse);
 	for (int order = 0; order < 2 && regular; order++) {
@@ -231,7 +231,7 @@ static void follow_input(const struct following *f, int input)
 
 static mpq_t *row_over(const struct modes *modes, const struct mode *mode, const struct output *output)
 {
-	mpq_t *c = rationals((size_t)mode->states);
+	mpq_t *c = rationals(mode->states);
 	rational_product(1, modes->model->system.states, mode->states, output->state, mode->right, c);
 	return c;
 }
@@ -245,7 +245,7 @@ static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct 
 	bool any = false;
 	if (!mode_refine(modes, index))
 		return false;
-	f.c = ARRAY(mpq_t *, (size_t)model->outputs);
+	f.c = ARRAY(mpq_t *, model->outputs);
 	for (int o = 0; o < model->outputs; o++) {
 		f.c[o] = row_over(modes, f.mode, &model->output[o]);
 		for (int i = 0; i < f.mode->states; i++)
@@ -266,11 +266,11 @@ static struct output *rows_over(const struct selection *s, bool direct)
 {
 	const struct model *model = s->modes->model;
 	const struct linear *system = &model->system;
-	struct output *output = ARRAY(struct output, (size_t)model->outputs);
+	struct output *output = ARRAY(struct output, model->outputs);
 	for (int o = 0; o < model->outputs; o++) {
 		const struct output *of = &model->output[o];
 		output[o] = *of;
-		output[o].state = rationals((size_t)s->states);
+		output[o].state = rationals(s->states);
 		for (int i = 0; i < s->modes->count; i++) {
 			if (!s->of[i])
 				continue;
@@ -278,14 +278,14 @@ static struct output *rows_over(const struct selection *s, bool direct)
 			for (int j = 0; j < s->modes->mode[i].states; j++)
 				mpq_swap(output[o].state[place_of(s, i, j)], c[j]);
 		}
-		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
+		output[o].load = ARRAY(mpq_t *, system->loads);
 		for (int l = 0; l < system->loads; l++) {
 			const size_t cells = (size_t)(system->load[l].columns * system->segments);
 			output[o].load[l] = direct ? rationals_copied(cells, of->load[l]) : rationals(cells);
 		}
 		for (int k = 0; k < 2; k++)
-			output[o].input[k] = direct ? rationals_copied((size_t)system->inputs, of->input[k])
-				       : rationals((size_t)system->inputs);
+			output[o].input[k] = direct ? rationals_copied(system->inputs, of->input[k])
+				       : rationals(system->inputs);
 	}
 	return output;
 }
@@ -312,7 +312,7 @@ static void project_start(const struct selection *s, mpq_t *initial)
 		const struct mode *mode = &s->modes->mode[i];
 		if (!s->of[i])
 			continue;
-		RATIONALS *z = rationals((size_t)mode->states);
+		RATIONALS *z = rationals(mode->states);
 		drive(s->modes, mode, model->initial, z);
 		for (int j = 0; j < mode->states; j++)
 			mpq_swap(initial[place_of(s, i, j)], z[j]);
@@ -350,8 +350,8 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 	*shorter = *model;
 	shorter->n = s->coords;
 	shorter->system = shape_of(s);
-	shorter->state_name = ARRAY(const char *, (size_t)s->states);
-	shorter->initial = rationals((size_t)s->states);
+	shorter->state_name = ARRAY(const char *, s->states);
+	shorter->initial = rationals(s->states);
 	for (int i = 0; i < s->modes->count; i++) {
 		for (int j = 0; s->of[i] && j < s->modes->mode[i].states; j++)
 			shorter->state_name[place_of(s, i, j)] = state_name(&s->modes->mode[i], j);
@@ -361,10 +361,10 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 	shorter->coord_name = shorter->state_name;
 	project_loads(s, inverse, &shorter->system);
 	project_start(s, shorter->initial);
-	shorter->highest = ARRAY(struct output *, (size_t)s->coords);
+	shorter->highest = ARRAY(struct output *, s->coords);
 	shorter->output = rows_over(s, direct);
 	shorter->shortened = shortening_of(s, statics);
-	shorter->reduction.place = ARRAY(int, (size_t)model->system.states);
+	shorter->reduction.place = ARRAY(int, model->system.states);
 	for (int i = 0; i < model->system.states; i++)
 		shorter->reduction.place[i] = -1;       /* no written state is a state */
 	return shorter;
@@ -395,7 +395,7 @@ struct model *modes_kept(struct modes *modes, const bool *kept, bool statics)
 
 struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
 {
-	bool *dropped = ARRAY(bool, (size_t)modes->count);
+	bool *dropped = ARRAY(bool, modes->count);
 	struct selection s = { .modes = modes, .of = dropped };
 	for (int i = 0; i < modes->count; i++)
 		dropped[i] = !kept[i];
@@ -480,7 +480,7 @@ static void shorten(void *context)
 	if (!wanted->each && wanted->number[0] > modes_in(modes))
 		error(wanted->at, NULL, "%d modes cannot be kept: the model has %d", wanted->number[0],
 		      modes_in(modes));
-	bool *kept = ARRAY(bool, (size_t)modes->count);
+	bool *kept = ARRAY(bool, modes->count);
 	(wanted->each ? put_listed : put_modes)(modes, kept, wanted);
 	bool any = false;
 	for (int i = 0; i < modes->count; i++)

@@ -279,7 +279,7 @@ static struct form *sign_form(const struct side *s, const struct atom *a, struct
 /* min or max without those that another one beats for sure */
 static struct form *extreme_on_side(const struct side *s, const struct atom *a, struct form *const *x)
 {
-	struct form **left = ARRAY(struct form *, (size_t)a->operands);
+	struct form **left = ARRAY(struct form *, a->operands);
 	int count = 0, wanted = a->function == FN_MIN ? 1 : -1;
 	for (int i = 0; i < a->operands; i++) {
 		bool beaten = false;
@@ -367,7 +367,7 @@ static struct form *comparison_on_side(const struct side *s, const struct atom *
 static struct form *atom_on_side(struct side *s, const struct atom *a)
 {
 	struct collector *c = s->c;
-	struct form **x = ARRAY(struct form *, (size_t)a->operands), *product = form_number(1);
+	struct form **x = ARRAY(struct form *, a->operands), *product = form_number(1);
 	for (int i = 0; i < a->operands; i++)
 		x[i] = form_on_side(s, a->operand[i]);
 	struct decided d = a->kind == ATOM_CHOOSE ? decide(s, x[0]) : (struct decided){ false, 0, NULL };
@@ -590,7 +590,7 @@ static void write_sides(void *context)
 
 static void add_scale(struct spot *p, const struct form *form)
 {
-	mpq_t *scale = rationals((size_t)p->scales + 1);
+	mpq_t *scale = rationals(p->scales + 1);
 	if (form->terms < 2 || form->term[0].basis.kind != BASIS_ONE)
 		return;
 	for (int i = 0; i < p->scales; i++)
@@ -727,9 +727,9 @@ static void judge(void *context)
 	struct spot spot = { 0 };
 	struct search s = { .b = b, .count = atoms_count(b->collector.atoms), .spot = &spot };
 	mpfr_inits2(PRECISION, spot.value, spot.t, NULL);
-	s.touched = ARRAY(signed char, (size_t)s.count);
-	s.known = ARRAY(struct form *, (size_t)s.count);
-	s.seen = ARRAY(bool, (size_t)s.count);
+	s.touched = ARRAY(signed char, s.count);
+	s.known = ARRAY(struct form *, s.count);
+	s.seen = ARRAY(bool, s.count);
 	s.sample = sample_new(PRECISION, spot_leaf, &spot);
 	for (int i = 0; i < count; i++) {
 		const struct form *form = left ? model->operator[0].left[i] : moving_part(b->whole->residual[i].form);

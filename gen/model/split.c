@@ -103,7 +103,7 @@ static void add_wave(struct split_work *w, const struct basis *basis, mpq_srcptr
 		k++;
 	if (k == s->waves) {
 		*MORE(s->wave, s->waves) = (struct wave_force){
-			basis->wave, { rationals((size_t)n), rationals((size_t)n) }
+			basis->wave, { rationals(n), rationals(n) }
 		};
 	}
 	mpq_ptr entry = s->wave[k].force[basis->sine][w->coord];

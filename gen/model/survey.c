@@ -73,7 +73,7 @@ static struct picture picture_of(const struct survey *s, const struct mode *mode
 	invariant_start(s->basis->invariants, mode->first, X, Y);
 	p.right = ARRAY(double, all);
 	p.left = ARRAY(double, all);
-	p.c = ARRAY(double, (size_t)p.k);
+	p.c = ARRAY(double, p.k);
 	p.T = ARRAY(double, (size_t)p.k * (size_t)p.k);
 	if (mode->moves) {
 		lift(s, &p, X, Y);
@@ -169,7 +169,7 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 {
 	const struct linear *system = &s->model->system;
 	const int n = system->n;
-	SCRATCH double *column = ARRAY(double, (size_t)n);
+	SCRATCH double *column = ARRAY(double, n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			if (mpq_sgn(force[j]) != 0)
@@ -191,7 +191,7 @@ static bool forced(const struct picture *p, const struct load *load, const doubl
 {
 	const int k = p->k, trig = oscillates(load->wave) ? 2 : 1, size = trig * k;
 	const double complex rate = nearest_double(load->wave->a) - I * nearest_double(load->wave->w);
-	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, (size_t)k);
+	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, k);
 	bool good = true;
 	for (int power = load->powers - 1; power >= 0 && good; power--) {
 		for (int i = 0; i < k; i++) {
@@ -249,8 +249,7 @@ static bool survey_loads(const struct survey *s, const struct picture *p, int se
 	for (int l = 0; l < system->loads && good; l++) {
 		const struct load *load = &system->load[l];
 		const size_t cells = (size_t)load->columns * (size_t)p->k;
-		SCRATCH double *B = ARRAY(double, cells), *P = ARRAY(double, cells),
-			       *q = ARRAY(double, (size_t)load->columns);
+		SCRATCH double *B = ARRAY(double, cells), *P = ARRAY(double, cells), *q = ARRAY(double, load->columns);
 		bool any = false;
 		for (int c = 0; c < load->columns; c++)
 			drive(s, p, load->force[c] + segment * system->n, B + c * p->k);
@@ -272,7 +271,7 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 			  double *transient)
 {
 	const struct linear *system = &s->model->system;
-	SCRATCH double *jump = ARRAY(double, (size_t)p->k);
+	SCRATCH double *jump = ARRAY(double, p->k);
 	double most = 0;
 	bool good = true;
 	*transient = 0;
@@ -294,8 +293,8 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 static double survey_input(const struct survey *s, const struct picture *p, const struct input *input)
 {
 	const int k = p->k;
-	SCRATCH double *B = ARRAY(double, (size_t)k);
-	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, (size_t)k);
+	SCRATCH double *B = ARRAY(double, k);
+	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, k);
 	double sum = 0;
 	bool any = false;
 	for (int i = 0; i < k * k; i++)
@@ -337,7 +336,7 @@ void survey_mode(const struct survey *s, struct mode *mode)
 	const struct model *model = s->model;
 	const int states = model->system.states, inputs = model->system.inputs;
 	struct picture p = picture_of(s, mode);
-	SCRATCH double *start = ARRAY(double, (size_t)p.k);
+	SCRATCH double *start = ARRAY(double, p.k);
 	for (int r = 0; r < p.k; r++) {
 		double size = 0;
 		for (int i = 0; i < states; i++) {
@@ -347,8 +346,8 @@ void survey_mode(const struct survey *s, struct mode *mode)
 		}
 		start[r] = fabs(start[r]) <= UNSEEN * size ? 0 : start[r];
 	}
-	mode->size = ARRAY(double, (size_t)model->outputs + 1);
-	mode->transient = ARRAY(double, (size_t)model->outputs + 1);
+	mode->size = ARRAY(double, model->outputs + 1);
+	mode->transient = ARRAY(double, model->outputs + 1);
 	mode->by_input = ARRAY(double, (size_t)(model->outputs * inputs) + 1);
 	for (int o = 0; o < model->outputs; o++) {
 		see_output(s, &p, o);

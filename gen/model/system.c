@@ -97,7 +97,7 @@ static void make_input_forces(struct linear *system)
 {
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k < 2; k++)
-			system->input[i].force[k] = rationals((size_t)system->n);
+			system->input[i].force[k] = rationals(system->n);
 }
 
 static void name_inputs(struct building *b)
@@ -107,7 +107,7 @@ static void name_inputs(struct building *b)
 	system->inputs = b->spec->inputs;
 	for (int k = 0; k < b->spec->tunables && acting; k++)
 		system->inputs += !b->spec->tunable[k].symbol->factor;
-	system->input = ARRAY(struct input, (size_t)system->inputs);
+	system->input = ARRAY(struct input, system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
 			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
@@ -121,15 +121,15 @@ struct linear empty_system(const struct model *model)
 {
 	struct linear system = linear_like(&model->system);
 	system.loads = model->system.loads;
-	system.load = ARRAY(struct load, (size_t)system.loads);
+	system.load = ARRAY(struct load, system.loads);
 	for (int l = 0; l < system.loads; l++) {
 		system.load[l] = model->system.load[l];
-		system.load[l].force = ARRAY(mpq_t *, (size_t)system.load[l].columns);
+		system.load[l].force = ARRAY(mpq_t *, system.load[l].columns);
 		for (int k = 0; k < system.load[l].columns; k++)
 			system.load[l].force[k] = rationals((size_t)system.segments * (size_t)system.n);
 	}
 	system.inputs = model->system.inputs;
-	system.input = ARRAY(struct input, (size_t)system.inputs);
+	system.input = ARRAY(struct input, system.inputs);
 	for (int i = 0; i < system.inputs; i++)
 		system.input[i] = model->system.input[i];
 	make_input_forces(&system);

@@ -73,7 +73,7 @@ static mpq_t *read_entries(struct elsewhere *s, const struct model *model)
 {
 	const struct linear *system = &model->system;
 	const int n = system->n, size = s->tuning->x.size;
-	mpq_t *entry = rationals((size_t)s->entries);
+	mpq_t *entry = rationals(s->entries);
 	rows_of_highest(&s->tuning->x, system, entry);
 	for (int i = 0; i < n; i++)
 		equation_row(system, i, size, entry, &entry[raw_index(s, i, 0)], &entry[raw_index(s, i, size)]);
@@ -100,7 +100,7 @@ static void number_rows(struct elsewhere *s)
 	struct tuning *t = s->tuning;
 	const struct linear *system = &s->model->system;
 	t->all.rows = s->model->n;
-	t->output = ARRAY(int, (size_t)s->model->outputs);
+	t->output = ARRAY(int, s->model->outputs);
 	for (int o = 0; o < s->model->outputs; o++) {
 		bool changes = false;
 		for (int j = 0; j < t->x.size; j++)
@@ -108,7 +108,7 @@ static void number_rows(struct elsewhere *s)
 		t->output[o] = changes ? t->all.rows++ : -1;
 		t->outputs += changes;
 	}
-	t->frequency = ARRAY(int, (size_t)system->loads);
+	t->frequency = ARRAY(int, system->loads);
 	for (int l = 0; l < system->loads; l++) {
 		const bool changes = !entry_stays(s, frequency_index(s, l));
 		t->frequency[l] = changes ? t->all.rows++ : -1;
@@ -216,7 +216,7 @@ bool find_tuning(struct model *model, const struct request *request)
 			       .differences = sizeof difference / sizeof *difference, .read = read_entries };
 	t->params = spec->tunables;
 	t->param = spec->tunable;
-	t->nominal = rationals((size_t)t->params);
+	t->nominal = rationals(t->params);
 	t->x = layout_of_columns(system);
 	t->all.columns = t->x.size;
 	s.entries = frequency_index(&s, system->loads);

@@ -61,7 +61,7 @@ static void choose_operator(void *context)
 	struct choice_work *work = context;
 	const struct model *model = work->j->b->model;
 	struct collector *c = &work->j->b->collector;
-	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	struct fixing *fixing = ARRAY(struct fixing, model->system.states + 1);
 	struct point *point = point_new(c, jacobian_point(work->j, fixing), fixing);
 	point_at_values(point);
 	const struct form *now = form_at(point, model->selector);
@@ -112,7 +112,7 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 {
 	const struct model *model = j->b->model;
 	struct choice_work choice = { j, 0 };
-	double *here = ARRAY(double, (size_t)model->n), *there = ARRAY(double, (size_t)model->n);
+	double *here = ARRAY(double, model->n), *there = ARRAY(double, model->n);
 	if (!silent_guard(jacobian_evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
 		return;
 	struct linear system = operator_system(model, choice.which);
@@ -235,7 +235,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 	int states = model->system.states, followed = model->n < FOLLOWED ? model->n : FOLLOWED;
 	size_t size = (size_t)states;
 	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed *size),
-	       *when = ARRAY(double, (size_t)followed);
+	       *when = ARRAY(double, followed);
 	double t = 0, h = nearest_double(model->h);
 	struct reference r;
 	if (!make_reference(&r, j->b))
@@ -293,7 +293,7 @@ static void check_softness(struct jacobian *j)
 	if (changes == 0 || mpq_sgn(model->system.change[changes - 1]) <= 0)
 		mpq_mul(end, end, model->h);
 	/* at rest; where that is not defined, at the start */
-	j->state = rationals((size_t)model->system.states);
+	j->state = rationals(model->system.states);
 	if (!silent_guard(jacobian_evaluate, j))
 		j->state = model->initial;
 	bool moves = stiffness_moves(j);

@@ -269,7 +269,7 @@ const char *spec_suggestion(const struct spec *spec, const char *name)
 	int count = 0, room = (int)(sizeof words / sizeof *words) + FN_FRICTION;
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		room++;
-	const char **known = ARRAY(const char *, (size_t)room);
+	const char **known = ARRAY(const char *, room);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT)
 			known[count++] = s->name;

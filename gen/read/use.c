@@ -128,7 +128,7 @@ static const char *nearest_in_part(const struct spec *spec, const struct scene_p
 {
 	int count = 0;
 	size_t length = strlen(part->name);
-	const char **own = ARRAY(const char *, (size_t)spec->symbols + 1);
+	const char **own = ARRAY(const char *, spec->symbols + 1);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (strncmp(s->name, part->name, length) == 0 && s->name[length] == '.')
 			own[count++] = s->name + length + 1;
@@ -190,7 +190,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 	part->at = name.at;
 	part->source = text->source;
 	part->inside = p->part;
-	part->binding = ARRAY(struct binding, (size_t)use->bindings);
+	part->binding = ARRAY(struct binding, use->bindings);
 	for (int i = 0; i < use->bindings; i++)
 		part->binding[i] = use->binding[i];
 	*MORE(spec->part, spec->parts) = part;

@@ -47,7 +47,7 @@ static void person_loads(FILE *to, const struct linear *system)
 static void person_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
 {
 	int length = resolvent_determinant(resolvent)->length;
-	mpq_t *B = rationals((size_t)length);
+	mpq_t *B = rationals(length);
 	characteristic_polynomial(resolvent, B);
 	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, B));
 	struct pole_report *pole;

@@ -75,7 +75,7 @@ static void json_pole_list(FILE *to, int count, const struct pole_report *pole)
 static void json_poles(FILE *to, const struct step *step)
 {
 	int length = resolvent_determinant(step->written)->length;
-	mpq_t *B = rationals((size_t)length);
+	mpq_t *B = rationals(length);
 	characteristic_polynomial(step->written, B);
 	fputs("  \"B\": [", to);
 	for (int k = 0; k < length; k++)
@@ -258,9 +258,9 @@ static void json_scheme(FILE *to, const struct step *step)
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	const char **output = ARRAY(const char *, (size_t)model->outputs);
+	const char **output = ARRAY(const char *, model->outputs);
 	double *Phi = ARRAY(double, (size_t)(model->system.states * model->system.states));
-	const char **input = ARRAY(const char *, (size_t)model->system.inputs);
+	const char **input = ARRAY(const char *, model->system.inputs);
 	for (int i = 0; i < model->system.inputs; i++)
 		input[i] = model->system.input[i].name;
 	for (int i = 0; i < model->outputs; i++)

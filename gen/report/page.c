@@ -89,7 +89,7 @@ static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 static void print_determinant(FILE *to, const struct step *step)
 {
 	int length = resolvent_determinant(step->written)->length;
-	mpq_t *B = rationals((size_t)length);
+	mpq_t *B = rationals(length);
 	characteristic_polynomial(step->written, B);
 	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n", polynomial_text(length, B));
 }

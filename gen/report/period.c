@@ -111,9 +111,9 @@ static void take_switching(struct mover *m, const struct switching *s, const str
 	m->states = first->states;
 	m->size = m->states + OVER;
 	m->systems = s->systems;
-	m->A = ARRAY(double *, (size_t)s->systems);
-	m->at = ARRAY(double *, (size_t)s->systems);
-	m->E = ARRAY(double *, (size_t)s->systems);
+	m->A = ARRAY(double *, s->systems);
+	m->at = ARRAY(double *, s->systems);
+	m->E = ARRAY(double *, s->systems);
 	for (int k = 0; k < s->systems; k++) {
 		m->A[k] = matrix_of(&s->system[k], drive, input);
 		m->at[k] = ARRAY(double, (size_t)m->size * (size_t)m->size);
@@ -121,32 +121,32 @@ static void take_switching(struct mover *m, const struct switching *s, const str
 		m->rate = fmax(m->rate, rate_of(m->states, m->size, m->A[k]));
 	}
 	m->of = s;
-	m->row = ARRAY(double *, (size_t)s->expressions + 1);
-	m->row_at = ARRAY(double *, (size_t)s->expressions + 1);
-	m->limit = ARRAY(double *, (size_t)s->expressions + 1);
+	m->row = ARRAY(double *, s->expressions + 1);
+	m->row_at = ARRAY(double *, s->expressions + 1);
+	m->limit = ARRAY(double *, s->expressions + 1);
 	for (int e = 0; e < s->expressions; e++) {
 		const struct expression *x = &s->expression[e];
 		m->row[e] = row_of(first, x->row, drive, input);
-		m->row_at[e] = ARRAY(double, (size_t)m->size);
-		m->limit[e] = ARRAY(double, (size_t)x->breaks + 1);
+		m->row_at[e] = ARRAY(double, m->size);
+		m->limit[e] = ARRAY(double, x->breaks + 1);
 		for (int i = 0; i < x->breaks; i++)
 			m->limit[e][i] = mpq_get_d(x->at[i]);
 	}
-	m->known = ARRAY(bool, (size_t)s->systems);
+	m->known = ARRAY(bool, s->systems);
 	for (int k = 0; k < WORK; k++)
-		m->work[k] = ARRAY(double, (size_t)m->size);
+		m->work[k] = ARRAY(double, m->size);
 	for (int k = 0; k < 3; k++)
 		m->square[k] = ARRAY(double, (size_t)m->size * (size_t)m->size);
 	m->piece = ARRAY(double, (size_t)m->size * (size_t)m->size);
-	m->integral[0] = ARRAY(double, (size_t)m->size);
-	m->integral[1] = ARRAY(double, (size_t)m->size);
+	m->integral[0] = ARRAY(double, m->size);
+	m->integral[1] = ARRAY(double, m->size);
 }
 
 int movers_of(const struct model *model, const struct drive *drive, struct mover **list)
 {
 	const struct switching *s = model->switching;
 	int count = s->parts ? s->parts : 1;
-	*list = ARRAY(struct mover, (size_t)count);
+	*list = ARRAY(struct mover, count);
 	for (int p = 0; p < count; p++) {
 		const struct region_part *part = s->parts ? &s->part[p] : NULL;
 		int input = part ? -1 : drive->input;

@@ -384,8 +384,8 @@ static void print_samples(struct picture *p, int count, const int *output)
 {
 	const struct model *model = p->step->shown->model;
 	struct resolvent *r = resolvent_of(&model->system);
-	struct started **form = ARRAY(struct started *, (size_t)count);
-	int *forms = ARRAY(int, (size_t)count);
+	struct started **form = ARRAY(struct started *, count);
+	int *forms = ARRAY(int, count);
 	RATIONAL t = ZERO, interval = ZERO;
 	unsigned long last = interval_of_samples(model, span_of(p->step), interval);
 	for (int i = 0; i < count; i++)
@@ -407,7 +407,7 @@ static void print_samples(struct picture *p, int count, const int *output)
 static void plot_response(struct picture *p)
 {
 	const struct model *model = p->step->shown->model;
-	int *output = ARRAY(int, (size_t)model->outputs + 1), count = 0, told = 0;
+	int *output = ARRAY(int, model->outputs + 1), count = 0, told = 0;
 	need_responses(p->step);
 	check_pole_size(model, p->step->written);
 	for (int i = 0; i < model->outputs; i++)

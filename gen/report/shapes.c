@@ -17,7 +17,7 @@ struct elimination {
 
 static mpc_t *numbers(int count)
 {
-	mpc_t *x = ARRAY(mpc_t, (size_t)count);
+	mpc_t *x = ARRAY(mpc_t, count);
 	for (int i = 0; i < count; i++) {
 		mpc_init2(x[i], SHAPE_BITS);
 		mpc_set_ui(x[i], 0, MPC_RNDNN);
@@ -132,7 +132,7 @@ static void eliminate(struct elimination *e)
 static struct mode_shape take_shape(const struct elimination *e, const struct pole_report *pole, int place)
 {
 	int n = e->n, largest = 0;
-	struct mode_shape shape = { pole, ARRAY(double, (size_t)n), ARRAY(double, (size_t)n) };
+	struct mode_shape shape = { pole, ARRAY(double, n), ARRAY(double, n) };
 	mpc_t *v = numbers(n + 1);
 	mpc_ptr z = v[n];
 	for (int i = 0; i < e->rank; i++)
@@ -153,7 +153,7 @@ static struct mode_shape take_shape(const struct elimination *e, const struct po
 static int shapes_of_pole(const struct linear *system, const struct pole_report *pole, struct mode_shape *list)
 {
 	int n = system->n, count = 0;
-	struct elimination e = { .n = n, .cell = numbers(n * n), .column = ARRAY(int, (size_t)n) };
+	struct elimination e = { .n = n, .cell = numbers(n * n), .column = ARRAY(int, n) };
 	mpc_init2(e.t, SHAPE_BITS);
 	for (int i = 0; i < n; i++)
 		e.column[i] = i;
@@ -172,7 +172,7 @@ int shapes_of(const struct linear *system, int count, const struct pole_report *
 	int shapes = 0, most = 0;
 	for (int i = 0; i < count; i++)
 		most += pole[i].multiplicity;
-	*list = ARRAY(struct mode_shape, (size_t)most + 1);
+	*list = ARRAY(struct mode_shape, most + 1);
 	for (int i = 0; i < count && system->n <= LIMIT_SHAPES; i++)
 		shapes += shapes_of_pole(system, &pole[i], *list + shapes);
 	return shapes;

@@ -105,7 +105,7 @@ static bool print_passed(struct printing *p, const struct through *t)
 static bool print_row(struct printing *p, const struct through *t, mpq_srcptr time)
 {
 	const struct model *model = p->model;
-	SCRATCH double *value = ARRAY(double, (size_t)model->outputs);
+	SCRATCH double *value = ARRAY(double, model->outputs);
 	mpfi_t x;
 	mpfi_init(x);
 	for (int j = 0; j < model->outputs; j++) {
@@ -150,7 +150,7 @@ static void print_through(FILE *to, const struct model *model, unsigned long las
 {
 	enum { FEWEST_BITS = 192, MOST_BITS = 6144, EQUAL = 3 };
 	struct printing p = { .to = to, .model = model, .last = last,
-			      .largest = ARRAY(double, (size_t)model->outputs) };
+			      .largest = ARRAY(double, model->outputs) };
 	const char *before = NULL;
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++)
@@ -179,7 +179,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		return;
 	}
 	check_pole_size(model, written);
-	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);
+	struct closed_form *form = ARRAY(struct closed_form, model->outputs);
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++) {
 		form[j].count = responses_of_output(written, &model->system, model->initial,

@@ -32,7 +32,7 @@ static void fill_column(const struct space *s, const mpq_t *inverse, const mpq_t
 {
 	const struct linear *system = &s->model->system;
 	int n = system->n;
-	RATIONALS *highest = rationals((size_t)n);
+	RATIONALS *highest = rationals(n);
 	rational_product(n, n, 1, inverse, force, highest);
 	for (int i = 0; i < n; i++)
 		mpq_set(B[(system->velocity[i] >= 0 ? system->velocity[i] : i) * s->drives + drive], highest[i]);
@@ -78,7 +78,7 @@ static struct space space_of(const struct model *model)
 {
 	struct space s = { .model = model, .states = model->system.states };
 	s.drives = drives_of(model, &s.drive);
-	s.output = ARRAY(int, (size_t)model->outputs + 1);
+	s.output = ARRAY(int, model->outputs + 1);
 	for (int i = 0; i < model->outputs; i++)
 		if (is_told(&model->output[i]))
 			s.output[s.outputs++] = i;

@@ -91,7 +91,7 @@ static double period_of_trial(struct course_of_mover *c)
 static bool find_near(struct course_of_mover *c)
 {
 	int n = c->m->states;
-	SCRATCH double *d = ARRAY(double, (size_t)n);
+	SCRATCH double *d = ARRAY(double, n);
 	double moved = 0;
 	bool found = false, leapt = false;
 	memcpy(c->trial, c->y, sizeof(double) * (size_t)n);
@@ -183,7 +183,7 @@ static void start(struct sweeping *s, const struct drive *drive, double amplitud
 			error(s->model->asked.step_at, "a higher frequency to start from is swept sooner",
 			      "a period at %g Hz takes more than %d samples to follow the fastest pole of a region",
 			      s->to->band.from, LIMIT_SAMPLES);
-	s->course = ARRAY(struct course_of_mover, (size_t)s->movers);
+	s->course = ARRAY(struct course_of_mover, s->movers);
 	for (int p = 0; p < s->movers; p++) {
 		struct course_of_mover *c = &s->course[p];
 		size_t n = (size_t)list[p].states;
@@ -194,7 +194,7 @@ static void start(struct sweeping *s, const struct drive *drive, double amplitud
 			c->y[i] = mpq_get_d(s->model->initial[c->m->place ? c->m->place[i] : (int)i]);
 	}
 	for (int k = 0; k < 2; k++)
-		s->harmonic[k] = ARRAY(double, (size_t)s->model->system.states);
+		s->harmonic[k] = ARRAY(double, s->model->system.states);
 }
 
 /* False: some part does not repeat */

@@ -132,7 +132,7 @@ static void add_zero(struct zero *zero, const struct rectangle *at, int multipli
 static int roots_of(const struct model *model, const struct transfer *t, struct poly p, struct zero **list)
 {
 	int count = 0;
-	*list = ARRAY(struct zero, (size_t)p.length + 1);
+	*list = ARRAY(struct zero, p.length + 1);
 	if (p.length < 2)
 		return 0;
 	INTEGER content = INTEGER_ZERO;

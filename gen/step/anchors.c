@@ -122,7 +122,7 @@ static struct anchors *anchors_of(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	struct anchors *anchors = NEW(struct anchors);
 	anchors->turned = step->model->switching != NULL;
-	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, (size_t)system->loads);
+	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		anchors->load[l] = !is_polynomial(system->load[l].wave) &&
 				   (anchors->turned ? anchors->load[l] : load_acts(system, &system->load[l]));
@@ -206,7 +206,7 @@ static void enclose_turn(const struct wave *wave, struct turn *turn, int precisi
 static struct turn *turns_of(const struct step *step)
 {
 	int steps = step->anchors->steps;
-	struct turn *turn = ARRAY(struct turn, (size_t)steps);
+	struct turn *turn = ARRAY(struct turn, steps);
 	for (int l = 0; l < steps; l++) {
 		mpq_init(turn[l].tau);
 		mpq_set_si(turn[l].tau, l, 1);
@@ -347,7 +347,7 @@ static void fill_row(const struct step *step, struct block_source *source, int s
 {
 	struct anchors *anchors = step->anchors;
 	int columns = source->system->load[load].columns;
-	struct row row = { source, state, load, columns, ARRAY(struct column, (size_t)columns), step->model->h };
+	struct row row = { source, state, load, columns, ARRAY(struct column, columns), step->model->h };
 	for (int k = 0; k < columns; k++)
 		mpfi_init(row.column[k].value);
 	for (int l = 0; l < anchors->steps; l++)
@@ -386,7 +386,7 @@ void fill_anchors(struct step *step)
 	const struct linear *system = &step->branch->system;
 	struct anchors *anchors = step->anchors;
 	struct block *block;
-	struct turn **turn = ARRAY(struct turn *, (size_t)system->loads);
+	struct turn **turn = ARRAY(struct turn *, system->loads);
 	if (!anchors)
 		return;
 	list_terms(anchors, step, false);

@@ -25,7 +25,7 @@ void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpf
 
 void through_value(const struct through *t, const struct output *output, mpfi_ptr value)
 {
-	RATIONALS *row = rationals((size_t)t->n);
+	RATIONALS *row = rationals(t->n);
 	mpfi_set_prec(value, t->precision);
 	through_row(t, output, row);
 	through_dot(t, row, t->x, value);
@@ -41,7 +41,7 @@ void through_state(const struct through *t, int state, mpfi_ptr value)
 
 static double *doubles(int n, const mpq_t *row)
 {
-	double *value = ARRAY(double, (size_t)n);
+	double *value = ARRAY(double, n);
 	for (int i = 0; i < n; i++)
 		value[i] = mpq_get_d(row[i]);
 	return value;
@@ -49,7 +49,7 @@ static double *doubles(int n, const mpq_t *row)
 
 mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 {
-	mpq_t *product = rationals((size_t)t->n);
+	mpq_t *product = rationals(t->n);
 	for (int i = 0; i < t->n; i++)
 		for (int j = 0; j < t->n && mpq_sgn(row[i]) != 0; j++) {
 			if (mpq_sgn(A[i * t->n + j]) == 0)
@@ -64,11 +64,11 @@ static double *fourth_of(const struct through *t, const double *row, const mpq_t
 {
 	int n = t->n;
 	SCRATCH double *a = doubles(n * n, A);
-	double *now = ARRAY(double, (size_t)n), *size = ARRAY(double, (size_t)n);
+	double *now = ARRAY(double, n), *size = ARRAY(double, n);
 	for (int i = 0; i < n; i++)
 		size[i] = fabs(now[i] = row[i]);
 	for (int k = 0; k < 4; k++) {
-		double *next = ARRAY(double, (size_t)n), *bound = ARRAY(double, (size_t)n);
+		double *next = ARRAY(double, n), *bound = ARRAY(double, n);
 		for (int i = 0; i < n; i++)
 			for (int j = 0; j < n; j++) {
 				next[j] += now[i] * a[i * n + j];
@@ -106,7 +106,7 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 		if (breakpoint < 0 || breakpoint == e->breaks ||
 		    (t->s->region[region].possible && is_released(&t->s->region[region], expression, upward)))
 			continue;
-		mpq_t *row = rationals((size_t)t->n);
+		mpq_t *row = rationals(t->n);
 		int leads = upward ? e->stride : -e->stride;
 		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
 		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
@@ -169,7 +169,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 		const struct release *release = &r->release[k];
 		if (release->expression != expression)
 			continue;
-		mpq_t *row = rationals((size_t)t->n);
+		mpq_t *row = rationals(t->n);
 		through_row(t, release->row, row);
 		add_gate(t, area,
 			 (struct gate){ .expression = expression, .breakpoint = interval - !release->upward,

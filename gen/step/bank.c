@@ -61,7 +61,7 @@ static const struct form *common_part(const struct model *model, int channel)
 
 struct bank bank_of(const struct step *step)
 {
-	struct bank bank = { .common = ARRAY(const struct form *, (size_t)step->model->channels) };
+	struct bank bank = { .common = ARRAY(const struct form *, step->model->channels) };
 	find_excess(step, &bank);
 	fill_factors(step, &bank);
 	for (int c = 0; c < step->model->channels; c++)

@@ -27,7 +27,7 @@ static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, b
 /* Where an expression that stands on a breakpoint is heading: the sign of its first derivative that is not 0 */
 static int heading(struct through *t, int expression, bool *known)
 {
-	mpq_t *row = rationals((size_t)t->n);
+	mpq_t *row = rationals(t->n);
 	int sign = 0;
 	RATIONAL zero = ZERO;
 	*known = true;
@@ -43,7 +43,7 @@ static int heading(struct through *t, int expression, bool *known)
 static int interval_at_start(struct through *t, int expression, bool *on, bool *known)
 {
 	const struct expression *e = &t->s->expression[expression];
-	mpq_t *row = rationals((size_t)t->n);
+	mpq_t *row = rationals(t->n);
 	int interval = 0, sign = 1;
 	*on = false;
 	*known = true;
@@ -72,7 +72,7 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	if (!*on || !is_stick(e, interval + 1))
 		return interval;
 	int impact = impact_resting(t->s, t->segment, expression, interval + 1), speed = 0;
-	RATIONALS *row = rationals((size_t)t->n);
+	RATIONALS *row = rationals(t->n);
 	RATIONAL zero = ZERO;
 	if (impact >= 0) {
 		through_row(t, t->s->impact[impact].in[t->segment].speed_row, row);
@@ -85,7 +85,7 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 bool through_place(struct through *t)
 {
 	int count = t->s->expressions, region = t->segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
-	bool *on = ARRAY(bool, (size_t)count), *above = ARRAY(bool, (size_t)count), known;
+	bool *on = ARRAY(bool, count), *above = ARRAY(bool, count), known;
 	for (int e = 0; e < count; e++) {
 		int interval = interval_at_start(t, e, &on[e], &known);
 		if (known)

@@ -7,7 +7,7 @@ static struct linear driven_system(const struct linear *region)
 {
 	struct linear system = *region;
 	system.channels = 2 * region->inputs;
-	system.channel = ARRAY(mpq_t *, (size_t)system.channels);
+	system.channel = ARRAY(mpq_t *, system.channels);
 	for (int i = 0; i < system.channels; i++)
 		system.channel[i] = region->input[i / 2].force[i % 2];
 	return system;
@@ -22,7 +22,7 @@ void take_operators(struct step *step)
 	/* in normal modes, what else reads a branch is content with the first operator's */
 	int operators = step->kind == KIND_NORMAL ? 1 : model->operators;
 	step->branches = regions ? regions->systems : operators ? operators : 1;
-	step->branch = ARRAY(struct branch, (size_t)step->branches);
+	step->branch = ARRAY(struct branch, step->branches);
 	for (int k = 0; k < step->branches; k++) {
 		struct linear system = regions		  ? driven_system(&regions->system[k])
 				       : model->operators ? operator_system(model, k)

@@ -99,7 +99,7 @@ static void check_group(const struct check *c, const struct group *g, bool *step
 static void check_groups(struct check *c)
 {
 	const struct table *table = c->step->branch->whole;
-	bool *stepped = ARRAY(bool, (size_t)table->states);
+	bool *stepped = ARRAY(bool, table->states);
 	for (int k = 0; k < c->program->groups; k++) {
 		c->where = format("group %d", k);
 		check_group(c, &c->program->group[k], stepped);
@@ -111,7 +111,7 @@ static void check_groups(struct check *c)
 static void check_list(struct check *c)
 {
 	const struct program *program = c->program;
-	bool *written = ARRAY(bool, (size_t)c->step->branch->whole->states);
+	bool *written = ARRAY(bool, c->step->branch->whole->states);
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
 		c->where = format("assignment %d", i);
@@ -234,8 +234,8 @@ static void check_actions(struct check *c)
 {
 	const struct program *program = c->program;
 	check_nodes(c);
-	c->stage = ARRAY(bool, (size_t)program->stages + 1);
-	c->left = ARRAY(bool, (size_t)program->lefts);
+	c->stage = ARRAY(bool, program->stages + 1);
+	c->left = ARRAY(bool, program->lefts);
 	c->stage[STAGE_STATE] = true;
 	for (int i = 0; i < program->actions; i++) {
 		c->where = format("action %d", i);

@@ -30,8 +30,8 @@ static struct closed_form closed_form_of(const struct step *step, int state, con
 static struct closed_form *closed_forms(const struct step *step, struct reference *r)
 {
 	int n = r->states;
-	mpq_t *start = rationals((size_t)n);
-	struct closed_form *form = ARRAY(struct closed_form, (size_t)n);
+	mpq_t *start = rationals(n);
+	struct closed_form *form = ARRAY(struct closed_form, n);
 	for (int i = 0; i < n; i++) {
 		reference_start(i, start[i]);
 		r->start[i] = round_rational(start[i]);

@@ -31,7 +31,7 @@ struct filling {
 static const mpq_t *impulse_of(struct filling *f, int channel)
 {
 	if (!f->impulse)
-		f->impulse = ARRAY(mpq_t *, (size_t)f->system->channels);
+		f->impulse = ARRAY(mpq_t *, f->system->channels);
 	if (!f->impulse[channel])
 		f->impulse[channel] = impulse_of_channel(f->system, channel);
 	return f->impulse[channel];
@@ -433,7 +433,7 @@ static struct table *table_new(const struct linear *system, const struct wanted 
 	table->kick = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
-	table->kernel = ARRAY(struct coefficient *, (size_t)wanted->kernels);
+	table->kernel = ARRAY(struct coefficient *, wanted->kernels);
 	for (int k = 0; k < wanted->kernels; k++)
 		table->kernel[k] = ARRAY(struct coefficient, n * (size_t)system->channels);
 	return table;
@@ -447,7 +447,7 @@ static void add_exponential(struct filling *f, mpq_srcptr fraction)
 		if (mpq_equal(f->exponential[i].tau, tau))
 			return;
 	*MORE(f->exponential, f->exponentials) =
-		(struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
+		(struct exponential){ tau, ARRAY(struct taylor *, f->system->segments) };
 }
 
 static void plan_exponentials(struct filling *f, int count, const struct wanted *wanted)
@@ -490,7 +490,7 @@ static int longest_chain(int count, const struct wanted *wanted)
 static struct table **tables_of_block(struct filling *f, int count, const struct wanted *wanted)
 {
 	const struct linear *system = f->system;
-	struct table **table = ARRAY(struct table *, (size_t)count);
+	struct table **table = ARRAY(struct table *, count);
 	size_t room = (size_t)system->states + (size_t)system->n + 8;
 	f->entry = ARRAY(struct entry, room);
 	f->response = ARRAY(struct started, 4);
@@ -565,7 +565,7 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 				 .state_name = model->state_name };
 	if (blocks == 1)
 		return tables_of_block(&whole, count, wanted);
-	struct table **table = ARRAY(struct table *, (size_t)count);
+	struct table **table = ARRAY(struct table *, count);
 	for (int t = 0; t < count; t++) {
 		table[t] = table_new(system, &wanted[t]);
 		mark_zero(table[t]->Phi, (size_t)system->states * (size_t)system->states);
@@ -577,7 +577,7 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 		struct filling part = { .model = model,
 					.system = &block[b].system,
 					.resolvent = resolvent_of(&block[b].system) };
-		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
+		part.state_name = ARRAY(const char *, block[b].system.states);
 		part.coord = block[b].coord;
 		for (int i = 0; i < block[b].system.states; i++)
 			part.state_name[i] = model->state_name[block[b].state[i]];

@@ -204,7 +204,7 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 {
 	int stages = nodes.length - 1;
 	bool pair = !mpfi_is_zero(z->im);
-	struct rectangle *left = ARRAY(struct rectangle, (size_t)stages), *right = ARRAY(struct rectangle,
+	struct rectangle *left = ARRAY(struct rectangle, stages), *right = ARRAY(struct rectangle,
 											 (size_t)stages);
 	struct stage_mode mode = { .pair = pair, .re = rounded(step, z->re), .im = pair ? rounded(step, z->im) : 0 };
 	mode.left = ARRAY(double, 2 * (size_t)stages);
@@ -235,7 +235,7 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 
 static double *rounded_all(const struct step *step, mpfi_t *x, int count)
 {
-	double *value = ARRAY(double, (size_t)count);
+	double *value = ARRAY(double, count);
 	for (int i = 0; i < count; i++)
 		value[i] = rounded(step, x[i]);
 	return value;
@@ -257,7 +257,7 @@ struct collocation *collocation_of(const struct step *step)
 	integrate(c, s, W, A);
 	square(s, A, twice);
 	x->stages = s;
-	x->node = ARRAY(double, (size_t)s);
+	x->node = ARRAY(double, s);
 	for (int i = 0; i < s; i++)
 		x->node[i] = rounded(step, c[i].re);
 	x->once = rounded_all(step, A, s * s);
@@ -266,7 +266,7 @@ struct collocation *collocation_of(const struct step *step)
 	modes = zeros_of(step, polynomial_of_modes(nodes), z, MOST);
 	put_real_first(z, modes);
 	x->modes = modes;
-	x->mode = ARRAY(struct stage_mode, (size_t)modes);
+	x->mode = ARRAY(struct stage_mode, modes);
 	for (int k = 0; k < modes; k++) {
 		x->mode[k] = mode_of(step, nodes, W, c, &z[k]);
 		rectangle_clear(&z[k]);

@@ -84,7 +84,7 @@ static struct holder *add_holder(struct holders *all)
 {
 	struct holder *h = MORE(all->holder, all->holders);
 	*h = (struct holder){ .impact = NONE, .drag = NONE, .slips = NONE,
-			      .push = rationals((size_t)all->w->system->states) };
+			      .push = rationals(all->w->system->states) };
 	return h;
 }
 
@@ -124,7 +124,7 @@ static void find_answers(struct holders *all)
 {
 	for (int i = 0; i < all->holders; i++) {
 		struct holder *h = &all->holder[i];
-		h->answer = rationals((size_t)all->holders);
+		h->answer = rationals(all->holders);
 		for (int j = 0; j < all->holders; j++)
 			find_answer(all, h, &all->holder[j], h->answer[j]);
 		if (h->node && mpq_sgn(h->answer[i]) == 0)
@@ -317,7 +317,7 @@ static void note_conflict(const struct holders *all, int count, const int *which
 static int force_together(const struct together *t)
 {
 	struct sequencing *w = t->all->w;
-	int count = 0, *which = ARRAY(int, (size_t)t->members);
+	int count = 0, *which = ARRAY(int, t->members);
 	for (int i = 0; i < t->members; i++)
 		if (t->holds[i])
 			which[count++] = t->member[i];
@@ -360,7 +360,7 @@ static void make_force(struct holders *all, int index)
 	enum { MOST = 4 };
 	struct sequencing *w = all->w;
 	struct holder *h = &all->holder[index];
-	struct together t = { all, index, 1, ARRAY(int, (size_t)all->holders), ARRAY(bool, (size_t)all->holders) };
+	struct together t = { all, index, 1, ARRAY(int, all->holders), ARRAY(bool, all->holders) };
 	t.member[0] = index;
 	t.holds[0] = true;
 	for (int i = 0; i < all->holders; i++)
@@ -410,7 +410,7 @@ static double *row_of_back(const struct holders *all, int index)
 {
 	const struct holder *h = &all->holder[index];
 	int states = all->w->system->states;
-	double *back = ARRAY(double, (size_t)states);
+	double *back = ARRAY(double, states);
 	RATIONAL part = ZERO;
 	for (int i = 0; i < states; i++) {
 		mpq_div(part, h->push[i], h->answer[index]);
@@ -463,7 +463,7 @@ static void watch_impact(struct holders *all, int index)
 			tell_held_twice(impact->when->at);
 	*strike = (struct series_strike){ .expression = d.expression, .breakpoint = d.breakpoint, .upward = d.above,
 				   .hold = NONE, .jump = all->c->assignments, .still = all->c->assignments,
-				   .jumps = impact->in->jumps, .back = ARRAY(double, (size_t)w->system->states),
+				   .jumps = impact->in->jumps, .back = ARRAY(double, w->system->states),
 				   .restitution = round_rational(impact->in->restitution) };
 	mpq_inv(factor, factor);
 	strike->per = round_rational(factor);
@@ -531,16 +531,16 @@ void hold_contacts(struct sequencing *w)
 	if (!has_contacts(model))
 		return;
 	struct contacts *c = all.c = w->x->contacts = NEW(struct contacts);
-	c->bare = ARRAY(int, (size_t)w->system->states);
+	c->bare = ARRAY(int, w->system->states);
 	for (int i = 0; i < w->system->states; i++)
 		c->bare[i] = NONE;
 	c->none = all.none = sequence_of_form(w, form_number(0));
 	c->strikes = model->impacts;
-	c->strike = ARRAY(struct series_strike, (size_t)model->impacts);
+	c->strike = ARRAY(struct series_strike, model->impacts);
 	find_holders(&all);
 	find_answers(&all);
 	group_holders(&all);
-	c->hold = ARRAY(struct series_hold, (size_t)all.holders);
+	c->hold = ARRAY(struct series_hold, all.holders);
 	c->holds = all.holders;
 	for (int i = 0; i < all.holders; i++)
 		make_hold(&all, i);

@@ -31,7 +31,7 @@ static double fastest_of(int size, const double *A)
 {
 	enum { PRODUCTS = 60 };
 	const double least = 0x1p-80;
-	double *v = ARRAY(double, (size_t)size), *next = ARRAY(double, (size_t)size), largest_entry = 0, most = 0;
+	double *v = ARRAY(double, size), *next = ARRAY(double, size), largest_entry = 0, most = 0;
 	for (int i = 0; i < size * size; i++)
 		largest_entry = fmax(largest_entry, fabs(A[i]));
 	const double shift = largest_entry * 0x1p-20;   /* or it would not settle */
@@ -55,7 +55,7 @@ static double fastest_of(int size, const double *A)
 
 static bool *acting_loads(const struct linear *system)
 {
-	bool *acting = ARRAY(bool, (size_t)system->loads);
+	bool *acting = ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		acting[l] = load_acts(system, &system->load[l]);
 	return acting;
@@ -63,7 +63,7 @@ static bool *acting_loads(const struct linear *system)
 
 static int *sequences_of_expressions(const struct expansion *x)
 {
-	int *sequence = ARRAY(int, (size_t)x->expressions);
+	int *sequence = ARRAY(int, x->expressions);
 	for (int i = 0; i < x->expressions; i++)
 		sequence[i] = x->expression[i].sequence;
 	return sequence;
@@ -72,7 +72,7 @@ static int *sequences_of_expressions(const struct expansion *x)
 static void count_looks(const struct step *step, struct cut *cut)
 {
 	const struct linear *system = &step->branch->system;
-	struct program program = { .uses = ARRAY(bool, (size_t)step->branch->whole->columns) };
+	struct program program = { .uses = ARRAY(bool, step->branch->whole->columns) };
 	struct step view = *step;
 	view.expansion = cut->ends;
 	count_expansion(&view, &program);
@@ -90,7 +90,7 @@ void plan_cut(struct step *step)
 	cut->ends = part_of_expansion(step, cut->look, 1, cut->look->expressions, sequences_of_expressions(cut->look));
 	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->force);
 	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
-	cut->slopes = ARRAY(double *, (size_t)system->segments);
+	cut->slopes = ARRAY(double *, system->segments);
 	for (int s = 0; s < system->segments; s++) {
 		cut->slopes[s] = slopes_in(step, &cut->layout, s);
 		cut->fastest = fmax(cut->fastest, fastest_of(cut->layout.size, cut->slopes[s]));

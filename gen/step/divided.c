@@ -29,7 +29,7 @@ static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr o
 
 void add_twin(struct divided *d, int breakpoint)
 {
-	mpq_t *all = rationals((size_t)d->breaks + 1);
+	mpq_t *all = rationals(d->breaks + 1);
 	for (int i = 0; i < d->breaks; i++)
 		mpq_set(all[i], d->at[i]);
 	mpq_set(all[d->breaks++], d->at[breakpoint]);
@@ -49,7 +49,7 @@ static int find_breakpoint(struct divided *d, mpq_srcptr at)
 	int known = known_breakpoint(d, at);
 	if (known != NONE)
 		return known;
-	mpq_t *all = rationals((size_t)d->breaks + 1);
+	mpq_t *all = rationals(d->breaks + 1);
 	for (int i = 0; i < d->breaks; i++)
 		mpq_set(all[i], d->at[i]);
 	mpq_set(all[d->breaks], at);
@@ -167,7 +167,7 @@ void rank_breakpoints(struct expansion *x)
 {
 	for (int i = 0; i < x->expressions; i++) {
 		struct divided *d = &x->expression[i];
-		d->rank = ARRAY(int, (size_t)d->breaks);
+		d->rank = ARRAY(int, d->breaks);
 		for (int k = 0; k < d->breaks; k++)
 			for (int j = 0; j < d->breaks; j++)
 				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < (j < k);
@@ -196,7 +196,7 @@ int upper_rank(const struct expansion *x, int expression, int breakpoint)
 
 mpq_t *rising_breakpoints(const struct divided *d)
 {
-	mpq_t *rising = rationals((size_t)d->breaks);
+	mpq_t *rising = rationals(d->breaks);
 	for (int k = 0; k < d->breaks; k++)
 		mpq_set(rising[d->rank[k]], d->at[k]);
 	return rising;

@@ -24,7 +24,7 @@ static void run_program(const struct step *step, mpq_t *state)
 {
 	const struct program *program = step->program;
 	int n = step->branch->system.states;
-	mpq_t *old = rationals((size_t)n);
+	mpq_t *old = rationals(n);
 	RATIONAL sum = ZERO;
 	for (int i = 0; i < n; i++)
 		mpq_set(old[i], state[i]);
@@ -47,7 +47,7 @@ static struct poly characteristic(const struct step *step)
 {
 	int n = step->branch->system.states;
 	struct polymat P = { n, ARRAY(struct poly, (size_t)(n * n)) };
-	mpq_t *E = rationals((size_t)(n * n)), *column = rationals((size_t)n);
+	mpq_t *E = rationals((size_t)(n * n)), *column = rationals(n);
 	INTEGER common = INTEGER_ZERO;
 	mpz_set_ui(common, 1);
 	INTEGER content = INTEGER_ZERO;
@@ -124,7 +124,7 @@ static int poles_in(const struct spectrum *spectrum)
 static int ringing_of(const struct spectrum *spectrum, mpq_srcptr h, struct ringing **list)
 {
 	int count = 0;
-	*list = ARRAY(struct ringing, (size_t)poles_in(spectrum));
+	*list = ARRAY(struct ringing, poles_in(spectrum));
 	if (spectrum->zero && h) {                      /* the pole 0; an eigenvalue 0 has no logarithm */
 		struct ringing m = mode_new();
 		mpfr_set_zero(m.size, 1);

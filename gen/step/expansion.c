@@ -176,7 +176,7 @@ static struct layout place_all(struct sequencing *w)
 	struct reads reads = { 0 };
 	const struct model *model = w->step->model;
 	reads = reads_of(model, model->channels, (const struct form *const *)model->operator[0].left);
-	bool *needed = ARRAY(bool, (size_t)w->system->loads);
+	bool *needed = ARRAY(bool, w->system->loads);
 	for (int l = 0; l < w->system->loads; l++)
 		needed[l] = has_contacts(model) || reads.load[l] || load_acts(w->system, &w->system->load[l]);
 	return layout_with(w->system, 1, needed);
@@ -191,7 +191,7 @@ static void start_states(struct sequencing *w)
 static void make_forces(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
-	int *force = ARRAY(int, (size_t)model->channels);
+	int *force = ARRAY(int, model->channels);
 	for (int e = 0; e < model->channels; e++)
 		force[e] = sequence_of_form(w, model->operator[0].left[e]);
 	w->x->force = force;
@@ -204,11 +204,11 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	int atoms = atoms_count(model->atoms);
 	struct sequencing work = { .step = step, .system = system, .x = NEW(struct expansion) }, *w = &work;
 	w->x->order = order;
-	w->x->load = ARRAY(bool, (size_t)system->loads);
-	w->x->input = ARRAY(bool, (size_t)system->inputs);
-	w->x->slope = ARRAY(bool, (size_t)system->inputs);
-	w->uses = ARRAY(int, (size_t)atoms);
-	w->atom = ARRAY(int, (size_t)atoms);
+	w->x->load = ARRAY(bool, system->loads);
+	w->x->input = ARRAY(bool, system->inputs);
+	w->x->slope = ARRAY(bool, system->inputs);
+	w->uses = ARRAY(int, atoms);
+	w->atom = ARRAY(int, atoms);
 	for (int i = 0; i < atoms; i++)
 		w->atom[i] = NONE;
 	mpq_init(w->pi);
@@ -216,7 +216,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	mpq_init(w->unit);
 	unit_of_expansion(model, w->unit);
 	w->layout = place_all(w);
-	w->slopes = ARRAY(mpq_t *, (size_t)system->segments);
+	w->slopes = ARRAY(mpq_t *, system->segments);
 	for (int k = 0; k < system->segments; k++)
 		w->slopes[k] = augmented_matrix(&w->layout, system, k);
 	for (int e = 0; e < model->channels; e++)
@@ -288,11 +288,11 @@ struct expansion *part_of_expansion(const struct step *step, const struct expans
 	struct expansion *x = NEW(struct expansion);
 	*x = (struct expansion){ .order = order, .count = whole->count, .expressions = whole->expressions,
 				 .expression = whole->expression, .columns = columns, .column = column, .alone = true };
-	x->sequence = ARRAY(struct sequence, (size_t)x->count);
-	x->column_top = ARRAY(int, (size_t)x->columns);
-	x->load = ARRAY(bool, (size_t)system->loads);
-	x->input = ARRAY(bool, (size_t)system->inputs);
-	x->slope = ARRAY(bool, (size_t)system->inputs);
+	x->sequence = ARRAY(struct sequence, x->count);
+	x->column_top = ARRAY(int, x->columns);
+	x->load = ARRAY(bool, system->loads);
+	x->input = ARRAY(bool, system->inputs);
+	x->slope = ARRAY(bool, system->inputs);
 	for (int i = 0; i < x->count; i++) {
 		x->sequence[i] = whole->sequence[i];
 		x->sequence[i].top = -1;

@@ -30,7 +30,7 @@ static int moved_states(const struct linear *system, int load, int *state)
 {
 	struct block *block;
 	int count = 0, blocks = blocks_of(system, &block);
-	bool *moved = ARRAY(bool, (size_t)system->states);
+	bool *moved = ARRAY(bool, system->states);
 	for (int b = 0; b < blocks; b++)
 		for (int i = 0; i < block[b].system.states && load_acts(&block[b].system, &block[b].system.load[load]);
 		     i++)
@@ -66,8 +66,7 @@ static void solve_forced(const struct linear *system, int l, int segment, int m,
 {
 	const struct load *load = &system->load[l];
 	int n = system->n, columns = load->columns, trig = oscillates(load->wave) ? 2 : 1, size = trig * m, column;
-	mpq_t *right = rationals((size_t)size), *part = rationals((size_t)size), *W = rationals((size_t)(n * n)),
-	      *a = rationals((size_t)n);
+	mpq_t *right = rationals(size), *part = rationals(size), *W = rationals((size_t)(n * n)), *a = rationals(n);
 	leading_inverse(system, W, &column);
 	for (int k = load->powers - 1; k >= 0; k--) {
 		for (int p = 0; p < trig; p++) {
@@ -116,7 +115,7 @@ static bool fill_forced(const struct linear *system, int l, struct forced *force
 {
 	const struct load *load = &system->load[l];
 	int states = system->states, all = load_columns(system), first = first_column(system, l),
-	    *state = ARRAY(int, (size_t)states);
+	    *state = ARRAY(int, states);
 	int m = moved_states(system, l, state);
 	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
@@ -224,8 +223,8 @@ static bool note_course(const struct step *step, const struct layout *place, con
 static bool follow(const struct step *step, const struct layout *place, struct course *c)
 {
 	int size = place->size;
-	mpfr_t *x = ARRAY(mpfr_t, (size_t)size), *next = ARRAY(mpfr_t, (size_t)size);
-	struct flow *flow = ARRAY(struct flow, (size_t)step->branch->system.segments);
+	mpfr_t *x = ARRAY(mpfr_t, size), *next = ARRAY(mpfr_t, size);
+	struct flow *flow = ARRAY(struct flow, step->branch->system.segments);
 	RATIONAL t = ZERO, value = ZERO;
 	for (int i = 0; i < size; i++) {
 		mpfr_inits2(BITS, x[i], next[i], NULL);
@@ -450,7 +449,7 @@ static void reckon_step(struct reckoning *r, double *largest)
 {
 	const struct program *program = r->step->program;
 	int n = r->step->branch->system.states;
-	struct rounded *now = ARRAY(struct rounded, (size_t)n), *old = ARRAY(struct rounded, (size_t)n);
+	struct rounded *now = ARRAY(struct rounded, n), *old = ARRAY(struct rounded, n);
 	for (int i = 0; i < n; i++)
 		old[i] = now[i] = (struct rounded){ r->course->y[r->k * n + i] - part_of(r, i, false), 0 };
 	r->from = program->in_order ? now : old;
@@ -465,8 +464,8 @@ static void reckon_step(struct reckoning *r, double *largest)
 /* Over the whole course, relative to each state's largest value; the worst */
 static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
 {
-	int n = step->branch->system.states, *load_of = ARRAY(int, (size_t)step->branch->whole->columns);
-	double *each = ARRAY(double, (size_t)n), *first = ARRAY(double, (size_t)n), *last = ARRAY(double, (size_t)n);
+	int n = step->branch->system.states, *load_of = ARRAY(int, step->branch->whole->columns);
+	double *each = ARRAY(double, n), *first = ARRAY(double, n), *last = ARRAY(double, n);
 	const double least = step->model->asked.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
 	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
 	struct rounding bound = { .known = true, .steps = c->steps };
@@ -509,7 +508,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 	struct tape *t = tape_new();
 	tape_of_forced(t, step, "");
 	const struct tape_cost cost = tape_cost(t);
-	struct program program = { .uses = ARRAY(bool, (size_t)columns), .multiplications = cost.multiplications,
+	struct program program = { .uses = ARRAY(bool, columns), .multiplications = cost.multiplications,
 				   .additions = cost.additions };
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
 		program.uses[column] = tape_reads(t, TAPE_LOAD, l, -1);
@@ -562,7 +561,7 @@ void plan_forced(struct step *step)
 	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36;
 	struct linear *system = &step->branch->system;
 	struct course course;
-	bool acts = false, any = false, *able = ARRAY(bool, (size_t)system->loads);
+	bool acts = false, any = false, *able = ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		acts = acts || load_acts(system, &system->load[l]);
 	if (!acts || system->heldK || !make_course(step, &course))
@@ -571,7 +570,7 @@ void plan_forced(struct step *step)
 	if (!step->rounding.known || step->rounding.relative <= much || step->model->tuning)
 		return;
 	struct forced *forced = NEW(struct forced);
-	forced->load = ARRAY(bool, (size_t)system->loads);
+	forced->load = ARRAY(bool, system->loads);
 	forced->part =
 		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
 	forced->exact = rationals((size_t)(system->states * step->branch->whole->columns));

@@ -47,7 +47,7 @@ int poles_of(const struct model *model, const struct resolvent *resolvent, struc
 	if (!spectrum_refine(spectrum, REPORT_BITS))
 		error(model->asked.step_at, "do two parameters differ by less than their rounding?",
 		      "two poles are too close to each other to be told apart");
-	*report = ARRAY(struct pole_report, (size_t)spectrum->D.length);
+	*report = ARRAY(struct pole_report, spectrum->D.length);
 	if (spectrum->zero)
 		add_report(&(*report)[count++], NULL, spectrum->zero, false);
 	for (int f = 0; f < spectrum->factors; f++)

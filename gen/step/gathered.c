@@ -16,7 +16,7 @@ int *staying_columns(const struct step *step, int *count)
 {
 	const struct linear *system = &step->branch->system;
 	const struct layout *layout = &step->layout;
-	int *column = ARRAY(int, (size_t)layout->size);
+	int *column = ARRAY(int, layout->size);
 	*count = 0;
 	for (int l = 0; l < system->loads; l++)
 		if (layout->load[l] >= 0 && is_polynomial(system->load[l].wave))
@@ -67,7 +67,7 @@ static void gather_piece(const struct step *step, struct region_piece *piece)
 	const struct layout *layout = &step->layout;
 	int size = layout->size, expressions = step->model->switching->expressions, stays;
 	const int *column = staying_columns(step, &stays);
-	piece->added = ARRAY(double, (size_t)system->states);
+	piece->added = ARRAY(double, system->states);
 	for (int i = 0; i < system->states; i++)
 		for (int k = 0; k < stays; k++)
 			piece->added[i] += piece->Phi[i * size + column[k]] * value_of_column(step, column[k]);
@@ -87,7 +87,7 @@ static void gather_piece(const struct step *step, struct region_piece *piece)
 static double *edges_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
-	double *edge = ARRAY(double, (size_t)edges_of_regions(s)), *next = edge;
+	double *edge = ARRAY(double, edges_of_regions(s)), *next = edge;
 	const double *at = pieces->breakpoint;
 	int stays;
 	const int *column = staying_columns(step, &stays);

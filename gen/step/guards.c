@@ -38,7 +38,7 @@ static void add_guard(struct guards *g, int size, int branch, const double *row,
 
 static double *turned(int size, const double *row, bool upward)
 {
-	double *result = ARRAY(double, (size_t)size);
+	double *result = ARRAY(double, size);
 	for (int j = 0; j < size; j++)
 		result[j] = upward || row[j] == 0 ? row[j] : -row[j];
 	return result;
@@ -78,7 +78,7 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 	int stride = s->expression[expression].stride, interval = interval_of(s, region, expression);
 	for (int k = 0; k < s->region[region].releases; k++) {
 		const struct release *release = &s->region[region].release[k];
-		double *row = ARRAY(double, (size_t)step->layout.size);
+		double *row = ARRAY(double, step->layout.size);
 		if (release->expression != expression)
 			continue;
 		row_over_x(step, release->row, 0, row);
@@ -142,8 +142,8 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 	if (impact->bounces && !strike->upward)
 		new.breakpoint++;               /* the upper of two */
 	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, segment * s->impacts + number);
-	new.speed = ARRAY(double, (size_t)step->layout.size);
-	new.back = ARRAY(double, (size_t)step->layout.size);
+	new.speed = ARRAY(double, step->layout.size);
+	new.back = ARRAY(double, step->layout.size);
 	RATIONAL part = ZERO;
 	if (impact->bounces) {
 		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL,
@@ -177,7 +177,7 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 	g->slope = ARRAY(double, cells);
 	g->second = ARRAY(double, cells);
 	g->fourth = ARRAY(double, cells);
-	g->reach_at = ARRAY(int, (size_t)g->rows);
+	g->reach_at = ARRAY(int, g->rows);
 	for (int from = 0, to; from < g->rows; from = to) {
 		for (to = from; to < g->rows && g->branch[to] == g->branch[from]; to++)
 			;
@@ -213,7 +213,7 @@ double *grips_of(const struct step *step)
 struct guards guards_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
-	struct guards g = { .first = ARRAY(int, (size_t)s->regions + 1), .hold = ARRAY(int, (size_t)s->regions),
+	struct guards g = { .first = ARRAY(int, s->regions + 1), .hold = ARRAY(int, s->regions),
 			    .set = ARRAY(int, 1), .apart = step->model->retuned };
 	for (int r = 0; r < s->regions; r++) {
 		g.first[r] = g.guards;
@@ -235,7 +235,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
 	g.play = ARRAY(double, (size_t)(s->segments * s->expressions));
-	g.row_play = ARRAY(double, (size_t)g.rows);
+	g.row_play = ARRAY(double, g.rows);
 	for (int k = 0; k < s->segments; k++)
 		for (int e = 0; e < s->expressions; e++)
 			g.play[k * s->expressions + e] =

@@ -14,16 +14,16 @@ static void normalize_loads(const struct linear *written, const mpq_t *inverse, 
 {
 	int n = written->n;
 	split->loads = written->loads;
-	split->load = ARRAY(struct load, (size_t)written->loads);
+	split->load = ARRAY(struct load, written->loads);
 	for (int l = 0; l < written->loads; l++) {
 		const struct load *load = &written->load[l];
 		split->load[l] = *load;
-		split->load[l].force = ARRAY(mpq_t *, (size_t)load->columns);
+		split->load[l].force = ARRAY(mpq_t *, load->columns);
 		for (int k = 0; k < load->columns; k++)
 			split->load[l].force[k] = normalized(n, written->segments, inverse, load->force[k]);
 	}
 	split->inputs = written->inputs;
-	split->input = ARRAY(struct input, (size_t)written->inputs);
+	split->input = ARRAY(struct input, written->inputs);
 	for (int i = 0; i < written->inputs; i++) {
 		split->input[i] = written->input[i];
 		for (int k = 0; k < 2; k++)
@@ -52,7 +52,7 @@ struct linear piecewise_laplace(const struct linear *written)
 	}
 	normalize_loads(written, inverse, &split);
 	split.channels = written->channels;
-	split.channel = ARRAY(mpq_t *, (size_t)written->channels);
+	split.channel = ARRAY(mpq_t *, written->channels);
 	for (int e = 0; e < written->channels; e++)
 		split.channel[e] = normalized(n, 1, inverse, written->channel[e]);
 	return split;

@@ -8,7 +8,7 @@
 void tap_weight(int hold, int power, int tap, mpq_ptr weight)
 {
 	int before = hold > 0 ? (hold - 1) / 2 : 0;
-	RATIONALS *factor = rationals((size_t)hold + 2);
+	RATIONALS *factor = rationals(hold + 2);
 	RATIONAL lower = ZERO;
 	mpq_set_ui(factor[0], 1, 1);
 	for (int c = 0, degree = 0; c <= hold; c++) {

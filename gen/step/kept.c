@@ -71,7 +71,7 @@ static struct wave_of_column wave_of_column(const struct linear *system, int col
 
 static struct wave_of_column *waves_of_columns(const struct linear *system, int columns)
 {
-	struct wave_of_column *wave = ARRAY(struct wave_of_column, (size_t)columns);
+	struct wave_of_column *wave = ARRAY(struct wave_of_column, columns);
 	for (int c = 0; c < columns; c++)
 		wave[c] = wave_of_column(system, c);
 	return wave;
@@ -209,8 +209,7 @@ static double slack_of_output(const struct kept *k, const struct spread *spread,
 struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace)
 {
 	const struct sparse Phi = sparse_of(k->n, k->n, k->Phi), load = sparse_of(k->n, k->columns, k->load);
-	SCRATCH double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n),
-		       *z = ARRAY(double, (size_t)k->columns);
+	SCRATCH double *x = ARRAY(double, k->n), *next = ARRAY(double, k->n), *z = ARRAY(double, k->columns);
 	double largest = 0;
 	struct extent found = { 0 };
 	for (int i = 0; i < k->n; i++)
@@ -245,8 +244,7 @@ struct extent walk_loads(long steps, double h, const struct spread *spread, stru
 /* What inputs within their bounds can do to the states at most */
 static void add_inputs(const struct spread *spread, struct kept *k)
 {
-	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n),
-		       *column = ARRAY(double, (size_t)k->n);
+	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n), *column = ARRAY(double, k->n);
 	for (int c = 0; c < k->inputs; c++) {
 		for (int i = 0; i < k->n; i++)
 			column[i] = k->input[i * k->inputs + c];
@@ -264,7 +262,7 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 {
 	const int taps = system->input[input].hold + 1, n = k->n;
 	const struct sparse Phi = sparse_of(n, n, k->Phi);
-	SCRATCH double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n);
+	SCRATCH double *x = ARRAY(double, n), *next = ARRAY(double, n);
 	double sum = 0;
 	for (long m = 0; m < steps; m++) {
 		const int tap = m < taps ? taps - 1 - (int)m : -1;

@@ -138,7 +138,7 @@ static double *rung_of(const struct step *step, const struct table *table, int h
 double **rungs_of(const struct step *step, int branch)
 {
 	const struct branch *b = &step->branch[branch];
-	double **rung = ARRAY(double *, (size_t)b->rungs);
+	double **rung = ARRAY(double *, b->rungs);
 	for (int r = 0; r < b->rungs; r++)
 		rung[r] = rung_of(step, b->table[1 + r], rung_halvings(b, r));
 	return rung;
@@ -151,7 +151,7 @@ double *reach_of_rows(const struct step *step, int branch, const double *A, int 
 	const struct branch *b = &step->branch[branch];
 	int size = step->layout.size, cells = rows * b->rungs * size;
 	SCRATCH double *work = ARRAY(double, (size_t)PL_REACH_WORK(size, rows));
-	double *reach = ARRAY(double, (size_t)cells);
+	double *reach = ARRAY(double, cells);
 	if (b->rungs > 0)
 		pl_region_reach(size, round_rational(step->model->h), b->halvings, b->spacing, A, rows, row, reach,
 				work);

@@ -53,7 +53,7 @@ static int *blocks_of_step(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
 	const int n = table->states, *tuned = tuned_components(step);
-	int *parent = ARRAY(int, (size_t)n);
+	int *parent = ARRAY(int, n);
 	for (int i = 0; i < n; i++)
 		parent[i] = i;
 	for (int i = 0; i < n; i++)
@@ -69,7 +69,7 @@ static int *blocks_of_step(const struct step *step)
 
 static struct group block_from(const int *first, int states, int state, const bool *touched)
 {
-	struct group g = { .blocks = 1, .state = ARRAY(int, (size_t)states), .tuned = touched && touched[state] };
+	struct group g = { .blocks = 1, .state = ARRAY(int, states), .tuned = touched && touched[state] };
 	for (int i = 0; i < states; i++)
 		if (first[i] == state)
 			g.state[g.states++] = i;
@@ -152,8 +152,8 @@ static void choose_kind(const struct step *step, struct group *g, int *page)
 static void list_columns(const struct step *step, struct group *g)
 {
 	const struct table *table = step->branch->whole;
-	g->load = ARRAY(int, (size_t)table->columns);
-	g->input = ARRAY(int, (size_t)table->inputs);
+	g->load = ARRAY(int, table->columns);
+	g->input = ARRAY(int, table->inputs);
 	for (int k = g->states; k < operands_of(step, g); k++) {
 		const struct operand operand = operand_of_column(step, g, k);
 		bool acts = false;
@@ -234,10 +234,10 @@ static int like(const struct step *step, const struct group *block, int blocks, 
 void find_groups(struct program *program, const struct step *step)
 {
 	const int states = step->branch->whole->states, *first = blocks_of_step(step);
-	struct group *block = ARRAY(struct group, (size_t)states);
+	struct group *block = ARRAY(struct group, states);
 	const bool *touched = touched_states(step);
-	bool *grouped = ARRAY(bool, (size_t)states);
-	int *which = ARRAY(int, (size_t)states), blocks = 0, page = ROW_TERMS;
+	bool *grouped = ARRAY(bool, states);
+	int *which = ARRAY(int, states), blocks = 0, page = ROW_TERMS;
 	for (int i = 0; i < states; i++)
 		if (first[i] == i)
 			block[blocks++] = block_from(first, states, i, touched);

@@ -44,8 +44,8 @@ static bool sustained(const struct kept *k, int column, double h, double complex
 	const int n = k->n;
 	const size_t cells = (size_t)n * (size_t)n;
 	const double complex root = root_of_wave(wave, h), turn = wave->turns ? cexp(I * wave->p) : 1;
-	SCRATCH double complex *A = ARRAY(double complex, cells), *b = ARRAY(double complex, (size_t)n);
-	SCRATCH double *own = ARRAY(double, (size_t)n);
+	SCRATCH double complex *A = ARRAY(double complex, cells), *b = ARRAY(double complex, n);
+	SCRATCH double *own = ARRAY(double, n);
 	double largest = 0;
 	for (int i = 0; i < n; i++) {
 		b[i] = turn * (k->load[i * k->columns + column] -
@@ -121,7 +121,7 @@ static void lasting_free(const struct lasting *l)
 double lasting_output(const struct kept *k, const struct spread *spread, double h)
 {
 	const struct lasting l = lasting_of(k, h);
-	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n);
+	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n);
 	double out = 0;
 	reach_of_row(spread, k->Phi, k->row, false, sum, most);
 	for (int c = 0; c < k->columns; c++)
@@ -148,7 +148,7 @@ double lasting_input(const struct linear *system, const struct spread *spread, c
 		     int first)
 {
 	const int taps = system->input[input].hold + 1;
-	SCRATCH double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n);
+	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n);
 	double out = fabs(k->feed[0][input]);
 	reach_of_row(spread, k->Phi, k->row, false, sum, most);
 	for (int i = 0; i < k->n; i++)

@@ -5,7 +5,7 @@
 struct leap leap_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	struct leap leap = { .size = system->states, .load = ARRAY(int, (size_t)system->loads) };
+	struct leap leap = { .size = system->states, .load = ARRAY(int, system->loads) };
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
 		bool used = false;
 		for (int k = 0; k < system->load[l].columns; k++)
@@ -62,7 +62,7 @@ int leap_entries_of(const struct step *step, const struct leap *leap, struct lea
 {
 	const struct linear *system = &step->branch->system;
 	struct entries list = { 0 };
-	struct coefficient **cell = ARRAY(struct coefficient *, (size_t)system->loads);
+	struct coefficient **cell = ARRAY(struct coefficient *, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		cell[l] = leap->load[l] >= 0 ? step_of_load(step, &system->load[l]) : NULL;
 	for (int segment = 0; segment < system->segments; segment++) {

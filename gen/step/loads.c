@@ -56,7 +56,7 @@ static void add_load(struct excitation *e, const struct linear *system, int segm
 
 static const mpq_t *unit(int count, int index)
 {
-	mpq_t *e = rationals((size_t)count);
+	mpq_t *e = rationals(count);
 	mpq_set_ui(e[index], 1, 1);
 	return e;
 }
@@ -132,8 +132,7 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 mpq_t *impulse_of_channel(const struct linear *system, int channel)
 {
 	int n = system->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n),
-	      *B = rationals((size_t)system->states);
+	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals(n), *B = rationals(system->states);
 	leading_inverse(system, inverse, &column);
 	rational_product(n, n, 1, inverse, system->channel[channel], highest);
 	for (int i = 0; i < n; i++)
@@ -208,12 +207,12 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 
 struct output state_as_output(const struct linear *system, int state)
 {
-	struct output output = { .state = rationals((size_t)system->states) };
-	output.load = ARRAY(mpq_t *, (size_t)system->loads);
+	struct output output = { .state = rationals(system->states) };
+	output.load = ARRAY(mpq_t *, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		output.load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
 	for (int k = 0; k < 2; k++)
-		output.input[k] = rationals((size_t)system->inputs);
+		output.input[k] = rationals(system->inputs);
 	mpq_set_ui(output.state[state], 1, 1);
 	return output;
 }
@@ -271,7 +270,7 @@ static void add_loads(struct excitation *e, const struct linear *system, const s
 
 static struct excitation *no_loads(const struct linear *system)
 {
-	struct excitation *e = ARRAY(struct excitation, (size_t)system->loads);
+	struct excitation *e = ARRAY(struct excitation, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		e[l] = excitation_new(system->n, system->load[l].wave->a, system->load[l].wave->w,
 				      system->load[l].powers);
@@ -293,7 +292,7 @@ int responses_of_output(struct resolvent *r, const struct linear *system, const 
 		add_loads(e, system, output, s, start, 1);
 		if (s > first)
 			add_loads(e, system, output, s - 1, start, -1);
-		const mpq_t *none = rationals((size_t)system->states);
+		const mpq_t *none = rationals(system->states);
 		bool from_rest = s > first;
 		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e,
 									  output->state });

@@ -63,10 +63,10 @@ static double size_of_loss(const struct loss *loss, const struct linear *system,
 static struct loss no_loss(const struct linear *system, long steps)
 {
 	struct loss loss = { .steps = steps,
-			     .trace = ARRAY(double, (size_t)steps + 1),
-			     .input = ARRAY(double *, (size_t)system->inputs) };
+			     .trace = ARRAY(double, steps + 1),
+			     .input = ARRAY(double *, system->inputs) };
 	for (int i = 0; i < system->inputs; i++)
-		loss.input[i] = ARRAY(double, (size_t)steps + 1);
+		loss.input[i] = ARRAY(double, steps + 1);
 	return loss;
 }
 
@@ -94,7 +94,7 @@ static void build_loss(void *context)
 /* What is lost with one mode, as a step in double; NULL: it is not found */
 static struct step *step_of_loss(struct modes *modes, int mode, bool statics)
 {
-	SCRATCH bool *kept = ARRAY(bool, (size_t)modes->count);
+	SCRATCH bool *kept = ARRAY(bool, modes->count);
 	for (int i = 0; i < modes->count; i++)
 		kept[i] = i != mode;
 	struct building_loss b = { .error = modes_dropped(modes, kept, statics) };
@@ -105,7 +105,7 @@ double *losses_of(struct modes *modes, const int *order, bool statics, const str
 {
 	const struct linear *system = &modes->model->system;
 	const long steps = samples_until(r, modes->model->h);
-	double *lost = ARRAY(double, (size_t)modes->count + 1);
+	double *lost = ARRAY(double, modes->count + 1);
 	const struct kept shape = { .n = 2, .columns = load_columns(system) };
 	bool good = steps >= 0;
 	const bool lasts = good && is_lasting(&shape, steps);

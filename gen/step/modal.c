@@ -536,7 +536,7 @@ static struct modal *modal_of(const struct step *step)
 {
 	struct block *block;
 	const int blocks = blocks_of(&step->branch->system, &block);
-	struct spectrum **spectrum = ARRAY(struct spectrum *, (size_t)blocks);
+	struct spectrum **spectrum = ARRAY(struct spectrum *, blocks);
 	struct modal *modal = modal_new(step);
 	struct filling f = { .step = step, .modal = modal };
 	int pair = 0, real = 0;

@@ -90,13 +90,13 @@ struct motion *motion_of(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	struct motion *m = NEW(struct motion);
 	struct layout layout = layout_of(system, 1);
-	mpq_t **slopes = ARRAY(mpq_t *, (size_t)system->segments);
+	mpq_t **slopes = ARRAY(mpq_t *, system->segments);
 	for (int k = 0; k < system->segments; k++)
 		slopes[k] = augmented_matrix(&layout, system, k);
 	m->coords = system->n;
 	m->apart = system->n > TOGETHER;
-	m->force = ARRAY(const struct form *, (size_t)system->n);
-	m->driven = ARRAY(bool, (size_t)system->n);
+	m->force = ARRAY(const struct form *, system->n);
+	m->driven = ARRAY(bool, system->n);
 	for (int i = 0; i < system->n; i++) {
 		const mpq_t *row = slopes[0] + highest_state(system, i) * layout.size;
 		m->force[i] = force_of(step, &layout, row);

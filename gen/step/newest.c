@@ -10,7 +10,7 @@ enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows 
 
 static bool *state_dependent(const struct expansion *x)
 {
-	bool *depends = ARRAY(bool, (size_t)x->count);
+	bool *depends = ARRAY(bool, x->count);
 	for (bool changed = true; changed;) {
 		changed = false;
 		for (int i = 0; i < x->count; i++) {

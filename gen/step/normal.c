@@ -129,7 +129,7 @@ static void find_modes(struct normal_work *w, int bank)
 /* Coordinates that a mode of the block moves, in any bank; else all */
 static int *coordinates_of(const struct normal_work *w, const struct mode_block *own, int first)
 {
-	int n = w->normal->modes, count = 0, *coord = ARRAY(int, (size_t)n + 1);
+	int n = w->normal->modes, count = 0, *coord = ARRAY(int, n + 1);
 	for (int i = 0; i < n; i++) {
 		bool moves = false;
 		for (int j = first; j < first + own->modes; j++)
@@ -150,8 +150,8 @@ static void find_blocks(struct normal_work *w)
 		for (int j = 0; j < n; j++)
 			alike = alike && w->pairs[b].block[j] == block[j];
 	normal->blocks = alike ? w->pairs[0].blocks : 1;
-	normal->block = ARRAY(struct mode_block, (size_t)normal->blocks);
-	normal->place = ARRAY(int, (size_t)n);
+	normal->block = ARRAY(struct mode_block, normal->blocks);
+	normal->place = ARRAY(int, n);
 	for (int j = 0; j < n; j++)
 		normal->block[alike ? block[j] : 0].modes++;
 	for (int b = 0, first = 0; b < normal->blocks; first += normal->block[b++].modes) {
@@ -207,7 +207,7 @@ static void find_multistep(struct normal_work *w)
 	mpfr_t *value = reals((size_t)points, NORMAL_BITS);
 	normal->step = stage_of(w, one, &past);
 	lagrange_at(&past, one, value);
-	normal->extrapolate = ARRAY(double, (size_t)points);
+	normal->extrapolate = ARRAY(double, points);
 	for (int k = 0; k < points; k++)
 		normal->extrapolate[k] = round_real(value[k]);
 	mpq_set_ui(node[points], 1, 1);
@@ -225,7 +225,7 @@ static void find_stages(struct normal_work *w)
 	struct normal *normal = w->normal;
 	normal->node = lobatto_nodes(normal->stages);
 	struct lagrange l = lagrange_of(normal->stages + 1, normal->node);
-	normal->stage = ARRAY(struct normal_stage, (size_t)normal->stages);
+	normal->stage = ARRAY(struct normal_stage, normal->stages);
 	for (int i = 0; i < normal->stages; i++)
 		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
 	mpfr_t *value = reals((size_t)l.nodes, NORMAL_BITS);
@@ -260,8 +260,8 @@ static void find_settled(struct normal_work *w)
 	int n = normal->modes, size = settled_size(model), width = normal->width;
 	int bank = normal->settled_bank = last_bank(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
-	normal->omega = ARRAY(double, (size_t)width);
-	normal->period = ARRAY(double, (size_t)width);
+	normal->omega = ARRAY(double, width);
+	normal->period = ARRAY(double, width);
 	normal->settled = ARRAY(double, (size_t)(size * 2 * width));
 	for (int j = 0; j < n; j++) {
 		mpfr_srcptr lambda = w->mode[bank * n + j].lambda;
@@ -361,7 +361,7 @@ struct normal *normal_of(struct step *step)
 	normal->modes = model->n;
 	normal->banks = model->operators;
 	normal->points = row->points;
-	w.pairs = ARRAY(struct eigenpairs, (size_t)normal->banks);
+	w.pairs = ARRAY(struct eigenpairs, normal->banks);
 	w.mode = ARRAY(struct normal_mode, (size_t)(normal->banks * model->n));
 	for (int b = 0; b < normal->banks; b++)
 		find_modes(&w, b);

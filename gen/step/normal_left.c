@@ -178,7 +178,7 @@ static int new_pattern(struct normal *normal, struct pattern_list *list, struct 
 static double *multiples_of(const struct normal_work *w, const struct pattern *pattern, const mpq_t **X)
 {
 	size_t cells = (size_t)w->model->n * (size_t)w->model->n;
-	double *factor = ARRAY(double, (size_t)w->normal->banks);
+	double *factor = ARRAY(double, w->normal->banks);
 	RATIONAL ratio = ZERO;
 	bool all = !pattern->own;
 	for (int b = 0; b < w->normal->banks && all; b++) {
@@ -208,7 +208,7 @@ static void add_matrix(struct normal_work *w, struct pattern_list *list, int fun
 	}
 	if (!any)
 		return;
-	double *factor = ARRAY(double, (size_t)w->normal->banks);
+	double *factor = ARRAY(double, w->normal->banks);
 	for (int b = 0; b < w->normal->banks; b++)
 		factor[b] = 1;
 	add_matrix_term(w->normal, new_pattern(w->normal, list, made), function, velocity, factor);
@@ -216,7 +216,7 @@ static void add_matrix(struct normal_work *w, struct pattern_list *list, int fun
 
 static const mpq_t **same_in_all(const struct normal_work *w, const mpq_t *X)
 {
-	const mpq_t **all = ARRAY(const mpq_t *, (size_t)w->normal->banks);
+	const mpq_t **all = ARRAY(const mpq_t *, w->normal->banks);
 	for (int b = 0; b < w->normal->banks; b++)
 		all[b] = X;
 	return all;
@@ -225,7 +225,7 @@ static const mpq_t **same_in_all(const struct normal_work *w, const mpq_t *X)
 /* Of the constant function: what the operator of each bank has beyond that of the first is added */
 static const mpq_t **constant_matrices(const struct normal_work *w, const mpq_t *first, bool velocity)
 {
-	const mpq_t **all = ARRAY(const mpq_t *, (size_t)w->normal->banks);
+	const mpq_t **all = ARRAY(const mpq_t *, w->normal->banks);
 	const struct operator *operator = w->model->operator;
 	int n = w->model->n;
 	for (int b = 0; b < w->normal->banks; b++) {
@@ -269,7 +269,7 @@ void find_forces(struct normal_work *w)
 	const struct splitting *split = w->model->split;
 	struct normal *normal = w->normal;
 	int n = normal->modes;
-	normal->force = ARRAY(double *, (size_t)split->functions);
+	normal->force = ARRAY(double *, split->functions);
 	for (int f = 0; f < split->functions; f++) {
 		if (!split->function[f].force)
 			continue;

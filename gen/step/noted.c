@@ -40,7 +40,7 @@ void through_note_plain(struct through *t, int expression, int breakpoint, bool 
 /* e - at, 1 above, -1 below; 0: not told apart */
 int through_side(const struct through *t, int expression, mpq_srcptr at)
 {
-	RATIONALS *row = rationals((size_t)t->n);
+	RATIONALS *row = rationals(t->n);
 	INTERVAL value = OVER_BITS(t->precision);
 	through_row(t, t->s->expression[expression].row, row);
 	through_dot(t, row, t->x, value);

@@ -55,7 +55,7 @@ static struct ways ways_of(const struct step *step, const mpq_t *start, int bits
 {
 	const struct switching *s = regions_of(step);
 	struct ways w = { .step = step, .count = s->parts ? s->parts : 1 };
-	w.way = ARRAY(struct through *, (size_t)w.count);
+	w.way = ARRAY(struct through *, w.count);
 	for (int p = 0; p < w.count; p++)
 		through_limit(w.way[p] = through_start(step->model, s->parts ? &s->part[p] : NULL, start, bits), MOST);
 	return w;
@@ -143,7 +143,7 @@ static int by_time(const void *a, const void *b)
 
 static struct moment *all_crossings(const struct ways *w, int *count)
 {
-	struct moment *all = ARRAY(struct moment, (size_t)crossings_of(w) + 1);
+	struct moment *all = ARRAY(struct moment, crossings_of(w) + 1);
 	*count = 0;
 	for (int p = 0; p < w->count; p++) {
 		const struct passed *list;
@@ -222,7 +222,7 @@ static void start_of(const struct step *step, int number, mpq_t *start)
 static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 {
 	int states = step->branch->system.states, bits = step->model->asked.single ? 18 : BESIDE;
-	mpq_t *beside = rationals((size_t)states);
+	mpq_t *beside = rationals(states);
 	RATIONAL off = ZERO;
 	for (int i = 0; i < states; i++) {
 		mpq_abs(off, start[i]);
@@ -284,7 +284,7 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 static bool try_start(const struct step *step, struct reference *r, const mpq_t *start, int bits)
 {
 	RATIONALS *near = start_beside(step, start);
-	double *other = ARRAY(double, (size_t)r->states);
+	double *other = ARRAY(double, r->states);
 	struct ways a = ways_of(step, start, bits), b = ways_of(step, near, bits);
 	bool known = true, goes = true;
 	RATIONAL time = ZERO;
@@ -337,7 +337,7 @@ static struct reference new_reference(const struct step *step)
 struct reference reference_through(const struct step *step)
 {
 	struct reference best = { 0 };
-	mpq_t *start = rationals((size_t)step->branch->system.states);
+	mpq_t *start = rationals(step->branch->system.states);
 	for (int number = 0; number < STARTS && best.crossings < ENOUGH; number++) {
 		struct reference r = new_reference(step);
 		start_of(step, number, start);

@@ -140,7 +140,7 @@ static struct load_phase phase_of(const struct step *step, const struct wave *wa
 	if (mpq_sgn(wave->a) != 0)
 		phase.growth = rate_of(step, wave->a, OCTAVE);
 	RATIONAL seconds = ZERO;
-	phase.node = ARRAY(struct advance, (size_t)step->program->nodes);
+	phase.node = ARRAY(struct advance, step->program->nodes);
 	for (int i = 0; i < step->program->nodes; i++) {
 		mpq_mul(seconds, step->program->node[i], step->model->h);
 		phase.node[i] = advance_over(step, wave, seconds);
@@ -151,7 +151,7 @@ static struct load_phase phase_of(const struct step *step, const struct wave *wa
 void plan_phases(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	step->phase = ARRAY(struct load_phase, (size_t)system->loads);
+	step->phase = ARRAY(struct load_phase, system->loads);
 	for (int l = 0; l < system->loads; l++)
 		step->phase[l] = phase_of(step, system->load[l].wave);
 }

@@ -32,7 +32,7 @@ static double word_of(const struct step *step, mpq_srcptr number, bool second)
 static void fill_row(const struct step *step, const struct output *expression, int segment, bool second, double *row)
 {
 	const int size = step->layout.size;
-	RATIONALS *exact = rationals((size_t)size);
+	RATIONALS *exact = rationals(size);
 	row_of_output(&step->layout, &step->branch->system, expression, step->shown->model->system.segments, segment,
 		      exact);
 	for (int i = 0; i < size; i++)
@@ -53,7 +53,7 @@ void row_in_words(const struct step *step, const struct output *expression, int 
 static double **rows_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	double **row = ARRAY(double *, (size_t)s->segments);
+	double **row = ARRAY(double *, s->segments);
 	for (int segment = 0; segment < s->segments; segment++) {
 		row[segment] = ARRAY(double, (size_t)s->expressions * (size_t)step->layout.size);
 		for (int i = 0; i < s->expressions; i++)
@@ -68,7 +68,7 @@ static double *breakpoints_of(const struct step *step)
 	int count = 0;
 	for (int i = 0; i < s->expressions; i++)
 		count += s->expression[i].breaks;
-	double *breakpoint = ARRAY(double, (size_t)count), *next = breakpoint;
+	double *breakpoint = ARRAY(double, count), *next = breakpoint;
 	for (int i = 0; i < s->expressions; i++)
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			*next++ = equation_number(step->model, s->expression[i].at[k]).value;
@@ -125,7 +125,7 @@ static void exponential(int n, const double *A, double tau, bool sizes, double *
 
 static void times_matrix(int n, double *row, const double *A)
 {
-	SCRATCH double *product = ARRAY(double, (size_t)n);
+	SCRATCH double *product = ARRAY(double, n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			product[j] += row[i] * A[i * n + j];
@@ -178,7 +178,7 @@ static double *bound_rows(const struct step *step, const double *rows, const dou
 			  const struct growth *growth, int order, double factor)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
-	SCRATCH double *row = ARRAY(double, (size_t)size);
+	SCRATCH double *row = ARRAY(double, size);
 	double *bound = ARRAY(double, (size_t)expressions * (size_t)size);
 	for (int i = 0; i < expressions; i++) {
 		memcpy(row, rows + i * size, (size_t)size * sizeof *row);
@@ -195,7 +195,7 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 {
 	int size = step->layout.size;
 	struct growth growth = growth_of(size, A, h);
-	SCRATCH double *second = ARRAY(double, (size_t)size);
+	SCRATCH double *second = ARRAY(double, size);
 	memcpy(second, row, (size_t)size * sizeof *row);
 	times_matrix(size, second, A);
 	times_matrix(size, second, A);
@@ -212,7 +212,7 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 	int size = step->layout.size;
 	const double *A = pieces->piece[branch].slopes;
 	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
-	SCRATCH double *gone = ARRAY(double, (size_t)size);
+	SCRATCH double *gone = ARRAY(double, size);
 	struct growth growth = growth_of(size, A, d);
 	for (int i = 0; i < rows; i++) {
 		memcpy(gone, row + i * size, (size_t)size * sizeof *gone);
@@ -222,7 +222,7 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 				slope[i * size + j] = d / 3 * gone[j];
 			if (order % 2)
 				continue;
-			SCRATCH double *lost = ARRAY(double, (size_t)size);
+			SCRATCH double *lost = ARRAY(double, size);
 			double *bound = (order == 2 ? second : fourth) + i * size;
 			memcpy(lost, gone, (size_t)size * sizeof *lost);
 			bound_row(size, &growth, lost, order == 2 ? d * d / 8 : d * d * d * d / 384, bound);
@@ -267,7 +267,7 @@ static void fill_intervals(const struct step *step, struct pieces *pieces)
 
 static bool *bounded_entries(const struct step *step)
 {
-	bool *bounded = ARRAY(bool, (size_t)step->layout.size);
+	bool *bounded = ARRAY(bool, step->layout.size);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		for (int k = 0; k < step->branch->system.load[l].columns && is_bounded_load(step, l); k++)
 			bounded[step->layout.load[l] + k] = true;
@@ -302,7 +302,7 @@ void fold_loads(const struct step *step, double *bound, double *still)
 static void add_slack(int size, const double *A, double h, int degree, double epsilon, double *term, double *slack)
 {
 	enum { FURTHER = 40 };
-	SCRATCH double *next = ARRAY(double, (size_t)size);
+	SCRATCH double *next = ARRAY(double, size);
 	for (int k = 1; k <= degree + FURTHER; k++) {
 		for (int j = 0; j < size; j++) {
 			next[j] = 0;
@@ -332,7 +332,7 @@ static void gather_loads(const struct step *step, const bool *bounded, double *b
 static double *slack_rows(const struct step *step, const double *rows, const double *A, int degree)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
-	SCRATCH double *term = ARRAY(double, (size_t)size);
+	SCRATCH double *term = ARRAY(double, size);
 	double *slack = ARRAY(double, (size_t)(expressions * size));
 	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
 	for (int i = 0; i < expressions; i++) {
@@ -364,7 +364,7 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, h);
 	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
-	piece->still = ARRAY(double, (size_t)step->model->switching->expressions);
+	piece->still = ARRAY(double, step->model->switching->expressions);
 	discard(growth.E);
 	discard(growth.most);
 }
@@ -403,7 +403,7 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 /* 1/k!, k = 0 .. degree */
 static double *weights_of(const struct step *step)
 {
-	double *weight = ARRAY(double, (size_t)step->swift_degree + 1);
+	double *weight = ARRAY(double, step->swift_degree + 1);
 	RATIONAL factorial = ZERO;
 	for (int k = 0; k <= step->swift_degree; k++) {
 		mpz_fac_ui(mpq_denref(factorial), (unsigned long)k);
@@ -433,7 +433,7 @@ static void fill_swift(const struct step *step, struct pieces *pieces)
 struct pieces pieces_of(const struct step *step)
 {
 	struct pieces pieces = { .rows = rows_of(step), .breakpoint = breakpoints_of(step),
-				 .piece = ARRAY(struct region_piece, (size_t)step->branches) };
+				 .piece = ARRAY(struct region_piece, step->branches) };
 	pieces.row = pieces.rows[0];
 	for (int k = 0; k < step->branches; k++) {
 		pieces.piece[k].slopes = finite_slopes(step, k);

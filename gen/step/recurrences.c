@@ -651,7 +651,7 @@ tape_ref recurrence(struct recurrences *r, int sequence, int k)
 
 static tape_ref *unmade(int count, tape_ref what)
 {
-	tape_ref *list = ARRAY(tape_ref, (size_t)count + 1);
+	tape_ref *list = ARRAY(tape_ref, count + 1);
 	for (int i = 0; i < count; i++)
 		list[i] = what;
 	return list;
@@ -664,7 +664,7 @@ struct recurrences *recurrences_new(const struct step *step, const struct expans
 	*r = (struct recurrences){ .step = step, .x = x, .names = names, .t = tape_new(),
 				   .made = unmade(all, UNKNOWN), .early = unmade(all, UNKNOWN),
 				   .helper = unmade(x->count, TAPE_NONE), .size = unmade(x->count, TAPE_NONE) };
-	r->gain = ARRAY(tape_ref *, (size_t)x->count);
+	r->gain = ARRAY(tape_ref *, x->count);
 	for (int i = 0; i < x->count; i++)
 		r->gain[i] = unmade(x->sequence[i].gains, TAPE_NONE);
 	return r;

@@ -52,7 +52,7 @@ struct resolvent *resolvent_of(const struct linear *system)
 	struct resolvent *r = NEW(struct resolvent);
 	struct polymat P = { n, ARRAY(struct poly, (size_t)(n * n)) };
 	r->system = system;
-	r->row = ARRAY(mpz_t, (size_t)n);
+	r->row = ARRAY(mpz_t, n);
 	for (int i = 0; i < n; i++) {
 		const mpq_t *rows[] = { system->K, system->C, system->M };
 		mpz_init_set_ui(r->row[i], 1);
@@ -294,8 +294,7 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 	question_scale(ask, system, scale);
 	common_denominator(rows, system->states, ask->row);
 	struct denominators p = find_denominators(ask);
-	struct poly *x = ARRAY(struct poly, (size_t)n), N = poly_new(0), D = poly_mul(r->B, p.all),
-		    direct = poly_new(0);
+	struct poly *x = ARRAY(struct poly, n), N = poly_new(0), D = poly_mul(r->B, p.all), direct = poly_new(0);
 	for (int k = 0; k < n; k++)
 		x[k] = right_side(r, ask, &p, scale, k);
 	for (int i = 0; i < system->states; i++) {

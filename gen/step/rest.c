@@ -81,7 +81,7 @@ void plan_rest(struct step *step)
 	const int blocks = blocks_of(system, &block);
 	struct rest *rest = NEW(struct rest);
 	bool any = false, all = true;
-	rest->part = ARRAY(int, (size_t)system->states);
+	rest->part = ARRAY(int, system->states);
 	rest->parts = blocks;
 	rest->in_step = system->states > LIMIT_UNROLLED_STATES;
 	for (int b = 0; b < blocks; b++) {

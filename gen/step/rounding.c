@@ -86,7 +86,7 @@ static void reckon_list(struct errors *e, const double *size, double *error)
 {
 	const struct program *program = e->step->program;
 	const int n = e->kept->n;
-	double *old[2] = { ARRAY(double, (size_t)n), ARRAY(double, (size_t)n) };
+	double *old[2] = { ARRAY(double, n), ARRAY(double, n) };
 	e->size = old[0];
 	e->err = old[1];
 	for (int i = 0; i < program->assignments; i++) {
@@ -202,7 +202,7 @@ static bool settle(struct errors *e, const struct spread *s, double *size, doubl
 {
 	enum { TRIES = 12 };
 	const struct kept *k = e->kept;
-	double *error = ARRAY(double, (size_t)k->n);
+	double *error = ARRAY(double, k->n);
 	for (int i = 0; i < k->n; i++)
 		size[i] = k->size[i] * k->scale[i];
 	for (int tries = 0; tries < TRIES; tries++) {

@@ -79,7 +79,7 @@ static struct share share_of_state(const struct step *step, const struct output 
 {
 	const struct linear *system = &step->branch->system;
 	struct share share = { 0 };
-	mpq_t *initial = rationals((size_t)system->states);
+	mpq_t *initial = rationals(system->states);
 	mpq_set_ui(initial[state], 1, 1);
 	if (step->momenta && state >= system->n)
 		mpq_inv(initial[state], step->mass[system->coord[state]]);
@@ -93,7 +93,7 @@ static struct share share_of_load(const struct step *step, const struct output *
 	const struct linear *system = &step->branch->system;
 	struct share share = { 0 };
 	int first, columns = load_columns(system), l = load_of_column(system, column, &first);
-	mpq_t *initial = is_forced(step, column) ? rationals((size_t)system->states) : NULL;
+	mpq_t *initial = is_forced(step, column) ? rationals(system->states) : NULL;
 	for (int i = 0; i < system->states && initial; i++)
 		mpq_set(initial[i], step->forced->exact[i * columns + column]);
 	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, column - first, initial),
@@ -144,7 +144,7 @@ static void ask(struct asking *a, enum operand_kind kind, int index, share_maker
 {
 	int outputs = a->rows->outputs;
 	struct asked *asked = &a->asked[a->count++];
-	*asked = (struct asked){ { kind, index }, ARRAY(struct share, (size_t)outputs),
+	*asked = (struct asked){ { kind, index }, ARRAY(struct share, outputs),
 				 ARRAY(double, (size_t)(a->rows->count * outputs)) };
 	for (int o = 0; o < outputs; o++)
 		asked->share[o] = share_of(a->step, &a->step->model->output[o], source);
@@ -184,10 +184,10 @@ static void fill_columns(const struct step *step, struct rows *rows)
 	for (int i = 0; i < system->inputs; i++)
 		ask(&a, OPERAND_INPUT, held + i, share_of_sample, i);
 	answer_all(&a);
-	rows->column = ARRAY(struct row_column, (size_t)columns + 1);
+	rows->column = ARRAY(struct row_column, columns + 1);
 	for (int k = 0; k < columns; k++)
 		keep_column(rows, &a.asked[k]);
-	rows->sample = ARRAY(double *, (size_t)system->inputs);
+	rows->sample = ARRAY(double *, system->inputs);
 	for (int i = 0; i < system->inputs; i++)
 		rows->sample[i] = a.asked[columns + i].value;
 }

@@ -97,8 +97,8 @@ static void build_with_leftover(struct step *step)
 	write_recipe(recipe);
 	make_tables(step, recipe->tables, recipe->table);
 	find_carries(step);
-	step->program->reads = ARRAY(bool, (size_t)step->branch->system.states);
-	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
+	step->program->reads = ARRAY(bool, step->branch->system.states);
+	step->program->uses = ARRAY(bool, step->branch->whole->columns);
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	count_program(step, step->program);
@@ -108,7 +108,7 @@ static void build_with_leftover(struct step *step)
 /* Of tunable models: no Taylor series in the step's own time, but e^{A tau} at any, of every load */
 static void place_all_loads(struct step *step)
 {
-	bool *all = ARRAY(bool, (size_t)step->branch->system.loads);
+	bool *all = ARRAY(bool, step->branch->system.loads);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		all[l] = true;
 	step->layout = layout_with(&step->branch->system, 0, all);
@@ -160,10 +160,10 @@ static void make_read_table(void *context)
 static void write_no_list(struct step *step)
 {
 	int states = step->branch->system.states;
-	step->carry = ARRAY(int, (size_t)states);
+	step->carry = ARRAY(int, states);
 	step->program = NEW(struct program);
-	step->program->reads = ARRAY(bool, (size_t)states);
-	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
+	step->program->reads = ARRAY(bool, states);
+	step->program->uses = ARRAY(bool, step->branch->whole->columns);
 	for (int i = 0; i < states; i++) {
 		step->carry[i] = -1;
 		step->program->reads[i] = true;
@@ -235,7 +235,7 @@ static void need_all_known(const struct step *step)
 /* The slopes of all states from a state alone, by which a series is judged */
 static void find_slopes(struct step *step)
 {
-	int states = step->branch->system.states, *column = ARRAY(int, (size_t)states);
+	int states = step->branch->system.states, *column = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
 		column[i] = i;
 	if (step->unseen && step->unseen->looks)

@@ -60,7 +60,7 @@ double largest_pole_angle(const struct step *step)
 
 static mpfr_t *positive_numbers(int count)
 {
-	mpfr_t *x = ARRAY(mpfr_t, (size_t)count);
+	mpfr_t *x = ARRAY(mpfr_t, count);
 	for (int i = 0; i < count; i++) {
 		mpfr_init2(x[i], BITS);
 		mpfr_set_zero(x[i], 1);

@@ -44,7 +44,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 	int n = model->n, size = settled_size(model), column;
 	size_t cells = (size_t)n * (size_t)n;
 	const struct splitting *split = model->split;
-	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals((size_t)n) };
+	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals(n) };
 	mpq_t *A = rationals((size_t)size * (size_t)size);
 	RATIONAL minus = ZERO;
 	mpq_set_si(minus, -1, 1);

@@ -52,7 +52,7 @@ int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, boo
 
 mpq_t *through_row_of(const struct through *t, const struct output *output)
 {
-	mpq_t *row = rationals((size_t)t->n);
+	mpq_t *row = rationals(t->n);
 	through_row(t, output, row);
 	return row;
 }
@@ -234,7 +234,7 @@ static bool settle_sliders(struct through *t, const struct gate *gate, mpfr_srcp
 	if (t->s->sliders == 0)
 		return true;
 	through_hold(t);
-	gone = ARRAY(const struct gate *, (size_t)t->s->expressions);
+	gone = ARRAY(const struct gate *, t->s->expressions);
 	int count = 0, back = slides_back(t, gate, &release);
 	for (; back >= 0 && count < t->s->expressions; count++) {
 		gone[count] = release;

@@ -63,7 +63,7 @@ struct load_slopes load_slopes_of(const struct step *step)
 {
 	struct load_slopes slopes = place_of_loads(step);
 	int segments = step->branch->system.segments;
-	slopes.segment = ARRAY(double *, (size_t)segments);
+	slopes.segment = ARRAY(double *, segments);
 	for (int s = 0; s < segments && slopes.first >= 0; s++)
 		slopes.segment[s] = load_slopes_in(step, &slopes, s);
 	return slopes;

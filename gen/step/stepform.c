@@ -59,7 +59,7 @@ static const mpq_t *relative_masses(const struct linear *system, const mpq_t *a)
 {
 	int n = system->n;
 	bool written = has_mass_matrix(system);
-	mpq_t *mass = rationals((size_t)n);
+	mpq_t *mass = rationals(n);
 	for (int i = 0; i < n; i++) {
 		if (mpq_sgn(mass[i]) != 0)
 			continue;
@@ -237,7 +237,7 @@ static bool *read_elsewhere(const struct step *step)
 {
 	const struct model *model = step->model;
 	int n = step->branch->system.states;
-	bool *reads = ARRAY(bool, (size_t)n);
+	bool *reads = ARRAY(bool, n);
 	for (int k = 0; k < model->operators; k++) {
 		struct reads left =
 			reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
@@ -280,7 +280,7 @@ void find_carries(struct step *step)
 {
 	int n = step->branch->system.states;
 	bool listed = !step->model->switching && !step->model->operators && n <= LIMIT_UNROLLED_STATES;
-	step->carry = ARRAY(int, (size_t)n);
+	step->carry = ARRAY(int, n);
 	step->carries = 0;
 	for (int i = 0; i < n; i++)
 		step->carry[i] = -1;
@@ -445,8 +445,8 @@ struct program *linear_program(const struct step *step)
 	struct program *program = NEW(struct program);
 	program->compensated = step->model->asked.compensated;
 	program->tuned = step->model->tuning != NULL;
-	program->reads = ARRAY(bool, (size_t)table->states);
-	program->uses = ARRAY(bool, (size_t)table->columns);
+	program->reads = ARRAY(bool, table->states);
+	program->uses = ARRAY(bool, table->columns);
 	if (step->form == FORM_DIRECT)
 		write_direct(program, step);
 	else if (step->form == FORM_DELTA)

@@ -40,7 +40,7 @@ static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcp
 	for (int k = 0; k <= m && k <= w->x->order; k++) {
 		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = TERM_TIME, .a = m - k, .slot = -1 };
-		term->factor = ARRAY(double, (size_t)w->x->order + 1);
+		term->factor = ARRAY(double, w->x->order + 1);
 		mpq_mul(binomial, part, scale[k]);
 		term->factor[k] = rounded(w, binomial);
 		mpq_set_ui(binomial, (unsigned long)(m - k), (unsigned long)k + 1);
@@ -55,7 +55,7 @@ static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
 {
 	const struct load *l = &w->system->load[load];
 	int n = l->columns, at = w->layout.load[load], size = w->layout.size;
-	RATIONALS *next = rationals((size_t)n);
+	RATIONALS *next = rationals(n);
 	RATIONAL part = ZERO;
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
@@ -92,7 +92,7 @@ static void add_load_numbers(struct sequencing *w, struct sequence *s, int load,
 	for (int j = 0; j < n; j++) {
 		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j, .slot = -1 };
-		term->factor = ARRAY(double, (size_t)order + 1);
+		term->factor = ARRAY(double, order + 1);
 		for (int k = 0; k <= order; k++)
 			term->factor[k] = value[k * n + j];
 	}
@@ -103,7 +103,7 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 {
 	for (int l = 0; l < w->system->loads; l++) {
 		int first = column_of_load(w->system, l), n = w->system->load[l].columns;
-		RATIONALS *row = rationals((size_t)n);
+		RATIONALS *row = rationals(n);
 		bool any = false;
 		for (int i = 0; i < sum->keys; i++) {
 			const struct key *key = &sum->key[i];
@@ -127,7 +127,7 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 	for (int k = 0; k <= (key->kind == TERM_INPUT && ramps); k++) {
 		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = k ? TERM_SLOPE : key->kind, .a = key->a, .slot = -1 };
-		term->factor = ARRAY(double, (size_t)w->x->order + 1);
+		term->factor = ARRAY(double, w->x->order + 1);
 		mpq_mul(number, key->factor, scale[k]);
 		if (k)
 			mpq_mul(number, number, w->unit);
@@ -141,7 +141,7 @@ static void add_param(struct sequencing *w, struct sequence *s, const struct key
 	RATIONAL number = ZERO;
 	struct sequence_term *term = MORE(s->term, s->terms);
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
-	term->factor = ARRAY(double, (size_t)w->x->order + 1);
+	term->factor = ARRAY(double, w->x->order + 1);
 	mpq_mul(number, key->factor, scale[0]);
 	term->factor[0] = rounded(w, number);
 	w->x->params = true;
@@ -152,7 +152,7 @@ static void add_plain(struct sequencing *w, struct sequence *s, const struct key
 	RATIONAL number = ZERO;
 	struct sequence_term *term = MORE(s->term, s->terms);
 	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .b = key->b, .slot = -1 };
-	term->factor = ARRAY(double, (size_t)w->x->order + 1);
+	term->factor = ARRAY(double, w->x->order + 1);
 	for (int k = 0; k <= w->x->order; k++) {
 		mpq_mul(number, key->factor, scale[k]);
 		term->factor[k] = rounded(w, number);
@@ -180,7 +180,7 @@ void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum
 
 mpq_t *plain_scale(const struct sequencing *w)
 {
-	mpq_t *scale = rationals((size_t)w->x->order + 1);
+	mpq_t *scale = rationals(w->x->order + 1);
 	for (int k = 0; k <= w->x->order; k++)
 		mpq_set_ui(scale[k], 1, 1);
 	return scale;
@@ -189,7 +189,7 @@ mpq_t *plain_scale(const struct sequencing *w)
 /* D/(k+1): of a derivative with respect to time; or 1/(k+1), where D is in the factors already */
 mpq_t *integral_scale(const struct sequencing *w, bool times_unit)
 {
-	mpq_t *scale = rationals((size_t)w->x->order + 1);
+	mpq_t *scale = rationals(w->x->order + 1);
 	for (int k = 0; k <= w->x->order; k++) {
 		mpq_set_ui(scale[k], 1, (unsigned long)k + 1);
 		if (times_unit)
@@ -222,7 +222,7 @@ void add_changing_loads(struct sequencing *w, struct sequence *s, int state, con
 		ENLARGE(x->slot_load, (size_t)(x->slots + n));
 		ENLARGE(x->changing, (size_t)((x->slots + n) * segments * stride));
 		for (int k = 0; k < segments; k++) {
-			RATIONALS *row = rationals((size_t)n);
+			RATIONALS *row = rationals(n);
 			for (int j = 0; j < n; j++)
 				mpq_set(row[j], w->slopes[k][state * size + at + j]);
 			const double *value = load_numbers(w, l, row, scale);

@@ -117,7 +117,7 @@ static void plan_region(struct step *step, int k)
 {
 	struct branch *b = &step->branch[k];
 	plan_ladder(step, k);
-	b->table = ARRAY(struct table *, (size_t)b->rungs + 1);
+	b->table = ARRAY(struct table *, b->rungs + 1);
 	b->table[0] = b->whole = k == 0 ? b->whole : table_over(step, b, 0);
 	for (int r = 0; r < b->rungs; r++)
 		b->table[1 + r] = table_over(step, b, rung_halvings(b, r));
@@ -188,7 +188,7 @@ static void carry_of_parts(struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	int states = step->branch->system.states;
-	step->carry = ARRAY(int, (size_t)states);
+	step->carry = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
 		step->carry[i] = -1;
 	for (int p = 0; p < step->parts; p++)
@@ -224,7 +224,7 @@ void build_parts_step(struct step *step)
 	first->whole = first->table[0];
 	first->system.channels = 0;
 	step->parts = s->parts;
-	step->part = ARRAY(struct step *, (size_t)s->parts);
+	step->part = ARRAY(struct step *, s->parts);
 	for (int p = 0; p < s->parts; p++)
 		step->part[p] = step_of_part(step, &s->part[p]);
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));

@@ -119,7 +119,7 @@ static tape_ref term_ref(const struct sums *s, const struct assignment *a, const
 /* `second`: of the factors' second words, where they have some */
 static tape_ref sum_ref(const struct sums *s, const struct assignment *a, bool second)
 {
-	SCRATCH tape_ref *term = ARRAY(tape_ref, (size_t)a->terms + 1);
+	SCRATCH tape_ref *term = ARRAY(tape_ref, a->terms + 1);
 	int terms = 0;
 	for (int k = 0; k < a->terms; k++)
 		if (!second || has_second_word(&a->term[k], s->step))
@@ -151,8 +151,8 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 	enum { INDENT = 14 };
 	const struct program *program = step->program;
 	const int states = step->branch->whole->states;
-	struct sums s = { t, step, ARRAY(tape_ref, (size_t)states), ARRAY(bool, (size_t)states) };
-	tape_ref *to = program->in_order ? s.state : ARRAY(tape_ref, (size_t)states);
+	struct sums s = { t, step, ARRAY(tape_ref, states), ARRAY(bool, states) };
+	tape_ref *to = program->in_order ? s.state : ARRAY(tape_ref, states);
 	for (int i = 0; i < states; i++)
 		s.state[i] = tape_operand(t, TAPE_STATE, i, 0);
 	for (int i = 0; i < program->assignments; i++) {
@@ -205,7 +205,7 @@ static tape_ref own_row_ref(struct tape *t, const struct step *step, int row)
 	const struct linear *system = &step->branch->system;
 	const struct layout *x = &step->model->tuning->x;
 	const int states = system->states;
-	tape_ref *term = ARRAY(tape_ref, (size_t)x->size + 1);
+	tape_ref *term = ARRAY(tape_ref, x->size + 1);
 	int terms = 0, column = 0;
 	for (; column < states + x->loads; column++)
 		if (own_row_reads(step, row, column))
@@ -282,7 +282,7 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 	if (own_row(step, output) >= 0)
 		return own_row_ref(t, step, own_row(step, output));
 	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->channels, terms = 0;
-	tape_ref *term = ARRAY(tape_ref, (size_t)most + 1);
+	tape_ref *term = ARRAY(tape_ref, most + 1);
 	if (seen)
 		term[terms++] = entry(t, TABLE_SEEN, (int)(output - step->model->output), TAPE_NONE);
 	for (int i = 0; i < system->states && !seen; i++)
@@ -317,7 +317,7 @@ void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 {
 	const struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
-	tape_ref *term = ARRAY(tape_ref, (size_t)table->columns + 1);
+	tape_ref *term = ARRAY(tape_ref, table->columns + 1);
 	for (int i = 0; i < table->states; i++) {
 		int terms = 0, at = i * table->columns;
 		for (int k = 0; k < table->columns; k++) {

@@ -131,7 +131,7 @@ bool through_reach(struct through *t, mpq_srcptr time)
 static void take_start(struct through *t, const mpq_t *initial)
 {
 	bool rational = true;
-	mpq_t *exact = rationals((size_t)t->n);
+	mpq_t *exact = rationals(t->n);
 	for (int l = 0; l < t->system->loads; l++) {
 		const struct load *load = &t->system->load[l];
 		rational = rational && mpq_sgn(load->wave->p) == 0;
@@ -158,7 +158,7 @@ static void take_start(struct through *t, const mpq_t *initial)
 
 static mpfi_t *room_of(const struct through *t)
 {
-	mpfi_t *x = ARRAY(mpfi_t, (size_t)t->n);
+	mpfi_t *x = ARRAY(mpfi_t, t->n);
 	for (int i = 0; i < t->n; i++) {
 		mpfi_init2(x[i], t->precision);
 		mpfi_set_ui(x[i], 0);
@@ -169,20 +169,20 @@ static mpfi_t *room_of(const struct through *t)
 static void make_room(struct through *t)
 {
 	const struct switching *s = t->s;
-	t->area = ARRAY(struct area, (size_t)s->regions);
-	t->A = ARRAY(mpq_t *, (size_t)s->systems);
-	t->flow = ARRAY(struct stream *, (size_t)s->systems);
-	t->growth = ARRAY(double *, (size_t)s->systems);
-	t->resting = ARRAY(bool, (size_t)s->expressions);
-	t->order = ARRAY(int, (size_t)s->expressions);
-	t->back = ARRAY(bool, (size_t)s->expressions);
+	t->area = ARRAY(struct area, s->regions);
+	t->A = ARRAY(mpq_t *, s->systems);
+	t->flow = ARRAY(struct stream *, s->systems);
+	t->growth = ARRAY(double *, s->systems);
+	t->resting = ARRAY(bool, s->expressions);
+	t->order = ARRAY(int, s->expressions);
+	t->back = ARRAY(bool, s->expressions);
 	t->x = room_of(t);
 	t->y = room_of(t);
 	for (int k = 0; k <= THROUGH_SLOTS; k++)
 		t->slot[k] = room_of(t);
 	for (int k = 0; k < 2; k++)
-		t->near[k] = (struct near){ ARRAY(double, (size_t)t->n), ARRAY(double, (size_t)t->n) };
-	t->most = ARRAY(double, (size_t)t->n);
+		t->near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
+	t->most = ARRAY(double, t->n);
 	mpq_inits(t->base, t->struck, NULL);
 	mpfr_init2(t->fresh_off, 64);
 	mpfr_init2(t->most_off, 64);

@@ -85,7 +85,7 @@ static void legendre(int n, mpfr_srcptr x, mpfr_t *P)
 mpq_t *lobatto_nodes(int stages)
 {
 	enum { ITERATIONS = 12 };
-	mpq_t *node = rationals((size_t)stages + 1);
+	mpq_t *node = rationals(stages + 1);
 	mpfr_t *P = reals(3, WEIGHT_BITS);
 	REAL x = WITH_BITS(WEIGHT_BITS), quotient = WITH_BITS(WEIGHT_BITS);
 	mpq_set_ui(node[stages], 1, 1);
@@ -111,7 +111,7 @@ mpq_t *lobatto_nodes(int stages)
 
 mpq_t *past_nodes(int count)
 {
-	mpq_t *node = rationals((size_t)count);
+	mpq_t *node = rationals(count);
 	for (int k = 0; k < count; k++)
 		mpq_set_si(node[k], -k, 1);
 	return node;
