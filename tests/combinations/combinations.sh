@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other
-# roads, every set of refusals.list is refused with its message, as TAP; and doc/combinations.md is what comes out of
-# the lists. Of the C every sixth row has sanitizers; with LONG=1 in the environment all have, optimised.
+# roads, every second set of refusals.list, with MERGE=1 or LONG=1 in the environment every one, is refused with its
+# message, as TAP; and doc/combinations.md is what comes out of the lists. Of the C every sixth row has sanitizers; with
+# LONG=1 all have, optimised.
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses, as lines for
 #                                                                   refusals.list
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
@@ -113,7 +114,10 @@ done <rows
 
 # shellcheck disable=SC2086
 "$covering" refused $lists >refused || exit 99
+number=0
 while IFS="$tab" read -r row reason; do
+	number=$((number + 1))
+	merging || [ $((number % 2)) -eq 1 ] || continue
 	# shellcheck disable=SC2086
 	"$covering" spec p.spec $row || exit 99
 	words=$(words_of p "$row")

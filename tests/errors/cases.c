@@ -29,7 +29,8 @@
  * Each is run twice: to standard output, which has to stay empty, but not of a good case (status 0); and, where the
  * status is 1, with -o, where existing files have to stay as they were and nothing may be left beside them.
  * RUNS=stdout or RUNS=files in the environment: only the one or the other. And where none is named, of all: CASE=TEXT:
- * those with TEXT in their name; DEAR=skip: without those of dear.list; EVERY=N: of the others every N-th. */
+ * those with TEXT in their name; DEAR=skip: without those of dear.list, DEAR=only: these; EVERY=N: of what is left
+ * every N-th. */
 #include "cases.h"
 
 #include <fnmatch.h>
@@ -85,26 +86,29 @@ static void choose(struct cases *cases, const char *name)
 		bail_out("no topic or case %s", name);
 }
 
-static void leave_out(struct cases *cases, const char *name)
+static void mark(struct cases *cases, const char *name, bool chosen)
 {
 	bool known = false;
 	for (int i = 0; i < cases->count; i++)
 		if (strcmp(cases->one[i].name, name) == 0) {
-			cases->one[i].chosen = false;
+			cases->one[i].chosen = chosen;
 			known = true;
 		}
 	if (!known)
 		bail_out("no case %s, which dear.list names", name);
 }
 
-static void leave_out_dear(struct cases *cases)
+/* Without those of dear.list, or these only */
+static void choose_by_list(struct cases *cases, bool only)
 {
 	char line[200];
+	for (int i = 0; i < cases->count && only; i++)
+		cases->one[i].chosen = false;
 	FILE *list = fopen(CASES_FOLDER "/dear.list", "r");
 	while (list && fgets(line, sizeof line, list)) {
 		line[strcspn(line, "\n")] = 0;
 		if (*line != '#')
-			leave_out(cases, line);
+			mark(cases, line, only);
 	}
 	if (!list || fclose(list) != 0)
 		bail_out("no dear.list");
@@ -115,8 +119,9 @@ static void choose_to_run(struct cases *cases)
 	char *pattern = print("*%s*", environment("CASE", ""));
 	choose(cases, pattern);
 	free(pattern);
-	if (strcmp(environment("DEAR", ""), "skip") == 0)
-		leave_out_dear(cases);
+	const char *dear = environment("DEAR", "");
+	if (*dear)
+		choose_by_list(cases, strcmp(dear, "only") == 0);
 	const int every = atoi(environment("EVERY", "1"));
 	if (every < 1)
 		bail_out("EVERY is a number from 1 on");

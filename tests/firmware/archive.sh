@@ -5,7 +5,7 @@
 set -eu
 firmware=$(cd "${0%/*}" && pwd)
 . "$firmware/boards.sh"
-optimize_less
+optimize_less "$1"
 board "$1"
 root=$2
 case $3 in /*) out=$3 ;; *) out=$PWD/$3 ;; esac

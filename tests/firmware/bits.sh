@@ -19,7 +19,7 @@ if ! boards_installed; then
     exit 0
 fi
 board "$name"
-optimize_less
+optimize_less "$name"
 work=$(mktemp -d "${TMPDIR:-/tmp}/firmware.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM

@@ -333,11 +333,13 @@ for version in 2 3; do
     # the compiled one
     : >log
     case $version in 2) place=linux64 ;; *) place=$(uname -m)-linux ;; esac
+    again=p.fmu twice=
+    ! long && [ $version -eq 2 ] || again=q.fmu twice=', the same bytes twice'
     "$plgen" --fmu p.fmu --fmu-version $version "--fmu-binary=$standard/$version.0/headers" "$own/plant.spec" \
-        >>log 2>&1 && "$plgen" --fmu q.fmu --fmu-version $version "--fmu-binary=$standard/$version.0/headers" \
-        "$own/plant.spec" >>log 2>&1 && cmp p.fmu q.fmu >>log && unpack p.fmu p && exported $version \
-        "p/binaries/$place/plant.so"
-    result $? "FMI $version: the compiled one, the same bytes twice"
+        >>log 2>&1 && { [ $again = p.fmu ] || "$plgen" --fmu $again --fmu-version $version \
+        "--fmu-binary=$standard/$version.0/headers" "$own/plant.spec" >>log 2>&1; } && cmp p.fmu $again >>log &&
+        unpack p.fmu p && exported $version "p/binaries/$place/plant.so"
+    result $? "FMI $version: the compiled one$twice"
     drive "compiled, FMI $version" "./drive$version" "p/binaries/$place/plant.so" "$(token p)" ./plant_own.so plant
 done
 

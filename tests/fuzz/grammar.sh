@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the file CORPUS, then the specs that
 # GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus,
-# and for each block of seeds.  PLGEN is built with sanitizers; what it emits is compiled to be run, every third with
-# all warnings as errors and sanitizers; with MERGE=1 or LONG=1 in the environment all, by gcc and clang in turn; and
-# drive.c holds it against other roads.  A spec may be refused only with a message of refusals.list.
+# and for each block of seeds.  PLGEN is built with sanitizers; it makes every third of them, and the plain one, beside
+# it without `_sanitized`, the others. What is emitted is compiled to be run, every third with all warnings as errors
+# and sanitizers; with MERGE=1 or LONG=1 in the environment all have sanitizers, by gcc and clang in turn; and drive.c
+# holds it against other roads.  A spec may be refused only with a message of refusals.list.
 # With KEEP=FOLDER the specs that fail are kept there; each finding belongs into the corpus.
 set -u
 absolute() {
@@ -13,7 +14,7 @@ absolute() {
 		*) echo "$PWD/$1" ;;
 	esac
 }
-plgen=$(absolute "$1")
+sanitized=$(absolute "$1")
 grammar=$(absolute "$2")
 folder=$(dirname "$(absolute "$3")")
 source=$(absolute "$4")
@@ -29,6 +30,15 @@ merging || every=3
 block=25
 made=0
 refused=0
+
+# add ID SPEC: to the batch, by one of the generators
+added=0
+add() {
+	added=$((added + 1))
+	plgen=$sanitized
+	merging || [ $((added % every)) -eq 0 ] || plgen=${sanitized%_sanitized}
+	batch_add "$1" "$2"
+}
 
 # keep_it ID NAME SPEC: what went wrong, into the log; the spec, where KEEP wants it
 keep_it() {
@@ -49,7 +59,7 @@ if [ -n "$corpus" ]; then
 		name { printf "%s", blank >name; blank = ""; print >name }' "$corpus" >names
 	names=$(cat names)
 	for name in $names; do
-		batch_add "c_$name" "$name.spec"
+		add "c_$name" "$name.spec"
 	done
 	batch_build
 	for name in $names; do
@@ -82,7 +92,7 @@ while [ "$seed" -lt $((first + count_of_seeds)) ]; do
 	while [ "$seed" -lt "$end" ]; do
 		id=s$seed
 		"$grammar" "$seed" "$id.spec" "$id.again.c" || exit 99
-		batch_add "$id" "$id.spec"
+		add "$id" "$id.spec"
 		case $said in
 			made) made=$((made + 1)) ;;
 			refused) refused=$((refused + 1)) ;;

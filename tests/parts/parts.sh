@@ -81,7 +81,7 @@ is_needed() {
 }
 is_needed drivetrain 'drive within 1 % until 1'
 is_needed street 'n1.roof within 1 % until 10 for |quake| <= 3'
-is_needed street 'n10.base within 1e4 until 10 for |quake| <= 3'
+merging && is_needed street 'n10.base within 1e4 until 10 for |quake| <= 3'
 
 # What is left of the street for one output: the modes of the one building that it sees
 { sed '/^output/,$d' street.spec && printf 'output n3.roof\nstep 0.02\n' &&

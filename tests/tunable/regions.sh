@@ -1,15 +1,23 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # regions.sh PLGEN SOURCE REAL SPEC...: models with regions whose matrices tunable params change, each as it is written
-# (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, compiled with
-# sanitizers. Lines `#bad NAME=VALUE ... STATUS`: values that NAME_retune refuses.
+# (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every third
+# compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`: values
+# that NAME_retune refuses.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 real=$3
 shift 3
+. "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
+sanitizing="${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize=null,alignment,object-size,pointer-overflow"
+sanitizing="$sanitizing -fno-sanitize-recover"
+turn=0
 for spec in "$@"; do
 	name=$(basename "$spec" .spec)_$real
+	compile=$run_cc
+	turn=$((turn + 1))
+	! merging && [ $((turn % 3)) -ne 0 ] || compile=$sanitizing
 	chosen "$name" || continue
 	there=$(sed -n 's/^#there //p' "$spec")
 	defines=''
@@ -40,10 +48,8 @@ for spec in "$@"; do
 	"$plgen" --real "$real" --prefix retuned "$spec" -o retuned.c >log 2>&1 &&
 		"$plgen" --real "$real" --prefix plain $defines plain.spec -o plain.c >>log 2>&1 &&
 		{ ! grep -q ' slopes\[' retuned.h || echo '#define HAS_MATRICES' >>refused.h; } &&
-		${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize=null,alignment,object-size,pointer-overflow \
-			-fno-sanitize-recover -I. -I"$source/runtime" \
-			-I"$source/tests/emitted" $float -o regions "$source/tests/tunable/regions.c" retuned.c \
-			plain.c "$source/tests/emitted/tap.c" $PLRT -lm >>log 2>&1 &&
+		$compile -I. -I"$source/runtime" -I"$source/tests/emitted" $float "$source/tests/tunable/regions.c" \
+			retuned.c plain.c "$source/tests/emitted/tap.c" $PLRT -lm -o regions >>log 2>&1 &&
 		./regions >>log 2>&1
 	status=$?
 	grep '^not ok' log | sed 's/^/# /'
