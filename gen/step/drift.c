@@ -185,7 +185,7 @@ const char *drift_text(const struct drift *drift)
 	const double steps = 1e9;
 	double amplitude = steps * drift->amplitude, size = amplitude < 0 ? -amplitude : amplitude;
 	const char *change = amplitude == 0 ? "no amplitude"
-			     : size < 0.1   ? format("amplitudes by %.2g of themselves at most", amplitude)
+			     : size < 0.1   ? format("amplitudes by %.2g of themselves at most", size)
 					    : format("an amplitude by a factor of e^%.3g", amplitude);
 	return format("In 1e9 steps the rounding of its constants changes %s, phases by at most %.2g rad", change,
 		      steps * drift->phase);
