@@ -288,13 +288,6 @@ static bool *states_read(const struct emitter *e)
 	return read;
 }
 
-void emit_leftover_functions(const struct emitter *e)
-{
-	emit_leftover(e);
-	if (many_operators(e))
-		emit_selection(e);
-}
-
 static void emit_operands_of_step(const struct emitter *e)
 {
 	bool loops = e->step->program->loops;

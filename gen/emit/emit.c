@@ -35,9 +35,23 @@ static bool leftovers_read(const struct model *model, const struct wave *wave)
 	return search.found;
 }
 
+/* Elsewhere than in the system, leftovers, outputs */
+static bool step_reads_load(const struct emitter *e, int load)
+{
+	const struct step *step = e->step;
+	const struct splitting *split = e->model->split;
+	bool read = step->kind == KIND_TUNED;   /* for other params any may be */
+	if (e->model->switching)
+		read = step->parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
+	for (int k = 0; step->normal && k < split->waves; k++)
+		read = read || split->wave[k].wave == e->system->load[load].wave;
+	return read || (step->cut && step->cut->look->load[load]) || (step->expansion && step->expansion->load[load]) ||
+	       (step->motion && motion_reads_load(e, load));
+}
+
 static bool load_is_needed(const struct emitter *e, int load)
 {
-	return (e->kind->reads_load && e->kind->reads_load(e, load)) || load_acts(e->system, &e->system->load[load]) ||
+	return step_reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
 	       leftovers_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
 }
 
@@ -180,7 +194,9 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_access(e);
 	emit_held_retune(e);
 	emit_if_any(e->kind->pass, e);
-	e->kind->step(e);
+	if (e->step->kind == KIND_LEFTOVER || reads_channels(e->model))
+		emit_leftover(e);
+	emit_if_any(e->kind->step, e);
 	emit_out(e);
 	emit_peak_step(e);
 	emit_run(e);

@@ -180,10 +180,9 @@ const char *leftover_of_step(const struct emitter *e, int node, const char *stat
 const char *leftover_of_outputs(const struct emitter *e);
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
-void emit_leftover(const struct emitter *e);
+void emit_leftover(const struct emitter *e);                      /* and of a bank the choice of an operator */
 
-void emit_selection(const struct emitter *e);                     /* of a bank: which operator serves now */
-const char *selection_call(const struct emitter *e);
+const char *selection_call(const struct emitter *e);              /* of a bank: which operator serves now */
 
 /* ---- loops.c: a step with a leftover that loops over its tables ---- */
 
@@ -267,7 +266,6 @@ struct kind {                           /* NULL: none of its own */
 	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
 	bool (*places)(const struct emitter *e);        /* NAME_place(s) finds what follows from a state that was set */
 	/* Tables and functions */
-	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
 	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
 	void (*tables)(const struct emitter *e);
 	void (*pass)(const struct emitter *e);          /* over what changes at a time */
@@ -298,7 +296,6 @@ void emit_forces(const struct emitter *e);                        /* NAME_forces
 
 void emit_normal_members(const struct emitter *e);
 void emit_normal_tables(const struct emitter *e);
-void emit_normal_step(const struct emitter *e);
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 

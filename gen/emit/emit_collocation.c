@@ -64,12 +64,6 @@ void emit_collocation_members(const struct emitter *e)
 		emit_divided_members(e);
 }
 
-bool collocation_places(const struct emitter *e)
-{
-	(void)e;
-	return true;
-}
-
 void emit_collocation_place(const struct emitter *e)
 {
 	emit_state_table(e);
@@ -290,8 +284,6 @@ static void emit_step_function(const struct emitter *e)
 
 void emit_collocation_step(const struct emitter *e)
 {
-	if (reads_channels(e->model))
-		emit_leftover_functions(e);
 	emit_stage_tables(e);
 	emit_motion(e);
 	emit_inputs_now(e);

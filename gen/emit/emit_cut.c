@@ -120,8 +120,6 @@ void emit_cut_step(const struct emitter *e)
 {
 	enum { CUBIC = 3 };
 	const struct emitter *l = looking(e);
-	if (reads_channels(e->model))
-		emit_leftover_functions(e);
 	emit_force_table(l);
 	emit_frozen_function(forcing(e));
 	emit_ends_function(ending(e));

@@ -274,8 +274,6 @@ void emit_serving_step(const struct emitter *e)
 
 void emit_expansion_step(const struct emitter *e)
 {
-	if (reads_channels(e->model))
-		emit_leftover_functions(e);
 	emit_model_functions(e);
 	emit_reach_tables(e);
 	if (truncation(e)->adaptive && has_unseen(e))

@@ -316,12 +316,6 @@ void emit_normal_tables(const struct emitter *e)
 	emit_algorithm(e);
 }
 
-void emit_normal_step(const struct emitter *e)
-{
-	if (reads_channels(e->model))
-		emit_leftover(e);
-}
-
 void emit_normal_members(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);

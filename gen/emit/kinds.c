@@ -33,53 +33,38 @@ static const char *far_block(const struct step *step)
 						     LIMIT_TUNED_BLOCK);
 }
 
-static bool any_load(const struct emitter *e, int load)
-{
-	(void)e;
-	(void)load;
-	return true;
-}
-
 static const struct kind tuned = {
 	.banner = banner_linear,
 	.no_jump = "retuned coefficients have one word",
 	.no_at = far_block,
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.own_factors = true,
-	.reads_load = any_load,
 	.step = emit_step,
 	.at = emit_tuned_at
 };
 
 /* ---- regions ---- */
 
-static bool any_place(const struct emitter *e)
+static bool always(const struct emitter *e)
 {
 	(void)e;
 	return true;
 }
 
-static bool regions_read_load(const struct emitter *e, int load)
-{
-	return loads_of_regions(e->step)[load];
-}
-
+/* Of independent parts each has as many as a model by itself. */
 static void emit_event_limit(const struct emitter *e)
 {
-	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step */\n", max_events(e->model));
+	int parts = 0;
+	for (int p = 0; p < e->step->parts; p++)
+		parts += e->step->part[p]->model->switching->expressions > 0;
+	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step%s */\n",
+	    parts ? parts * MAX_EVENTS : max_events(e->model), parts ? format(", %d of each part", MAX_EVENTS) : "");
 }
 
 static void emit_region_tables(const struct emitter *e)
 {
 	emit_regions(e);
 	emit_region_start(e);
-}
-
-static void emit_regions_step(const struct emitter *e)
-{
-	if (reads_channels(e->model))
-		emit_leftover_functions(e);
-	emit_region_step(e);
 }
 
 static const struct kind regions = {
@@ -92,28 +77,13 @@ static const struct kind regions = {
 	.keeps_status = true,
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_crossing_declarations,
-	.places = any_place,
-	.reads_load = regions_read_load,
+	.places = always,
 	.tables = emit_region_tables,
-	.step = emit_regions_step,
+	.step = emit_region_step,
 	.at = emit_region_at
 };
 
 /* ---- regions of independent parts ---- */
-
-static bool parts_read_load(const struct emitter *e, int load)
-{
-	return e->step->layout.load[load] >= 0;
-}
-
-static void emit_event_limit_of_parts(const struct emitter *e)
-{
-	int parts = 0;
-	for (int p = 0; p < e->step->parts; p++)
-		parts += e->step->part[p]->model->switching->expressions > 0;
-	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step, %d of each part */\n", parts * MAX_EVENTS,
-	    MAX_EVENTS);
-}
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
@@ -121,27 +91,19 @@ static void emit_tables_of_parts(const struct emitter *e)
 	emit_part_start(e);
 }
 
-static void emit_step_of_parts(const struct emitter *e)
-{
-	if (reads_channels(e->model))
-		emit_leftover_functions(e);
-	emit_parts_step(e);
-}
-
 static const struct kind parts = {
 	.banner = banner_parts,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
-	.constants = emit_event_limit_of_parts,
+	.constants = emit_event_limit,
 	.members = emit_part_members,
 	.keeps_status = true,
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_crossing_declarations,
-	.places = any_place,
-	.reads_load = parts_read_load,
+	.places = always,
 	.tables = emit_tables_of_parts,
-	.step = emit_step_of_parts,
+	.step = emit_parts_step,
 	.at = emit_parts_at
 };
 
@@ -161,12 +123,6 @@ static const char *no_values_between(const struct step *step)
 	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
 }
 
-static void emit_actions_step(const struct emitter *e)
-{
-	emit_leftover_functions(e);
-	emit_leftover_step(e);
-}
-
 static const struct kind leftover = {
 	.banner = banner_leftover,
 	.no_jump = "what is left over is not linear in the state",
@@ -175,39 +131,23 @@ static const struct kind leftover = {
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.reads_phi = flows_whole,
 	.pass = emit_pass_of_changes,
-	.step = emit_actions_step,
+	.step = emit_leftover_step,
 	.held = emit_held_leftover,
 	.at = emit_at
 };
 
 /* ---- cut: the same, from crossing to crossing ---- */
 
-static bool look_reads_load(const struct emitter *e, int load)
-{
-	return e->step->cut->look->load[load];
-}
-
-static void emit_cut_types(const struct emitter *e)
-{
-	emit_divided_types(looking(e));
-}
-
-static void emit_cut_declarations(const struct emitter *e)
-{
-	emit_divided_declarations(looking(e));
-}
-
 static const struct kind cut = {
 	.banner = banner_cut,
 	.no_jump = "what is left over is not linear in the state",
 	.constants = emit_event_limit,
-	.types = emit_cut_types,
+	.types = emit_divided_types,
 	.members = emit_cut_members,
 	.keeps_status = true,
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
-	.declare_state = emit_cut_declarations,
-	.places = any_place,
-	.reads_load = look_reads_load,
+	.declare_state = emit_divided_declarations,
+	.places = always,
 	.reads_phi = flows_whole,
 	.tables = emit_cut_place,
 	.step = emit_cut_step,
@@ -215,11 +155,6 @@ static const struct kind cut = {
 };
 
 /* ---- expanded: the Taylor series of the solution ---- */
-
-static bool expansion_reads_load(const struct emitter *e, int load)
-{
-	return e->step->expansion->load[load];
-}
 
 static void emit_expansion_constants(const struct emitter *e)
 {
@@ -237,18 +172,12 @@ static const struct kind expanded = {
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
 	.places = expansion_places,
-	.reads_load = expansion_reads_load,
 	.tables = emit_expansion_place,
 	.step = emit_expansion_step,
 	.at = emit_expansion_at
 };
 
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
-
-static bool collocation_reads_load(const struct emitter *e, int load)
-{
-	return motion_reads_load(e, load) || (e->step->expansion && e->step->expansion->load[load]);
-}
 
 static const struct kind collocated = {
 	.banner = banner_collocated,
@@ -259,8 +188,7 @@ static const struct kind collocated = {
 	.keeps_status = true,
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = emit_divided_declarations,
-	.places = collocation_places,
-	.reads_load = collocation_reads_load,
+	.places = always,
 	.tables = emit_collocation_place,
 	.step = emit_collocation_step,
 	.at = emit_collocation_at
@@ -273,15 +201,6 @@ static const char *too_many_turns(const struct step *step)
 	return step->series.emitted ? NULL : format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
 }
 
-static bool reads_wave(const struct emitter *e, int load)
-{
-	const struct splitting *split = e->model->split;
-	bool found = false;
-	for (int k = 0; k < split->waves && !found; k++)
-		found = split->wave[k].wave == e->system->load[load].wave;
-	return found;
-}
-
 static const struct kind normal_modes = {
 	.banner = banner_normal,
 	.no_jump = "what is left over changes in time",
@@ -289,10 +208,8 @@ static const struct kind normal_modes = {
 	.members = emit_normal_members,
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.places = any_place,
-	.reads_load = reads_wave,
-	.tables = emit_normal_tables,
-	.step = emit_normal_step
+	.places = always,
+	.tables = emit_normal_tables
 };
 
 const struct kind *row_of_kind(enum step_kind kind)

@@ -163,25 +163,6 @@ static void emit_lefts(const struct emitter *e, const struct bank *bank)
 	emit_formulas(f, 4);
 }
 
-void emit_leftover(const struct emitter *e)
-{
-	struct reads r = reads_of_leftover(e);
-	struct bank bank = bank_of(e->step);
-	bool node = needs_node(e, &r);
-	if (node)
-		emit_nodes(e, &r);
-	if (bank.count)
-		emit_excess(e, &bank);
-	open_function(e, "What is left over at state y: a force on each equation that has some",
-		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
-		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
-	emit_leftover_locals(e, &r, node);
-	if (bank.count)
-		say(e, "    const double *const excess = $n_excess[which];\n");
-	emit_lefts(e, &bank);
-	close_function(e, "s which node u slope y");
-}
-
 /* ---- a bank: which of its operators serves now ---- */
 
 static void emit_selection_locals(const struct emitter *e, const struct reads *r)
@@ -199,7 +180,7 @@ static void emit_selection_locals(const struct emitter *e, const struct reads *r
 	emit_load_states(e, r->load, true);
 }
 
-void emit_selection(const struct emitter *e)
+static void emit_selection(const struct emitter *e)
 {
 	const struct form *selector = e->model->selector;
 	const struct operator *operator = e->model->operator;
@@ -224,4 +205,25 @@ void emit_selection(const struct emitter *e)
 const char *selection_call(const struct emitter *e)
 {
 	return spell(e, "$n_operator(s, %s)", samples_of_step(e));
+}
+
+void emit_leftover(const struct emitter *e)
+{
+	struct reads r = reads_of_leftover(e);
+	struct bank bank = bank_of(e->step);
+	bool node = needs_node(e, &r);
+	if (node)
+		emit_nodes(e, &r);
+	if (bank.count)
+		emit_excess(e, &bank);
+	open_function(e, "What is left over at state y: a force on each equation that has some",
+		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
+		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
+	emit_leftover_locals(e, &r, node);
+	if (bank.count)
+		say(e, "    const double *const excess = $n_excess[which];\n");
+	emit_lefts(e, &bank);
+	close_function(e, "s which node u slope y");
+	if (many_operators(e) && !e->step->normal)
+		emit_selection(e);
 }

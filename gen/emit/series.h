@@ -118,7 +118,6 @@ void emit_state_table(const struct emitter *e);                   /* that it rea
 
 /* ---- emit_collocation.c: steps by collocation ---- */
 
-bool collocation_places(const struct emitter *e);
 void emit_collocation_place(const struct emitter *e);
 void emit_collocation_members(const struct emitter *e);
 void emit_collocation_step(const struct emitter *e);
