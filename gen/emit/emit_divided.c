@@ -22,7 +22,8 @@ void emit_divided_types(const struct emitter *e)
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
 	       "} $n_contact;\n\n",
-	    e->step->expansion || !e->step->collocation ? "" : "; below 0: nor where that goes which is on a breakpoint",
+	    e->step->expansion || !e->step->collocation ? ""
+		: "; below 0: nor where that goes which is on a breakpoint",
 	    meets_contacts(e) ? "    int rested;           /* contacts by infinitely many bounces, since then */\n"
 	    : "",
 	    expansion(e)->expressions);
