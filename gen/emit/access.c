@@ -81,19 +81,16 @@ static void emit_tables(const struct emitter *e)
 void emit_access(const struct emitter *e)
 {
 	const struct step *step = e->step;
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
-		{ "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->momenta },
-		{ "FORCED", step->forced != NULL }, { "KEPT", step->program->compensated },
-		{ "CARRIES", step->carries }, { "RELATIVE", e->model->relative != NULL }, { "PHASES", e->phases },
-		{ "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
-		{ "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
-		{ "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
-		{ "OWN", e->model->held || e->kind->own_factors }, { "RAMPS", e->ramps },
-		{ "TAPS", most_taps_before(e) }
-	};
 	emit_tables(e);
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
+		   { "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->momenta },
+		   { "FORCED", step->forced != NULL }, { "KEPT", step->program->compensated },
+		   { "CARRIES", step->carries }, { "RELATIVE", e->model->relative != NULL }, { "PHASES", e->phases },
+		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
+		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
+		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
+		   { "OWN", e->model->held || e->kind->own_factors }, { "RAMPS", e->ramps },
+		   { "TAPS", most_taps_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (e->phases)
 		say_macro(e, "PHASE_RATE", phase_rate_text(e));

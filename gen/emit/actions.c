@@ -244,8 +244,6 @@ static void emit_unrolled_slope(const struct emitter *e)
 
 static void emit_predictor(const struct emitter *e)
 {
-	const struct size sizes[] = { { "STATES", e->system->states }, { "FORCES", e->model->channels },
-				      { "DRIVEN", adds_driven(e) } };
 	open_function(e, "dz = A z + B r, r what is left over",
 		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
 		      "double dz[$N_STATES])", e->model->channels);
@@ -256,7 +254,8 @@ static void emit_predictor(const struct emitter *e)
 	else
 		emit_unrolled_slope(e);
 	close_function(e, "which z");
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->channels },
+		   { "DRIVEN", adds_driven(e) });
 	say_include(e, "predict.h");
 }
 

@@ -562,7 +562,7 @@ static void banner_run(const struct emitter *e)
 /* Functions that there are not, and why; what one of them needs */
 static void banner_functions(const struct emitter *e)
 {
-	const char *no_at = e->kind->no_at ? e->kind->no_at(e->step) : NULL;
+	const char *no_at = no_values_between(e->step);
 	int states = is_blockwise(e) ? 0 : e->system->states;
 	if (has_jump(e) && states > 12)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);

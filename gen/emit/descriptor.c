@@ -106,12 +106,9 @@ void emit_model(const struct emitter *e, int inputs, bool core)
 {
 	const struct tuning *tunable = core ? tunables_of(e->model) : NULL;
 	emit_names(e, inputs, tunable);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
-		{ "PARAMS", tunable ? tunable->params : 0 }, { "AT", e->step->series.emitted },
-		{ "JUMPS", core && has_jump(e) }, { "RAMPS", e->ramps }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
+		   { "PARAMS", tunable ? tunable->params : 0 }, { "AT", e->step->series.emitted },
+		   { "JUMPS", core && has_jump(e) }, { "RAMPS", e->ramps });
 	say(e, "#define PL_NAME \"$n\"\n"
 	       "#define PL_SPEC_H $N_H\n"
 	       "#include \"descriptor.h\"\n");

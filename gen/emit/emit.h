@@ -142,9 +142,10 @@ bool has_place(const struct emitter *e);                           /* NAME_place
 const char *of_step(const struct emitter *e, const char *table);
 
 struct size { const char *name; int value; };
-/* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size */
-void emit_sizes(const struct emitter *e, int count, const struct size *size);
-void put_sizes(const struct emitter *e, int count, const struct size *size);  /* further ones */
+/* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size, up to
+ * one without a name; emit_sizes: of those listed */
+void open_algorithm(const struct emitter *e, const struct size *size);
+#define emit_sizes(e, ...) open_algorithm(e, (const struct size[]){ __VA_ARGS__, { NULL, 0 } })
 
 const char *param_list(const struct emitter *e);                  /* names, commas between */
 void emit_nominal_params(const struct emitter *e);                /* a member */
@@ -198,7 +199,6 @@ void emit_sum_loop(const struct emitter *e, const struct action *a);
 
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 
-void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
 void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
@@ -254,7 +254,6 @@ struct kind {                           /* NULL: none of its own */
 	void (*banner)(const struct emitter *e);
 	const char *step_note;
 	const char *no_jump;                            /* why there never is a NAME_jump; NULL: there may be one */
-	const char *(*no_at)(const struct step *step);  /* why there is no NAME_at; NULL: there is one */
 	/* The header: constants; types before that of the state; at its end; functions */
 	void (*constants)(const struct emitter *e);
 	void (*types)(const struct emitter *e);

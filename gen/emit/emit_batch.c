@@ -175,14 +175,11 @@ static void emit_peaks_of_batch(struct batch *b)
 static void emit_include(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
-		{ "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
-		{ "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
-		{ "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
-		{ "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
+		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
+		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
+		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	if (has_peaks(e))
 		say_macro(e, "NOMINAL", e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
@@ -192,7 +189,7 @@ static void emit_include(const struct batch *b)
 void emit_batch(const struct emitter *e)
 {
 	struct batch b = plan_batch(e);
-	emit_sizes(e, 0, NULL);
+	open_algorithm(e, &(struct size){ NULL, 0 });
 	say(e, "#include \"lanes.h\"\n");
 	emit_shared(&b);
 	emit_lanes_step(&b);

@@ -247,15 +247,12 @@ static void emit_passage_limits(const struct emitter *e)
 static void emit_include(const struct emitter *e)
 {
 	const struct expansion *x = e->step->expansion, *d = e->step->divided;
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
-		{ "MODES", splits(e) ? e->step->collocation->modes : 0 }, { "ENTRIES", e->step->motion->entries },
-		{ "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
-		{ "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
-		{ "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
-		{ "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
+		   { "MODES", splits(e) ? e->step->collocation->modes : 0 }, { "ENTRIES", e->step->motion->entries },
+		   { "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
+		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
+		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
+		   { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (is_divided(e))

@@ -102,14 +102,12 @@ static void emit_whole(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = cut_of(e)->look;
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "ACTING", acting_entries(e) }, { "FORCES", e->model->channels },
-		{ "CARRIES", e->step->carries }, { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
-		{ "EXPRESSIONS", x->expressions }, { "INPUTS", e->system->inputs },
-		{ "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
-		{ "MAX_SPLITS", MAX_SPLITS }, { "SWIFT", cut_of(e)->certain < 1 }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
+		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carries }, { "ORDER", x->order },
+		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
+		   { "INPUTS", e->system->inputs },
+		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
+		   { "MAX_SPLITS", MAX_SPLITS }, { "SWIFT", cut_of(e)->certain < 1 });
 	emit_divided_macros(looking(e));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"

@@ -104,12 +104,9 @@ static void emit_samples_of_core(const struct emitter *e)
 	emit_int_list(e, "parts_ago", d->inputs + d->count, list_of(e, parts_ago));
 	if (e->ramps)
 		emit_int_list(e, "is_ramp", d->inputs + d->count, list_of(e, is_ramp));
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
-		{ "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
-		{ "RAMPS", e->ramps }, { "AT", e->step->series.emitted }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
+		   { "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
+		   { "RAMPS", e->ramps }, { "AT", e->step->series.emitted });
 	say(e, "#define PL_CORE(name) $n_core_##name\n"
 	       "#define PL_CORE_H $N_CORE_H\n"
 	       "#include \"delays.h\"\n");

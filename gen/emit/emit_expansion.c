@@ -245,21 +245,18 @@ static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	const struct truncation *t = truncation(e);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
-		{ "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
-		{ "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
-		{ "TERMS", is_divided(e) ? terms_of_events(e) : 0 },
-		{ "CONTACTS", meets_contacts(e) }, { "CHOICES", has_choices(e) }, { "ADAPTIVE", t->adaptive },
-		{ "WATCHED", watches(e) }, { "REMAINDERS", t->adaptive ? 3 : watches(e) },
-		{ "KINDS", shares_kinds(e) }, { "FLOORS", has_floors(e) }, { "OVER", spans_steps(e) ? t->over : 1 },
-		{ "PARTS", has_offset(e) }, { "STRAIGHT", is_straight(e) },
-		{ "WRITTEN_OUT", is_written_out(e, x->order) }, { "SERVES", most_served(e) },
-		{ "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
-		{ "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->slopes },
-		{ "AT", e->step->series.emitted }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
+		   { "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
+		   { "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
+		   { "TERMS", is_divided(e) ? terms_of_events(e) : 0 },
+		   { "CONTACTS", meets_contacts(e) }, { "CHOICES", has_choices(e) }, { "ADAPTIVE", t->adaptive },
+		   { "WATCHED", watches(e) }, { "REMAINDERS", t->adaptive ? 3 : watches(e) },
+		   { "KINDS", shares_kinds(e) }, { "FLOORS", has_floors(e) }, { "OVER", spans_steps(e) ? t->over : 1 },
+		   { "PARTS", has_offset(e) }, { "STRAIGHT", is_straight(e) },
+		   { "WRITTEN_OUT", is_written_out(e, x->order) }, { "SERVES", most_served(e) },
+		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
+		   { "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->slopes },
+		   { "AT", e->step->series.emitted });
 	if (is_divided(e))
 		emit_divided_macros(e);
 	if (looks_at_tolerance(e))

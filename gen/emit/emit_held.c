@@ -139,10 +139,8 @@ void emit_held_retune(const struct emitter *e)
 		emit_retuned(e);
 	if (held_leads(e))
 		emit_frequencies(e);
-	const struct size sizes[] = {
-		{ "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL }, { "LEADS", held_leads(e) },
-		{ "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL },
+		   { "LEADS", held_leads(e) },
+		   { "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
 	say(e, "#include \"held.h\"\n");
 }

@@ -280,16 +280,13 @@ static int turns_within(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const struct size sizes[] = {
-		{ "MODES", m->modes }, { "WIDTH", m->width },
-		{ "POINTS", m->points }, { "TWICE", m->twice }, { "STAGES", m->stages }, { "SWEEPS", m->sweeps },
-		{ "FIRST_SWEEPS", m->first_sweeps }, { "FUNCTIONS", functions_of_time(e) },
-		{ "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
-		{ "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
-		{ "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
-		{ "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width },
+		   { "POINTS", m->points }, { "TWICE", m->twice }, { "STAGES", m->stages }, { "SWEEPS", m->sweeps },
+		   { "FIRST_SWEEPS", m->first_sweeps }, { "FUNCTIONS", functions_of_time(e) },
+		   { "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
+		   { "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
+		   { "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
+		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL });
 	say(e, "#include \"normal.h\"\n");
 }
 

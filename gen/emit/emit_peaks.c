@@ -83,12 +83,9 @@ static void emit_peak_places(const struct emitter *e)
 static void emit_include(const struct emitter *e)
 {
 	bool own = e->kind->own_factors;
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
-		{ "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
-		{ "REACHES", has_reach(e) }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		   { "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
+		   { "REACHES", has_reach(e) });
 	say_macro(e, "SLOPE", own ? "s->coeffs.slope" : spell(e, "$n_slope"));
 	say_macro(e, "BEND", own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"));
 	say_macro(e, "PEAK_ROW(c, p)", peak_row_text(e));

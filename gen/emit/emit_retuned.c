@@ -208,10 +208,9 @@ static void emit_gathering(const struct emitter *e)
 	emit_int_list(e, "stays", stays, column);
 	emit_int_list(e, "stay_param", stays, param);
 	emit_int_list(e, "pair", pair.count, pair.number);
-	const struct size sizes[] = {
-		{ "STAYS", stays }, { "PAIRS", pair.count }, { "STILL", any_still(e->step) }
-	};
-	put_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	say_macro(e, "STAYS", whole_text(stays));
+	say_macro(e, "PAIRS", whole_text(pair.count));
+	say_macro(e, "STILL", whole_text(any_still(e->step)));
 	say_macro(e, "LARGE", shortest(LARGE_ENOUGH));
 	say_macro(e, "FOLDED", shortest(FOLDED));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
@@ -237,19 +236,16 @@ void emit_retuned(const struct emitter *e)
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
-	const struct size sizes[] = {
-		{ "PARAMS", e->model->held->params }, { "SIZE", e->step->layout.size },
-		{ "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
-		{ "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
-		{ "ROWS", retuned_of(e)->tuning->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
-		{ "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
-		{ "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
-		{ "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
-		{ "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
-		{ "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
-		{ "CLEARS", e->step->clears }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "PARAMS", e->model->held->params }, { "SIZE", e->step->layout.size },
+		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
+		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
+		   { "ROWS", retuned_of(e)->tuning->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
+		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
+		   { "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
+		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
+		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
+		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
+		   { "CLEARS", e->step->clears });
 	if (e->step->clears)
 		emit_gathering(e);
 	say_include(e, "retuned.h");

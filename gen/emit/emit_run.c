@@ -338,12 +338,9 @@ void emit_run(const struct emitter *e)
 		emit_block(e);
 	}
 	emit_over_block(e);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
-		{ "INSIDE", serves_rows(e) }, { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
-		{ "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
-		{ "IN_STEP", rests && e->step->rest->in_step }, { "KEPT", e->step->program->compensated }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		   { "INSIDE", serves_rows(e) }, { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
+		   { "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
+		   { "IN_STEP", rests && e->step->rest->in_step }, { "KEPT", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");
 }

@@ -175,16 +175,13 @@ static void emit_passing_algorithm(const struct emitter *e)
 	const struct load_slopes slopes = blocks ? (struct load_slopes){ .first = -1 } : load_slopes_of(e->step);
 	if (slopes.first >= 0)
 		emit_load_slopes(e, &slopes);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "SIZE", e->step->layout.size },
-		{ "BLOCKS", blocks }, { "LARGEST", blocks ? states_of_largest_block(e) + acting : 0 },
-		{ "SEGMENTS", e->system->segments },
-		{ "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
-		{ "CHANGING", slopes.columns }, { "FIRST", slopes.first },
-		{ "FORCED", blocks ? 0 : emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
-		{ "LOSES", forced && forced->changes }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
+		   { "BLOCKS", blocks }, { "LARGEST", blocks ? states_of_largest_block(e) + acting : 0 },
+		   { "SEGMENTS", e->system->segments },
+		   { "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
+		   { "CHANGING", slopes.columns }, { "FIRST", slopes.first },
+		   { "FORCED", blocks ? 0 : emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
+		   { "LOSES", forced && forced->changes });
 	say(e, "#include \"changes.h\"\n");
 }
 
@@ -399,14 +396,11 @@ void emit_jump(const struct emitter *e)
 	emit_power_entries(e, entries, entry);
 	emit_pass_steps(e);
 	emit_leap_loads(e, &leap);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "LOAD_STATES", loads },
-		{ "SIZE", (blocks > 1 ? states_of_largest_block(e) : e->system->states) + loads },
-		{ "SEGMENTS", e->system->segments }, { "BLOCKS", blocks }, { "CONVERTED", converts(e) },
-		{ "KEPT", !converts(e) && e->step->program->compensated },
-		{ "CARRIES", converts(e) ? 0 : emit_carried(e) }, { "ENTRIES", entries }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "LOAD_STATES", loads },
+		   { "SIZE", (blocks > 1 ? states_of_largest_block(e) : e->system->states) + loads },
+		   { "SEGMENTS", e->system->segments }, { "BLOCKS", blocks }, { "CONVERTED", converts(e) },
+		   { "KEPT", !converts(e) && e->step->program->compensated },
+		   { "CARRIES", converts(e) ? 0 : emit_carried(e) }, { "ENTRIES", entries });
 	say(e, "#define PL_PHI %s\n"
 	       "#include \"jump.h\"\n", stepped_table(e, "Phi"));
 }

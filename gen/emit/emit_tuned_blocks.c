@@ -368,20 +368,17 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	const struct size sizes[] = {
-		{ "STATES", e->system->states }, { "PARAMS", t->params },
-		{ "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
-		{ "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
-		{ "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
-		{ "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },
-		{ "SOLVED", p->solved },
-		{ "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
-		{ "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
-		{ "PEAKS", has_peaks(e) ? peak_outputs(e->model) : 0 },
-		{ "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
-		{ "BLOCKS", e->step->series.emitted ? p->blocks : 0 }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params },
+		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
+		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
+		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
+		   { "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },
+		   { "SOLVED", p->solved },
+		   { "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
+		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
+		   { "PEAKS", has_peaks(e) ? peak_outputs(e->model) : 0 },
+		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
+		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 });
 }
 
 static void emit_vector_now(const struct emitter *e)

@@ -4,11 +4,6 @@
 
 /* ---- linear ---- */
 
-static const char *far_pole(const struct step *step)
-{
-	return step->series.emitted ? NULL : "the largest |pole| times h is above 8";
-}
-
 static void emit_pass_of_changes(const struct emitter *e)
 {
 	if (e->system->segments > 1)
@@ -17,7 +12,6 @@ static void emit_pass_of_changes(const struct emitter *e)
 
 static const struct kind linear = {
 	.banner = banner_linear,
-	.no_at = far_pole,
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.pass = emit_pass_of_changes,
 	.step = emit_step,
@@ -26,17 +20,9 @@ static const struct kind linear = {
 
 /* ---- tuned: a linear step whose factors the instance has, of a large model those of blocks that params touch ---- */
 
-static const char *far_block(const struct step *step)
-{
-	return step->series.emitted ? NULL
-			: format("an independent block has more than %d states, load states and inputs",
-						     LIMIT_TUNED_BLOCK);
-}
-
 static const struct kind tuned = {
 	.banner = banner_linear,
 	.no_jump = "retuned coefficients have one word",
-	.no_at = far_block,
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.own_factors = true,
 	.step = emit_step,
@@ -71,7 +57,6 @@ static const struct kind regions = {
 	.banner = banner_regions,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
 	.no_jump = "crossings are found step by step",
-	.no_at = far_pole,
 	.constants = emit_event_limit,
 	.members = emit_region_members,
 	.keeps_status = true,
@@ -95,7 +80,6 @@ static const struct kind parts = {
 	.banner = banner_parts,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
 	.no_jump = "crossings are found step by step",
-	.no_at = far_pole,
 	.constants = emit_event_limit,
 	.members = emit_part_members,
 	.keeps_status = true,
@@ -118,15 +102,9 @@ static bool flows_whole(const struct step *step)
 	return whole && program->loops;
 }
 
-static const char *no_values_between(const struct step *step)
-{
-	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
-}
-
 static const struct kind leftover = {
 	.banner = banner_leftover,
 	.no_jump = "what is left over is not linear in the state",
-	.no_at = no_values_between,
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.reads_phi = flows_whole,
@@ -196,15 +174,9 @@ static const struct kind collocated = {
 
 /* ---- normal modes ---- */
 
-static const char *too_many_turns(const struct step *step)
-{
-	return step->series.emitted ? NULL : format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
-}
-
 static const struct kind normal_modes = {
 	.banner = banner_normal,
 	.no_jump = "what is left over changes in time",
-	.no_at = too_many_turns,
 	.members = emit_normal_members,
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",

@@ -128,9 +128,9 @@ static void emit_nodes(const struct emitter *e, const struct reads *r)
 		emit_node_phases(e, r->load);
 }
 
-static void emit_leftover_locals(const struct emitter *e, const struct reads *r, bool node)
+static void emit_leftover_locals(const struct emitter *e, const struct reads *r, const char *vector, bool node)
 {
-	emit_locals_of(e, r->state, "y");
+	emit_locals_of(e, r->state, vector);
 	emit_param_locals(e, r->param);
 	if (r->time)
 		say(e, "    const double t = $n_time(s)%s;\n", node ? format(" + %s_node[node]", e->name) : "");
@@ -165,21 +165,6 @@ static void emit_lefts(const struct emitter *e, const struct bank *bank)
 
 /* ---- a bank: which of its operators serves now ---- */
 
-static void emit_selection_locals(const struct emitter *e, const struct reads *r)
-{
-	emit_locals_of(e, r->state, "s->y");
-	emit_param_locals(e, r->param);
-	if (r->time)
-		say(e, "    const double t = $n_time(s);\n");
-	for (int i = 0; i < e->system->inputs; i++) {
-		if (r->input[i])
-			say(e, "    const double %s = u[%d];\n", input_name(e, i, 0), i);
-		if (r->input[e->system->inputs + i])
-			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
-	}
-	emit_load_states(e, r->load, true);
-}
-
 static void emit_selection(const struct emitter *e)
 {
 	const struct form *selector = e->model->selector;
@@ -188,7 +173,7 @@ static void emit_selection(const struct emitter *e)
 	int last = e->model->operators - 1;
 	open_function(e, "The first operator whose value is not below the current one",
 		      "static int $n_operator(const $n *s, const double u[], const double slope[])");
-	emit_selection_locals(e, &r);
+	emit_leftover_locals(e, &r, "s->y", false);
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 1, &selector);
 	tape_set(formulas_tape(f), "const double now", formula(f, selector), 8, NULL);
 	emit_formulas(f, 4);
@@ -219,7 +204,7 @@ void emit_leftover(const struct emitter *e)
 	open_function(e, "What is left over at state y: a force on each equation that has some",
 		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
 		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
-	emit_leftover_locals(e, &r, node);
+	emit_leftover_locals(e, &r, "y", node);
 	if (bank.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");
 	emit_lefts(e, &bank);

@@ -77,11 +77,9 @@ void emit_selftest(const struct emitter *e, bool jumps)
 	if (given_inputs(e))
 		emit_sample(e);
 	emit_begin(e);
-	const struct size sizes[] = {
-		{ "STATES", r.states }, { "INPUTS", given_inputs(e) }, { "ROWS", r.rows }, { "CROSSED", r.crossings },
-		{ "JUMPS", jumps }, { "AT", e->step->series.emitted }
-	};
-	emit_sizes(e, sizeof sizes / sizeof *sizes, sizes);
+	emit_sizes(e, { "STATES", r.states }, { "INPUTS", given_inputs(e) }, { "ROWS", r.rows },
+		   { "CROSSED", r.crossings },
+		   { "JUMPS", jumps }, { "AT", e->step->series.emitted });
 	if (r.crossings)
 		say_macro(e, "MAX_EVENTS", format("%s_MAX_EVENTS", e->upper));
 	say_include(e, "selftest.h");

@@ -299,20 +299,15 @@ bool crowds(const struct emitter *e)
 	return has_unseen(e) && e->step->unseen->crowded > 0;
 }
 
-void put_sizes(const struct emitter *e, int count, const struct size *size)
-{
-	for (int i = 0; i < count; i++)
-		say_macro(e, size[i].name, whole_text(size[i].value));
-}
-
-void emit_sizes(const struct emitter *e, int count, const struct size *size)
+void open_algorithm(const struct emitter *e, const struct size *size)
 {
 	say(e, "\n/* ---- what is the same for every model ---- */\n\n"
 	       "#define PL(name) $n_##name\n"
 	       "#define PL_TYPE $n\n"
 	       "#define PL_H %s\n"
 	       "#define PL_SINGLE %d\n", step_length(e), e->model->asked.single);
-	put_sizes(e, count, size);
+	for (; size->name; size++)
+		say_macro(e, size->name, whole_text(size->value));
 }
 
 /* ---- tunable params ---- */

@@ -160,6 +160,27 @@ void person_cost(FILE *to, const struct step *step)
 		person_needs(to, step);
 }
 
+const char *no_values_between(const struct step *step)
+{
+	if (step->series.emitted)
+		return NULL;
+	switch (step->kind) {
+	case KIND_TUNED:
+		return format("an independent block has more than %d states, load states and inputs",
+			      LIMIT_TUNED_BLOCK);
+	case KIND_NORMAL:
+		return format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
+	case KIND_CUT:
+	case KIND_EXPANDED:
+	case KIND_COLLOCATED:
+		return NULL;
+	default:
+		return has_leftover(step) && !step->layout.powers
+			       ? "between its steps the scheme has no values of its order"
+			       : "the largest |pole| times h is above 8";
+	}
+}
+
 static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -183,9 +204,8 @@ static void person_step(FILE *to, const struct step *step)
 		person_tuning(to, step);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
-	else if (model->tuning && !step->series.emitted)
-		fprintf(to, "No %s_at: an independent block has more than %d states, load states and inputs.\n",
-			model->name, LIMIT_TUNED_BLOCK);
+	else if (no_values_between(step))
+		fprintf(to, "There is no %s_at: %s.\n", model->name, no_values_between(step));
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
@@ -195,20 +215,12 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
-	else if (step->normal && step->series.emitted)
+	else if (step->normal)
 		fprintf(to, "%s_at: the step's modes under the polynomial of its forces, by series of %d terms.\n",
 			model->name, step->normal->within.terms);
-	else if (step->normal)
-		fprintf(to, "%s_at is not emitted: in a step a mode turns or decays by more than %d.\n", model->name,
-			LIMIT_WITHIN);
-	else if (step->series.emitted)
+	else
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name,
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
-	else
-		fprintf(to, "%s_at is not emitted: %s.\n", model->name,
-			has_leftover(step) && !step->layout.powers
-				? "between its steps the scheme has no values of its order"
-				: "the largest |pole| times h is above 8");
 }
 
 /* Stages, order and nodes; how Newton's method solves them; what an iteration costs */

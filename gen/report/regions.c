@@ -87,7 +87,7 @@ static long bytes_of_regions(const struct step *step)
 }
 
 /* Every piece of it by a Taylor polynomial, after one of each other length was tried, all events and splits used */
-long most_of_regions(const struct step *step)
+static long most_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, degree = step->series.degree, pieces = 1;
