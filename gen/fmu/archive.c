@@ -7,8 +7,7 @@
 
 void archive_add(struct archive *a, const char *name, const char *bytes, size_t length)
 {
-	ENLARGE(a->member, (size_t)a->members + 1);
-	a->member[a->members++] = (struct member){ name, bytes, length };
+	*MORE(a->member, a->members) = (struct member){ name, bytes, length };
 }
 
 /* Little-endian, whatever the machine */
@@ -72,7 +71,7 @@ static size_t put_entry(FILE *to, const struct member *m, size_t offset)
 
 void archive_write(FILE *to, const struct archive *a)
 {
-	size_t *offset = ARRAY(size_t, (size_t)a->members), end = 0, size = 0;
+	size_t *offset = ARRAY(size_t, a->members), end = 0, size = 0;
 	for (int i = 0; i < a->members; i++) {
 		offset[i] = end;
 		end += put_member(to, &a->member[i]);

@@ -28,7 +28,7 @@ struct fmu_variables variables_of(const struct step *step)
 	const struct tuning *tuning = tunables_of(model);
 	const int params = tuning ? tuning->params : 0;
 	const int all = 1 + model->spec->inputs + model->outputs + params + system->states;
-	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, (size_t)all) };
+	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
 	for (int i = 0; i < model->spec->inputs; i++)
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);

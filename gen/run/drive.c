@@ -34,12 +34,12 @@ struct sampled drive_of(const struct linear *system, int kind, const double *w, 
 		      const mpq_t *most)
 {
 	const int inputs = system->inputs;
-	struct sampled d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, (size_t)inputs),
+	struct sampled d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, inputs),
 			   .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
 	/* it changes sign once in half of the shortest period, on average */
 	const double chance = fmin(0.5, h * w[count - 1] / 3.14159265358979);
 	uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
-	double *sign = ARRAY(double, (size_t)inputs);
+	SCRATCH double *sign = ARRAY(double, inputs);
 	for (int i = 0; i < inputs; i++) {
 		d.ramps[i] = system->input[i].hold > 0;
 		sign[i] = 1;
@@ -51,7 +51,6 @@ struct sampled drive_of(const struct linear *system, int kind, const double *w, 
 			d.sample[k * inputs + i] = mpq_get_d(most[i]) * shape(kind, (double)k * h, h * (double)samples,
 									     w, count, sign[i]);
 		}
-	discard(sign);
 	return d;
 }
 

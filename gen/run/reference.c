@@ -56,7 +56,8 @@ static int jacobian(double t, const double *y, double *dfdy, double *dfdt, void 
 {
 	const struct journey *j = context;
 	int n = j->states;
-	double *at = ARRAY(double, 3 * (size_t)n), *here = at + n, *there = here + n;
+	SCRATCH double *at = ARRAY(double, 3 * (size_t)n);
+	double *here = at + n, *there = here + n;
 	memcpy(at, y, (size_t)n * sizeof *at);
 	int status = slopes(t, at, here, context);
 	for (int k = 0; k < n && status == GSL_SUCCESS; k++) {
@@ -73,7 +74,6 @@ static int jacobian(double t, const double *y, double *dfdy, double *dfdt, void 
 		status = slopes(t + dt, at, there, context);
 	for (int i = 0; i < n; i++)
 		dfdt[i] = (there[i] - here[i]) / dt;
-	discard(at);
 	return status;
 }
 
@@ -178,7 +178,7 @@ static void open_driver(struct journey *j, int which)
 	const gsl_odeiv2_step_type *type = !j->roads->stiff ? gsl_odeiv2_step_rk8pd
 					   : which == 0	    ? gsl_odeiv2_step_msbdf
 							    : gsl_odeiv2_step_bsimp;
-	double *scale = ARRAY(double, (size_t)j->states);
+	double *scale = ARRAY(double, j->states);
 	for (int i = 0; i < j->states; i++)
 		scale[i] = scale_of(j, i);
 	j->system = (gsl_odeiv2_system){ slopes, jacobian, (size_t)j->states, j };

@@ -36,10 +36,10 @@ struct running *running_new(struct place at, const struct step *step, enum runni
 			       .states = model->written->system.states, .inputs = model->system.inputs,
 			       .outputs = model->outputs, .single = model->asked.single };
 	r->instance = allocate(1, CALL(r, size));
-	r->y = ARRAY(double, (size_t)r->states + 1);
+	r->y = ARRAY(double, r->states + 1);
 	r->u = ARRAY(double, 2 * (size_t)r->inputs + 1);
-	r->out = ARRAY(double, (size_t)r->outputs + 1);
-	r->slope = ARRAY(double, (size_t)r->states + 1);
+	r->out = ARRAY(double, r->outputs + 1);
+	r->slope = ARRAY(double, r->states + 1);
 	return r;
 }
 
@@ -91,7 +91,7 @@ void running_step(struct running *r, const double *u)
 /* The samples of the step before k, and the last one */
 void running_drive(struct running *r, const struct sampled *d, long k)
 {
-	double *u = ARRAY(double, 2 * (size_t)r->inputs + 1);
+	SCRATCH double *u = ARRAY(double, 2 * (size_t)r->inputs + 1);
 	drive_at(d, k > 0 ? k - 1 : 0, d->h * (double)(k > 0 ? k - 1 : 0), u);
 	to_target(r, u, r->u, r->inputs);
 	if (CALL(r, hold != NULL))
@@ -100,7 +100,6 @@ void running_drive(struct running *r, const struct sampled *d, long k)
 		drive_step(d, k - 1, u);
 		running_step(r, u);
 	}
-	discard(u);
 }
 
 void running_state(struct running *r, double *y)

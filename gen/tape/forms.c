@@ -100,7 +100,8 @@ static tape_ref times_power(struct tape *t, tape_ref product, tape_ref a, unsign
 static tape_ref product_ref(struct tape_forms *f, const struct atom *a, tape_ref before)
 {
 	struct tape *t = f->tape;
-	tape_ref product = before, *below = ARRAY(tape_ref, (size_t)a->operands);
+	SCRATCH tape_ref *below = ARRAY(tape_ref, a->operands);
+	tape_ref product = before;
 	int divisors = 0;
 	for (int i = 0; i < a->operands; i++) {
 		const struct form *operand = a->operand[i], *divisor = divisor_of(operand);
@@ -116,7 +117,6 @@ static tape_ref product_ref(struct tape_forms *f, const struct atom *a, tape_ref
 		product = tape_number(t, 1);
 	for (int i = 0; i < divisors; i++)
 		product = tape_binary(t, TAPE_DIV, product, below[i]);
-	discard(below);
 	return product;
 }
 
@@ -164,7 +164,7 @@ static tape_ref table_ref(struct tape_forms *f, const struct atom *a)
 {
 	struct straight *piece;
 	int pieces = pieces_of_atom(a, &piece);
-	tape_ref x = tape_form(f, a->operand[0]), *below = ARRAY(tape_ref, (size_t)pieces + 1);
+	tape_ref x = tape_form(f, a->operand[0]), *below = ARRAY(tape_ref, pieces + 1);
 	for (int p = 0; p < pieces && piece[p].end; p++)
 		below[p] = side(f, a->operand[0], CMP_LT, form_constant(piece[p].end));
 	return tape_table(f->tape, x, pieces, piece, below);
@@ -172,7 +172,8 @@ static tape_ref table_ref(struct tape_forms *f, const struct atom *a)
 
 tape_ref tape_form_in_time(struct tape *t, const struct form *form)
 {
-	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1), when = tape_operand(t, TAPE_TIME, 0, 1);
+	SCRATCH tape_ref *term = ARRAY(tape_ref, form->terms + 1);
+	tape_ref when = tape_operand(t, TAPE_TIME, 0, 1);
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		tape_ref factor = tape_constant(t, form->term[i].factor);
@@ -180,9 +181,7 @@ tape_ref tape_form_in_time(struct tape *t, const struct form *form)
 			  : basis->kind == BASIS_PI			? times(t, factor, tape_pi(t))
 									: factor;
 	}
-	tape_ref sum = tape_sum(t, form->terms, term);
-	discard(term);
-	return sum;
+	return tape_sum(t, form->terms, term);
 }
 
 static bool is_decided_in_time(const struct tape_forms *f, const struct atom *a)
@@ -261,12 +260,9 @@ tape_ref tape_condition(struct tape_forms *f, const struct form *condition)
 
 static tape_ref nominal_ref(struct tape *t, const struct symbol *param)
 {
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	param_value(param, value);
-	tape_ref ref = tape_constant(t, value);
-	mpq_clear(value);
-	return ref;
+	return tape_constant(t, value);
 }
 
 static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
@@ -343,12 +339,10 @@ tape_ref tape_term(struct tape_forms *f, const struct form_term *term)
 
 tape_ref tape_form(struct tape_forms *f, const struct form *form)
 {
-	tape_ref *term = ARRAY(tape_ref, (size_t)form->terms + 1);
+	SCRATCH tape_ref *term = ARRAY(tape_ref, form->terms + 1);
 	for (int i = 0; i < form->terms; i++)
 		term[i] = tape_term(f, &form->term[i]);
-	tape_ref sum = tape_sum(f->tape, form->terms, term);
-	discard(term);
-	return sum;
+	return tape_sum(f->tape, form->terms, term);
 }
 
 void tape_name_lets(struct tape_forms *f)

@@ -16,7 +16,7 @@ struct tape_expressions *tape_expressions_new(struct tape *t, int symbols,
 {
 	struct tape_expressions *x = NEW(struct tape_expressions);
 	*x = (struct tape_expressions){ .tape = t, .let_name = let_name, .context = context };
-	x->let = ARRAY(tape_ref, (size_t)symbols + 1);
+	x->let = ARRAY(tape_ref, symbols + 1);
 	for (int i = 0; i <= symbols; i++)
 		x->let[i] = UNMADE;
 	return x;
@@ -92,7 +92,7 @@ static tape_ref table(struct tape_expressions *x, const struct node *node)
 	struct tape *t = x->tape;
 	struct straight *piece;
 	int pieces = pieces_of_call(node, &piece);
-	tape_ref argument = number_of(x, node->child[0]), *below = ARRAY(tape_ref, (size_t)pieces + 1);
+	tape_ref argument = number_of(x, node->child[0]), *below = ARRAY(tape_ref, pieces + 1);
 	for (int p = 0; p < pieces && piece[p].end; p++)
 		below[p] = tape_compare(t, CMP_LT, argument, tape_constant(t, piece[p].end));
 	return tape_table(t, argument, pieces, piece, below);

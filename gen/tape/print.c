@@ -186,7 +186,7 @@ static const char *text_of(struct printing *p, tape_ref ref, enum level level, i
 
 static bool *find_wide(const struct tape *t, const struct tape_target *to)
 {
-	bool *wide = ARRAY(bool, (size_t)tape_length(t) + 1);
+	bool *wide = ARRAY(bool, tape_length(t) + 1);
 	for (int i = 0; i < tape_length(t); i++) {
 		const struct tape_node *n = tape_node(t, i);
 		bool operand = tape_is_operand(t, i) && n->op != TAPE_CONSTANT;
@@ -211,9 +211,9 @@ void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 {
 	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
 	int outs = tape_outs(t);
-	p.local = ARRAY(const char *, (size_t)tape_length(t) + 1);
+	p.local = ARRAY(const char *, tape_length(t) + 1);
 	p.wide = to->lanes ? find_wide(t, to) : NULL;
-	const char **text = ARRAY(const char *, (size_t)outs + 1);
+	const char **text = ARRAY(const char *, outs + 1);
 	for (int i = 0; i < outs; i++) {
 		tape_ref ref = tape_out(t, i)->ref;
 		text[i] = widened(&p, ref, text_of(&p, ref, CHOICE, tape_out(t, i)->indent));

@@ -61,14 +61,13 @@ static struct kept *place_of(const struct sample *s, const struct form *form)
 
 static void make_room(struct sample *s)
 {
-	struct kept *old = s->table;
+	SCRATCH struct kept *old = s->table;
 	int room = s->room;
 	s->room *= 4;
-	s->table = ARRAY(struct kept, (size_t)s->room);
+	s->table = ARRAY(struct kept, s->room);
 	for (int i = 0; i < room; i++)
 		if (old[i].form)
 			*place_of(s, old[i].form) = old[i];
-	discard(old);
 }
 
 static enum change change_of(const struct sample *s, const struct tape_node *n)

@@ -108,7 +108,8 @@ static bool is_asked(const struct tape_node *n, enum tape_op kind, int index, in
 
 tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index, int part)
 {
-	tape_ref *slope = ARRAY(tape_ref, (size_t)ref + 1), zero = tape_number(t, 0), one = tape_number(t, 1);
+	SCRATCH tape_ref *slope = ARRAY(tape_ref, ref + 1);
+	tape_ref zero = tape_number(t, 0), one = tape_number(t, 1);
 	for (int i = 0; i <= ref; i++) {
 		const struct tape_node n = *tape_node(t, i);
 		slope[i] = is_asked(&n, kind, index, part) ? one : zero;
@@ -119,9 +120,7 @@ tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index
 			if (operand[k] != TAPE_NONE && slope[operand[k]] != zero)
 				slope[i] = sum(t, slope[i], product(t, partial(t, i, k), slope[operand[k]]));
 	}
-	tape_ref found = slope[ref];
-	discard(slope);
-	return found;
+	return slope[ref];
 }
 
 /* What d ref by node i adds to that by each of its operands */
@@ -142,7 +141,8 @@ static void hand_back(struct tape *t, int i, tape_ref *by)
 
 void tape_reverse(struct tape *t, tape_ref ref, enum tape_op kind, int count, tape_ref *slope)
 {
-	tape_ref *by = ARRAY(tape_ref, (size_t)ref + 1), zero = tape_number(t, 0);
+	SCRATCH tape_ref *by = ARRAY(tape_ref, ref + 1);
+	tape_ref zero = tape_number(t, 0);
 	for (int i = 0; i <= ref; i++)
 		by[i] = zero;
 	for (int i = 0; i < count; i++)
@@ -155,5 +155,4 @@ void tape_reverse(struct tape *t, tape_ref ref, enum tape_op kind, int count, ta
 		else if (by[i] != zero && !n->choice)
 			hand_back(t, i, by);
 	}
-	discard(by);
 }

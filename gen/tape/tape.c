@@ -68,7 +68,7 @@ static void make_room(struct tape *t)
 	ENLARGE(t->node, (size_t)t->room);
 	ENLARGE(t->next, (size_t)t->room);
 	discard(t->bucket);
-	t->bucket = ARRAY(int, (size_t)t->room);
+	t->bucket = ARRAY(int, t->room);
 	for (int i = 0; i < t->nodes; i++)
 		into_bucket(t, i);
 }
@@ -96,32 +96,23 @@ tape_ref tape_constant(struct tape *t, mpq_srcptr value)
 
 tape_ref tape_number(struct tape *t, long value)
 {
-	mpq_t exact;
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	mpq_set_si(exact, value, 1);
-	tape_ref ref = tape_constant(t, exact);
-	mpq_clear(exact);
-	return ref;
+	return tape_constant(t, exact);
 }
 
 tape_ref tape_double(struct tape *t, double value)
 {
-	mpq_t exact;
-	mpq_init(exact);
+	RATIONAL exact = ZERO;
 	mpq_set_d(exact, value);
-	tape_ref ref = tape_constant(t, exact);
-	mpq_clear(exact);
-	return ref;
+	return tape_constant(t, exact);
 }
 
 tape_ref tape_pi(struct tape *t)
 {
-	mpq_t pi;
-	mpq_init(pi);
+	RATIONAL pi = ZERO;
 	constant_pi(pi);
-	tape_ref ref = tape_constant(t, pi);
-	mpq_clear(pi);
-	return ref;
+	return tape_constant(t, pi);
 }
 
 static bool is_choice(enum tape_op op)
@@ -147,12 +138,9 @@ tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a)
 	bool twice = (op == TAPE_NEG || op == TAPE_NOT) && t->node[a].op == op;
 	if (op != TAPE_NEG || t->node[a].op != TAPE_CONSTANT)
 		return twice ? t->node[a].a : make(t, op, 0, a, TAPE_NONE);
-	mpq_t negative;
-	mpq_init(negative);
+	RATIONAL negative = ZERO;
 	mpq_neg(negative, t->node[a].value);
-	tape_ref ref = tape_constant(t, negative);
-	mpq_clear(negative);
-	return ref;
+	return tape_constant(t, negative);
 }
 
 tape_ref tape_call(struct tape *t, enum function function, tape_ref a)
@@ -219,8 +207,7 @@ tape_ref tape_power(struct tape *t, tape_ref a, unsigned n)
 tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straight *piece, const tape_ref *below)
 {
 	tape_ref value = TAPE_NONE;
-	mpq_t back;
-	mpq_init(back);
+	RATIONAL back = ZERO;
 	for (int p = pieces - 1; p >= 0; p--) {
 		mpq_neg(back, piece[p].x);
 		tape_ref beyond = tape_binary(t, TAPE_ADD, x, tape_constant(t, back));
@@ -228,7 +215,6 @@ tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straigh
 		tape_ref own = tape_binary(t, TAPE_ADD, tape_constant(t, piece[p].y), rise);
 		value = piece[p].end ? tape_select(t, below[p], own, value) : own;
 	}
-	mpq_clear(back);
 	return value;
 }
 
@@ -261,8 +247,7 @@ void tape_name(struct tape *t, tape_ref ref, const char *name)
 
 void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note)
 {
-	ENLARGE(t->out, (size_t)t->outs + 1);
-	t->out[t->outs++] = (struct tape_out){ target, note, ref, false, indent };
+	*MORE(t->out, t->outs) = (struct tape_out){ target, note, ref, false, indent };
 }
 
 void tape_set_local(struct tape *t, const char *name, tape_ref ref)
@@ -325,7 +310,7 @@ bool tape_is_cheap(const struct tape *t, tape_ref ref)
 
 int *tape_uses(const struct tape *t)
 {
-	int *uses = ARRAY(int, (size_t)t->nodes + 1);
+	int *uses = ARRAY(int, t->nodes + 1);
 	for (int i = 0; i < t->outs; i++)
 		uses[t->out[i].ref]++;
 	for (int i = t->nodes - 1; i >= 0; i--) {
@@ -340,28 +325,26 @@ int *tape_uses(const struct tape *t)
 bool tape_reads(const struct tape *t, enum tape_op kind, int index, int part)
 {
 	bool reads = false;
-	int *uses = tape_uses(t);
+	SCRATCH int *uses = tape_uses(t);
 	for (int i = 0; i < t->nodes && !reads; i++) {
 		const struct tape_node *n = &t->node[i];
 		reads = uses[i] && n->op == kind && (index < 0 || n->index == index) && (part < 0 || n->part == part);
 	}
-	discard(uses);
 	return reads;
 }
 
 void tape_mark(const struct tape *t, enum tape_op kind, int part, bool *flag)
 {
-	int *uses = tape_uses(t);
+	SCRATCH int *uses = tape_uses(t);
 	for (int i = 0; i < t->nodes; i++)
 		if (uses[i] && t->node[i].op == kind && t->node[i].part == part)
 			flag[t->node[i].index] = true;
-	discard(uses);
 }
 
 struct tape_cost tape_cost(const struct tape *t)
 {
 	struct tape_cost cost = { 0 };
-	int *uses = tape_uses(t);
+	SCRATCH int *uses = tape_uses(t);
 	for (int i = 0; i < t->nodes; i++) {
 		enum tape_op op = t->node[i].op;
 		int times = tape_is_cheap(t, i) && !t->node[i].name ? uses[i] : uses[i] > 0;
@@ -371,6 +354,5 @@ struct tape_cost tape_cost(const struct tape *t)
 		cost.calls += op == TAPE_CALL || op == TAPE_POWER || op == TAPE_ATAN2 ? times : 0;
 		cost.accumulations += op == TAPE_ACCUMULATE ? times : 0;
 	}
-	discard(uses);
 	return cost;
 }
