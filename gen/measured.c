@@ -35,7 +35,7 @@ static void try_steps(struct measuring *m, struct alternative a)
 		const double excess = one.excess;
 		if (one.refused && ++refused == 2)              /* a step that is too long for it may be one reason */
 			return;
-		if (meets(&one))
+		if (is_enough(m, &one))
 			meeting = fmax(meeting, now);
 		else
 			missing = fmin(missing, now);
@@ -83,7 +83,7 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 			one = tried_step(m, one, m->longest);
 		else
 			try_alternative(m, &one);
-		if (one.refused || meets(&one) || one.cost > dear * m->cheapest)
+		if (one.refused || is_enough(m, &one) || one.cost > dear * m->cheapest)
 			return;
 	}
 }
@@ -143,6 +143,24 @@ static void find_taken(struct measuring *m)
 	}
 }
 
+/* Where all that meets the needs from the start misses them from a neighbour, all is tried with twice the room. */
+static void choose(struct measuring *m)
+{
+	struct choice *choice = m->choice;
+	for (m->within = WITHIN; m->within > WITHIN / 16; m->within /= 2) {
+		bool near = false;
+		choice->alternatives = 0;
+		m->cheapest = HUGE_VAL;
+		try_schemes(m);
+		qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);
+		find_taken(m);
+		for (int i = 0; i < choice->alternatives; i++)
+			near = near || choice->alternative[i].worst_neighbour > WITHIN;
+		if (choice->taken >= 0 || !near)
+			return;
+	}
+}
+
 static void tell_unmet(const struct measuring *m)
 {
 	const struct alternative *best = NULL, *any = NULL;
@@ -194,7 +212,7 @@ static void find_ends(struct measuring *m)
 struct step *choose_measured(struct model *stepped, struct request *request)
 {
 	struct measuring m = { .model = stepped, .request = request, .single = request->single,
-			       .choice = NEW(struct choice), .cheapest = HUGE_VAL };
+			       .choice = NEW(struct choice) };
 	const struct place at = stepped->spec->need[0].at;
 	if (!find_requirements(stepped))
 		return NULL;
@@ -207,9 +225,7 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 		say_error(at, NULL, "the need cannot be measured: %s", m.why);
 		return NULL;
 	}
-	try_schemes(&m);
-	qsort(m.choice->alternative, (size_t)m.choice->alternatives, sizeof *m.choice->alternative, by_cost);
-	find_taken(&m);
+	choose(&m);
 	if (m.choice->taken < 0) {
 		tell_unmet(&m);
 		return NULL;

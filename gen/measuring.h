@@ -26,7 +26,8 @@ struct measuring {
 	struct roads roads;
 	double longest;             /* [s] a step is not above this where it is open */
 	struct choice *choice;
-	double cheapest;            /* of what has met the needs from the spec's start; infinite: nothing has */
+	double within;              /* up to this excess from the spec's start nothing finer is tried */
+	double cheapest;            /* of what was within that; infinite: nothing was */
 	int kept;                   /* references from the spec's start */
 	struct kept_course *keeps;
 	const char *why;            /* no reference; NULL: there is one */
@@ -47,6 +48,7 @@ bool open_reference(struct measuring *m);      /* false: m->why */
 double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
 		  const double *start, int drive, bool spec);
 bool meets(const struct alternative *a);
+bool is_enough(const struct measuring *m, const struct alternative *a);
 void try_alternative(struct measuring *m, struct alternative *a);        /* and keeps it */
 
 /* ---- neighbours.c ---- */

@@ -272,6 +272,11 @@ bool meets(const struct alternative *a)
 	return !a->refused && !a->why && a->excess <= WITHIN && a->worst_neighbour <= WITHIN;
 }
 
+bool is_enough(const struct measuring *m, const struct alternative *a)
+{
+	return meets(a) && a->excess <= m->within;
+}
+
 /* From the spec's start, with all inputs that are tried */
 static void try_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
 {
@@ -305,7 +310,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 		else
 			try_inputs(m, a, r, &roads);
 	}
-	if (meets(a))
+	if (is_enough(m, a))
 		m->cheapest = fmin(m->cheapest, a->cost);
 	*MORE(m->choice->alternative, m->choice->alternatives) = *a;
 }
