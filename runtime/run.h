@@ -58,6 +58,10 @@ static void PL(rest)(PL_TYPE *s)
 }
 #endif
 
+#if PL_SOFT && defined __GNUC__ && !defined __clang__ /* gcc would put it into all that call it */
+PL_APART void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS]);
+#endif
+
 /* A step, and the outputs behind it unless out is NULL; where the next go */
 static inline real *PL(run_on)(PL_TYPE *s, const real *u, real *out)
 {
@@ -80,11 +84,12 @@ static inline real *PL(run_on)(PL_TYPE *s, const real *u, real *out)
     return out + PL_OUTPUTS;
 }
 
+/* Not once more where the descriptor calls it */
 #if PL_INPUTS > 0
-void PL(run)(PL_TYPE *s, size_t n, const real *u, real *out)
+PL_APART void PL(run)(PL_TYPE *s, size_t n, const real *u, real *out)
 {
 #else
-void PL(run)(PL_TYPE *s, size_t n, real *out)
+PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
 {
     const real *const u = NULL;
 #endif
