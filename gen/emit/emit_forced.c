@@ -23,13 +23,11 @@ static void emit_rebase(const struct emitter *e)
 	       "static void $n_rebase($n *s)\n"
 	       "{\n");
 	emit_load_states(e, e->step->forced->load, false);
-	say(e, "    const double load[%d] = {", count);
-	for (int k = 0; k < count; k++) {
-		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
-		say(e, "%s%s", k ? ", " : "", operand ? operand : "1.0");
-	}
-	say(e, "};\n"
-	       "    int i, j;\n"
+	const char **text = ARRAY(const char *, (size_t)count);
+	for (int k = 0; k < count; k++)
+		text[k] = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
+	say_vector(e, "load", count, text);
+	say(e, "    int i, j;\n"
 	       "    for (i = 0; i < $N_STATES; i++) {\n"
 	       "        for (j = 0; j < %d; j++) { s->y[i] += $n_forced_change[s->segment][i][j] * load[j]; }\n"
 	       "    }\n"

@@ -443,14 +443,13 @@ void emit_groups(const struct emitter *e)
 /* What acts on a group, in one vector: `acting_text` has the loads' columns, then the inputs'. */
 static void emit_driven(const struct emitter *e, const struct group *g, int index, const char *const *acting_text)
 {
-	say(e, "    const double driven%d[%d] = {", index, acting(g));
+	const char **text = ARRAY(const char *, (size_t)acting(g));
 	for (int k = 0; k < acting(g); k++) {
 		const struct operand operand = acting_operand(g, k);
 		const bool input = operand.kind == OPERAND_INPUT;
-		say(e, "%s%s", k ? ", " : "",
-		    acting_text[operand.index + (input ? e->step->branch->whole->columns : 0)]);
+		text[k] = acting_text[operand.index + (input ? e->step->branch->whole->columns : 0)];
 	}
-	say(e, "};\n");
+	say_vector(e, format("driven%d", index), acting(g), text);
 }
 
 void emit_group_steps(const struct emitter *e, const char *const *acting_text)

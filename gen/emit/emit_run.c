@@ -100,21 +100,6 @@ static const char **sample_names(const struct emitter *e)
 	return name;
 }
 
-/* {..., ..., ...} */
-static void emit_list(const struct emitter *e, const char *name, int count, const char *const *text)
-{
-	enum { WIDTH = 100 };
-	int width = (int)strlen(name) + 24;
-	say(e, "    const double %s[%d] = {", name, count);
-	for (int k = 0; k < count; k++) {
-		int length = (int)strlen(text[k]) + 2;
-		bool breaks = width + length > WIDTH;
-		say(e, "%s%s%s", k ? "," : "", breaks ? "\n        " : k ? " " : "", text[k]);
-		width = (breaks ? 8 : width) + length;
-	}
-	say(e, "};\n");
-}
-
 /* Does the sample before the block act on a row, or on the state at its end? */
 static bool is_read_before(const struct emitter *e, int column)
 {
@@ -138,7 +123,7 @@ static void emit_sample_locals(const struct emitter *e)
 	for (int k = 0; k < count; k++)
 		text[k] = format("samples[%d]", k);
 	if (count)
-		emit_list(e, "u", count, text);
+		say_vector(e, "u", count, text);
 	for (int i = 0, column = 0; i < e->system->inputs; i++)
 		if (e->system->input[i].hold && is_read_before(e, column++))
 			say(e, "    const double before%d = s->u[%d];\n", i + 1, i);
@@ -159,7 +144,7 @@ static void emit_start(const struct emitter *e)
 	for (int k = 0; k < rows->columns; k++)
 		text[k] = row_operand(e, &rows->column[k].operand);
 	text[0] = rows->columns ? text[0] : "0.0";
-	emit_list(e, "start", rows->columns ? rows->columns : 1, text);
+	say_vector(e, "start", rows->columns ? rows->columns : 1, text);
 }
 
 static void mark_operand(const struct emitter *e, const struct operand *operand, bool *reads, bool *loads)

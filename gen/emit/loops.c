@@ -128,20 +128,15 @@ static const char *load_text(const struct emitter *e, int t)
 void emit_operands(const struct emitter *e)
 {
 	int *column, columns = acting_columns(e, &column), inputs = e->step->branch->whole->inputs;
-	if (columns) {
-		say(e, "    const double load[%d] = {", columns);
-		for (int k = 0; k < columns; k++) {
-			const char *operand = column_operand(e, column[k]);
-			say(e, "%s%s", k ? ", " : "", operand ? operand : "1.0");
-		}
-		say(e, "};\n");
-	}
-	if (inputs) {
-		say(e, "    const double input[%d] = {", inputs);
-		for (int k = 0; k < inputs; k++)
-			say(e, "%s%s", k ? ", " : "", input_operand(e, k));
-		say(e, "};\n");
-	}
+	const char **text = ARRAY(const char *, (size_t)(columns + inputs) + 1);
+	for (int k = 0; k < columns; k++)
+		text[k] = column_operand(e, column[k]);
+	for (int k = 0; k < inputs; k++)
+		text[columns + k] = input_operand(e, k);
+	if (columns)
+		say_vector(e, "load", columns, text);
+	if (inputs)
+		say_vector(e, "input", inputs, text + columns);
 }
 
 void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin)

@@ -191,21 +191,6 @@ const char *place_in_loop(const struct emitter *e)
 	return e->part ? spell(e, "$o_state[i]") : "i";
 }
 
-/* A line break instead of the blank between two of a list that would pass column 110 */
-static void say_list(const struct emitter *e, const char *list)
-{
-	enum { WIDTH = 100, INDENT = 17 };
-	int width = 0;
-	for (const char *c = list; *c; c++, width++) {
-		bool breaks = *c == ' ' && width > WIDTH && c[-1] == ',';
-		if (breaks)
-			say(e, "\n%*s", INDENT, "");
-		else
-			say(e, "%c", *c);
-		width = breaks ? INDENT : width;
-	}
-}
-
 /* s->y is not the state as it is known outside: NAME_get makes that */
 static bool is_read_whole(const struct emitter *e)
 {
@@ -225,7 +210,7 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 			list = format("%s%s%s = %s[%d]%s%s", list, *list ? ", " : format("    %s ", type), e->local[i],
 				      vector, place_of_state(e, i), mass ? " / " : "", mass ? mass : "");
 	}
-	say_list(e, *list ? format("%s;\n", list) : "");
+	say_wrapped(e, *list ? format("%s;\n", list) : "");
 }
 
 void emit_locals(const struct emitter *e, const bool *reads)

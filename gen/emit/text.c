@@ -192,6 +192,21 @@ const char *two_text(mpq_srcptr q)
 	return format("{%s, %s}", shortest(round_rational(q)), low_text(q));
 }
 
+void say_vector(const struct emitter *e, const char *name, int count, const char *const *text)
+{
+	enum { WIDTH = 100 };
+	int width = (int)strlen(name) + 24;
+	say(e, "    const double %s[%d] = {", name, count);
+	for (int k = 0; k < count; k++) {
+		const char *own = text[k] ? text[k] : "1.0";
+		int length = (int)strlen(own) + 2;
+		bool breaks = width + length > WIDTH;
+		say(e, "%s%s%s", k ? "," : "", breaks ? "\n        " : k ? " " : "", own);
+		width = (breaks ? 8 : width) + length;
+	}
+	say(e, "};\n");
+}
+
 const char *whole_text(int number)
 {
 	return format("%d", number);
