@@ -4,6 +4,13 @@
 
 struct cost { int multiplications, additions, calls; };
 
+static void add_cost(struct cost *to, int times, struct cost of)
+{
+	to->multiplications += times * of.multiplications;
+	to->additions += times * of.additions;
+	to->calls += times * of.calls;
+}
+
 static struct cost cost_of_tape(const struct tape *t)
 {
 	struct tape_cost cost = tape_cost(t);
@@ -19,6 +26,13 @@ static tape_ref friction(struct tape *t, const void *context, const struct atom 
 {
 	(void)context;
 	return tape_operand(t, TAPE_FRICTION, atom->index, 0);
+}
+
+static void set_cost(struct program *program, struct cost cost)
+{
+	program->multiplications = cost.multiplications;
+	program->additions = cost.additions;
+	program->calls = cost.calls;
 }
 
 /* Of one evaluation of all */
@@ -127,9 +141,8 @@ static struct cost cost_of_outputs(const struct step *step, bool (*counts)(const
 static void cost_load(struct cost *cost, const struct step *step, int l, bool turned)
 {
 	const struct load *load = &step->branch->system.load[l];
-	struct cost c = turned ? turning_of_load(load) : functions_of_load(load, step->model->asked.single);
-	cost->multiplications += c.multiplications + (turned ? 0 : products_of_load(load));
-	cost->additions += c.additions;
+	add_cost(cost, 1, turned ? turning_of_load(load) : functions_of_load(load, step->model->asked.single));
+	cost->multiplications += turned ? 0 : products_of_load(load);
 }
 
 /* Of the loads whose functions a step evaluates, in the mean over the steps to an anchor */
@@ -150,17 +163,12 @@ double cost_of_step(const struct step *step, const struct target *target)
 	const int anchor = step->anchors ? step->anchors->steps : 1;
 	struct cost cost = { program->multiplications, program->additions, 0 };
 	bool *reads = ARRAY(bool, (size_t)step->branch->system.loads);
-	if (step->forced) {
-		cost.multiplications += step->forced->multiplications;
-		cost.additions += step->forced->additions;
-	}
-	struct cost seen = { 0, 0, 0 };
+	if (step->forced)
+		add_cost(&cost, 1, (struct cost){ step->forced->multiplications, step->forced->additions, 0 });
 	if (step->modal)
-		seen.multiplications = seen.additions = model->outputs * step->modal->states;
+		add_cost(&cost, model->outputs * step->modal->states, (struct cost){ 1, 1, 0 });
 	else if (model->declared_outputs)
-		seen = cost_of_outputs(step, is_row, reads);
-	cost.multiplications += seen.multiplications;
-	cost.additions += seen.additions;
+		add_cost(&cost, 1, cost_of_outputs(step, is_row, reads));
 	double multiplications = cost.multiplications, additions = cost.additions;
 	if (step->anchors) {
 		multiplications += (double)program->wave_multiplications / anchor;
@@ -210,9 +218,7 @@ void count_regions(struct step *step, int multiplications, int additions)
 	for (int l = 0; l < system->loads; l++) {
 		if (step->layout.load[l] < 0)
 			continue;
-		struct cost c = functions_of_load(&system->load[l], step->model->asked.single);
-		functions.multiplications += c.multiplications;
-		functions.additions += c.additions;
+		add_cost(&functions, 1, functions_of_load(&system->load[l], step->model->asked.single));
 		multiplications += products_of_load(&system->load[l]);
 	}
 	program->wave_multiplications = functions.multiplications;
@@ -431,14 +437,13 @@ void count_collocation(struct step *step)
 	struct cost cost = cost_of_forms(step, apart ? n : n + m->entries, form);
 	solved = apart ? n * n * (1 + OF_COMPLEX * (s - 1) / 2) + 2 * s * s * n
 		       : elimination(s * n) + m->entries * s * s;
-	step->iteration.multiplications = s * cost.multiplications + sums + solved;
-	step->iteration.additions = s * cost.additions + sums + solved;
-	step->iteration.calls = s * cost.calls;
-	if (step->expansion)
-		return;
-	step->program->multiplications = step->iteration.multiplications;
-	step->program->additions = step->iteration.additions;
-	step->program->calls = step->iteration.calls;
+	struct cost all = { sums + solved, sums + solved, 0 };
+	add_cost(&all, s, cost);
+	step->iteration.multiplications = all.multiplications;
+	step->iteration.additions = all.additions;
+	step->iteration.calls = all.calls;
+	if (!step->expansion)
+		set_cost(step->program, all);
 }
 
 /* Loads whose functions the factors of forces read */
@@ -485,15 +490,10 @@ static struct cost cost_of_forces(const struct step *step)
 {
 	const struct normal *normal = step->normal;
 	struct cost all = { 0, 0, 0 };
-	for (int k = 0; k < normal->matrices; k++) {
-		struct cost cost = cost_of_matrix(normal, &normal->matrix[k]);
-		all.multiplications += cost.multiplications;
-		all.additions += cost.additions;
-	}
-	for (int f = 0; f < step->model->split->functions; f++) {
-		all.multiplications += normal->force[f] ? normal->modes : 0;
-		all.additions += normal->force[f] ? normal->modes : 0;
-	}
+	for (int k = 0; k < normal->matrices; k++)
+		add_cost(&all, 1, cost_of_matrix(normal, &normal->matrix[k]));
+	for (int f = 0; f < step->model->split->functions; f++)
+		add_cost(&all, normal->force[f] ? normal->modes : 0, (struct cost){ 1, 1, 0 });
 	return all;
 }
 
@@ -510,14 +510,12 @@ void count_normal(const struct step *step, struct program *program)
 	for (int k = 0; k < split->rests; k++)
 		form[forms + k] = split->rest[k].form;
 	struct cost all = cost_of_forms(step, forms + split->rests, form);
-	force.multiplications += all.multiplications - c.multiplications + (n + 1) * split->rests;
-	force.additions += all.additions - c.additions + n * split->rests;
-	c.calls += evaluations * (all.calls - c.calls);
-	c.multiplications += wave_products(step);
-	c.additions += wave_products(step);
-	program->multiplications = c.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
-	program->additions = c.additions + evaluations * force.additions + n * (3 * points + 6);
-	program->calls = c.calls;
+	add_cost(&force, 1, all);
+	add_cost(&force, -1, c);
+	add_cost(&force, split->rests, (struct cost){ n + 1, n, 0 });
+	add_cost(&c, evaluations, force);
+	add_cost(&c, wave_products(step) + n * (3 * points + 6), (struct cost){ 1, 1, 0 });
+	set_cost(program, c);
 	mark_loads_read(step, program);
 	count_loads(program, step);
 }
