@@ -30,6 +30,8 @@ bool ok(bool good, const char *name, ...)
         vprintf(name, arguments);
         putchar('\n');
         failures += !good;
+        if (!good)
+            fflush(stdout);             /* who waits for the first one ends the test there */
     }
     va_end(arguments);
     complaints = 0;

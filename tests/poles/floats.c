@@ -19,7 +19,7 @@ static void run(const pl_modelf *m, double L)
 	float y[TRUTH_STATES];
 	bool good = true;
 	m->init(s);
-	for (int k = 0; k < STEPS; k++)
+	for (int k = 0; k < STEPS && m->status(s) == 0; k++)
 		m->step(s, NULL);
 	m->get(s, y);
 	for (int i = 0; i < m->states; i++)
