@@ -2,9 +2,7 @@
 /* access.h: a state as it is given and as it is kept: init, set, get, time, status, hold.  Included by the file of the
  * model, which defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with members y, t0, k, with a status status, with low words rest or carry
- *     PL_STATES, PL_INPUTS
  *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set
  *     PL_NORMAL                  so many normal modes, from which PL(of_modes)(which, mode, q) makes coordinates
  *     PL_MOMENTA                 1: s->y is PL(mass)[] times a state

@@ -4,8 +4,6 @@
  * locals.  The sums are those of NAME_step, in its order, so that an instance gets the bits of one that steps alone.
  * Included by the file of the model, behind lanes.h and where it defines
  *
- *     PL(name), PL_TYPE, PL_SINGLE   the model's prefix before a name; its type; 1: in float
- *     PL_STATES, PL_INPUTS, PL_OUTPUTS
  *     PL_ROWS, PL_STEPPED            numbers of an instance, the first of PL_TYPE: those that it has of its own, and,
  *                                    at the head of these, those that a step changes
  *     PL_GROUPS                      of lanes, that step in turns: sums of one wait for none of their own

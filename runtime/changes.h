@@ -3,7 +3,6 @@
  * series; from change to change where loads change their formula, or of independent blocks one after the other.
  * Included by the file of the model, which defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with member segment
  *     PL_STATES, PL_SIZE         the states; length of x
  *     PL_BLOCKS, PL_LARGEST      how many independent blocks; what x has of the largest.  Their states are those of

@@ -3,7 +3,6 @@
  * of their own, what keeps the samples.  Included by the file of the model, which defines before it
  *
  *     PL(name), PL_CORE(name)    the prefix of the model and of its core before a name
- *     PL_SINGLE                  1: in float
  *     PL_TYPE                    the model, with members core, past[PL_INPUTS][PL_RING], newest, and with ramps ends
  *     PL_STATES, PL_OUTPUTS      of both
  *     PL_INPUTS, PL_ALL          samples that are given; inputs of the core, the delayed ones behind those

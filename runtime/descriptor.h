@@ -2,9 +2,7 @@
 /* descriptor.h: a model for programs that drive any: the same functions as every other, in a pl_model.  Included by the
  * file of the model, which defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE, PL_NAME           the model; its name in quotes
- *     PL_STATES, PL_INPUTS, PL_OUTPUTS, PL_PARAMS
  *     PL_SPEC_H                  the step of the spec [s]
  *     PL_AT, PL_JUMPS, PL_RAMPS  1: there is PL(at), PL(jump), PL(hold)
  *

@@ -2,9 +2,8 @@
 /* held.h: tunable params that an instance holds, where expressions read them.  Included by the file of the model, which
  * defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with member coeffs, with leads lead, with modes k, y, which, eta and rate
- *     PL_PARAMS, PL_H            how many; step [s]
+ *     PL_PARAMS                  how many
  *     PL_RETUNED                 1: PL(retune) is the model's own, of whose numbers coeffs has more
  *     PL_LEADS                   sines in t whose frequency the params change, PL(frequencies)(s, w) [rad/s]
  *     PL_MODES                   normal modes of a step, from which PL(of_modes)(which, mode, q) makes coordinates

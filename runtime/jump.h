@@ -2,7 +2,6 @@
 /* jump.h: a linear model over many steps by powers of the matrix of one, in two words, from change to change of its
  * loads.  Included by the file of the model, which defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with members y, with segments segment, with low words rest or carry
  *     PL_STATES, PL_LOAD_STATES  the states; the load states that a step reads
  *     PL_SIZE                    these and the states, of several blocks those of the largest
@@ -15,7 +14,6 @@
  *     PL_CARRIES                 of so many, PL(carried)[], it is in s->carry
  *     PL_PHI                     the name of the transfer matrix; PL(Phi_low) has its second words
  *     PL_ENTRIES                 of the load states beside it: PL(power_entry)[], {segment, row, column, value}
- *     PL_H                       step [s]
  *
  *     PL(leap_loads)(s, load)    the load states now
  *     PL(pass_steps)(s, n)       loads and time pass n steps

@@ -5,7 +5,6 @@
  * the step, found by sweeps (exponential collocation; section 2.2).  Included by the file of the model, which defines
  * before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with members y, k, eta[PL_WIDTH], rate[PL_WIDTH], status, which, known, and
  *                                force[][PL_WIDTH], past[][2][PL_WIDTH], f[][PL_FUNCTIONS] of points or else nodes; of
  *                                methods with points newest, of several segments segment; past of the latter and of
@@ -21,7 +20,6 @@
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
- *     PL_H                       step [s]
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
  *     PL(waves)(s, wave)                 values of known loads now

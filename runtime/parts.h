@@ -5,7 +5,6 @@
  * Included by the file of the model, which defines before it
  *
  *     PL(name), PL_TYPE     the model, with members contact[PL_PARTS] and crossing[PL_PARTS][]
- *     PL_SINGLE             whether its numbers are floats
  *     PL_PARTS              those that have expressions
  *     PL_MAX_EVENTS         crossings of all of them in a step
  *     PL(shares)[part]      what each region of a part adds to the number of the model's

@@ -2,11 +2,8 @@
 /* peaks.h: output NAME = peak(EXPR), the largest |EXPR| so far: a step looks for larger values inside, before it moves
  * the state.  Included by the file of the model, which defines before it
  *
- *     PL(name), PL_TYPE, PL_SINGLE      the model's prefix before a name; its type; 1: in float
- *     PL_STATES, PL_INPUTS, PL_OUTPUTS
  *     PL_SIZE                           numbers of x: the states and what acts on them
  *     PL_PEAKS, PL(peak_output)[]       how many such outputs, and which
- *     PL_H                              the step of s [s]
  *     PL_SLOPE, PL_BEND                 [PL_SIZE][PL_SIZE], [PL_PEAKS][PL_SIZE] of s: x' = slope x; bend |x| is at
  *                                       least what an output is off its chord in a step
  *     PL_PEAK_ROW(c, p)                 peak p over x, with coefficients c

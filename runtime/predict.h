@@ -2,7 +2,6 @@
 /* predict.h: predictors of a quadrature: a step of Runge and Kutta of fourth order in y' = A y + B r, r what is left
  * over, the part of loads and inputs exact.  Included by the file of the model, which defines before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_FORCES       states; forces that are left over
  *     PL_DRIVEN                  1: loads and inputs have a part in them

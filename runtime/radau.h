@@ -5,7 +5,6 @@
  *
  *     PL(name), PL_TYPE          the model's prefix before a name; its type, with the members start, poly, gain, at,
  *                                at_low, size, per, want, scale, unit, back, stop, ready beside y, rest, t0, k, status
- *     PL_SINGLE                  1: in float
  *     PL_STATES, PL_COORDS       coordinates are of first or second order: states are these, then the velocities
  *     PL_STAGES, PL_MODES        of the collocation; by how many modes of its stages they are solved, 0: all at once
  *     PL_ENTRIES                 of the Jacobian that are not 0

@@ -2,9 +2,7 @@
 /* run.h: many steps in one call, and what comes to rest by itself.  Included by the file of the model, which defines
  * before it
  *
- *     PL(name), PL_SINGLE        the prefix of the model before a name; 1: in float
  *     PL_TYPE                    the model, with members y, k
- *     PL_STATES, PL_INPUTS, PL_OUTPUTS
  *     PL_INSIDE                  1: a series serves several steps: members served, valid, PL(inside)(s)
  *     PL_ROWS                    steps that PL(block) takes at once, with their outputs; 0: there is none
  *     PL_OVER                    1: they are those of one series, member served, and 0 of PL(block): its end is not

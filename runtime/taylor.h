@@ -3,7 +3,6 @@
  * serves several steps is summed; one that does not serve a whole step is made anew on the way.  Included by the file
  * of each model, which defines before it what reach.h asks, where there is a tolerance, and
  *
- *     PL_SINGLE                  1: in float
  *     PL_TYPE                    with members y, rest, t0, k, status, and by what follows
  *     PL_ADAPTIVE                a tolerance says how long a series serves: series, base, next, left, served, valid,
  *                                most
