@@ -55,6 +55,9 @@ void form_add_to(struct form *sum, const struct form *part, mpq_srcptr factor);
 void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor);
 void form_free(struct form *form);                          /* which nothing else holds */
 const struct form_term *form_find(const struct form *form, const struct basis *basis); /* NULL: it does not occur */
+/* The terms of a form (NULL: there are none), each followed by those of its atom's operands, unless `seen`, per atom,
+ * is set; then it is. NULL ends them. */
+const struct form_term **terms_within(const struct form *form, bool *seen);
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 /* one of them constant */
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b);

@@ -16,6 +16,28 @@ int basis_order(const struct basis *a, const struct basis *b)
 	return a->power != b->power ? a->power - b->power : (int)a->sine - (int)b->sine;
 }
 
+static void list_terms(const struct form *form, bool *seen, int *count, const struct form_term ***list)
+{
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		*MORE(*list, *count) = &form->term[i];
+		if (!atom || seen[atom->index])
+			continue;
+		seen[atom->index] = true;
+		for (int k = 0; k < atom->operands; k++)
+			list_terms(atom->operand[k], seen, count, list);
+	}
+}
+
+const struct form_term **terms_within(const struct form *form, bool *seen)
+{
+	const struct form_term **list = NULL;
+	int count = 0;
+	list_terms(form, seen, &count, &list);
+	*MORE(list, count) = NULL;
+	return list;
+}
+
 struct form *form_single(struct basis basis, mpq_srcptr factor)
 {
 	struct form *form = NEW(struct form);

@@ -5,27 +5,17 @@
 
 struct contents { bool time, tuned, other; };
 
-static void look_into(const struct collector *c, const struct form *form, bool *seen, struct contents *found)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		const struct atom *atom = basis->atom;
-		bool acting = basis->kind == BASIS_INPUT && c->params == PARAMS_INPUTS && basis->index >= c->inputs;
-		found->time = found->time || basis->kind == BASIS_WAVE;
-		found->tuned = found->tuned || acting || (atom && atom->kind == ATOM_PARAM);
-		found->other = found->other || basis->kind == BASIS_COORD || (basis->kind == BASIS_INPUT && !acting);
-		if (!atom || seen[atom->index])
-			continue;
-		seen[atom->index] = true;
-		for (int k = 0; k < atom->operands; k++)
-			look_into(c, atom->operand[k], seen, found);
-	}
-}
-
 static struct contents contents_of(const struct collector *c, const struct form *form)
 {
 	struct contents found = { 0 };
-	look_into(c, form, ARRAY(bool, (size_t)atoms_count(c->atoms)), &found);
+	SCRATCH bool *seen = ARRAY(bool, atoms_count(c->atoms));
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct basis *basis = &(*term)->basis;
+		bool acting = basis->kind == BASIS_INPUT && c->params == PARAMS_INPUTS && basis->index >= c->inputs;
+		found.time = found.time || basis->kind == BASIS_WAVE;
+		found.tuned = found.tuned || acting || (basis->atom && basis->atom->kind == ATOM_PARAM);
+		found.other = found.other || basis->kind == BASIS_COORD || (basis->kind == BASIS_INPUT && !acting);
+	}
 	return found;
 }
 

@@ -71,35 +71,21 @@ static void find_drags(struct building *b)
 /* What an output reads of it, an acceleration by its equation too, would differ where it is held. */
 static void refuse_in_output(const struct output *output, const struct form *form, bool *seen)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		if (!a || seen[a->index])
-			continue;
-		seen[a->index] = true;
-		if (is_friction(a))
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.atom && is_friction((*term)->basis.atom))
 			error(output->value->start, "a piecewise-linear model gives it",
 			      "what friction carries beside what is not piecewise linear is no output");
-		for (int k = 0; k < a->operands; k++)
-			refuse_in_output(output, a->operand[k], seen);
-	}
 }
 
 /* What rests has another acceleration than its equations say. */
 static void refuse_acceleration(const struct building *b, const struct output *output, const struct form *form,
 				bool *seen)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (is_highest(&b->model->frame, basis))
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if (is_highest(&b->model->frame, &(*term)->basis))
 			error(output->value->start, "a piecewise-linear model gives it",
 			      "an acceleration that a contact may hold beside what is not piecewise linear is no "
 			      "output");
-		if (!basis->atom || seen[basis->atom->index])
-			continue;
-		seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			refuse_acceleration(b, output, basis->atom->operand[k], seen);
-	}
 }
 
 struct asking {

@@ -10,18 +10,12 @@
 
 static const struct atom *friction_in(const struct form *form, bool *seen)
 {
-	const struct atom *found = NULL;
-	for (int i = 0; i < form->terms && !found; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		if (!a || seen[a->index])
-			continue;
-		seen[a->index] = true;
-		if (a->kind == ATOM_CALL && a->function >= FN_FRICTION)
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct atom *a = (*term)->basis.atom;
+		if (a && a->kind == ATOM_CALL && a->function >= FN_FRICTION)
 			return a;
-		for (int k = 0; k < a->operands && !found; k++)
-			found = friction_in(a->operand[k], seen);
 	}
-	return found;
+	return NULL;
 }
 
 static const struct atom *first_friction(const struct building *b)

@@ -214,17 +214,9 @@ static void name_outputs(struct building *b)
 
 static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)
 {
-	for (int i = 0; form && i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (is_too_high(model, basis))
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if (is_too_high(model, &(*term)->basis))
 			return true;
-		if (!basis->atom || seen[basis->atom->index])
-			continue;
-		seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			if (reads_too_high(model, seen, basis->atom->operand[k]))
-				return true;
-	}
 	return false;
 }
 
@@ -320,16 +312,9 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 
 static void place_output_waves(struct building *b, bool *seen, const struct form *form)
 {
-	for (int i = 0; form && i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave))
-			place_loads(b, form_single(*basis, form->term[i].factor));
-		if (!basis->atom || seen[basis->atom->index])
-			continue;
-		seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			place_output_waves(b, seen, basis->atom->operand[k]);
-	}
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_WAVE && !is_polynomial((*term)->basis.wave))
+			place_loads(b, form_single((*term)->basis, (*term)->factor));
 }
 
 /* The highest derivatives that they read, each as a row of its own */

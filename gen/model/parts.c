@@ -16,16 +16,9 @@ static void join(int *parent, int a, int b)
 
 static void join_form(const struct building *b, int *parent, bool *seen, int row, const struct form *form)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD)
-			join(parent, row, b->model->n + basis->index);
-		if (!basis->atom || seen[basis->atom->index])
-			continue;
-		seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			join_form(b, parent, seen, row, basis->atom->operand[k]);
-	}
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_COORD)
+			join(parent, row, b->model->n + (*term)->basis.index);
 }
 
 static int *components_of_equations(const struct building *b)

@@ -84,16 +84,9 @@ static void look_at(struct look *l, const struct form *form, int own)
 /* An atom is looked at once, but joins all equations in which it stands. */
 static void join_atoms(struct look *l, const struct form *form, int own)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD)
-			join_equation(l, own, basis->index);
-		if (basis->kind != BASIS_ATOM || l->seen[basis->atom->index])
-			continue;
-		l->seen[basis->atom->index] = true;
-		for (int k = 0; k < basis->atom->operands; k++)
-			join_atoms(l, basis->atom->operand[k], own);
-	}
+	for (const struct form_term **term = terms_within(form, l->seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_COORD)
+			join_equation(l, own, (*term)->basis.index);
 }
 
 static struct look look_new(const struct model *model)
