@@ -120,7 +120,7 @@ const char *stepped_table(const struct emitter *e, const char *table); /* Phi or
 /* of a velocity that is kept as a momentum; NULL: it is not */
 const char *factor_of_momentum(const struct emitter *e, int state);
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
-/* as kept: of kick-drift-kick, momenta */
+/* as kept: of kick-drift-kick, momenta; reads NULL: all */
 void emit_raw_locals(const struct emitter *e, const bool *reads);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */

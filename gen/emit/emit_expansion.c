@@ -76,7 +76,6 @@ void emit_expansion_place(const struct emitter *e)
 /* What is not finite is not kept: the state stays as it was. */
 static void emit_keep(const struct emitter *e)
 {
-	say(e, "    ");
 	say_wrapped(e, format("if (%s) {  /* one of them is not finite */\n", is_not_finite(e, "next", "")));
 	say(e, "        s->status |= PL_NOT_FINITE;\n"
 	       "    } else {\n");
@@ -94,11 +93,7 @@ static void emit_straight_step(const struct emitter *e)
 	emit_coefficients(e);
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "    double rest%d = s->rest[%d];\n", i, i);
-	for (int i = 0; i < e->system->states; i++) {
-		say(e, "    ");
-		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &rest%d);\n", i,
-				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
-	}
+	emit_series_ends(e);
 	emit_keep(e);
 	emit_step_end(e);
 	close_function(e, "");
@@ -118,11 +113,9 @@ static void emit_total(const struct emitter *e)
 	open_function(e, "Where the series ends that begins at y, and what rounding takes from it",
 		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
 		      "double end[$N_STATES], double rest[$N_STATES])", expansion(e)->order + 1);
-	for (int i = 0; i < e->system->states; i++) {
-		say(e, "    ");
+	for (int i = 0; i < e->system->states; i++)
 		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &rest[%d]);\n", i, i,
 				      whole_gain(e, i, term_of_series), i));
-	}
 	close_function(e, "");
 }
 
@@ -154,7 +147,6 @@ static void emit_end(const struct emitter *e)
 			late = plus(late, term_of_end(i, k));
 		for (int k = order - LATE; k > 1; k--)
 			text = plus(text, term_of_end(i, k));
-		say(e, "    ");
 		say_wrapped(e, format("end[%d] = pl_accumulate(c[0][%d], %s, %s + %s, &rest[%d]);\n", i, i,
 				      term_of_end(i, 1), text, late, i));
 	}

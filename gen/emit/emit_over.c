@@ -114,12 +114,7 @@ void emit_over_block(const struct emitter *e)
 	for (int i = 0; i < states; i++)
 		say(e, "    const double base%d = s->rest[%d];\n"
 		       "    double rest%d = base%d;\n", i, i, i, i);
-	for (int i = 0; i < states; i++) {
-		say(e, "    ");
-		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &rest%d);\n", i,
-				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
-	}
-	say(e, "    ");
+	emit_series_ends(e);
 	say_wrapped(e, format("if (%s) { return 0; }\n", is_not_finite(e, "next", "")));
 	emit_rows_of_block(e);
 	say(e, "    return 1;\n"

@@ -280,12 +280,9 @@ static const char *given_names(const struct emitter *part)
 static void emit_linear_rows(const struct emitter *part, const double *whole)
 {
 	int size = part->step->layout.size, states = part->system->states;
-	bool *all = ARRAY(bool, (size_t)states);
 	const char **x = operands_of_x(part), **term = ARRAY(const char *, (size_t)size);
-	for (int i = 0; i < states; i++)
-		all[i] = true;
 	begin_step(part);
-	emit_raw_locals(part, all);
+	emit_raw_locals(part, NULL);
 	for (int i = 0; i < part->system->inputs; i++)
 		if (part->system->input[i].hold)
 			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
@@ -339,12 +336,9 @@ static void emit_linear_step(const struct emitter *part)
 
 static void emit_divided_step(const struct emitter *part)
 {
-	bool *all = ARRAY(bool, (size_t)part->system->states);
-	for (int i = 0; i < part->system->states; i++)
-		all[i] = true;
 	begin_step(part);
 	if (part->step->swift) {
-		emit_raw_locals(part, all);
+		emit_raw_locals(part, NULL);
 		emit_clear_step(part);
 	} else {
 		declare_region_vector(part);

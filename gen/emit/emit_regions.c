@@ -366,11 +366,8 @@ static void emit_searched_step(const struct emitter *e)
 
 static void emit_whole_step(const struct emitter *e)
 {
-	bool *all = ARRAY(bool, (size_t)e->system->states);
-	for (int i = 0; i < e->system->states; i++)
-		all[i] = true;
 	emit_set_aside(e);
-	emit_raw_locals(e, all);
+	emit_raw_locals(e, NULL);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_clear_step(e);
 	emit_take_back(e);

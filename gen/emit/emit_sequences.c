@@ -267,6 +267,13 @@ const char *whole_gain(const struct emitter *e, int state, gain_term *term)
 	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
 }
 
+void emit_series_ends(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->states; i++)
+		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &rest%d);\n", i,
+				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
+}
+
 /* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
 {

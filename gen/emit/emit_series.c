@@ -107,6 +107,7 @@ void say_wrapped(const struct emitter *e, const char *text)
 	enum { WIDTH = 96, INDENT = 10 };
 	size_t start = 0, last = 0, length = strlen(text);
 	int width = WIDTH;
+	say(e, length ? "    " : "");
 	for (size_t i = 0; i < length; i++) {
 		if (strncmp(text + i, " + ", 3) == 0 || strncmp(text + i, " - ", 3) == 0 || (i && text[i - 1] == ','))
 			last = i;

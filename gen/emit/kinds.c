@@ -53,16 +53,17 @@ static void emit_region_tables(const struct emitter *e)
 	emit_region_start(e);
 }
 
+/* What both kinds of regions have */
+#define OF_REGIONS \
+	.step_note = " * A step that stays clear of every breakpoint, at most:\n", \
+	.no_jump = "crossings are found step by step", .constants = emit_event_limit, .keeps_status = true, \
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS", .declare_state = emit_crossing_declarations, \
+	.places = always
+
 static const struct kind regions = {
 	.banner = banner_regions,
-	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.no_jump = "crossings are found step by step",
-	.constants = emit_event_limit,
+	OF_REGIONS,
 	.members = emit_region_members,
-	.keeps_status = true,
-	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
-	.declare_state = emit_crossing_declarations,
-	.places = always,
 	.tables = emit_region_tables,
 	.step = emit_region_step,
 	.at = emit_region_at
@@ -78,14 +79,8 @@ static void emit_tables_of_parts(const struct emitter *e)
 
 static const struct kind parts = {
 	.banner = banner_parts,
-	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.no_jump = "crossings are found step by step",
-	.constants = emit_event_limit,
+	OF_REGIONS,
 	.members = emit_part_members,
-	.keeps_status = true,
-	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
-	.declare_state = emit_crossing_declarations,
-	.places = always,
 	.tables = emit_tables_of_parts,
 	.step = emit_parts_step,
 	.at = emit_parts_at
@@ -116,15 +111,22 @@ static const struct kind leftover = {
 
 /* ---- cut: the same, from crossing to crossing ---- */
 
+static void emit_expansion_constants(const struct emitter *e)
+{
+	if (is_divided(e))
+		emit_event_limit(e);
+}
+
+/* What all have whose state may choose formulas */
+#define OF_SERIES \
+	.no_jump = "what is left over is not linear in the state", .constants = emit_expansion_constants, \
+	.types = emit_divided_types, .keeps_status = true, .status_note = "0, or PL_... bits (plrt.h)", \
+	.declare_state = emit_divided_declarations
+
 static const struct kind cut = {
 	.banner = banner_cut,
-	.no_jump = "what is left over is not linear in the state",
-	.constants = emit_event_limit,
-	.types = emit_divided_types,
+	OF_SERIES,
 	.members = emit_cut_members,
-	.keeps_status = true,
-	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
-	.declare_state = emit_divided_declarations,
 	.places = always,
 	.reads_phi = flows_whole,
 	.tables = emit_cut_place,
@@ -134,21 +136,10 @@ static const struct kind cut = {
 
 /* ---- expanded: the Taylor series of the solution ---- */
 
-static void emit_expansion_constants(const struct emitter *e)
-{
-	if (is_divided(e))
-		emit_event_limit(e);
-}
-
 static const struct kind expanded = {
 	.banner = banner_expanded,
-	.no_jump = "what is left over is not linear in the state",
-	.constants = emit_expansion_constants,
-	.types = emit_divided_types,
+	OF_SERIES,
 	.members = emit_expansion_members,
-	.keeps_status = true,
-	.status_note = "0, or PL_... bits (plrt.h)",
-	.declare_state = emit_divided_declarations,
 	.places = expansion_places,
 	.tables = emit_expansion_place,
 	.step = emit_expansion_step,
@@ -159,13 +150,8 @@ static const struct kind expanded = {
 
 static const struct kind collocated = {
 	.banner = banner_collocated,
-	.no_jump = "what is left over is not linear in the state",
-	.constants = emit_expansion_constants,
-	.types = emit_divided_types,
+	OF_SERIES,
 	.members = emit_collocation_members,
-	.keeps_status = true,
-	.status_note = "0, or PL_... bits (plrt.h)",
-	.declare_state = emit_divided_declarations,
 	.places = always,
 	.tables = emit_collocation_place,
 	.step = emit_collocation_step,

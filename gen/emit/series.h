@@ -30,6 +30,7 @@ bool spans_steps(const struct emitter *e);                        /* one expansi
 typedef const char *gain_term(const struct emitter *e, int state, int k);
 const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
 const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
+void emit_series_ends(const struct emitter *e);                         /* next0, rest0, ...: where it ends */
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
 
