@@ -947,15 +947,15 @@ static bool retuned(void *s, const char *values, double *step)
 	return status == 0;
 }
 
-/* With the values written the operator is another one, where a scheme leaves what differs to a quadrature; a series and
- * a collocation have none. */
+/* With the values written the operator is another one, where a scheme leaves what differs to a quadrature: both are off
+ * the truth, each by as much as a scheme may. A series and a collocation have none. */
 static double retuned_bound(int steps)
 {
 	static const char *const of_equations[] = { "taylor", "radau", "auto", "etdcol" };
 	bool equations = strstr(of->retune, "step=") != NULL;
 	for (size_t i = 0; i < sizeof of_equations / sizeof *of_equations; i++)
 		equations = equations || strncmp(of->scheme, of_equations[i], strlen(of_equations[i])) == 0;
-	return equations ? 10 * rounding(steps) : bound();
+	return equations ? 10 * rounding(steps) : 2 * bound();
 }
 
 static void judge_retune(void)
