@@ -100,22 +100,3 @@ void emit_series_locals(const struct emitter *e)
 	}
 	emit_series_tape(e, r);
 }
-
-/* Broken between summands, or declarations, that would pass column 110 */
-void say_wrapped(const struct emitter *e, const char *text)
-{
-	enum { WIDTH = 96, INDENT = 10 };
-	size_t start = 0, last = 0, length = strlen(text);
-	int width = WIDTH;
-	say(e, length ? "    " : "");
-	for (size_t i = 0; i < length; i++) {
-		if (strncmp(text + i, " + ", 3) == 0 || strncmp(text + i, " - ", 3) == 0 || (i && text[i - 1] == ','))
-			last = i;
-		if (i - start > (size_t)width && last > start) {
-			say(e, "%.*s\n%*s", (int)(last - start), text + start, INDENT - 1, "");
-			start = last;
-			width = WIDTH;
-		}
-	}
-	say(e, "%s", text + start);
-}

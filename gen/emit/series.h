@@ -15,7 +15,6 @@ void emit_slopes_function(const struct emitter *e);               /* NAME_slopes
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
-void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
