@@ -76,19 +76,23 @@ static struct motion slow(wide t)
 	return (struct motion){ x5 + 0.25L + 0.625L, 0, 0, 0 };
 }
 
-/* ---- walled: x'' = 4 onto a wall at 0.5, which comes from t = 1 to 2 and is at 1 from t = 3 on ---- */
+/* ---- walled: x'' + friction(x', 1) = 5 onto a wall at 0.5, which comes from t = 1 to 2, from t = 3 on at 1 ---- */
 
 static struct motion walled(wide t)
 {
-	const wide d = t - 2, flight = 0.05L, out = t - 3, far = sqrtl(0.6L / 2);
+	const wide out = t - 3, far = sqrtl(0.6L / 2);
+	/* thrown back by the wall that stops, until friction turns with it and it comes again */
+	const wide d = t - 2, turn = 0.1L / 6, back = t - 2 - turn, flight = sqrtl(0.05L * turn / 2);
 	if (t < 0.5L)
 		return (struct motion){ 2 * t * t, 4 * t, 0, 4 };
 	if (t < 1)
 		return (struct motion){ 0.5L, 0, 0, 0 };
 	if (t < 2)
 		return (struct motion){ 0.5L - 0.1L * (t - 1), -0.1L, 0, 0 };
-	if (d < flight)
-		return (struct motion){ 0.4L - 0.1L * d + 2 * d * d, -0.1L + 4 * d, 0, 4 };
+	if (d < turn)
+		return (struct motion){ 0.4L - 0.1L * d + 3 * d * d, -0.1L + 6 * d, 0, 6 };
+	if (back < flight)
+		return (struct motion){ 0.4L - 0.05L * turn + 2 * back * back, 4 * back, 0, 4 };
 	if (t < 3)
 		return (struct motion){ 0.4L, 0, 0, 0 };
 	if (out < far)
@@ -319,7 +323,7 @@ int main(void)
 		{ "ramped", ramped, 6, 2e-14, true, { 2.3 } },
 		{ "carried", carried, 6, 2e-14, true, { 3.25 } },
 		{ "slow", slow, 8, 2e-14, true, { 2.5, 5.5 } },
-		{ "walled", walled, 5, 2e-14, false, { 0.5, 2.05 } },
+		{ "walled", walled, 5, 2e-14, false, { 0.5, 2.0370790 } },
 		{ "dropped", dropped, 25, 2e-13, false, { 0 } },
 		{ "halted", halted, 3, 2e-14, true, { 1 } },
 		{ "onward", onward, 3, 2e-14, true, { 1 } },
