@@ -121,7 +121,7 @@ static bool is_diagonal(const struct picture *p)
 {
 	const int c = p->columns, k = p->k;
 	double most = 0, beside = 0;
-	for (int i = 0; i < c; i++)
+	for (int i = 0; i < c && p->moves; i++)         /* then k is 2 c */
 		for (int j = 0; j < k; j++) {
 			const double size = fabs(p->T[(c + i) * k + j]);
 			if (j % c == i)
