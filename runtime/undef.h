@@ -43,6 +43,7 @@
 #undef PL_CROWDED
 #undef PL_DAMPED
 #undef PL_DEGREE
+#undef PL_DERIVED
 #undef PL_DIRECT
 #undef PL_DIVIDED
 #undef PL_DRIVEN

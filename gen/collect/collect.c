@@ -472,7 +472,7 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 static struct value *collect_tuned(struct collector *c, struct node *node)
 {
 	const struct symbol *symbol = node->symbol;
-	if (!symbol->tunable)
+	if (!symbol->tunable || (c->given && symbol->derived))
 		return collect_node(c, symbol->value);
 	if (c->params == PARAMS_INPUTS && !symbol->factor)
 		return scalar(form_unit(

@@ -105,6 +105,7 @@ struct collector {
 	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec, but for
 	 * factors, which are numbers, and in outputs atoms */
 	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;
+	bool given;                 /* of tunable params only the given ones: what follows from them is put in */
 	bool reading;               /* an output is being collected */
 	int inputs;
 	struct leads *leads;        /* of sines whose frequency such params change */

@@ -85,10 +85,10 @@ static void emit_names(const struct emitter *e, int inputs, const struct tuning 
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
 	if (!tunable)
 		return;
-	const char **name = ARRAY(const char *, (size_t)tunable->params);
-	for (int k = 0; k < tunable->params; k++)
+	const char **name = ARRAY(const char *, (size_t)tunable->given);
+	for (int k = 0; k < tunable->given; k++)
 		name[k] = tunable->param[k].symbol->name;
-	emit_name_list(e, "param_names", tunable->params, name);
+	emit_name_list(e, "param_names", tunable->given, name);
 }
 
 /* Of the size that errors are measured by */
@@ -107,7 +107,7 @@ void emit_model(const struct emitter *e, int inputs, bool core)
 	const struct tuning *tunable = core ? tunables_of(e->model) : NULL;
 	emit_names(e, inputs, tunable);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
-		   { "PARAMS", tunable ? tunable->params : 0 }, { "AT", e->step->series.emitted },
+		   { "PARAMS", tunable ? tunable->given : 0 }, { "AT", e->step->series.emitted },
 		   { "JUMPS", core && has_jump(e) }, { "RAMPS", e->ramps });
 	say(e, "#define PL_NAME \"$n\"\n"
 	       "#define PL_SPEC_H $N_H\n"

@@ -93,7 +93,8 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 static bool forms_need_math(const struct emitter *e)
 {
 	const struct model *model = e->model;
-	bool math = model->selector && reads_of(model, 1, &model->selector).math;
+	bool math = (model->selector && reads_of(model, 1, &model->selector).math) ||
+		    reads_of(model, model->spec->derived, model->derived).math;
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		math = math || (left && reads_of(speaker(model), 1, &left).math);

@@ -31,7 +31,7 @@ void emit_held_types(const struct emitter *e)
 				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
 	       "typedef struct $n_coeffs $n_coeffs;  /* %s */\n"
-	       "struct $n_coeffs {\n", tunables_of(e->model)->params, param_list(e), what);
+	       "struct $n_coeffs {\n", tunables_of(e->model)->given, param_list(e), what);
 	declare_members(e, emit_members);
 	say(e, "};\n"
 	       "\n");
@@ -129,18 +129,51 @@ static void emit_frequencies(const struct emitter *e)
 	close_function(e, "");
 }
 
-void emit_held_retune(const struct emitter *e)
+static void emit_held(const struct emitter *e)
 {
-	if (e->kind->own_factors)
-		emit_retune(e);
-	if (!held(e))
-		return;
 	if (e->model->retuned)
 		emit_retuned(e);
 	if (held_leads(e))
 		emit_frequencies(e);
-	emit_sizes(e, { "PARAMS", held(e)->params }, { "RETUNED", e->model->retuned != NULL },
+	emit_sizes(e, { "PARAMS", held(e)->params }, { "DERIVED", e->model->spec->derived },
+		   { "RETUNED", e->model->retuned != NULL },
 		   { "LEADS", held_leads(e) },
 		   { "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
 	say(e, "#include \"held.h\"\n");
+}
+
+/* NAME_retune of the params that are given, by that of all */
+static void emit_derived(const struct emitter *e)
+{
+	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
+	const struct reads reads = reads_of(e->model, derived, e->model->derived);
+	open_function(e, "What follows from params", "static void $n_derive(const double y[], double out[])");
+	for (int k = 0; k < given; k++)
+		if (reads.param[k])
+			say(e, "    const double %s = y[%d];\n", param_local(e, k), k);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, derived, e->model->derived);
+	for (int k = 0; k < derived; k++)
+		tape_set(formulas_tape(f), format("out[%d]", k), formula(f, e->model->derived[k]), 13, NULL);
+	emit_formulas(f, 4);
+	close_function(e, "");
+	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
+	       "{\n"
+	       "    double all[$N_PARAMS + %d];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_PARAMS; i++) {\n"
+	       "        all[i] = params[i];\n"
+	       "    }\n"
+	       "    $n_derive(params, all + $N_PARAMS);\n"
+	       "    return $n_retune_all(c, all, h);\n"
+	       "}\n", derived);
+}
+
+void emit_held_retune(const struct emitter *e)
+{
+	if (e->kind->own_factors)
+		emit_retune(e);
+	if (held(e))
+		emit_held(e);
+	if (tunables_of(e->model) && e->model->spec->derived)
+		emit_derived(e);
 }

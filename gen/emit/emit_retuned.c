@@ -236,7 +236,8 @@ void emit_retuned(const struct emitter *e)
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
-	emit_sizes(e, { "PARAMS", e->model->held->params }, { "SIZE", e->step->layout.size },
+	emit_sizes(e, { "PARAMS", e->model->held->params }, { "DERIVED", e->model->spec->derived },
+		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
 		   { "ROWS", retuned_of(e)->tuning->all.rows }, { "BLOCKS", retuned_of(e)->blocks },

@@ -60,8 +60,8 @@ const char **emit_equations(const struct emitter *e, const struct tuning *t, int
 	const char **text = ARRAY(const char *, (size_t)count);
 	int terms = 0;
 	for (int k = 0; k < count; terms += list[k++]->terms)
-		text[k] = format("{%d, %d, %d, %s_PARAMS, %d, %d, %s, %s}", list[k]->rows, list[k]->columns,
-				 list[k]->solves, e->upper, t->monomials, list[k]->terms,
+		text[k] = format("{%d, %d, %d, %d, %d, %d, %s, %s}", list[k]->rows, list[k]->columns,
+				 list[k]->solves, t->params, t->monomials, list[k]->terms,
 				 t->monomials ? format("%s_monomial", e->name) : "NULL",
 				 list[k]->terms ? format("%s_term + %d", e->name, terms) : "NULL");
 	emit_monomials(e, t);
@@ -368,7 +368,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params },
+	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "DERIVED", e->model->spec->derived },
 		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
 		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },

@@ -111,8 +111,8 @@ void emit_index_names(const struct emitter *e)
 	emit_names_of(e, "OUT", names_of_outputs(e), e->model->outputs);
 	if (!tuning)
 		return;
-	const char **param = ARRAY(const char *, (size_t)tuning->params);
-	for (int k = 0; k < tuning->params; k++)
+	const char **param = ARRAY(const char *, (size_t)tuning->given);
+	for (int k = 0; k < tuning->given; k++)
 		param[k] = tuning->param[k].symbol->name;
-	emit_names_of(e, "P", param, tuning->params);
+	emit_names_of(e, "P", param, tuning->given);
 }

@@ -301,7 +301,7 @@ const char *param_list(const struct emitter *e)
 {
 	const struct tuning *t = tunables_of(e->model);
 	const char *list = "";
-	for (int k = 0; k < t->params; k++)
+	for (int k = 0; k < t->given; k++)
 		list = format("%s%s%s", list, k ? ", " : "", t->param[k].symbol->name);
 	return list;
 }
@@ -309,7 +309,9 @@ const char *param_list(const struct emitter *e)
 void emit_nominal_params(const struct emitter *e)
 {
 	const struct tuning *t = tunables_of(e->model);
-	open_member(e, "double", "params", format("[%s_PARAMS]", e->upper), param_list(e));
+	const char *shape = t->params > t->given ? format(" + %d", t->params - t->given) : "";
+	open_member(e, "double", "params", format("[%s_PARAMS%s]", e->upper, shape),
+		    format("%s%s", param_list(e), *shape ? ", what follows from them" : ""));
 	for (int k = 0; k < t->params; k++)
 		say(e, k ? ", %s" : "    %s", finite_text(t->param[k].at, t->nominal[k]));
 	say(e, "\n");

@@ -66,7 +66,7 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
 		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
 		      step->model->spec->inputs, step->model->outputs,
-		      tunables_of(step->model) ? tunables_of(step->model)->params : 0);
+		      tunables_of(step->model) ? tunables_of(step->model)->given : 0);
 }
 
 static void add_text(struct fmu *f, const char *name, const char *text)

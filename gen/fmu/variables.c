@@ -26,7 +26,7 @@ struct fmu_variables variables_of(const struct step *step)
 	const struct model *model = step->model, *shown = step->shown->model;
 	const struct linear *system = &step->branch->system;
 	const struct tuning *tuning = tunables_of(model);
-	const int params = tuning ? tuning->params : 0;
+	const int params = tuning ? tuning->given : 0;
 	const int all = 1 + model->spec->inputs + model->outputs + params + system->states;
 	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);

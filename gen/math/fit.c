@@ -23,7 +23,7 @@ mpq_t *scattered_values(int params, int number)
 {
 	mpq_t *values = rationals(params);
 	for (int k = 0; k < params; k++)
-		set_value(values[k], number * LIMIT_TUNABLES + k);
+		set_value(values[k], number * FIT_PARAMS + k);
 	return values;
 }
 
@@ -196,7 +196,7 @@ static bool fit_products(struct fit *f)
 
 bool fit_value(struct fit *f)
 {
-	signed char power[LIMIT_TUNABLES] = { 0 };
+	signed char power[FIT_PARAMS] = { 0 };
 	bool constant = true;
 	mpq_srcptr first = value_at(f, scattered(f, 0));
 	f->culprit = -1;

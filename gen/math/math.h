@@ -282,7 +282,7 @@ void reach_of_row(const struct spread *spread, const double *A, const double *ro
 /* ---- fit.c: functions of params from their values ---- */
 
 /* powers up to it, and down to its negative; points that tell what is constant */
-enum { FIT_DEGREE = 3, FIT_POINTS = 3 };
+enum { FIT_DEGREE = 3, FIT_POINTS = 3, FIT_PARAMS = LIMIT_TUNABLES + LIMIT_DERIVED };
 struct fit {
 	int params;
 	/* points lie about these values, within 1e-7 of their size; NULL: anywhere above 0 */
@@ -290,13 +290,13 @@ struct fit {
 	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
 	void *context;
 	int products;               /* found: factors, some 0, times powers of params */
-	signed char power[LIMIT_MONOMIALS + 1][LIMIT_TUNABLES];
+	signed char power[LIMIT_MONOMIALS + 1][FIT_PARAMS];
 	mpq_t *factor;
 	int culprit;                /* the param of which no power fits; -1: too many products, or there is none */
 	/* on the way: which powers of each occur, from the lowest on; */
-	bool exponent[LIMIT_TUNABLES][2 * FIT_DEGREE + 1];
+	bool exponent[FIT_PARAMS][2 * FIT_DEGREE + 1];
 	/* whether any does; whether a product holds both */
-	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES];
+	bool depends[FIT_PARAMS], together[FIT_PARAMS][FIT_PARAMS];
 };
 /* params, value and context given; false: it is no such sum */
 bool fit_value(struct fit *fit);

@@ -198,7 +198,7 @@ static void add_fitted(struct elsewhere *s, struct tuned_equations *all, int row
 {
 	const struct fit *f = &s->fit;
 	for (int i = 0; i < f->products; i++) {
-		signed char power[LIMIT_TUNABLES];
+		signed char power[FIT_PARAMS];
 		if (mpq_sgn(f->factor[i]) == 0)
 			continue;
 		for (int k = 0; k < f->params; k++)
@@ -252,10 +252,12 @@ void refuse_fit(const struct elsewhere *s, const char *what, const char *way)
 void warn_of_idle(const struct elsewhere *s)
 {
 	const struct tuning *t = s->tuning;
-	for (int k = 0; k < t->params; k++) {
+	for (int k = 0; k < t->given; k++) {
 		bool used = s->factor && !s->factor[k];
 		for (int m = 0; m < t->monomials; m++)
-			used = used || t->monomial[m].param == k;
+			used = used || (params_of_tunable(s->model->spec, t->monomial[m].param) >> k & 1);
+		for (int i = t->given; i < t->params && s->factor; i++)
+			used = used || (!s->factor[i] && (params_of_tunable(s->model->spec, i) >> k & 1));
 		if (!used)
 			say_warning(t->param[k].at, NULL, "tunable '%s' changes nothing that the target recomputes",
 				    t->param[k].symbol->name);
@@ -315,7 +317,7 @@ static const char *no_sum(const struct node *node, int i, bool regions)
 static void check_node(const struct node *node, bool regions)
 {
 	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
-	if (symbol && symbol->tuned && symbol->value && !symbol->tuning_checked) {
+	if (symbol && symbol->tuned && !symbol->tunable && symbol->value && !symbol->tuning_checked) {
 		symbol->tuning_checked = true;
 		check_node(symbol->value, regions);
 	}

@@ -31,6 +31,8 @@ static void define_override(struct building *b, const char *text)
 
 static void set_tunables(struct building *b)
 {
+	if (b->request->tunable)
+		derive_params(b->spec);
 	for (int i = 0; b->request->tunable && i < b->spec->tunables; i++) {
 		const struct tunable *tunable = &b->spec->tunable[i];
 		struct node *value = NEW(struct node);
@@ -455,12 +457,43 @@ static void part_factors(struct building *b)
 	}
 }
 
+struct derivation {
+	struct building *b;
+	int derived;
+};
+
+/* As a number, and as a form over the params that are given */
+static void collect_derived(void *context)
+{
+	const struct derivation *d = context;
+	struct collector own = d->b->collector;
+	struct symbol *symbol = d->b->spec->tunable[d->b->spec->tunables - d->b->spec->derived + d->derived].symbol;
+	evaluate_symbol(&(struct symbol_work){ d->b, symbol });
+	forget_lets(d->b->spec);
+	own.params = PARAMS_ATOMS;
+	own.keep = KEEP_ALL;
+	own.given = own.whole_time = true;
+	d->b->model->derived[d->derived] = collect(&own, symbol->value)->cell[0];
+	forget_lets(d->b->spec);
+}
+
+static void derive_model(struct building *b)
+{
+	derive_params(b->spec);
+	b->model->leads.params = b->spec->tunables;
+	b->model->derived = ARRAY(const struct form *, (size_t)b->spec->derived + 1);
+	for (int k = 0; k < b->spec->derived && !b->request->tunable; k++)
+		statement_guard(collect_derived, &(struct derivation){ b, k });
+}
+
 /* Where a scheme leaves something over, the instance's own params stand in it: collected anew, with them as atoms. Of
  * regions they move breakpoints and add forces, as held inputs do. */
 static void collect_with_params(struct building *b)
 {
 	struct collector *c = &b->collector;
 	const bool left = !b->request->factor && leaves_over(b);
+	if (!left)
+		derive_model(b);
 	if (!left && !b->request->factor && (b->request->solution || !needs_regions(b)))
 		return;
 	spread_tuned(b->spec);

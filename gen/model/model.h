@@ -237,6 +237,7 @@ struct model {
 	bool keeps_params;
 	struct leads leads;         /* what the instance has behind them */
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
+	const struct form **derived; /* spec->derived: over the params that are given */
 	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
 	const struct retuned *retuned; /* how these follow from them; NULL: no param is such */
 	int outputs;
@@ -885,7 +886,7 @@ struct tuned_equations {
  * loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u,
  * u'). */
 struct tuning {
-	int params;
+	int params, given;          /* given: in the statements `tunable`; the others follow from these */
 	const struct tunable *param;
 	mpq_t *nominal;             /* the spec's values */
 	struct layout x;
@@ -1000,11 +1001,18 @@ const bool *find_factors(struct building *b);   /* per tunable param, of regions
 int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
 bool retuned_reads(const struct retuned *r, int place, int column); /* this row may have something but 0 there */
 
+/* ---- derived.c: what is computed from tunable params as if it were one ---- */
+
+/* Puts names of further params, spec->derived of them, in the place of what no sum of products is. Again it finds
+ * nothing. */
+void derive_params(struct spec *spec);
+
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
 const struct node *first_tuned(const struct node *node);
+unsigned params_of_tunable(const struct spec *spec, int tunable);  /* the given ones it follows from, a bit each */
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
 void list_held(struct model *model);            /* model->held; warns of what nothing reads */
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */

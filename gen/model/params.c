@@ -29,6 +29,25 @@ int param_of_input(const struct spec *spec, int input)
 	return k;
 }
 
+static unsigned params_read(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	unsigned params = 0;
+	if (s && s->tunable && !s->derived)
+		return 1u << (s->tunable - 1);
+	if (s && s->tuned && s->value)
+		params = params_read(s->value);
+	for (int i = 0; i < node->children; i++)
+		params |= params_read(node->child[i]);
+	return params;
+}
+
+unsigned params_of_tunable(const struct spec *spec, int tunable)
+{
+	const struct symbol *s = spec->tunable[tunable].symbol;
+	return s->derived ? params_read(s->value) : 1u << tunable;
+}
+
 static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
 {
 	const struct reads own = reads_of(model, count, form);
@@ -55,7 +74,10 @@ static void warn_of_unread(const struct model *model)
 			if (mpq_sgn(model->output[i].input[0][k]) != 0)
 				all.param[param_of_input(spec, k)] = true;
 	}
-	for (int k = 0; k < spec->tunables; k++)
+	for (int i = spec->tunables - spec->derived; i < spec->tunables; i++)
+		for (int k = 0; k < spec->tunables && (all.param[i] || (model->factor && model->factor[i])); k++)
+			all.param[k] = all.param[k] || (params_of_tunable(spec, i) >> k & 1);
+	for (int k = 0; k < spec->tunables - spec->derived; k++)
 		if (!all.param[k] && !(model->factor && model->factor[k]))
 			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
 				    spec->tunable[k].symbol->name);
@@ -66,6 +88,7 @@ void list_held(struct model *model)
 {
 	struct tuning *t = NEW(struct tuning);
 	t->params = model->spec->tunables;
+	t->given = t->params - model->spec->derived;
 	t->param = model->spec->tunable;
 	t->nominal = rationals(t->params);
 	for (int k = 0; k < t->params; k++)

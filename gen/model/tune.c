@@ -215,6 +215,7 @@ bool find_tuning(struct model *model, const struct request *request)
 	struct elsewhere s = { .model = model, .request = request, .tuning = t, .difference = difference,
 			       .differences = sizeof difference / sizeof *difference, .read = read_entries };
 	t->params = spec->tunables;
+	t->given = spec->tunables - spec->derived;
 	t->param = spec->tunable;
 	t->nominal = rationals(t->params);
 	t->x = layout_of_columns(system);

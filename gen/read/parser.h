@@ -53,7 +53,6 @@ _Noreturn void unexpected(const struct parser *p, const char *expected);
 void expect_op(struct parser *p, const char *op, const char *expected);
 void expect_end(struct parser *p);
 enum { BUCKETS = 1 << 14 };         /* of symbols, by their names */
-void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
 _Noreturn void peak_inside(struct place at);
 _Noreturn void unknown_name(struct parser *p, struct token token);
 struct node *resolve_name(struct parser *p, struct token token); /* what it stands for; a component of it follows */

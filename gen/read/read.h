@@ -95,6 +95,7 @@ struct symbol {
 	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
 	bool tuned, tuning_checked;
 	int tunable;                /* its number in the statements `tunable`, from 1; 0: it stands in none */
+	bool derived;               /* of these: it follows from others; else, derived.c has looked through its value */
 	bool factor;                /* tunable, and in regions no input: it changes their matrices; */
 	int acting;                 /* else its number among those that act as inputs */
 	int hold;                   /* of an input: degree of what goes through its samples; 0: held */
@@ -245,7 +246,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place operator_at;
 	int fixeds;
 	struct fixed *fixed;
-	int tunables;
+	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
 	struct tunable *tunable;
 	int needs;
 	struct need *need;
@@ -259,6 +260,7 @@ struct node *parse_argument(struct spec *spec, const struct source *source, size
 /* Behind the name of a scheme: its order, and NULL or what follows the word `over` */
 struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over);
 struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
+void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
 

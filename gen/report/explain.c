@@ -93,7 +93,7 @@ static void person_tuning(FILE *to, const struct step *step)
 	const struct model *model = step->model;
 	const struct tuning *t = tunables_of(model);
 	fputs("Tunable on the target:", to);
-	for (int k = 0; k < t->params; k++)
+	for (int k = 0; k < t->given; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
 	if (model->retuned)
 		fprintf(to, "; rows of regions that change with them have %d terms there%s.\n",

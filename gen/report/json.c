@@ -154,7 +154,7 @@ static void json_split(FILE *to, const struct step *step)
 static void json_tuning(FILE *to, const struct tuning *t)
 {
 	fputs("  \"tunable\": [", to);
-	for (int k = 0; k < t->params; k++)
+	for (int k = 0; k < t->given; k++)
 		fprintf(to, "%s{\"name\": \"%s\", \"value\": %.17g}", k ? ", " : "", t->param[k].symbol->name,
 			nearest_double(t->nominal[k]));
 	fputs("],\n", to);

@@ -106,11 +106,12 @@ static void add_component(struct tuned_part *part, const struct step *step, int 
 	}
 }
 
-static unsigned params_of(const struct tuning *t, int monomial)
+static unsigned params_of(const struct step *step, int monomial)
 {
+	const struct tuning *t = step->model->tuning;
 	unsigned params = 0;
 	for (; monomial != 0; monomial = t->monomial[monomial - 1].from)
-		params |= 1u << t->monomial[monomial - 1].param;
+		params |= params_of_tunable(step->model->spec, t->monomial[monomial - 1].param);
 	return params;
 }
 
@@ -136,7 +137,7 @@ static void take_terms(struct tuned_part *part, const struct step *step, const i
 		*own = *term;
 		own->row = row[term->row];
 		own->column = of_w ? all->columns + at : at;
-		part->params |= params_of(t, term->monomial);
+		part->params |= params_of(step, term->monomial);
 	}
 }
 
@@ -296,7 +297,7 @@ static void check_size(const struct step *step, const struct tuned_block *b)
 	const struct tuning *t = step->model->tuning;
 	const bool changes = step->branch->system.segments > 1;
 	int k = 0;
-	while (b->group->tuned && k < t->params - 1 && !(b->part.params >> k & 1))
+	while (b->group->tuned && k < t->given - 1 && !(b->part.params >> k & 1))
 		k++;
 	if (b->size > LIMIT_TUNED_BLOCK && (b->group->tuned || changes))
 		error(t->param[k].at,

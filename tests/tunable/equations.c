@@ -119,7 +119,7 @@ static const char *random_text(uint64_t seed)
 static struct model *model_of(const char *text, const struct spec *tunables, const mpq_t *values)
 {
     struct request *request = NEW(struct request);
-    for (int k = 0; tunables && k < tunables->tunables; k++) {
+    for (int k = 0; tunables && k < tunables->tunables - tunables->derived; k++) {
         ENLARGE(request->definition, (size_t)k + 1);
         request->definition[request->definitions++] =
             format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
@@ -258,13 +258,15 @@ static int try_text(const char *text)
     const struct tuning *t = model->tuning;
     for (int p = 0; p < POINTS; p++) {
         mpq_t *values = rationals((size_t)t->params);
-        for (int k = 0; k < t->params; k++) {
+        for (int k = 0; k < t->given; k++) {
             mpq_set_si(values[k], (1 + pick(2000)) * (pick(4) ? 1 : -1), (unsigned)(1 + pick(60)));
             mpq_canonicalize(values[k]);
         }
         const struct model *there = model_of(text, model->spec, (const mpq_t *)values);
         if (!there)
             continue;                           /* singular there, or a load has gone */
+        for (int k = t->given; k < t->params; k++)
+            param_value(there->spec->tunable[k].symbol, values[k]);
         mpq_t *value = rows_at(t, (const mpq_t *)values);
         if (!solve(t, value))
             complain("singular, but the model there is none");
