@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Processor time of tests, of doc/tests.md:
 #
-#     meson test -C BUILD --wrapper 'sh tests/times.sh LOG'     runs them; of each a line SECONDS COMMAND to LOG
+#     meson test -C BUILD --wrapper "sh $PWD/tests/times.sh $PWD/LOG"    runs them; of each SECONDS COMMAND to LOG
 #     sh tests/times.sh --sum LOG                               seconds by folder of tests, most first, and in all
 if [ "$1" = --sum ]; then
 	awk '{
