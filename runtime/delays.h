@@ -173,9 +173,11 @@ void PL(at)(const PL_TYPE *s, const real u[PL_INPUTS], real tau, real y[PL_STATE
     real all[PL_ALL];
     int part;
     PL(keep)(&now, u);
-    for (part = 0; part < PL_PARTS - 1 && tau > PL_CORE_H; part++, tau -= PL_CORE_H) {
+    for (part = 0; part < PL_PARTS - 1 && tau > (real)(part + 1) * PL_CORE_H; part++) {
         PL(step_core)(&now, part);
     }
+    tau -= (real)part * PL_CORE_H;
+    tau = tau < PL_CORE_H ? tau : PL_CORE_H; /* rounding must not lead behind the part */
     PL(samples)(&now, part, all);
 #if PL_RAMPS
     PL(starts)(&now, part, now.core.u);
