@@ -13,7 +13,9 @@ static const char *rate_text(const struct emitter *e, const struct form *rate, b
 		if (operand || whole)
 			term[terms++] = scaled(finite_number(e, rate->term[i].factor), operand);
 	}
-	return terms > 1 ? format("(%s)", tree(terms, term, 12)) : terms ? term[0] : "0.0";
+	if (terms == 0)
+		return "0.0";
+	return terms > 1 || *term[0] == '-' ? format("(%s)", tree(terms, term, 12)) : term[0];
 }
 
 /* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */

@@ -481,9 +481,8 @@ static void name_kept(struct relative *r)
 
 /* x' of a first-order coordinate over constants and coordinates of first order that stay as written; NULL: it is not
  * so simple */
-static struct form *rate_of(const struct relative *r, int coord)
+static struct form *rate_in(const struct relative *r, const struct model *model, int coord)
 {
-	const struct model *model = r->written;
 	const struct form *form = model->residual[model->owner[coord]].form;
 	struct form *rate = NEW(struct form);
 	mpq_srcptr lead = NULL;
@@ -505,6 +504,15 @@ static struct form *rate_of(const struct relative *r, int coord)
 	mpq_inv(factor, lead);
 	rate = form_scale(rate, factor);
 	return rate;
+}
+
+/* The same where tunable params leave it as it is: a set finds it by the spec's values */
+static struct form *rate_of(const struct relative *r, int coord)
+{
+	const struct model *other = model_elsewhere(r->written);
+	struct form *rate = rate_in(r, r->written, coord);
+	struct form *elsewhere = rate && other ? rate_in(r, other, coord) : rate;
+	return elsewhere && form_difference(rate, elsewhere)->terms == 0 ? rate : NULL;
 }
 
 static struct form *unit(int coord, int order)
