@@ -104,7 +104,7 @@ expressions_of() { # ID
 # 10*x - y, at least 1
 facts_of() {
 	eval "$(awk -v id="$1" '
-		BEGIN { real = "double"; regions = ratio = adds = 1 }
+		BEGIN { real = "double"; regions = ratio = adds = 1; may = 0 }
 		FILENAME ~ /h$/ {
 			own_region += $0 ~ "^int *" id "_region\\("
 			selftest += index($0, id "_selftest")
@@ -117,6 +117,7 @@ facts_of() {
 		/^ \* Scheme [a-z0-9]/ && !scheme { scheme = $3; sub(/[^a-z0-9].*/, "", scheme) }
 		/piecewise linear/ { pieces++ }
 		/kick-drift-kick/ { adds = 3 }
+		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
 		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
 		/is kept apart from what moves in it:/ && !lists++ {
 			sub(/;.*/, "")
@@ -131,7 +132,7 @@ facts_of() {
 			printf "scheme=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ", scheme,
 				inputs ? "yes" : "", pieces ? "yes" : "", own_region ? "yes" : "",
 				selftest ? "yes" : "", lanes ? "yes" : ""
-			printf "real=%s adds=%d regions=%.17g ratio=%s", real, adds,
+			printf "may=%s real=%s adds=%d regions=%.17g ratio=%s", may, real, adds,
 				own_region ? regions : 0, ratio
 		}' "$1.h" "$1.c")"
 }
@@ -262,7 +263,7 @@ batch_add() {
 			"\"$changes\"," \
 			"$solution, ${selftest:-NULL}," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
-			"\"$impact\", $adds, $region, $regions, $other, $ratio},"
+			"\"$impact\", $adds, $region, $regions, $other, $ratio, $may},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"

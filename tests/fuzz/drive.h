@@ -30,6 +30,7 @@ struct subject {
 	double regions;             /* how many there may be */
 	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
 	double ratio;               /* what is kept of coordinates that move as a whole may be so much larger */
+	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */
