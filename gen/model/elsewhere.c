@@ -2,11 +2,11 @@
 /* A model at other values of its tunable params. Params stand in a spec wherever a number may: in equations, sketches,
  * matrices, other params. So nothing is derived from its text: the model is built anew at a few exact values, and every
  * entry of it is found from its values there (fit.c). What could only seem to be a sum of products, a function or a
- * condition, is refused before. */
+ * condition, is a param of its own where it is made of params alone (derived.c), or refused before. */
 #include "model/model.h"
 
-static const char *const refused_note = "sums, products and quotients of tunables are recomputed on the target; make "
-					"what the function gives a tunable of its own";
+static const char *const refused_note = "what tunables alone make is found on the target; make what the function gives "
+					"a tunable of its own";
 static const char *const decided_note = "which way it goes is decided when plgen runs: where formulas change is fixed";
 
 /* ---- points ---- */
@@ -314,21 +314,29 @@ static const char *no_sum(const struct node *node, int i, bool regions)
 	}
 }
 
-static void check_node(const struct node *node, bool regions)
+/* Why this is not found on the target */
+static const char *note_of(const struct spec *spec, const struct node *node)
+{
+	if (spec->derived == LIMIT_DERIVED && !reads_moving(node))
+		return format("%d expressions that are no sums of products are found on the target, and this is one "
+			      "more", LIMIT_DERIVED);
+	return node->kind == NODE_COMPARE || node->kind == NODE_CHOOSE ? decided_note : refused_note;
+}
+
+static void check_node(const struct spec *spec, const struct node *node, bool regions)
 {
 	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
 	if (symbol && symbol->tuned && !symbol->tunable && symbol->value && !symbol->tuning_checked) {
 		symbol->tuning_checked = true;
-		check_node(symbol->value, regions);
+		check_node(spec, symbol->value, regions);
 	}
 	for (int i = 0; i < node->children; i++) {
 		const struct node *name = regions ? first_factor(node->child[i]) : first_tuned(node->child[i]);
 		const char *inside = name ? no_sum(node, i, regions) : NULL;
-		const bool decides = node->kind == NODE_COMPARE || node->kind == NODE_CHOOSE;
 		if (inside)
-			error(name->at, decides ? decided_note : refused_note,
+			error(name->at, note_of(spec, node),
 			      "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name, inside);
-		check_node(node->child[i], regions);
+		check_node(spec, node->child[i], regions);
 	}
 }
 
@@ -336,12 +344,12 @@ void check_tuned(const struct model *model, bool regions)
 {
 	const struct spec *spec = model->spec;
 	for (int i = 0; i < spec->equations; i++) {
-		check_node(spec->equation[i].left, regions);
-		check_node(spec->equation[i].right, regions);
+		check_node(spec, spec->equation[i].left, regions);
+		check_node(spec, spec->equation[i].right, regions);
 	}
 	for (int i = 0; i < spec->elements; i++)
-		check_node(spec->element[i].value, regions);
+		check_node(spec, spec->element[i].value, regions);
 	for (int i = 0; i < model->outputs && !regions; i++)
 		if (model->output[i].value && !model->output[i].left)
-			check_node(model->output[i].value, false);
+			check_node(spec, model->output[i].value, false);
 }
