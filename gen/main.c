@@ -27,7 +27,7 @@ static bool make_model(struct work *w)
 	w->model = model_build(w->spec, request);
 	if (w->model && request->reduce)
 		w->model = model_reduce(w->model);
-	if (!w->model || (!request->solution && !find_all_tuning(w->model, request)))
+	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
 		return false;
 	w->model = model_shorten(w->model);
 	return w->model;

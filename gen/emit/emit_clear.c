@@ -77,7 +77,7 @@ static bool changes(const struct emitter *e, int branch)
  * number. */
 static void mark_own(const struct emitter *e, const struct pieces *p, struct look *l)
 {
-	const struct retuned *r = e->model->retuned;
+	const struct tuning *r = e->model->retuned;
 	int size = e->step->layout.size, n = expressions_of(e);
 	const bool *reached = reached_in_regions(e->step, l->branch), systems = changes(e, l->branch);
 	bool *whole = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),

@@ -3,7 +3,7 @@
  * retuned.h, computes anew. Here is what both hold. */
 #include "emit/emit.h"
 
-static const struct retuned *retuned_of(const struct emitter *e)
+static const struct tuning *retuned_of(const struct emitter *e)
 {
 	return e->model->retuned;
 }
@@ -24,15 +24,15 @@ static struct guards own_guards(const struct emitter *e)
 /* All rows but what the target solves for, and behind it that, block by block */
 static void emit_numbers(const struct emitter *e)
 {
-	const struct retuned *r = retuned_of(e);
+	const struct tuning *r = retuned_of(e);
 	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)r->blocks + 1);
 	int *row = ARRAY(int, (size_t)r->blocks + 1);
-	list[0] = &r->tuning->all;
+	list[0] = &r->all;
 	for (int b = 0; b < r->blocks; b++) {
 		list[b + 1] = &r->block[b].all;
 		row[b + 1] = r->block[b].place;
 	}
-	const char **text = emit_equations(e, r->tuning, r->blocks + 1, list);
+	const char **text = emit_equations(e, r, r->blocks + 1, list);
 	say(e, "\nstatic const pl_equations $n_equations[%d] = {\n", r->blocks + 1);
 	for (int b = 0; b <= r->blocks; b++)
 		say(e, "    %s,\n", text[b]);
@@ -43,7 +43,7 @@ static void emit_numbers(const struct emitter *e)
 
 static int widest_block(const struct emitter *e)
 {
-	const struct retuned *r = retuned_of(e);
+	const struct tuning *r = retuned_of(e);
 	int most = 0;
 	for (int b = 0; b < r->blocks; b++) {
 		const int cells = r->block[b].all.rows * width_of_equations(&r->block[b].all);
@@ -75,7 +75,7 @@ static int kind_of_check(const struct emitter *e, const struct retuned_row *row)
 
 static int emit_checks(const struct emitter *e)
 {
-	const struct retuned *r = retuned_of(e);
+	const struct tuning *r = retuned_of(e);
 	struct list check = { 0 };
 	for (int i = 0; i < r->rows; i++) {
 		const int kind = kind_of_check(e, &r->row[i]);
@@ -154,7 +154,7 @@ static int emit_from(const struct emitter *e, const struct guards *g)
 
 static bool rows_change(const struct emitter *e)
 {
-	const struct retuned *r = retuned_of(e);
+	const struct tuning *r = retuned_of(e);
 	bool change = false;
 	for (int i = 0; i < r->rows; i++)
 		change = change || (r->row[i].place >= 0 &&
@@ -231,7 +231,7 @@ void emit_retuned(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
 	emit_numbers(e);
-	const int taken = emit_from(e, &g), products = retuned_of(e)->tuning->monomials + 1;
+	const int taken = emit_from(e, &g), products = retuned_of(e)->monomials + 1;
 	const int work = PL_REGION_WORK(e->step->layout.size);
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
@@ -240,7 +240,7 @@ void emit_retuned(const struct emitter *e)
 		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
-		   { "ROWS", retuned_of(e)->tuning->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
+		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
 		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
 		   { "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
@@ -261,6 +261,6 @@ int retuned_numbers(const struct emitter *e)
 int retuned_kilobytes(const struct emitter *e)
 {
 	int size = e->step->layout.size, cells = size * size, real = e->model->asked.single ? 4 : 8;
-	int twos = retuned_of(e)->tuning->all.rows * size + 8 * cells + widest_block(e);
+	int twos = retuned_of(e)->all.rows * size + 8 * cells + widest_block(e);
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }

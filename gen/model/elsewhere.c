@@ -218,7 +218,7 @@ static mpq_srcptr entry_at(void *context, const mpq_t *values)
 	return entry_seen(entry->search, look(entry->search, values), entry->index);
 }
 
-bool fits_entry(struct elsewhere *s, ptrdiff_t index)
+static bool fits_entry(struct elsewhere *s, ptrdiff_t index)
 {
 	struct fit *f = &s->fit;
 	*f = (struct fit){ .params = s->tuning->params, .near = s->near, .value = entry_at,

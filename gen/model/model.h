@@ -239,7 +239,7 @@ struct model {
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
 	const struct form **derived; /* spec->derived: over the params that are given */
 	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
-	const struct retuned *retuned; /* how these follow from them; NULL: no param is such */
+	const struct tuning *retuned; /* held, and how these follow from it; NULL: no param is such */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -867,7 +867,7 @@ void lint(struct building *b);
 
 void warn(struct building *b);
 
-/* ---- tune.c: how the equations follow from tunable params ---- */
+/* ---- retuned.c: how equations, outputs and regions follow from tunable params that are no inputs of them ---- */
 
 /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
 struct tuned_monomial { int from, param; bool divides; };
@@ -882,33 +882,11 @@ struct tuned_equations {
 	int terms;
 	struct tuned_term *term;    /* the same entry's one after the other */
 };
-/* a holds the highest derivatives of the coordinates, then the outputs that depend on params, then the frequencies of
- * loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u,
- * u'). */
-struct tuning {
-	int params, given;          /* given: in the statements `tunable`; the others follow from these */
-	const struct tunable *param;
-	mpq_t *nominal;             /* the spec's values */
-	struct layout x;
-	struct tuned_equations all;
-	int outputs, frequencies;   /* of its rows, behind those of coordinates */
-	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
-	int monomials;
-	struct tuned_monomial *monomial;
-	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
-	/* the model at values that are related by nothing: what holds there holds for all */
-	const struct model *other;
-};
-/* model->tuning, or model->held, where something is tunable; false: it was said why not */
-bool find_tuning(struct model *model, const struct request *request);
-bool find_all_tuning(struct model *model, const struct request *request);     /* of regions too; in retuned.c */
-
-/* ---- retuned.c: how the regions follow from tunable params that are no inputs of them ---- */
-
 enum retuned_kind {                 /* of rows: */
 	RETUNED_SLOPE,              /* of system: coordinate's highest derivative over x, */
 	/* which is that of W a = R x: of R, and of W over highest derivatives; likewise of what reads these */
 	RETUNED_R, RETUNED_W,
+	RETUNED_OUTPUT, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W, RETUNED_FREQUENCY, /* of linear models; load, a number */
 	RETUNED_EXPRESSION,         /* of segment of time: expression */
 	RETUNED_BREAK,              /* of expression: breakpoint; a number, in column 0, as those below are */
 	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_GRIP, /* of region: one of its holds, releases; friction */
@@ -928,17 +906,31 @@ struct retuned_block {              /* a system that the target solves, and what
 	struct tuned_equations all;       /* products of params are those of the whole */
 	int place;                  /* of its first row */
 };
-struct retuned {
-	int blocks;
-	struct retuned_block *block;
-	/* x: states, load states of all loads in one segment of time, inputs; its rows: all, of which blocks have terms
-	 * of their own */
-	const struct tuning *tuning;
-	const bool *factor;
-	const struct model *other;  /* at values that are related by nothing */
+struct tuning {
+	int params, given;          /* given: in the statements `tunable`; the others follow from these */
+	const struct tunable *param;
+	mpq_t *nominal;             /* the spec's values */
+	/* what follows is not there where an instance has no more than the params */
+	struct layout x;            /* states, load states, inputs: of ramps u, u'; linear: loads of all segments of time */
 	int rows;
 	struct retuned_row *row;
+	/* Of a linear model the highest derivatives of the coordinates, then the outputs that depend on params, then
+	 * frequencies of loads that do (in column 0). Of regions all rows, of which blocks have terms of their own. */
+	struct tuned_equations all;
+	int blocks;
+	struct retuned_block *block;
+	int outputs, frequencies;   /* of a linear model: of its rows, behind those of coordinates */
+	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
+	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
+	int monomials;
+	struct tuned_monomial *monomial;
+	const struct model *other;  /* at values that are related by nothing: what holds there holds for all */
 };
+/* model->tuning, or held and retuned, where something is tunable; false: it was said why not */
+bool find_tuning(struct model *model, const struct request *request);
+int  retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index);
+bool retuned_reads(const struct tuning *t, int place, int column); /* this row may have something but 0 there */
+
 /* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
 
 enum { WHOLE_POINTS = FIT_POINTS + 1 };         /* of which all entries are kept: what is equal at them stays */
@@ -971,7 +963,6 @@ _Noreturn void tell_difference(struct elsewhere *s, const struct difference *dif
 void look_elsewhere(struct elsewhere *s);
 mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
-bool fits_entry(struct elsewhere *s, ptrdiff_t index);
 /* its terms; false: it is no such sum, as refuse_fit says */
 bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
 _Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
@@ -979,27 +970,19 @@ void add_tuned_unit(struct tuned_equations *all, int row, int column);
 void warn_of_idle(const struct elsewhere *s);
 void check_tuned(const struct model *model, bool regions);      /* what is no such sum, by the text */
 
-struct listing {                    /* retuned_rows.c: the numbers of one model's regions, in columns of x */
+struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */
 	const struct model *model;
 	const struct layout *x;
 	int rows;
 	struct retuned_row *row;
 	mpq_t *entry;               /* rows x columns */
 };
-struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
-void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row);   /* n x size, 0 before */
+struct listing list_rows(const struct model *model, const struct layout *x);
 /* An output, whose loads have so many segments of time, in one of these, or as x in all */
 void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
 		   int segment, mpq_t *row);
-/* R and W of an equation, W a = R x; of an output, R x - W a: what of it is no highest derivative; size and n entries,
- * 0 before. highest: a over x; form: of the output, NULL: it reads none */
-void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W);
-void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest, const mpq_t *whole,
-	      mpq_t *R, mpq_t *W);
 /* factors.c */
 const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
-int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
-bool retuned_reads(const struct retuned *r, int place, int column); /* this row may have something but 0 there */
 
 /* ---- derived.c: what is computed from tunable params as if it were one ---- */
 
@@ -1014,7 +997,8 @@ void spread_tuned(const struct spec *spec);     /* to params, matrices and lets 
 const struct node *first_tuned(const struct node *node);
 unsigned params_of_tunable(const struct spec *spec, int tunable);  /* the given ones it follows from, a bit each */
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
-void list_held(struct model *model);            /* model->held; warns of what nothing reads */
+struct tuning *list_tunables(const struct model *model);
+void warn_of_unread(const struct model *model);
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
 /* at values related by nothing; NULL: no param is tunable in this way */
 const struct model *model_elsewhere(const struct model *model);

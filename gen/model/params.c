@@ -58,7 +58,7 @@ static void read_by(struct reads *all, const struct model *model, int count, con
 			all->param[param_of_input(model->spec, i)] = true;
 }
 
-static void warn_of_unread(const struct model *model)
+void warn_of_unread(const struct model *model)
 {
 	if ((model->switching && rubs(model->switching)) || model->drags > 0)
 		return;         /* rows of regions, and what holds beside a series, may read them, too */
@@ -83,8 +83,7 @@ static void warn_of_unread(const struct model *model)
 				    spec->tunable[k].symbol->name);
 }
 
-/* Nothing is to be computed anew: the expressions read the instance's own. */
-void list_held(struct model *model)
+struct tuning *list_tunables(const struct model *model)
 {
 	struct tuning *t = NEW(struct tuning);
 	t->params = model->spec->tunables;
@@ -93,14 +92,12 @@ void list_held(struct model *model)
 	t->nominal = rationals(t->params);
 	for (int k = 0; k < t->params; k++)
 		param_value(t->param[k].symbol, t->nominal[k]);
-	model->held = t;
-	if (!model->relative)
-		warn_of_unread(model);
+	return t;
 }
 
 const struct model *model_elsewhere(const struct model *model)
 {
-	return model->tuning ? model->tuning->other : model->retuned ? model->retuned->other : NULL;
+	return tunables_of(model) ? tunables_of(model)->other : NULL;
 }
 
 const struct tuning *tunables_of(const struct model *model)

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tunable params that change the matrices of regions: stiffness, damping, mass, restitution. What a held input can be,
- * a gap or a force, stays one (params.c); the others are factors, numbers of the model. It is looked at close to the
- * spec's values (elsewhere.c), where breakpoints keep their order and factors their sign. What decided on the way which
- * region is which has to keep its sign on the target. */
+/* How a model follows from tunable params: its equations, outputs and frequencies of loads; of regions, the rows that
+ * they have. A param of regions that can be a held input, a gap or a force, stays one (params.c); others are factors,
+ * numbers of the model. It is looked at elsewhere (elsewhere.c), regions close to the spec's values, where breakpoints
+ * keep their order and factors their sign: what decided on the way which region is which has to keep its sign on the
+ * target. */
 #include "model/model.h"
 
 #include <string.h>
 
 /* ---- the model at other values ---- */
 
-struct search {
-	struct elsewhere at;        /* entries: rows over x */
-	struct model *model;
-	struct retuned *r;
-	struct tuning *t;
-	struct listing own;         /* of the spec's values, without signs */
-	int *merged;                /* per system: the first that is equal for all values */
-};
+static bool same_shape(const struct model *model, const struct model *other)
+{
+	const struct linear *a = &model->system, *b = &other->system;
+	bool same = a->states == b->states && a->inputs == b->inputs && same_loads(a, b, true);
+	for (int i = 0; i < a->n && same; i++)
+		same = a->velocity[i] == b->velocity[i];
+	return same;
+}
 
 static bool same_loads_there(const struct model *model, const struct model *other)
 {
@@ -73,7 +74,14 @@ static bool same_outputs(const struct model *model, const struct model *other)
 	return same;
 }
 
-static const struct difference difference[] = {
+static const struct difference of_linear[] = {
+	{ same_reduction, "--reduce would leave other states",
+	  "what is left out, and the sums that become states, have to be the same for all values; without --reduce all "
+	  "states are kept" },
+	{ same_shape, "the model has other loads",
+	  "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed" }
+};
+static const struct difference of_regions[] = {
 	{ same_loads_there, "the model has other loads",
 	  "a load is there only where its factor is not 0; its frequency, phase and growth are fixed" },
 	{ same_regions, "the model has other regions",
@@ -83,66 +91,66 @@ static const struct difference difference[] = {
 };
 
 /* Their rows are those of the first. */
-static mpq_t *read_rows(struct elsewhere *at, const struct model *model)
+static mpq_t *read_rows(struct elsewhere *s, const struct model *model)
 {
-	struct search *s = (struct search *)at;
-	struct listing l = list_rows(model, &s->t->x, true);
-	if (at->points == 0) {
-		s->r->rows = l.rows;
-		s->r->row = l.row;
-		at->entries = (ptrdiff_t)l.rows * s->t->x.size;
+	struct tuning *t = s->tuning;
+	struct listing l = list_rows(model, &t->x);
+	if (s->points == 0) {
+		t->rows = l.rows;
+		t->row = l.row;
+		s->entries = (ptrdiff_t)l.rows * t->x.size;
 	}
-	if (l.rows != s->r->rows)
-		tell_difference(at, &difference[1]);
+	if (l.rows != t->rows)
+		tell_difference(s, &of_regions[1]);
 	return l.entry;
 }
 
 /* ---- which rows change, which systems are equal ---- */
 
-static ptrdiff_t index_of(const struct search *s, int row, int column)
+static ptrdiff_t index_of(const struct elsewhere *s, int row, int column)
 {
-	return (ptrdiff_t)row * s->t->x.size + column;
+	return (ptrdiff_t)row * s->tuning->x.size + column;
 }
 
-static bool row_changes(const struct search *s, int row)
+static bool row_changes(const struct elsewhere *s, int row)
 {
 	bool changes = false;
-	for (int j = 0; j < s->t->x.size && !changes; j++)
-		changes = !entry_stays(&s->at, index_of(s, row, j));
+	for (int j = 0; j < s->tuning->x.size && !changes; j++)
+		changes = !entry_stays(s, index_of(s, row, j));
 	return changes;
 }
 
-static bool entries_agree(const struct search *s, ptrdiff_t a, ptrdiff_t b)
+static bool entries_agree(const struct elsewhere *s, ptrdiff_t a, ptrdiff_t b)
 {
-	bool same = mpq_equal(s->own.entry[a], s->own.entry[b]);
-	for (int i = 0; i < s->at.points && same; i++)
-		same = mpq_equal(entry_seen(&s->at, i, a), entry_seen(&s->at, i, b));
+	bool same = true;
+	for (int i = 0; i < s->points && same; i++)
+		same = mpq_equal(entry_seen(s, i, a), entry_seen(s, i, b));
 	return same;
 }
 
-static bool systems_agree(const struct search *s, int a, int b)
+static bool systems_agree(const struct elsewhere *s, int a, int b)
 {
 	const struct switching *w = s->model->switching;
-	const int n = s->model->n, size = s->t->x.size;
+	const int n = s->model->n, size = s->tuning->x.size;
 	bool same = w->system_segment[a] == w->system_segment[b];
 	for (int j = 0; j < n * size && same; j++)
 		same = entries_agree(s, index_of(s, a * n, j), index_of(s, b * n, j));
 	return same;
 }
 
-/* Systems come first among the rows, n of each. */
-static void merge_systems(struct search *s)
+/* Systems that are equal for all values are one. They come first among the rows, n of each. */
+static void merge_systems(struct elsewhere *s)
 {
 	struct switching *w = s->model->switching;
-	int kept = 0, *number = ARRAY(int, w->systems);
-	s->merged = ARRAY(int, w->systems);
+	struct retuned_row *row = s->tuning->row;
+	int kept = 0, *number = ARRAY(int, w->systems), *merged = ARRAY(int, w->systems);
 	for (int k = 0; k < w->systems; k++) {
-		s->merged[k] = k;
-		for (int i = 0; i < k && s->merged[k] == k; i++)
-			if (s->merged[i] == i && systems_agree(s, i, k))
-				s->merged[k] = i;
-		number[k] = s->merged[k] == k ? kept : number[s->merged[k]];
-		if (s->merged[k] != k)
+		merged[k] = k;
+		for (int i = 0; i < k && merged[k] == k; i++)
+			if (merged[i] == i && systems_agree(s, i, k))
+				merged[k] = i;
+		number[k] = merged[k] == k ? kept : number[merged[k]];
+		if (merged[k] != k)
 			continue;
 		w->system[kept] = w->system[k];
 		w->system_segment[kept++] = w->system_segment[k];
@@ -150,147 +158,186 @@ static void merge_systems(struct search *s)
 	for (int r = 0; r < w->regions; r++)
 		if (w->region[r].possible)
 			w->region[r].system = number[w->region[r].system];
-	for (int i = 0; i < s->own.rows; i++)
-		if (s->r->row[i].kind <= RETUNED_W)
-			s->r->row[i].of = s->merged[s->r->row[i].of] == s->r->row[i].of
-						  ? number[s->r->row[i].of]
-						  : -1;
+	for (int i = 0; i < s->tuning->rows; i++)
+		if (row[i].kind <= RETUNED_W)
+			row[i].of = merged[row[i].of] == row[i].of ? number[row[i].of] : -1;
 	w->systems = kept;
 }
 
 /* ---- terms ---- */
 
 /* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
-static void fit_row(struct search *s, struct tuned_equations *all, int row, int to, int from, int columns)
+static bool fit_row(struct elsewhere *s, struct tuned_equations *all, int row, int to, int from, int columns)
 {
-	for (int j = 0; j < columns; j++)
-		if (!fit_entry(&s->at, index_of(s, row, j), all, to, from + j))
-			refuse_fit(&s->at, "regions", "only masses in equations may be sums");
+	bool fits = true;
+	for (int j = 0; j < columns && fits; j++)
+		fits = fit_entry(s, index_of(s, row, j), all, to, from + j);
+	return fits;
 }
 
-static bool fits(struct search *s, int row)
+static void need_fit(const struct elsewhere *s, bool fits)
 {
-	bool fit = true;
-	for (int j = 0; j < s->t->x.size && fit; j++)
-		fit = fits_entry(&s->at, index_of(s, row, j));
-	return fit;
+	if (!fits && s->model->switching)
+		refuse_fit(s, "regions", "only masses in equations may be sums");
+	if (!fits)
+		refuse_fit(s, "equations",
+			   s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
+						   : "multiply an equation by what divides it");
 }
 
 /* Is the row one of a system: its slopes, and what reads them? */
-static bool is_of_system(const struct search *s, int row, int system)
+static bool is_of_system(const struct elsewhere *s, int row, int system)
 {
-	const struct retuned_row *r = &s->r->row[row];
-	if (r->kind == RETUNED_SLOPE)
-		return r->of == system;
-	return (r->kind == RETUNED_RELEASE || r->kind == RETUNED_GRIP) &&
-	       s->model->switching->region[r->of].system == system;
+	const struct retuned_row *r = &s->tuning->row[row];
+	switch (r->kind) {
+	case RETUNED_SLOPE: return r->of == system;
+	case RETUNED_OUTPUT:
+	case RETUNED_FREQUENCY: return row_changes(s, row);
+	case RETUNED_RELEASE:
+	case RETUNED_GRIP: return s->model->switching->region[r->of].system == system;
+	default: return false;
+	}
 }
 
-/* Slopes have theirs elsewhere; of others they follow */
-static int row_apart(const struct search *s, int row, bool W)
+/* Slopes have theirs elsewhere, frequencies none; of others they follow */
+static int row_apart(const struct elsewhere *s, int row, bool W)
 {
-	const struct retuned_row *of = &s->r->row[row];
+	const struct retuned_row *all = s->tuning->row, *of = &all[row];
 	if (of->kind != RETUNED_SLOPE)
-		return row + (W ? 1 : 2);
+		return of->kind == RETUNED_FREQUENCY ? row : row + (W ? 1 : 2);
 	int i = 0;
-	while (s->r->row[i].kind != (W ? RETUNED_W : RETUNED_R) || s->r->row[i].of != of->of ||
-	       s->r->row[i].index != of->index)
+	while (all[i].kind != (W ? RETUNED_W : RETUNED_R) || all[i].of != of->of || all[i].index != of->index)
 		i++;
 	return i;
 }
 
-static struct tuned_equations *new_block(struct search *s)
+static struct tuned_equations *new_block(struct tuning *t)
 {
-	struct retuned_block *block = MORE(s->r->block, s->r->blocks);
-	*block = (struct retuned_block){ { .columns = s->t->x.size, .solves = true }, s->t->all.rows };
+	struct retuned_block *block = MORE(t->block, t->blocks);
+	*block = (struct retuned_block){ { .columns = t->x.size, .solves = true }, t->all.rows };
 	return &block->all;
 }
 
 /* The next of its rows, which is that of the whole */
-static int add_row(struct search *s, struct tuned_equations *all)
+static int add_row(struct tuning *t, struct tuned_equations *all)
 {
 	all->rows++;
-	return s->t->all.rows++;
+	return t->all.rows++;
 }
 
 /* W a = R x, and what reads a: b - F a = G x */
-static void add_block(struct search *s, int system)
+static void add_block(struct elsewhere *s, int system)
 {
-	const int n = s->model->n, size = s->t->x.size;
-	struct tuned_equations *all = new_block(s);
-	for (int i = 0; i < s->r->rows; i++) {
-		struct retuned_row *row = &s->r->row[i];
+	struct tuning *t = s->tuning;
+	const int size = t->x.size;
+	struct tuned_equations *all = new_block(t);
+	for (int i = 0; i < t->rows; i++) {
+		struct retuned_row *row = &t->row[i];
 		if (!is_of_system(s, i, system))
 			continue;
-		bool slope = row->kind == RETUNED_SLOPE;
-		fit_row(s, all, row_apart(s, i, false), all->rows, 0, size);
-		fit_row(s, all, row_apart(s, i, true), all->rows, size, n);
-		if (!slope)
+		need_fit(s, fit_row(s, all, row_apart(s, i, false), all->rows, 0, size));
+		if (row->kind != RETUNED_FREQUENCY)
+			need_fit(s, fit_row(s, all, row_apart(s, i, true), all->rows, size, s->model->n));
+		if (row->kind != RETUNED_SLOPE)
 			add_tuned_unit(all, all->rows, size + all->rows);
-		row->place = add_row(s, all);
+		row->place = add_row(t, all);
 	}
 }
 
-static bool is_of_jumps(enum retuned_kind kind)
+/* As it is; false: it is no sum of products */
+static bool place_row(struct elsewhere *s, int row)
 {
-	return kind == RETUNED_JUMP || kind == RETUNED_STILL || kind == RETUNED_BACK;
-}
-
-/* Of a stop's impact: its answer, a sum of parts that masses divide, divides them. */
-static bool add_divided(struct search *s, int row)
-{
-	struct retuned_row *r = &s->r->row[row];
-	int answer = row;
-	if (!is_of_jumps(r->kind) || fits(s, row))
+	struct tuning *t = s->tuning;
+	const int terms = t->all.terms, monomials = t->monomials;
+	if (!fit_row(s, &t->all, row, t->all.rows, 0, t->x.size)) {
+		t->all.terms = terms;
+		t->monomials = monomials;
 		return false;
-	while (s->r->row[answer].kind != RETUNED_ANSWER || s->r->row[answer].of != r->of)
-		answer--;
-	struct tuned_equations *all = new_block(s);
-	r->place = add_row(s, all);
-	fit_row(s, all, row + 1, 0, 0, s->t->x.size);
-	fit_row(s, all, answer, 0, s->t->x.size, 1);
+	}
+	t->row[row].place = t->all.rows++;
+	t->row[row].positive = mpq_sgn(entry_seen(s, 0, index_of(s, row, 0))) > 0;
 	return true;
 }
 
-static void place_row(struct search *s, int row)
+/* Of a stop's impact: its answer, a sum of parts that masses divide, divides them. */
+static void add_divided(struct elsewhere *s, int row)
 {
-	if (add_divided(s, row))
-		return;
-	struct retuned_row *r = &s->r->row[row];
-	r->place = s->t->all.rows++;
-	r->positive = mpq_sgn(entry_seen(&s->at, 0, index_of(s, row, 0))) > 0;
-	fit_row(s, &s->t->all, row, r->place, 0, s->t->x.size);
+	struct tuning *t = s->tuning;
+	struct retuned_row *r = &t->row[row];
+	int answer = row;
+	while (t->row[answer].kind != RETUNED_ANSWER || t->row[answer].of != r->of)
+		answer--;
+	struct tuned_equations *all = new_block(t);
+	r->place = add_row(t, all);
+	need_fit(s, fit_row(s, all, row + 1, 0, 0, t->x.size));
+	need_fit(s, fit_row(s, all, answer, 0, t->x.size, 1));
 }
 
-/* All rows of a system or none */
-static void fit_system(struct search *s, int system)
+/* All rows of a system or none; of a linear model the slopes are always there */
+static void fit_system(struct elsewhere *s, int system)
 {
-	bool changes = false, direct = true;
-	for (int i = 0; i < s->r->rows; i++)
-		if (is_of_system(s, i, system))
-			changes = changes || row_changes(s, i);
-	for (int i = 0; i < s->r->rows && changes; i++)
-		if (is_of_system(s, i, system))
-			direct = direct && fits(s, i);
-	if (!direct) {
-		add_block(s, system);
+	struct tuning *t = s->tuning;
+	bool changes = !s->model->switching, direct = true;
+	const int rows = t->all.rows, terms = t->all.terms, monomials = t->monomials;
+	for (int i = 0; i < t->rows && !changes; i++)
+		changes = is_of_system(s, i, system) && row_changes(s, i);
+	for (int i = 0; i < t->rows && changes && direct; i++)
+		direct = !is_of_system(s, i, system) || place_row(s, i);
+	if (direct)
 		return;
-	}
-	for (int i = 0; i < s->r->rows && changes; i++)
-		if (is_of_system(s, i, system))
-			place_row(s, i);
+	t->all.rows = rows;
+	t->all.terms = terms;
+	t->monomials = monomials;
+	add_block(s, system);
 }
 
-static void fit_rows(struct search *s)
+static void fit_rows(struct elsewhere *s)
 {
-	for (int k = 0; k < s->model->switching->systems; k++)
+	struct tuning *t = s->tuning;
+	t->all.columns = t->x.size;
+	for (int k = 0; k < (s->model->switching ? s->model->switching->systems : 1); k++)
 		fit_system(s, k);
-	for (int i = 0; i < s->r->rows; i++) {
-		enum retuned_kind kind = s->r->row[i].kind;
-		bool apart = kind <= RETUNED_W || kind == RETUNED_TIMES || kind == RETUNED_ANSWER ||
-			     (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
-		if (!apart && row_changes(s, i))
-			place_row(s, i);
+	for (int i = 0; i < t->rows; i++) {
+		const enum retuned_kind kind = t->row[i].kind;
+		const bool apart = kind <= RETUNED_FREQUENCY || kind == RETUNED_TIMES || kind == RETUNED_ANSWER ||
+				   (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
+		const bool jumps = kind == RETUNED_JUMP || kind == RETUNED_STILL || kind == RETUNED_BACK;
+		if (apart || !row_changes(s, i) || place_row(s, i))
+			continue;
+		need_fit(s, jumps);
+		add_divided(s, i);
+	}
+}
+
+/* ---- of a linear model ---- */
+
+static void mark_acting(struct elsewhere *s, const struct retuned_row *row)
+{
+	struct tuning *t = s->tuning;
+	bool *acts = t->acts + row->place * t->x.size;
+	for (int j = 0; j < t->x.size; j++)
+		acts[j] = mpq_sgn(entry_seen(s, 0, index_of(s, (int)(row - t->row), j))) != 0;
+}
+
+/* All its rows are of one system, as they are or solved */
+static void number_rows(struct elsewhere *s)
+{
+	struct tuning *t = s->tuning;
+	if (t->blocks)
+		t->all = t->block[0].all;
+	t->output = ARRAY(int, s->model->outputs);
+	t->frequency = ARRAY(int, s->model->system.loads);
+	t->acts = ARRAY(bool, (size_t)(t->all.rows * t->x.size));
+	for (const struct retuned_row *row = t->row; row < t->row + t->rows; row++) {
+		if (row->kind == RETUNED_OUTPUT) {
+			t->output[row->index] = row->place;
+			t->outputs += row->place >= 0;
+		} else if (row->kind == RETUNED_FREQUENCY) {
+			t->frequency[row->index] = row->place;
+			t->frequencies += row->place >= 0;
+		}
+		if (row->place >= 0)
+			mark_acting(s, row);
 	}
 }
 
@@ -310,7 +357,7 @@ static void check_outputs(const struct model *model)
 	}
 }
 
-static void check_model(const struct model *model)
+static void check_regions(const struct model *model)
 {
 	const struct spec *spec = model->spec;
 	check_tuned(model, true);
@@ -324,74 +371,104 @@ static void check_model(const struct model *model)
 		      LIMIT_UNROLLED_STATES, model->system.states);
 }
 
-/* An instance has A and e^{A d} of each */
-static void check_size(const struct search *s)
+static void check_linear(const struct model *model)
 {
-	int numbers = 2 * s->model->switching->systems * s->t->x.size * s->t->x.size;
+	if (scheme_row(model->scheme)->holds_coupling)
+		error(model->spec->tunable[0].at,
+		      "tunable params are for scheme exact, and for what a scheme leaves over", "scheme %s cannot be retuned", scheme_name(model->scheme));
+	check_tuned(model, false);
+	for (int i = 0; i < model->outputs; i++) {
+		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
+		if (name)
+			error(name->at, "read the states, and multiply on the target",
+			      "'%s' is tunable, or made of what is, and output '%s' is not linear", name->symbol->name,
+			      model->output[i].name);
+	}
+	for (int k = 0; model->highest && k < model->n; k++)
+		if (model->highest[k])
+			error(model->highest[k]->value->start,
+			      "an output that is linear may: give the derivative one of its own",
+			      "output '%s' is not linear and reads a derivative that tunable params change",
+			      model->highest[k]->name);
+}
+
+/* An instance has A and e^{A d} of each */
+static void check_size(const struct tuning *t, int systems)
+{
+	const int numbers = 2 * systems * t->x.size * t->x.size;
 	if (numbers > LIMIT_TUNED_NUMBERS)
-		error(s->t->param[0].at, "fewer breakpoints, or gaps and forces alone",
+		error(t->param[0].at, "fewer breakpoints, or gaps and forces alone",
 		      "tunable params of regions are built for up to %d numbers of their matrices in an instance: "
 		      "%d systems of %d take %d",
-		      LIMIT_TUNED_NUMBERS, s->model->switching->systems, s->t->x.size, numbers);
+		      LIMIT_TUNED_NUMBERS, systems, t->x.size, numbers);
+}
+
+/* ---- all of them ---- */
+
+static struct layout columns_of(const struct model *model)
+{
+	bool *all = ARRAY(bool, model->system.loads + 1);
+	for (int l = 0; l < model->system.loads; l++)
+		all[l] = true;
+	return model->switching ? layout_with(&model->system, 0, all) : layout_of_columns(&model->system);
 }
 
 static void find(void *context)
 {
-	struct search *s = context;
-	check_model(s->model);
-	bool *all = ARRAY(bool, s->model->system.loads + 1);
-	for (int l = 0; l < s->model->system.loads; l++)
-		all[l] = true;
-	s->t->x = layout_with(&s->model->system, 0, all);
-	s->t->all.columns = s->t->x.size;
-	s->own = list_rows(s->model, &s->t->x, false);
-	look_elsewhere(&s->at);
-	s->r->other = s->at.other;
-	merge_systems(s);
-	check_size(s);
+	struct elsewhere *s = context;
+	const struct switching *regions = s->model->switching;
+	(regions ? check_regions : check_linear)(s->model);
+	s->tuning->x = columns_of(s->model);
+	look_elsewhere(s);
+	s->tuning->other = s->other;
+	if (regions) {
+		merge_systems(s);
+		check_size(s->tuning, regions->systems);
+	}
 	fit_rows(s);
+	if (!regions)
+		number_rows(s);
 	if (!s->model->relative)
-		warn_of_idle(&s->at);
+		warn_of_idle(s);
 }
 
-/* model->retuned; false: it was said why not */
-static bool find_retuning(struct model *model, const struct request *request)
+bool find_tuning(struct model *model, const struct request *request)
 {
-	struct retuned *r = NEW(struct retuned);
-	struct tuning *t = NEW(struct tuning);
-	struct search s = { .model = model, .r = r, .t = t };
-	*t = *model->held;
-	s.at = (struct elsewhere){ .model = model, .request = request, .tuning = t, .factor = model->factor,
-				   .near = t->nominal, .difference = difference,
-				   .differences = sizeof difference / sizeof *difference, .read = read_rows };
-	r->factor = model->factor;
-	r->tuning = t;
-	model->retuned = r;
-	return statement_guard(find, &s);
+	if (model->spec->tunables == 0)
+		return true;
+	struct tuning *t = list_tunables(model);
+	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->factor,
+			       .near = model->factor ? t->nominal : NULL, .read = read_rows };
+	s.difference = model->factor ? of_regions : of_linear;
+	s.differences = model->factor ? sizeof of_regions / sizeof *of_regions : sizeof of_linear / sizeof *of_linear;
+	if (model->keeps_params) {
+		model->held = t;
+		model->retuned = model->factor ? t : NULL;
+		if (!model->relative)
+			warn_of_unread(model);
+	} else {
+		model->tuning = t;
+	}
+	return (model->keeps_params && !model->factor) || statement_guard(find, &s);
 }
 
-int retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index)
+int retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index)
 {
-	for (int i = 0; i < r->rows; i++)
-		if (r->row[i].kind == kind && r->row[i].of == of && r->row[i].index == index)
-			return r->row[i].place;
+	for (int i = 0; i < t->rows; i++)
+		if (t->row[i].kind == kind && t->row[i].of == of && t->row[i].index == index)
+			return t->row[i].place;
 	return -1;
 }
 
 /* What is solved reads all that any of its equations reads. */
-bool retuned_reads(const struct retuned *r, int place, int column)
+bool retuned_reads(const struct tuning *t, int place, int column)
 {
-	const struct tuned_equations *all = &r->tuning->all;
+	const struct tuned_equations *all = &t->all;
 	bool reads = false;
-	for (int b = 0; b < r->blocks; b++)
-		if (place >= r->block[b].place && place < r->block[b].place + r->block[b].all.rows)
-			all = &r->block[b].all;
+	for (int b = 0; b < t->blocks; b++)
+		if (place >= t->block[b].place && place < t->block[b].place + t->block[b].all.rows)
+			all = &t->block[b].all;
 	for (const struct tuned_term *term = all->term; term < all->term + all->terms; term++)
 		reads = reads || (term->column == column && (all->solves || term->row == place));
 	return reads;
-}
-
-bool find_all_tuning(struct model *model, const struct request *request)
-{
-	return find_tuning(model, request) && (!model->factor || find_retuning(model, request));
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows over x: highest derivatives, outputs, and the two apart from each other. All numbers of the regions, row by row,
- * in one order for all values of params: what of them changes with params is found by comparing such lists. */
+/* All numbers of a model that params may change, row by row over x, in one order for all values of params: what of them
+ * changes is found by comparing such lists. Highest derivatives, outputs of linear models, what regions have. */
 #include "model/model.h"
 
 /* ---- of any model ---- */
 
-void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
+/* n x size, 0 before */
+static void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
 {
 	const int size = x->size;
 	RATIONALS *A = augmented_matrix(x, system, 0);
@@ -40,7 +41,8 @@ static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *
 	}
 }
 
-void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
+/* R and W of an equation, W a = R x; size and n entries, 0 before. highest: a over x */
+static void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
 {
 	const int n = system->n;
 	for (int k = 0; k < n; k++) {
@@ -49,8 +51,9 @@ void equation_row(const struct linear *system, int equation, int size, const mpq
 	}
 }
 
-void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest, const mpq_t *whole,
-	      mpq_t *R, mpq_t *W)
+/* Likewise of an output R x - W a: what of it is no highest derivative. form: NULL: it reads none */
+static void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest,
+		     const mpq_t *whole, mpq_t *R, mpq_t *W)
 {
 	for (int j = 0; j < size; j++)
 		mpq_set(R[j], whole[j]);
@@ -63,7 +66,7 @@ void part_row(const struct model *model, const struct form *form, int size, cons
 	}
 }
 
-/* ---- of regions ---- */
+/* ---- a list of them ---- */
 
 static mpq_t *add_row(struct listing *l, enum retuned_kind kind, int of, int index)
 {
@@ -88,9 +91,14 @@ static void list_output(struct listing *l, enum retuned_kind kind, int of, int i
 	row_of_output(l->x, &l->model->system, row, l->model->system.segments, segment, entry);
 }
 
+static const struct linear *system_in(const struct model *model, int index)
+{
+	return model->switching ? &model->switching->system[index] : &model->system;
+}
+
 static void list_system(struct listing *l, int index)
 {
-	const struct linear *system = &l->model->switching->system[index];
+	const struct linear *system = system_in(l->model, index);
 	const int first = l->rows;
 	for (int i = 0; i < system->n; i++)
 		add_row(l, RETUNED_SLOPE, index, i);
@@ -105,7 +113,7 @@ static const mpq_t *highest_of(const struct listing *l, int system)
 /* W, and R = W times what it was solved to */
 static void list_equations(struct listing *l, int index)
 {
-	const struct linear *system = &l->model->switching->system[index];
+	const struct linear *system = system_in(l->model, index);
 	for (int i = 0; i < system->n; i++) {
 		add_row(l, RETUNED_W, index, i);
 		mpq_t *R = add_row(l, RETUNED_R, index, i);
@@ -122,6 +130,21 @@ static void list_parts(struct listing *l, int system, const struct form *form, e
 	mpq_t *rest = add_row(l, R, whole.of, whole.index);
 	part_row(l->model, form, size, highest_of(l, system), rest - 2 * size, rest, rest - size);
 }
+
+/* A reduced model has no highest derivatives of what is written. */
+static void list_linear(struct listing *l)
+{
+	const struct linear *system = &l->model->system;
+	for (int o = 0; o < l->model->outputs; o++) {
+		const struct output *output = &l->model->output[o];
+		list_output(l, RETUNED_OUTPUT, 0, o, output, 0);
+		list_parts(l, 0, l->model->reduction.row ? NULL : output->form, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W);
+	}
+	for (int i = 0; i < system->loads; i++)
+		add_number(l, RETUNED_FREQUENCY, 0, i, system->load[i].wave->w);
+}
+
+/* ---- of regions ---- */
 
 static void list_expressions(struct listing *l)
 {
@@ -205,21 +228,26 @@ static void list_signs(struct listing *l)
 		add_number(l, s->sign[i].least ? RETUNED_LEAST : RETUNED_SIGN, count++, 1, s->sign[i].number);
 }
 
-struct listing list_rows(const struct model *model, const struct layout *x, bool signs)
+static void list_regions(struct listing *l)
 {
-	const struct switching *s = model->switching;
-	struct listing l = { .model = model, .x = x };
-	for (int k = 0; k < s->systems; k++)
-		list_system(&l, k);
-	for (int k = 0; k < s->systems; k++)
-		list_equations(&l, k);
-	list_expressions(&l);
+	const struct switching *s = l->model->switching;
+	list_expressions(l);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)
-			list_region(&l, r);
+			list_region(l, r);
 	for (int i = 0; i < s->segments * s->impacts; i++)
-		list_impact(&l, i);
-	if (signs)
-		list_signs(&l);
+		list_impact(l, i);
+	list_signs(l);
+}
+
+struct listing list_rows(const struct model *model, const struct layout *x)
+{
+	const int systems = model->switching ? model->switching->systems : 1;
+	struct listing l = { .model = model, .x = x };
+	for (int k = 0; k < systems; k++)
+		list_system(&l, k);
+	for (int k = 0; k < systems; k++)
+		list_equations(&l, k);
+	(model->switching ? list_regions : list_linear)(&l);
 	return l;
 }

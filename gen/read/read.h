@@ -92,7 +92,7 @@ struct symbol {
 	int length;                 /* of a vector coordinate; 0: scalar */
 	bool used;                  /* some expression reads it */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
-	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
+	/* it is tunable, or made of something that is; of that: check_tuned has looked through its value */
 	bool tuned, tuning_checked;
 	int tunable;                /* its number in the statements `tunable`, from 1; 0: it stands in none */
 	bool derived;               /* of these: it follows from others; else, derived.c has looked through its value */

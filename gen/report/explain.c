@@ -97,8 +97,8 @@ static void person_tuning(FILE *to, const struct step *step)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
 	if (model->retuned)
 		fprintf(to, "; rows of regions that change with them have %d terms there%s.\n",
-			model->retuned->tuning->all.terms,
-			model->retuned->blocks ? format(", and %d sets of them are solved", model->retuned->blocks)
+			t->all.terms,
+			t->blocks ? format(", and %d sets of them are solved", t->blocks)
 					       : "");
 	else if (model->held && model->switching)
 		fputs("; they act like held inputs.\n", to);

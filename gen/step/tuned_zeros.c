@@ -71,7 +71,7 @@ void mark_tuned_zeros(struct step *step)
 /* What the columns of a retuned row are, x has too, in the same places. */
 bool *reached_in_regions(const struct step *step, int branch)
 {
-	const struct retuned *r = step->model->retuned;
+	const struct tuning *r = step->model->retuned;
 	int size = step->layout.size;
 	bool *reads = ARRAY(bool, (size_t)(size * size));
 	for (int k = 0; k < step->branches; k++) {
