@@ -911,7 +911,7 @@ struct tuning {
 	const struct tunable *param;
 	mpq_t *nominal;             /* the spec's values */
 	/* what follows is not there where an instance has no more than the params */
-	struct layout x;            /* states, load states, inputs: of ramps u, u'; linear: loads of all segments of time */
+	struct layout x;            /* states, load states (linear: of each segment of time), inputs: of ramps u, u' */
 	int rows;
 	struct retuned_row *row;
 	/* Of a linear model the highest derivatives of the coordinates, then the outputs that depend on params, then

@@ -375,7 +375,8 @@ static void check_linear(const struct model *model)
 {
 	if (scheme_row(model->scheme)->holds_coupling)
 		error(model->spec->tunable[0].at,
-		      "tunable params are for scheme exact, and for what a scheme leaves over", "scheme %s cannot be retuned", scheme_name(model->scheme));
+		      "tunable params are for scheme exact, and for what a scheme leaves over",
+		      "scheme %s cannot be retuned", scheme_name(model->scheme));
 	check_tuned(model, false);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
