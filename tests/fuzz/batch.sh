@@ -89,7 +89,7 @@ why_refused() { # ID STATUS
 	esac
 }
 
-# step_of ID: as it is written in its header
+# step_of ID: as it is written in its header; of the parts of a step, where a delay makes it of parts
 step_of() {
 	sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$1.h" | head -n 1
 }
@@ -99,9 +99,9 @@ expressions_of() { # ID
 }
 
 # facts_of ID: of its C sets `scheme`; `inputs`, `pieces`, `own_region`, `selftest` and `lanes`: whether it has them;
-# `real`; `adds`, the additions of a step; `regions`, how many numbers NAME_region may give, by the breakpoints of each
-# expression, 0: there is none; `ratio`, the largest by which its banner measures one coordinate from another,
-# 10*x - y, at least 1
+# `real`; `adds`, the additions of a step; `tolerance`, 0 where no lengths of steps are chosen by one; `regions`, how
+# many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, the largest by
+# which its banner measures one coordinate from another, 10*x - y, at least 1
 facts_of() {
 	eval "$(awk -v id="$1" '
 		BEGIN { real = "double"; regions = ratio = adds = 1; may = 0 }
@@ -117,6 +117,7 @@ facts_of() {
 		/^ \* Scheme [a-z0-9]/ && !scheme { scheme = $3; sub(/[^a-z0-9].*/, "", scheme) }
 		/piecewise linear/ { pieces++ }
 		/kick-drift-kick/ { adds = 3 }
+		/^ \* / { banner = banner substr($0, 3) }
 		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
 		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
 		/is kept apart from what moves in it:/ && !lists++ {
@@ -129,9 +130,12 @@ facts_of() {
 			}
 		}
 		END {
-			printf "scheme=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ", scheme,
-				inputs ? "yes" : "", pieces ? "yes" : "", own_region ? "yes" : "",
-				selftest ? "yes" : "", lanes ? "yes" : ""
+			match(banner, /(error is|terms are) below [0-9.e-]+ of/)
+			split(substr(banner, RSTART, RLENGTH), of)
+			tolerance = RLENGTH > 0 ? of[4] : 0
+			printf "scheme=%s tolerance=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ",
+				scheme, tolerance, inputs ? "yes" : "", pieces ? "yes" : "",
+				own_region ? "yes" : "", selftest ? "yes" : "", lanes ? "yes" : ""
 			printf "may=%s real=%s adds=%d regions=%.17g ratio=%s", may, real, adds,
 				own_region ? regions : 0, ratio
 		}' "$1.h" "$1.c")"
@@ -169,7 +173,7 @@ batch_add() {
 	plain="$plain$more"
 	whole=$id
 	code="$id.c"
-	grep -v '^need' "$spec" | sed "${instead:+/^tunable /d; }$instead" >"$id.free.spec"
+	grep -v '^need' "$spec" | sed "/^tunable /d; $instead" >"$id.free.spec"
 	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead}${beside:+ --beside} in
 		*--real*|*--reduce*|*--modes*|*--need*|*--instead*|*--beside)
 			whole=w$id
@@ -201,6 +205,16 @@ batch_add() {
 		code="$code${tuned:+ $tuned.c}"
 	fi
 	facts_of "$id"
+	fine=
+	if [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; then
+		fine=f$id
+		shorter="$(printf '%s\n' "$given" | sed 's/ --step [^ ]*//') --step $(step_of "$id")/8"
+		if ! make_c "$fine" "$spec" "$shorter"; then
+			echo "by eighths of a step: $(grep -m 1 error "$fine.said")" >"$id.wrong"
+			return
+		fi
+		code="$code $fine.c"
+	fi
 	solution=NULL
 	if [ "$scheme" = exact ] && [ -z "$inputs$pieces" ]; then
 		horizon=$(step_of "$whole" | awk '{ printf "%.17g", 32.5 * $1 }')
@@ -242,7 +256,11 @@ batch_add() {
 			echo "static int ${id}_where(const void *s) { return ${id}_region(s); }"
 		fi
 		model="&${id}_model, NULL"
-		[ $real = double ] || model="NULL, &${id}_model"
+		by_eighths="${fine:+&}${fine:-NULL}${fine:+_model}, NULL"
+		if [ $real = float ]; then
+			model="NULL, &${id}_model"
+			by_eighths="NULL, ${fine:+&}${fine:-NULL}${fine:+_model}"
+		fi
 		if [ "$selftest" ]; then
 			selftest=${id}_tested
 			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
@@ -263,7 +281,8 @@ batch_add() {
 			"\"$changes\"," \
 			"$solution, ${selftest:-NULL}," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
-			"\"$impact\", $adds, $region, $regions, $other, $ratio, $may},"
+			"\"$impact\", $adds, $region, $regions, $other, $ratio, $tolerance," \
+			"$by_eighths, $may},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"

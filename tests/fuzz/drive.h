@@ -30,6 +30,9 @@ struct subject {
 	double regions;             /* how many there may be */
 	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
 	double ratio;               /* what is kept of coordinates that move as a whole may be so much larger */
+	double tolerance;           /* to which lengths of steps are chosen; 0: they are not */
+	const pl_model *fine;       /* by eighths of what it steps at once, where a fixed order of h is held against */
+	const pl_modelf *finef;     /* steps to a tolerance; NULL: it is not */
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
 };
 
