@@ -667,13 +667,14 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 	return form;
 }
 
-/* Whether it is one; moved[j]: coordinate j stands in this motion, or centre, or in one that was tried before */
+/* Whether it is one; moved[j]: coordinate j stands in this motion, or its centre, or in one that was tried before */
 static bool add_group(struct relative *r, const struct look *l, const mpq_t *motion, mpq_t *weight, bool *moved)
 {
 	struct group g;
+	bool made = make_group(l, motion, weight, &g);
 	for (int j = 0; j < l->model->n; j++)
-		moved[j] = moved[j] || mpq_sgn(motion[j]) != 0 || (weight && mpq_sgn(weight[j]) != 0);
-	if (!make_group(l, motion, weight, &g))
+		moved[j] = moved[j] || mpq_sgn(motion[j]) != 0 || (g.weight && mpq_sgn(g.weight[j]) != 0);
+	if (!made)
 		return false;
 	int first = r->links;
 	grow_tree(r, l, &g);
