@@ -6,7 +6,7 @@
  * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
  * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
  * tried, where there are such. Where all modes are kept the states are those that were written. */
-#include "walked.h"
+#include "measuring.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ struct choosing {
 	const struct request *request;
 	struct choice *choice;
 	double *largest;            /* per requirement: what the exact output surely reaches */
-	struct exact_run *exact;    /* NULL: there is none to walk beside */
+	struct course *exact;       /* NULL: there is none to walk beside */
 	struct variant *variant;
 	struct alternative *now;
 	struct step *step;
@@ -113,7 +113,7 @@ static bool loses_too_much(const struct choosing *c)
 
 /* ---- all of one model ---- */
 
-static struct step *built(struct choosing *c, struct model *model, enum step_form form)
+static struct step *step_of(struct choosing *c, struct model *model, enum step_form form)
 {
 	c->now = NEW(struct alternative);
 	c->now->form = form;
@@ -161,9 +161,9 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 	v->model = model;
 	v->dropped = ARRAY(double, c->stepped->requirements);
 	if (!model->shortened || c->request->form == FORM_MODAL)
-		v->modes = built(c, model, FORM_MODAL);
+		v->modes = step_of(c, model, FORM_MODAL);
 	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
-		v->states = built(c, model, FORM_DIRECT);
+		v->states = step_of(c, model, FORM_DIRECT);
 	return v;
 }
 
@@ -205,19 +205,28 @@ static void try_modes(struct choosing *c, const struct dropping *d, int count)
 	try_forms(c);
 }
 
+/* Per need: how far its C is off as it runs beside the exact outputs; NULL: it cannot run, or leaves the finite
+ * numbers */
+static const double *walk_beside(const struct choosing *c, const struct step *step)
+{
+	const char *why;
+	struct running *r = running_new(c->stepped->requirement[0].need->at, step, 0, &why);
+	const struct trial trial = r ? trial_of(r, c->exact, NULL, NULL) : (struct trial){ .why = why };
+	return trial.why ? NULL : trial.error;
+}
+
 /* Where loads change their formula: as walked in double, from one mode on to a few more than are enough */
 static void walk_losses(struct choosing *c, struct dropping *d)
 {
 	const int requirements = c->stepped->requirements, all = d->modes->count;
-	struct certificate *found = ARRAY(struct certificate, requirements);
 	for (int i = 0; i < requirements; i++)
 		d->lost[i] = ARRAY(double, all + 1);
 	for (int count = 0, more = MORE_MODES; count < all && more >= 0; count++) {
 		struct model *model = count > 0 ? model_of_modes(d, count) : NULL;
-		const struct step *step = model && c->exact ? built(c, model, FORM_DIRECT) : NULL;
-		const bool walked = step && walk_beside(c->exact, step, found);
+		const struct step *step = model && c->exact ? step_of(c, model, FORM_DIRECT) : NULL;
+		const double *error = step ? walk_beside(c, step) : NULL;
 		for (int i = 0; i < requirements; i++)
-			d->lost[i][count] = walked ? found[i].error : HUGE_VAL;
+			d->lost[i][count] = error ? error[i] : HUGE_VAL;
 		more -= loses_less(c, d, count);
 	}
 }
@@ -308,12 +317,16 @@ static void walk(struct choosing *c, struct alternative *a)
 {
 	c->now = a;
 	ask_now(c);
-	if (!walk_beside(c->exact, a->made, a->certificate))
+	const double *error = walk_beside(c, a->made);
+	if (!error)
 		return;
 	a->why = NULL;
 	a->excess = 0;
-	for (int i = 0; i < c->stepped->requirements; i++)
-		a->excess = fmax(a->excess, error_told(&a->certificate[i]) / a->certificate[i].needed);
+	for (int i = 0; i < c->stepped->requirements; i++) {
+		a->certificate[i].walked = true;
+		a->certificate[i].error = error[i];
+		a->excess = fmax(a->excess, error[i] / a->certificate[i].needed);
+	}
 	a->as_written = a->excess <= 1 && a->bound_excess > 1;
 }
 
@@ -321,12 +334,7 @@ static void walk(struct choosing *c, struct alternative *a)
 static double work_of_walk(const struct choosing *c, const struct alternative *a)
 {
 	enum { READING = 200 };
-	return a->cost * (exact_samples(c->exact) + READING * (double)a->model->system.states);
-}
-
-static bool meets(const struct alternative *a)
-{
-	return !a->refused && !a->why && a->excess <= 1;
+	return a->cost * ((double)c->exact->samples + READING * (double)a->model->system.states);
 }
 
 /* The cheapest first, up to the one that is taken; of the others as many as are no work */
@@ -349,27 +357,6 @@ static void walk_all(struct choosing *c)
 
 /* ---- all of them ---- */
 
-static int by_cost(const void *left, const void *right)
-{
-	const struct alternative *a = left, *b = right;
-	if (!a->refused != !b->refused)
-		return a->refused ? 1 : -1;
-	if (a->cost != b->cost)
-		return a->cost < b->cost ? -1 : 1;
-	if (a->excess != b->excess)
-		return a->excess < b->excess ? -1 : 1;
-	if (a->single != b->single)
-		return a->single ? -1 : 1;
-	if (a->compensated != b->compensated)
-		return a->compensated ? 1 : -1;
-	return (int)a->form - (int)b->form;
-}
-
-static void sort(struct choice *choice)
-{
-	qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);
-}
-
 static void try_all(struct choosing *c)
 {
 	c->choice = NEW(struct choice);
@@ -379,12 +366,12 @@ static void try_all(struct choosing *c)
 	if (full != c->stepped) {
 		struct model *whole = NEW(struct model);
 		*whole = *full;
-		exact = built(c, whole, FORM_DIRECT);
+		exact = step_of(c, whole, FORM_DIRECT);
 	}
 	c->largest = ARRAY(double, c->stepped->requirements);
-	c->exact = exact_run_of(full, c->stepped);
+	c->exact = exact_course_of(full, c->stepped);
 	for (int i = 0; i < c->stepped->requirements; i++)
-		c->largest[i] = c->exact ? exact_largest(c->exact, i)
+		c->largest[i] = c->exact ? largest_of(c->exact, i) * (1 - 0x1p-52)
 				: exact	 ? largest_of_output(exact, &c->stepped->requirement[i])
 					 : 0;
 	if (c->written->shortened)
@@ -392,9 +379,9 @@ static void try_all(struct choosing *c)
 	try_forms(c);
 	if (!c->written->shortened)
 		try_fewer(c);
-	sort(c->choice);
+	sort_by_cost(c->choice);
 	walk_all(c);
-	sort(c->choice);
+	sort_by_cost(c->choice);
 }
 
 /* ---- what cannot be met ---- */

@@ -54,11 +54,6 @@ static void try_steps(struct measuring *m, struct alternative a)
 	}
 }
 
-static bool is_written(const char *option, const void *spec)
-{
-	return option || spec;
-}
-
 static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 {
 	static const char *const tolerances[] = { "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10",
@@ -69,7 +64,7 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 		scheme_of(scheme, &row);
 	const bool step_open = m->request->step_open;
 	struct alternative a = { .scheme = scheme, .single = single, .form = FORM_DIRECT };
-	if (!scheme_row(row)->expands || is_written(m->request->tolerance, spec->tolerance)) {
+	if (!scheme_row(row)->expands || m->request->tolerance || spec->tolerance) {
 		if (step_open)
 			try_steps(m, a);
 		else
@@ -118,17 +113,6 @@ static void try_schemes(struct measuring *m)
 		}
 }
 
-static int by_cost(const void *left, const void *right)
-{
-	const struct alternative *a = left, *b = right;
-	const bool no_a = a->refused || a->cost == 0, no_b = b->refused || b->cost == 0;
-	if (no_a != no_b)
-		return no_a ? 1 : -1;
-	if (a->cost != b->cost)
-		return a->cost < b->cost ? -1 : 1;
-	return strcmp(a->name, b->name);
-}
-
 static void find_taken(struct measuring *m)
 {
 	struct choice *choice = m->choice;
@@ -152,7 +136,7 @@ static void choose(struct measuring *m)
 		choice->alternatives = 0;
 		m->cheapest = HUGE_VAL;
 		try_schemes(m);
-		qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);
+		sort_by_cost(choice);
 		find_taken(m);
 		for (int i = 0; i < choice->alternatives; i++)
 			near = near || choice->alternative[i].worst_neighbour > WITHIN;
@@ -196,19 +180,6 @@ static bool is_over_budget(const struct measuring *m, const struct alternative *
 	return true;
 }
 
-static void find_ends(struct measuring *m)
-{
-	m->ends = ARRAY(double, m->model->outputs + 1);
-	m->largest = ARRAY(double, m->model->outputs + 1);
-	for (int i = 0; i < m->model->outputs; i++)
-		m->ends[i] = -1;
-	for (int i = 0; i < m->model->requirements; i++) {
-		const struct requirement *r = &m->model->requirement[i];
-		m->ends[r->output] = fmax(m->ends[r->output], mpq_get_d(r->until));
-		m->until = fmax(m->until, m->ends[r->output]);
-	}
-}
-
 struct step *choose_measured(struct model *stepped, struct request *request)
 {
 	struct measuring m = { .model = stepped, .request = request, .single = request->single,
@@ -216,7 +187,8 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 	const struct place at = stepped->spec->need[0].at;
 	if (!find_requirements(stepped))
 		return NULL;
-	find_ends(&m);
+	m.largest = ARRAY(double, stepped->requirements);
+	m.until = longest_need(stepped);
 	if (!(m.until > 0)) {
 		say_error(at, NULL, "a need that is measured ends after 0");
 		return NULL;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of measured needs share: one after the other tried, measured; its neighbours. */
+/* What the files of needs share: one after the other tried, measured; its neighbours. */
 #ifndef PLGEN_MEASURING_H
 #define PLGEN_MEASURING_H
 
@@ -19,8 +19,7 @@ struct measuring {
 	struct step *step;
 	bool single;                /* the target's type; a reference is in double */
 	double until;               /* [s] the last end of a need */
-	double *ends;               /* per output: the last of its needs; below 0: none */
-	double *largest;            /* per output: of the reference */
+	double *largest;            /* per need: of the reference's output */
 	int drives;                 /* courses of the inputs that are tried; one where there are none */
 	struct sampled *drive;        /* NULL: there are none */
 	struct roads roads;
@@ -36,20 +35,26 @@ struct measuring {
 	const struct symbol **amplitude;
 };
 
+struct ready {                      /* a step as asked for, and its C */
+	struct step *step;          /* NULL: there is none */
+	struct running *r;          /* likewise */
+	struct roads roads;         /* the reference for its samples */
+};
+
 /* ---- trial.c ---- */
 
-/* A step as asked for, and its C, ready to run; NULL: *why says why there is none */
-struct step *built(struct measuring *m, const struct request *as, const char **why);
-struct running *running_of(struct measuring *m, const struct step *step, const char **why);
+struct step *built(struct measuring *m, const struct request *as, const char **why);   /* NULL: *why says why */
+struct ready ready_of(struct measuring *m, const struct request *as, const char **why); /* without r: likewise */
 struct request request_of(const struct measuring *m, const struct alternative *a);
 bool open_reference(struct measuring *m);      /* false: m->why */
 /* From this start, with inputs number `drive`, against a reference from there; the largest of error over need. `spec`:
  * it is the spec's, and what is found is kept in the alternative */
-double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
-		  const double *start, int drive, bool spec);
+double tried_from(struct measuring *m, struct alternative *a, struct ready *ready, const double *start, int drive,
+		  bool spec);
 bool meets(const struct alternative *a);
 bool is_enough(const struct measuring *m, const struct alternative *a);
 void try_alternative(struct measuring *m, struct alternative *a);        /* and keeps it */
+void sort_by_cost(struct choice *choice);      /* those that there are first */
 
 /* ---- neighbours.c ---- */
 

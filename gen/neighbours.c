@@ -51,9 +51,12 @@ static void name_neighbour(struct alternative *a, const char *name)
 	a->neighbour_names = a->neighbour_names ? format("%s, %s", a->neighbour_names, name) : name;
 }
 
-/* From a neighbour: excess of the worst is kept, and what it was */
-static void keep_worst(struct alternative *a, double excess, const char *what)
+/* From a neighbour: the excess of the worst is kept, and what it was */
+static void try_near(struct measuring *m, struct alternative *a, struct ready *ready, const double *start,
+		     const char *what)
 {
+	struct alternative copy = *a;
+	const double excess = tried_from(m, &copy, ready, start, a->worst_input, false);
 	a->neighbours++;
 	if (excess <= a->worst_neighbour)
 		return;
@@ -61,7 +64,7 @@ static void keep_worst(struct alternative *a, double excess, const char *what)
 	a->worst_name = what;
 }
 
-static void try_starts(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+static void try_starts(struct measuring *m, struct alternative *a, struct ready *ready)
 {
 	const struct model *written = m->model->written;
 	const int states = written->system.states;
@@ -69,16 +72,16 @@ static void try_starts(struct measuring *m, struct alternative *a, struct runnin
 	running_start(m->roads.r, 0, NULL);
 	running_state(m->roads.r, start);
 	for (int i = 0; i < states; i++) {
-		if (start[i] != 0)
-			name_neighbour(a, written->state_name[i]);
-		for (int up = 0; up < 2 && start[i] != 0; up++) {
-			const double as_written = start[i];
-			start[i] *= up ? 1.1 : 0.9;
-			struct alternative copy = *a;
-			keep_worst(a, tried_from(m, &copy, r, roads, start, a->worst_input, false),
-				   format("%s = %.3g at the start", written->state_name[i], start[i]));
-			start[i] = as_written;
+		const double as_written = start[i];
+		if (as_written == 0)
+			continue;
+		name_neighbour(a, written->state_name[i]);
+		for (int up = 0; up < 2; up++) {
+			start[i] = as_written * (up ? 1.1 : 0.9);
+			try_near(m, a, ready, start, format("%s = %.3g at the start", written->state_name[i],
+							    start[i]));
 		}
+		start[i] = as_written;
 	}
 }
 
@@ -90,23 +93,16 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 		if (k % 2)
 			name_neighbour(a, s->name);
 		struct request as = with_param(m, request_of(m, a), s, by), wide = as;
-		struct alternative copy = *a;
 		wide.single = false;
-		struct step *step = built(m, &as, &why), *reference = built(m, &wide, &why);
-		struct running *r = step ? running_of(m, step, &why) : NULL;
-		struct roads roads = m->roads;
-		roads.r = reference ? running_of(m, reference, &why) : NULL;
-		if (!r || !roads.r)
-			continue;
-		roads.h = mpq_get_d(step->model->h);
-		roads.most = LIMIT_MEASURED;
-		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, a->worst_input, false),
-			   format("%s times %s", s->name, by));
+		struct ready ready = ready_of(m, &as, &why);
+		ready.roads.r = ready_of(m, &wide, &why).r;
+		if (ready.r && ready.roads.r)
+			try_near(m, a, &ready, NULL, format("%s times %s", s->name, by));
 	}
 }
 
 /* With the inputs of the largest error, a tenth smaller; larger ones are beyond their bounds */
-static void try_smaller_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+static void try_smaller_inputs(struct measuring *m, struct alternative *a, struct ready *ready)
 {
 	if (!m->drive)
 		return;
@@ -115,9 +111,8 @@ static void try_smaller_inputs(struct measuring *m, struct alternative *a, struc
 	drive->sample = ARRAY(double, numbers);
 	for (long i = 0; i < numbers; i++)
 		drive->sample[i] = 0.9 * as_found.sample[i];
-	struct alternative copy = *a;
 	name_neighbour(a, drive->inputs > 1 ? "the inputs (less only)" : "the input (less only)");
-	keep_worst(a, tried_from(m, &copy, r, roads, NULL, a->worst_input, false), "inputs are a tenth smaller");
+	try_near(m, a, ready, NULL, "inputs are a tenth smaller");
 	discard(drive->sample);
 	*drive = as_found;
 }
@@ -125,15 +120,11 @@ static void try_smaller_inputs(struct measuring *m, struct alternative *a, struc
 void try_neighbours(struct measuring *m, struct alternative *a)
 {
 	const struct request as = request_of(m, a);
-	struct step *step = built(m, &as, &a->why);
-	struct running *r = step ? running_of(m, step, &a->why) : NULL;
-	struct roads roads = m->roads;
-	if (!r)
+	struct ready ready = ready_of(m, &as, &a->why);
+	if (!ready.r)
 		return;
-	roads.h = mpq_get_d(step->model->h);
-	roads.most = LIMIT_MEASURED;
-	try_starts(m, a, r, &roads);
-	try_smaller_inputs(m, a, r, &roads);
+	try_starts(m, a, &ready);
+	try_smaller_inputs(m, a, &ready);
 	find_amplitudes(m, a);
 	try_amplitudes(m, a);
 }

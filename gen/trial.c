@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One step that is tried for needs that are measured: built, run beside a reference, counted. */
+/* One step that is tried for needs that are measured: built, run beside a reference, counted, put in order. */
 #include "measuring.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Of a need: so far the two references agree. */
 static const double known = 0.01;
@@ -37,15 +38,18 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 	return refused ? NULL : m->step;
 }
 
-/* Its C, ready to run */
-struct running *running_of(struct measuring *m, const struct step *step, const char **why)
+struct ready ready_of(struct measuring *m, const struct request *as, const char **why)
 {
+	struct ready found = { .step = built(m, as, why), .roads = m->roads };
+	found.roads.most = LIMIT_MEASURED;
+	if (!found.step)
+		return found;
 	const char *refused;
-	struct running *r = running_new(m->model->requirement[0].need->at, step, WITH_RHS | WITH_COUNTS, &refused);
+	found.r = running_new(m->model->requirement[0].need->at, found.step, WITH_RHS | WITH_COUNTS, &refused);
+	found.roads.h = mpq_get_d(found.step->model->h);
 	(m->single ? target_float : target_double)();
-	if (refused)
-		*why = refused;
-	return r;
+	*why = refused ? refused : *why;
+	return found;
 }
 
 /* ---- the reference ---- */
@@ -72,11 +76,8 @@ static double disagreement(struct measuring *m)
 		course[which] = which && !course[0] ? NULL : road_of(&m->roads, which, NULL, &m->why);
 	for (int i = 0; i < m->model->requirements && course[0] && course[1]; i++) {
 		const struct requirement *r = &m->model->requirement[i];
-		const long samples = (long)floor(mpq_get_d(r->until) / m->roads.h * (1 + 1e-14));
-		m->largest[r->output] = fmax(m->drive ? m->largest[r->output] : 0,
-					     largest_of(course[0], r->output, samples));
-		const double needed = needed_error(r, m->largest[r->output]);
-		const double over = apart(course[0], course[1], r->output, samples) / needed;
+		m->largest[i] = fmax(m->drive ? m->largest[i] : 0, largest_of(course[0], i));
+		const double over = apart(course[0], course[1], i) / needed_error(r, m->largest[i]);
 		worst = over <= worst ? worst : over;
 	}
 	bool both = course[0] && course[1];
@@ -178,12 +179,11 @@ bool open_reference(struct measuring *m)
 	struct request as = *m->request;
 	as.single = false;
 	as.form = FORM_AUTO;
-	struct step *step = built(m, &as, &m->why);
-	m->roads = (struct roads){ .r = step ? running_of(m, step, &m->why) : NULL, .until = m->until,
-				   .most = LIMIT_MEASURED / 4 };
-	if (!m->roads.r)
+	const struct ready ready = ready_of(m, &as, &m->why);
+	m->roads = (struct roads){ .r = ready.r, .until = m->until, .most = LIMIT_MEASURED / 4 };
+	if (!ready.r)
 		return false;
-	find_drives(m, step);
+	find_drives(m, ready.step);
 	find_changes(m);
 	if (!find_tolerance(m))
 		return false;
@@ -212,7 +212,7 @@ static struct course *kept_reference(struct measuring *m, struct roads *roads, i
 		if (m->keeps[i].h == roads->h && m->keeps[i].drive == drive)
 			return m->keeps[i].course;
 	struct course *course = road_of(roads, 0, NULL, why);
-	if (!course || course->samples * course->outputs > MOST_KEPT)
+	if (!course || course->samples * course->needs > MOST_KEPT)
 		return course;
 	*MORE(m->keeps, m->kept) = (struct kept_course){ roads->h, drive, course };
 	return course;
@@ -226,23 +226,21 @@ static void release(const struct measuring *m, struct course *course)
 	course_free(course);
 }
 
-/* From this start, against a reference from there; the largest of error over need */
-double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
-		  const double *start, int drive, bool spec)
+double tried_from(struct measuring *m, struct alternative *a, struct ready *ready, const double *start, int drive,
+		  bool spec)
 {
+	struct roads *roads = &ready->roads;
 	roads->drive = m->drive ? &m->drive[drive] : NULL;
 	struct course *reference = spec ? kept_reference(m, roads, drive, &a->why) : road_of(roads, 0, start, &a->why);
 	if (!reference)
 		return HUGE_VAL;
-	struct trial trial = trial_of(r, reference, start, m->ends, roads->drive);
-	const struct model *model = running_step_of(r)->model;
+	struct trial trial = trial_of(ready->r, reference, start, roads->drive);
+	const struct model *model = ready->step->model;
 	double worst = 0;
 	for (int i = 0; i < model->requirements; i++) {
-		const struct requirement *q = &model->requirement[i];
-		const long samples = (long)floor(mpq_get_d(q->until) / roads->h * (1 + 1e-14));
-		const double largest = m->drive ? m->largest[q->output] : largest_of(reference, q->output, samples);
-		struct certificate found = { .known = true, .rounding = trial.error[q->output],
-					     .needed = needed_error(q, largest) };
+		const double largest = m->drive ? m->largest[i] : largest_of(reference, i);
+		struct certificate found = { .known = true, .rounding = trial.error[i],
+					     .needed = needed_error(&model->requirement[i], largest) };
 		const double over = found.rounding / found.needed;
 		worst = over <= worst ? worst : over;
 		if (spec && !(found.rounding <= a->certificate[i].rounding && a->certificate[i].known))
@@ -269,7 +267,8 @@ struct request request_of(const struct measuring *m, const struct alternative *a
 
 bool meets(const struct alternative *a)
 {
-	return !a->refused && !a->why && a->excess <= WITHIN && a->worst_neighbour <= WITHIN;
+	const double within = a->measured ? WITHIN : 1;
+	return !a->refused && !a->why && a->excess <= within && a->worst_neighbour <= within;
 }
 
 bool is_enough(const struct measuring *m, const struct alternative *a)
@@ -278,12 +277,17 @@ bool is_enough(const struct measuring *m, const struct alternative *a)
 }
 
 /* From the spec's start, with all inputs that are tried */
-static void try_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+static void try_inputs(struct measuring *m, struct alternative *a, struct ready *ready)
 {
+	if (m->until / ready->roads.h > MOST_SAMPLES) {
+		a->why = format("%.0f steps are more than the %d that are measured", m->until / ready->roads.h,
+				MOST_SAMPLES);
+		return;
+	}
 	a->excess = 0;
 	a->inputs_tried = m->drive ? m->drives : 0;
 	for (int i = 0; i < m->drives && isfinite(a->excess); i++) {
-		const double excess = tried_from(m, a, r, roads, NULL, i, true);
+		const double excess = tried_from(m, a, ready, NULL, i, true);
 		if (excess <= a->excess)
 			continue;
 		a->excess = excess;
@@ -294,23 +298,41 @@ static void try_inputs(struct measuring *m, struct alternative *a, struct runnin
 void try_alternative(struct measuring *m, struct alternative *a)
 {
 	const struct request as = request_of(m, a);
-	struct step *step = built(m, &as, &a->refused);
-	struct running *r = step ? running_of(m, step, &a->refused) : NULL;
+	struct ready ready = ready_of(m, &as, &a->refused);
 	a->measured = true;
-	a->name = a->scheme && !step ? a->scheme : scheme_name((step ? step->model : m->model)->scheme);
+	a->name = ready.step  ? scheme_name(ready.step->model->scheme)
+		  : a->scheme ? a->scheme : scheme_name(m->model->scheme);
 	a->certificate = ARRAY(struct certificate, m->model->requirements);
 	a->excess = HUGE_VAL;
-	if (r) {
-		struct roads roads = m->roads;
-		roads.h = mpq_get_d(step->model->h);
-		roads.most = LIMIT_MEASURED;
-		if (m->until / roads.h > MOST_SAMPLES)
-			a->why = format("%.0f steps are more than the %d that are measured", m->until / roads.h,
-					MOST_SAMPLES);
-		else
-			try_inputs(m, a, r, &roads);
-	}
+	if (ready.r)
+		try_inputs(m, a, &ready);
 	if (is_enough(m, a))
 		m->cheapest = fmin(m->cheapest, a->cost);
 	*MORE(m->choice->alternative, m->choice->alternatives) = *a;
+}
+
+/* What was not measured has no cost. */
+static int by_cost(const void *left, const void *right)
+{
+	const struct alternative *a = left, *b = right;
+	const bool no_a = a->refused || (a->measured && a->cost == 0),
+		   no_b = b->refused || (b->measured && b->cost == 0);
+	if (no_a != no_b)
+		return no_a ? 1 : -1;
+	if (a->cost != b->cost)
+		return a->cost < b->cost ? -1 : 1;
+	if (a->measured)
+		return strcmp(a->name, b->name);
+	if (a->excess != b->excess)
+		return a->excess < b->excess ? -1 : 1;
+	if (a->single != b->single)
+		return a->single ? -1 : 1;
+	if (a->compensated != b->compensated)
+		return a->compensated ? 1 : -1;
+	return (int)a->form - (int)b->form;
+}
+
+void sort_by_cost(struct choice *choice)
+{
+	qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);
 }

@@ -226,7 +226,7 @@ static void keep_sample(struct journey *j, struct course *course, long k)
 			gsl_odeiv2_driver_reset(j->driver);
 	}
 	running_start(j->roads->r, j->t, j->y);
-	running_outputs(j->roads->r, course->value + k * course->outputs);
+	running_needed(j->roads->r, course->value + k * course->needs);
 	for (int i = 0; i < j->states && j->roads->size; i++)
 		j->roads->size[i] = fmax(j->roads->size[i], fabs(j->y[i]));
 }
@@ -243,10 +243,7 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 	size_t n = (size_t)step->model->written->system.states;
 	struct journey j = { .roads = roads, .states = (int)n, .before = operations_so_far(roads),
 			     .step = 1e-3 * roads->h, .last = next_change(roads, 0) };
-	struct course *course = NEW(struct course);
-	*course = (struct course){ .samples = (long)floor(roads->until / roads->h * (1 + 1e-14)),
-				   .outputs = step->model->outputs };
-	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->outputs);
+	struct course *course = course_of(step->model, roads->h);
 	j.y = ARRAY(double, n);
 	j.u = ARRAY(double, 2 * (size_t)step->model->system.inputs + 1);
 	j.work = ARRAY(double, n * (5 + COLUMNS));
@@ -273,26 +270,47 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 
 /* ---- what roads have found ---- */
 
-double apart(const struct course *a, const struct course *b, int output, long samples)
+double longest_need(const struct model *model)
+{
+	double until = 0;
+	for (int i = 0; i < model->requirements; i++)
+		until = fmax(until, mpq_get_d(model->requirement[i].until));
+	return until;
+}
+
+struct course *course_of(const struct model *model, double h)
+{
+	struct course *course = NEW(struct course);
+	*course = (struct course){ .needs = model->requirements, .end = ARRAY(long, model->requirements) };
+	for (int i = 0; i < course->needs; i++) {
+		course->end[i] = (long)floor(mpq_get_d(model->requirement[i].until) / h * (1 + 1e-14));
+		course->samples = course->end[i] > course->samples ? course->end[i] : course->samples;
+	}
+	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->needs);
+	return course;
+}
+
+double apart(const struct course *a, const struct course *b, int need)
 {
 	double most = 0;
-	for (long k = 0; k <= a->samples && k <= samples; k++) {
-		const double d = fabs(a->value[k * a->outputs + output] - b->value[k * b->outputs + output]);
+	for (long k = 0; k <= a->end[need]; k++) {
+		const double d = fabs(a->value[k * a->needs + need] - b->value[k * b->needs + need]);
 		most = d <= most ? most : d;
 	}
 	return most;
 }
 
-double largest_of(const struct course *a, int output, long samples)
+double largest_of(const struct course *a, int need)
 {
 	double most = 0;
-	for (long k = 0; k <= a->samples && k <= samples; k++)
-		most = fmax(most, fabs(a->value[k * a->outputs + output]));
+	for (long k = 0; k <= a->end[need]; k++)
+		most = fmax(most, fabs(a->value[k * a->needs + need]));
 	return most;
 }
 
 void course_free(struct course *course)
 {
 	discard(course->value);
+	discard(course->end);
 	discard(course);
 }

@@ -34,12 +34,13 @@ struct running;
 /* The target's type is that of the step behind it. NULL: *why */
 struct running *running_new(struct place at, const struct step *step, enum running_with with, const char **why);
 const struct step *running_step_of(const struct running *r);
-struct counted running_counted(const struct running *r);     /* of all instances of this code */
+struct counted running_counted(const struct running *r);     /* of all instances of this code; 0 without counts */
 void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */
 void   running_step(struct running *r, const double *u);     /* by h */
 void   running_state(struct running *r, double *y);
 double running_time(struct running *r);
 void   running_outputs(struct running *r, double *out);
+void   running_needed(struct running *r, double *value);     /* per need: its output */
 int    running_status(struct running *r);
 void   running_rhs(struct running *r, double t, const double *y, const double *u, double *slope);
 
@@ -62,11 +63,13 @@ void running_drive(struct running *r, const struct sampled *d, long k); /* as if
 
 /* ---- reference.c: the equations as written, solved by two roads ---- */
 
-struct course {                     /* outputs at t = 0, h, 2 h, ... */
-	long samples;               /* after the first */
-	int outputs;
-	double *value;              /* [sample][output] */
+struct course {                     /* what needs are of, at t = 0, h, 2 h, ... */
+	long samples, *end;         /* after the first: all, and of each need */
+	int needs;
+	double *value, *low;        /* [sample][need]; of an exact one its second word, else NULL */
 };
+double longest_need(const struct model *model);              /* [s] when the last ends */
+struct course *course_of(const struct model *model, double h); /* up to there, its values not known yet */
 enum { ROADS = 2 };
 struct roads {                      /* of NAME_rhs: two methods that have nothing in common but it */
 	struct running *r;          /* in double */
@@ -81,21 +84,26 @@ struct roads {                      /* of NAME_rhs: two methods that have nothin
 };
 /* From these states (NULL: the spec's) by the first road or the second; NULL: *why */
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why);
-/* at samples up to this one: the largest difference in an output, NaN where there is one; its largest size */
-double apart(const struct course *a, const struct course *b, int output, long samples);
-double largest_of(const struct course *a, int output, long samples);
+/* at samples up to a need's end: the largest difference in its output, NaN where there is one; its largest size */
+double apart(const struct course *a, const struct course *b, int need);
+double largest_of(const struct course *a, int need);
 void course_free(struct course *course);
+
+/* ---- exact.c: closed forms of a linear model ---- */
+
+/* Of the equations of `full` for the needs of `stepped`; NULL: there are inputs, or it would take too long */
+struct course *exact_course_of(const struct model *full, const struct model *stepped);
 
 /* ---- measure.c: how far the outputs of a step are off ---- */
 
 enum { LIMIT_MEASURED = 400000000 };   /* operations of one road, or of one step that is tried */
 struct trial {                      /* of a step, against a reference */
 	double multiplications, additions, calls; /* of a step and its outputs, on average */
+	double until;               /* [s] when it ended; to ask for it is counted as a part of a step */
 	const char *why;            /* it came to no end; NULL: it did */
-	double *error;              /* per output: the largest, at every sample */
+	double *error;              /* per need: the largest, at every sample up to its end */
 };
-/* ends: per output, [s]: later errors do not count */
-struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends,
+struct trial trial_of(struct running *r, const struct course *reference, const double *start,
 		      const struct sampled *drive);
 
 #endif

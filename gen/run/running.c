@@ -50,7 +50,7 @@ const struct step *running_step_of(const struct running *r)
 
 struct counted running_counted(const struct running *r)
 {
-	return *r->native.counted;
+	return r->native.counted ? *r->native.counted : (struct counted){ 0 };
 }
 
 static void to_target(const struct running *r, const double *from, void *to, int count)
@@ -112,6 +112,16 @@ void running_outputs(struct running *r, double *out)
 {
 	CALL(r, out(r->instance, r->out));
 	from_target(r, r->out, out, r->outputs);
+}
+
+void running_needed(struct running *r, double *value)
+{
+	const struct model *model = r->step->model;
+	CALL(r, out(r->instance, r->out));
+	for (int i = 0; i < model->requirements; i++) {
+		const int output = model->requirement[i].output;
+		value[i] = r->single ? (double)((const float *)r->out)[output] : ((const double *)r->out)[output];
+	}
 }
 
 double running_time(struct running *r)
