@@ -25,7 +25,7 @@ static bool make_model(struct work *w)
 	struct request *request = &w->options.request;
 	request->find_factors = find_factors;
 	w->model = model_build(w->spec, request);
-	if (w->model && request->reduce)
+	if (w->model)
 		w->model = model_reduce(w->model);
 	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
 		return false;
@@ -39,6 +39,8 @@ static bool make_step(struct work *w)
 		return true;
 	w->stepped = stepped_model(w->model, w->spec, &w->options.request);
 	w->step = w->stepped ? step_build(w->stepped) : NULL;
+	if (w->step)
+		w->options.request.form = w->step->model->asked.form;
 	return w->step;
 }
 

@@ -16,7 +16,7 @@ static void build_now(void *context)
 	struct measuring *m = context;
 	struct spec *spec = parse_spec(m->model->spec->source);
 	struct model *model = model_build(spec, &m->now);
-	if (model && m->now.reduce)
+	if (model)
 		model = model_reduce(model);
 	model = model ? model_shorten(model) : NULL;
 	model = model ? stepped_model(model, spec, &m->now) : NULL;

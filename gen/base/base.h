@@ -192,6 +192,9 @@ _Noreturn void give_up(const char *message);
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+/* An option that only makes a step cheaper has no effect here, and why */
+void stand_aside(struct place at, const char *option, const char *why);
+const char *next_aside(int *from);                         /* of those said, from number `from` on; NULL: no more */
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
 bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
 const char *refusal_of(void (*work)(void *), void *context); /* so; NULL: it ran to its end; else the first error */

@@ -33,7 +33,7 @@ static void say(struct place at, const char *severity, const char *note, const c
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
 	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */
-		if (said[i].at.offset == at.offset && said[i].at.source == at.source &&
+		if (said[i].at.offset == at.offset && strcmp(said[i].at.source->name, at.source->name) == 0 &&
 		    (strcmp(said[i].message, message) == 0 ||
 		     (at.source->repeats && strcmp(said[i].severity, severity) == 0)))
 			return;
@@ -82,6 +82,18 @@ void say_note(struct place at, const char *fmt, ...)
 	va_start(args, fmt);
 	say(at, "note", NULL, fmt, args);
 	va_end(args);
+}
+
+void stand_aside(struct place at, const char *option, const char *why)
+{
+	say_note(at, "%s stands aside: %s", option, why);
+}
+
+const char *next_aside(int *from)
+{
+	while (*from < said_count && !strstr(said[*from].message, " stands aside: "))
+		++*from;
+	return *from < said_count ? said[(*from)++].message : NULL;
 }
 
 void work_at(struct place at)

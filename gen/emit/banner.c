@@ -576,11 +576,19 @@ static void banner_functions(const struct emitter *e)
 		say(e, " * There is no $n_at: %s.\n", no_at);
 }
 
+static void banner_asides(const struct emitter *e)
+{
+	int from = 0;
+	for (const char *text = next_aside(&from); text; text = next_aside(&from))
+		banner_sentence(e, "%s.", printable(text));
+}
+
 void emit_banner(const struct emitter *e)
 {
 	say(e, "/* $n: made by plgen " PLGEN_VERSION " from %s%s%s; do not edit.\n"
 	       " * SPDX-License-Identifier: MIT-0\n"
 	       " *\n", printable(e->model->spec->source->base), *e->options ? " with " : "", printable(e->options));
+	banner_asides(e);
 	banner_equations(e);
 	banner_poles(e);
 	say(e, " *\n");

@@ -87,7 +87,6 @@ static void check_request(const struct building *b, const struct symbol *s)
 	const char *what = r->solution  ? "--solution"
 			   : r->selftest ? "--selftest"
 			   : r->batch    ? "--batch"
-			   : r->reduce   ? "--reduce"
 					 : NULL;
 	if (what)
 		error(s->at, NULL, "%s does not go with delayed inputs", what);

@@ -35,7 +35,7 @@ static void build_there(void *context)
 	request.tunable = s->values;
 	request.factor = s->factor;
 	s->found = model_build(parse_spec(s->model->spec->source), &request);
-	if (s->found && request.reduce && !s->factor)
+	if (s->found && !s->factor)
 		s->found = model_reduce(s->found);
 	if (!s->found)
 		abandon();

@@ -595,18 +595,19 @@ static void collect_model(struct building *b)
 	find_delays(b);
 }
 
+/* It only leaves states out: where that cannot be all are kept. */
 static void check_reduction(const struct building *b)
 {
-	const struct model *model = b->model;
-	if (!diagnostics_errors() && model->switching)
-		say_error(b->spec->name_at, NULL,
-			  "--reduce needs a linear model: what regions hold depends on the coordinates");
-	if (!diagnostics_errors() && model->scheme != SCHEME_EXACT)
-		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, NULL,
-			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates",
-			  scheme_name(model->scheme));
-	if (!diagnostics_errors() && model->ranges > 0)
-		say_error(model->range[0].at, NULL, "--reduce leaves no states as written, of which a range is");
+	struct model *model = b->model;
+	const char *why = model->switching		  ? "what regions hold depends on the coordinates"
+			  : model->scheme != SCHEME_EXACT ? "what the scheme leaves over depends on the coordinates"
+			  : model->ranges > 0		  ? "a range is of a state as written"
+			  : model->delays		  ? "there are delayed inputs"
+							  : NULL;
+	if (!model->asked.reduce || !why)
+		return;
+	stand_aside(b->spec->name_at, "--reduce", why);
+	model->asked.reduce = false;
 }
 
 /* Forms to matrices, operators, outputs, regions */
@@ -620,14 +621,13 @@ static void build_parts(struct building *b)
 		build_system(b);
 	if (!diagnostics_errors())
 		build_operators(b);
+	check_reduction(b);
 	if (!diagnostics_errors())
 		build_outputs(b);
 	if (!diagnostics_errors() && has_contacts(model))
 		check_contact_outputs(b);
 	if (!diagnostics_errors() && model->switching)
 		build_regions(b);
-	if (b->request->reduce)
-		check_reduction(b);
 }
 
 struct model *model_build(struct spec *spec, const struct request *request)
@@ -653,6 +653,15 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	if (!diagnostics_errors() && !request->solution && !request->tunable)
 		silent_guard(find_nonlinear, &b);
 	return diagnostics_errors() ? NULL : model;
+}
+
+struct model *model_copy(const struct model *model)
+{
+	struct model *copy = NEW(struct model);
+	*copy = *model;
+	if (model->written == model)
+		copy->written = copy;
+	return copy;
 }
 
 void argument_value(struct model *model, const char *text, mpq_ptr value)

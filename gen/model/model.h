@@ -431,6 +431,7 @@ struct region_part {
 	int *expression;            /* likewise */
 };
 struct model *model_build(struct spec *spec, const struct request *request);
+struct model *model_copy(const struct model *model);         /* to change what is asked of it */
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
 
 /* ---- the builders of a model share ---- */
@@ -778,7 +779,7 @@ bool differ_in_loads(const struct model *a, const struct model *b); /* in nothin
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
-struct model *model_reduce(struct model *model);             /* itself where nothing can go */
+struct model *model_reduce(struct model *model);             /* itself where nothing can go, or shall */
 /* Are the states of both the same combinations of the same written ones? */
 bool same_reduction(const struct model *a, const struct model *b);
 

@@ -330,7 +330,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 		for (int k = 0; k < model->n; k++) {
 			if (!reads.highest[k] || model->highest[k])
 				continue;
-			if (b->request->reduce)
+			if (model->asked.reduce)
 				say_error(find_acceleration(model->output[i].value, 0)->at, "without --reduce it can",
 					  "an output that is not linear cannot read an acceleration under --reduce");
 			model->highest[k] = NEW(struct output);

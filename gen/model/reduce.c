@@ -292,6 +292,8 @@ static void place_states(const struct observable *o, struct model *reduced)
 
 struct model *model_reduce(struct model *model)
 {
+	if (!model->asked.reduce)
+		return model;
 	struct observable o = observe(model);
 	model->reduction.irreducible = o.rank == model->system.states;
 	if (model->reduction.irreducible)

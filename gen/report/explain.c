@@ -133,7 +133,7 @@ static void person_operations(FILE *to, const struct step *step)
 			program->wave_multiplications, program->wave_additions);
 	else if (program->wave_multiplications)
 		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->wave_multiplications,
-			program->wave_additions, step->no_anchors ? "; no anchors with " : "",
+			program->wave_additions, step->no_anchors ? "; no anchors: " : "",
 			step->no_anchors ? step->no_anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);

@@ -26,23 +26,21 @@ enum {
 static const char *objection(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
-		[KIND_TUNED] = "tunable params: the target would have to make the tables",
-		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps",
-		[KIND_CUT] = "a leftover: the scheme needs the loads between steps",
-		[KIND_EXPANDED] = "a series: its steps are no steps of h",
-		[KIND_COLLOCATED] = "a collocation: its steps are no steps of h",
-		[KIND_NORMAL] = "normal modes: loads are forces on them, at the ends of steps"
+		[KIND_TUNED] = "the target would have to make the tables of tunable params",
+		[KIND_LEFTOVER] = "the scheme needs the loads between steps",
+		[KIND_CUT] = "the scheme needs the loads between steps",
+		[KIND_EXPANDED] = "steps of a series are no steps of h",
+		[KIND_COLLOCATED] = "steps of a collocation are no steps of h",
+		[KIND_NORMAL] = "loads are forces on normal modes, at the ends of steps"
 	};
-	if (step->model->asked.form == FORM_MODAL)
-		return "the form modal: modes take their loads as they are";
 	if (of_kind[step->kind])
 		return of_kind[step->kind];
 	if (step->model->asked.single)
-		return "--real float: there functions are cheap, and memory is short";
+		return "in float functions are cheap, and memory is short";
 	if (step->branch->system.segments > 1)
-		return "loads that change their formula in time";
+		return "loads change their formula in time";
 	if (!step->model->switching && step->branch->system.states > LIMIT_UNROLLED_STATES)
-		return format("more than %d states: the step loops over its tables", LIMIT_UNROLLED_STATES);
+		return format("beyond %d states the step loops over its tables", LIMIT_UNROLLED_STATES);
 	return NULL;
 }
 
@@ -95,19 +93,23 @@ static bool fits(const struct step *step, const struct anchors *anchors, int ste
 	return steps * anchors->terms * (step->model->asked.compensated ? 2 : 1) <= TABLE_NUMBERS;
 }
 
-static _Noreturn void refuse(const struct step *step, const char *why)
+/* Where more than 1 was asked for */
+static void note_aside(const struct step *step, const char *why)
 {
-	int steps = step->model->asked.anchors;
-	error((struct place){ source_argument(format("%d", steps)), 0 }, NULL, "--anchors %d does not go with %s",
-	      steps, why);
+	const char *steps = format("%d", step->model->asked.anchors);
+	if (step->model->asked.anchors > 1 && !step->model->asked.trial)
+		stand_aside((struct place){ source_argument(steps), 0 }, format("--anchors %s", steps), why);
 }
 
 /* As many as were asked for, or as are good; 1: what stands against more is said */
 static int chosen_steps(struct step *step, const struct anchors *anchors)
 {
-	int asked = step->model->asked.anchors, steps = asked ? asked : ANCHOR_STEPS;
-	if (asked && !is_steady(step, anchors, asked))
-		refuse(step, format("a load that changes by more than e^%d between anchors", MOST_GROWTH));
+	int asked = step->model->asked.anchors;
+	if (asked && !is_steady(step, anchors, asked)) {
+		note_aside(step, format("a load changes by more than e^%d between anchors", MOST_GROWTH));
+		asked = 0;
+	}
+	int steps = asked ? asked : ANCHOR_STEPS;
 	while (!asked && steps >= FEWEST_STEPS && !(fits(step, anchors, steps) && is_steady(step, anchors, steps)))
 		steps /= 2;
 	if (steps >= FEWEST_STEPS || asked)
@@ -140,18 +142,16 @@ static bool any_load(const struct step *step, const struct anchors *anchors)
 void check_anchors(struct step *step)
 {
 	const char *against = objection(step);
-	if (against && step->model->asked.anchors > 1)
-		refuse(step, against);
+	if (against)
+		note_aside(step, against);
 	if (any_load(step, anchors_of(step)))
 		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
 }
 
 void drop_anchors(struct step *step, const char *why)
 {
-	if (step->model->asked.anchors > 1)
-		refuse(step, why);
-	if (step->anchors)
-		step->no_anchors = why;
+	note_aside(step, why);
+	step->no_anchors = why;
 	step->anchors = NULL;
 }
 

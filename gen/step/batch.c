@@ -64,8 +64,6 @@ void need_batch(const struct step *step)
 		why = "peaks inside its steps depend on terms that its scheme holds";
 	if (!why && step->model->written->ranges > 0)
 		why = "ranges are looked at in the steps of one instance";
-	if (!why && step->modal && step->branch->system.states <= LIMIT_UNROLLED_STATES)
-		why = "the form modal keeps modes in the place of states";
 	if (!why && step->program->loops)
 		why = format("beyond %d states a step loops over its tables", LIMIT_UNROLLED_STATES);
 	if (why)

@@ -228,10 +228,6 @@ void check_divided(const struct step *step)
 	const struct smoothness *smooth = &model->smooth;
 	if (!x)
 		return;
-	if (model->truncation.over > 1)
-		error(model->asked.scheme_over->start, "over 1",
-		      "one expansion is over several steps: it ends where %s passes a breakpoint",
-		      form_text(model, x->expression[0].form));
 	if (smooth->singular)
 		error(smooth->singular->start, "etdrk4 and the schemes like it step across it, of lower order there",
 		      "scheme %s: '%s' has no Taylor series where %s", scheme_name(model->scheme),

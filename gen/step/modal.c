@@ -609,7 +609,7 @@ static bool is_cheaper(const struct step *step)
 static void take_modal(struct step *step, struct modal *modal)
 {
 	if (step->anchors) {
-		drop_anchors(step, "the form modal");
+		drop_anchors(step, "modes take their loads as they are");
 		step->program = linear_program(step);
 	}
 	step->modal = modal;
@@ -618,6 +618,27 @@ static void take_modal(struct step *step, struct modal *modal)
 	step->carries = 0;
 	for (int i = 0; i < modal->states; i++)
 		step->carry[i] = -1;
+}
+
+/* The step is built again in another form; where forms are tried in turn, this one is refused. */
+static void leave_modal(struct step *step, const char *why)
+{
+	if (step->model->asked.trial)
+		error(step->model->asked.form_at, NULL, "the form modal cannot step this model: %s", why);
+	stand_aside(step->model->asked.form_at, "--form modal", why);
+	step->plain = model_copy(step->model);
+	step->plain->asked.form = FORM_AUTO;
+	abandon();
+}
+
+void check_modal(struct step *step)
+{
+	const bool linear = step->kind == KIND_LINEAR || step->kind == KIND_TUNED;
+	const char *why = !linear			? "it is of a linear step"
+			  : step->model->asked.batch	? "it keeps modes in the place of states, which --batch steps"
+							: NULL;
+	if (step->model->asked.form == FORM_MODAL && why)
+		leave_modal(step, why);
 }
 
 void plan_modal(struct step *step)
@@ -632,9 +653,7 @@ void plan_modal(struct step *step)
 	const char *objection = modal_objection(step);
 	struct modal *modal = objection ? NULL : modal_of(step);
 	if (asked && !modal)
-		error(model->asked.form_at, "forms: direct, delta, kick-drift-kick",
-		      "the form modal cannot step this model: %s",
-		      objection ? objection : "two poles, or a pole and a load, are too close");
+		leave_modal(step, objection ? objection : "two poles, or a pole and a load, are too close");
 	if (modal && (asked || modal->condition <= AS_EXACT))
 		take_modal(step, modal);
 	else

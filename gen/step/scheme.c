@@ -216,20 +216,22 @@ static void read_table_if_there(struct step *step)
 	step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
 }
 
-/* One expansion over several steps knows what acts in all of them. */
-static void need_all_known(const struct step *step)
+/* One expansion over several steps knows what acts in all of them, and is of one formula. */
+static void need_all_known(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	struct node *over = step->model->asked.scheme_over;
-	if (step->model->truncation.over < 2)
+	const struct model *model = step->model;
+	const char *why = system->inputs > 0 ? format("the samples of %s to come are not known", system->input[0].name)
+			  : system->segments > 1 ? "a load or a condition on t changes its formula inside"
+			  : step->divided ? format("it ends where %s passes a breakpoint",
+						   form_text(model, step->divided->expression[0].form))
+					  : NULL;
+	if (model->truncation.over < 2 || !why)
 		return;
-	if (system->inputs > 0)
-		error(over->start, "over 1",
-		      "one expansion is over several steps: the samples of %s to come are not known",
-		      system->input[0].name);
-	if (system->segments > 1)
-		error(over->start, "over 1",
-		      "one expansion is over several steps: a load or a condition on t changes its formula inside");
+	stand_aside(model->asked.scheme_over->start, format("over %d", model->truncation.over), why);
+	step->plain = model_copy(model);
+	step->plain->truncation.over = 1;
+	abandon();
 }
 
 /* The slopes of all states from a state alone, by which a series is judged */
@@ -252,12 +254,12 @@ static void divide_step(struct step *step)
 
 static void build_expanded_step(struct step *step)
 {
-	need_all_known(step);
 	need_direct(step);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step);
 	divide_step(step);
+	need_all_known(step);
 	find_slopes(step);
 	count_series(step);
 }
@@ -336,6 +338,7 @@ static void build(void *context)
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
+	check_modal(step);
 	check_anchors(step);
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
@@ -356,7 +359,7 @@ struct step *step_build(const struct model *model)
 	step->model = model;
 	step->shown = step;
 	if (!statement_guard(build, step))
-		return NULL;
+		return step->plain ? step_build(step->plain) : NULL;
 	if (!model->relative)
 		return step;
 	struct model *plain = NEW(struct model);

@@ -273,6 +273,7 @@ struct load_phase {                 /* of one load */
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
+	struct model *plain;        /* without an option that stands aside: to be built in its place; or NULL */
 	enum step_kind kind;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	/* what users see of tables: over the states as written; itself, where those are stepped */
@@ -678,8 +679,8 @@ struct choice {
 
 /* ---- anchors.c: functions of loads every so many steps, tables between ---- */
 
-void check_anchors(struct step *step);                      /* leaves the statement where they are asked for in vain */
-void drop_anchors(struct step *step, const char *why);       /* an error where they were asked for */
+void check_anchors(struct step *step);                      /* says where they are asked for in vain */
+void drop_anchors(struct step *step, const char *why);
 void plan_anchors(struct step *step);                       /* after its table */
 void fill_anchors(struct step *step);                       /* after its forced part is chosen */
 int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
@@ -726,6 +727,7 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
+void check_modal(struct step *step);                        /* where it is asked for in vain */
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */

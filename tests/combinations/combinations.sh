@@ -61,6 +61,25 @@ is_program() {
 		echo "its cost is not that of the comment in the C: $(grep '^Cost' program)" >>"$1.wrong"
 }
 
+# stands_aside ID: of ID.spec, made, whose options stand aside: the C is that without them, but for its banner and what
+# pairs it with its header
+stands_aside() {
+	less=$(sed -n 's/^ \* \(.*\) stands aside: .*/\1/p' "$1.c")
+	[ -n "$less" ] || return
+	options=" $(head_of "$1.spec" options) "
+	cp "$1.spec" plain.spec
+	while read -r option; do
+		options=$(printf '%s\n' "$options" | sed "s/ $option / /")
+		sed "/^scheme/s/ $option\$//" plain.spec >less.spec && mv less.spec plain.spec
+	done <<-END
+		$less
+	END
+	sed '1,/^ \*\//d; /_PAIR/d' "$1.c" >with.text
+	make_c "$1" plain.spec "$options"
+	sed '1,/^ \*\//d; /_PAIR/d' "$1.c" | cmp -s - with.text ||
+		echo "not the C of what has not: $less" | tr '\n' ' ' >>"$1.wrong"
+}
+
 if [ "${5:-}" = --table ]; then
 	# shellcheck disable=SC2086
 	"$covering" table $lists
@@ -90,6 +109,7 @@ while read -r row; do
 	# one of three in turn, with LONG=1 all
 	[ "$said" != made ] || { [ -z "${LONG:-}" ] && [ $((number % 3)) -ne 0 ]; } || is_program "r$number"
 	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
+	[ "$said" != made ] || stands_aside "r$number"
 	for function in at jump; do
 		case " $row " in
 			*" $function "*)

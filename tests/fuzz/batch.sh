@@ -187,9 +187,9 @@ batch_add() {
 	tuned=
 	if [ -n "$retune" ]; then
 		tuned=t$id
+		less=
 		case $given in
-			*--reduce*) less=--reduce ;;
-			*) less= ;;
+			*--reduce*) grep -q -e '--reduce stands aside' "$id.c" || less=--reduce ;;
 		esac
 		case $retune in
 			*step=*) ;;
