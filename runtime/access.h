@@ -6,7 +6,9 @@
  *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set
  *     PL_NORMAL                  so many normal modes, from which PL(of_modes)(which, mode, q) makes coordinates
  *     PL_MOMENTA                 1: s->y is PL(mass)[] times a state
- *     PL_FORCED                  1: s->y is without PL(forced)(s, now)
+ *     PL_FORCED                  1: s->y is without PL(forced)(s, now), as written without PL(sustained)(s, now), which
+ *                                is in s->start as it was at the last set
+ *     PL_WHOLE                   1: outputs read PL(kept)(s, x), of PL_RELATIVE too
  *     PL_KEPT, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
@@ -67,7 +69,7 @@ static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
     }
 }
 
-#if PL_FORCED
+#if PL_FORCED && (!PL_RELATIVE || PL_WHOLE)
 /* With it: what rounds off in the sum counts, so that it is what was set */
 static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
 {
@@ -79,12 +81,17 @@ static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
         const real z = x[i], sum = z + now[i], back = sum - z;
 #if PL_KEPT
         const real rest = s->rest[i];
+#elif PL_RELATIVE
+        const real rest = 0;
 #else
         const real rest = s->k == 0u ? s->rest[i] : 0;
 #endif
         x[i] = sum + (((z - (sum - back)) + (now[i] - back)) + rest);
     }
 }
+#endif
+
+#if PL_FORCED
 
 /* x = z + f, f the forced part: what rounds off in z = x - f is kept in rest */
 static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
@@ -95,8 +102,18 @@ static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
     for (i = 0; i < PL_STATES; i++) {
         const real f = now[i], z = x[i] - f, lost = z - x[i];
         s->y[i] = z;
+#if PL_KEPT || !PL_RELATIVE
         s->rest[i] = (x[i] - (z - lost)) - (f + lost);
+#else
+        (void)lost;
+#endif
+#if PL_RELATIVE
+        s->from[i] = z;
+#endif
     }
+#if PL_RELATIVE
+    PL(sustained)(s, s->start);
+#endif
 }
 #endif
 
@@ -236,13 +253,23 @@ void PL(get)(const PL_TYPE *s, real y[PL_STATES])
 #else
     real *const x = y;
 #endif
-#if PL_FORCED
+#if PL_FORCED && !PL_RELATIVE
     PL(kept)(s, x);
 #else
     PL(kept_state)(s, x);
 #endif
 #if PL_RELATIVE
     PL(written)(s, x, y);
+#endif
+#if PL_FORCED && PL_RELATIVE
+    {
+        real now[PL_STATES];
+        int i;
+        PL(sustained)(s, now);
+        for (i = 0; i < PL_STATES; i++) {
+            y[i] += now[i] - s->start[i];
+        }
+    }
 #endif
 }
 

@@ -84,7 +84,9 @@ void emit_access(const struct emitter *e)
 	emit_tables(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
 		   { "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->momenta },
-		   { "FORCED", step->forced != NULL }, { "KEPT", step->program->compensated },
+		   { "FORCED", step->forced != NULL },
+		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },
+		   { "KEPT", step->program->compensated },
 		   { "CARRIES", step->carries }, { "RELATIVE", e->model->relative != NULL }, { "PHASES", e->phases },
 		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
 		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },

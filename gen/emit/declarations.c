@@ -27,11 +27,13 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->step->carries)
 		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries,
 		       carried_text(e));
-	if (e->step->forced && !e->step->program->compensated)
+	if (e->step->forced && !e->step->program->compensated && !e->model->relative)
 		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
 	if (e->model->relative)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");
+	if (e->step->forced && e->model->relative)
+		say(e, "    double start[$N_STATES];  /* what loads sustained of the states as written then */\n");
 	if (e->kind->own_factors)
 		say(e, "    $n_coeffs coeffs;    /* its own */\n");
 	emit_held_member(e);

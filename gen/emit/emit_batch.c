@@ -10,7 +10,7 @@
  * read */
 struct member { const char *name; int rows; };
 
-static int members_of(const struct emitter *e, struct member member[5])
+static int members_of(const struct emitter *e, struct member member[6])
 {
 	int states = e->system->states, count = 0;
 	bool compensated = e->step->program->compensated;
@@ -19,18 +19,20 @@ static int members_of(const struct emitter *e, struct member member[5])
 		member[count++] = (struct member){ "rest", states };
 	if (e->step->carries)
 		member[count++] = (struct member){ "carry", e->step->carries };
-	if (e->step->forced && !compensated)
+	if (e->step->forced && !compensated && !e->model->relative)
 		member[count++] = (struct member){ "rest", states };
 	if (e->model->relative) {
 		member[count++] = (struct member){ "set", states };
 		member[count++] = (struct member){ "from", states };
+		if (e->step->forced)
+			member[count++] = (struct member){ "start", states };
 	}
 	return count;
 }
 
 static int rows_of(const struct emitter *e)
 {
-	struct member member[5];
+	struct member member[6];
 	int count = members_of(e, member), rows = 0;
 	for (int i = 0; i < count; i++)
 		rows += member[i].rows;
@@ -39,7 +41,7 @@ static int rows_of(const struct emitter *e)
 
 static const char *row_list(const struct emitter *e)
 {
-	struct member member[5];
+	struct member member[6];
 	int count = members_of(e, member);
 	const char *list = "";
 	for (int i = 0; i < count; i++)

@@ -88,7 +88,7 @@ struct batch plan_batch(const struct emitter *e)
 	share_operands(&b, b.step, 0);
 	b.after = b.shared;
 	share_operands(&b, b.out, b.after);
-	if (e->step->forced) {
+	if (e->step->forced && !rows_sustained(e->step)) {
 		b.forced = b.shared;
 		b.shared += e->system->states;
 	}

@@ -22,8 +22,7 @@ static int changing_rows(const struct emitter *e)
 	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
 		for (int l = 0; l < system->loads && !is_tuned_output(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
-				if (differs_in_time((const mpq_t *)output->load[l] + k * system->segments,
-						    system->segments))
+				if (differs_in_time(direct_factors(e->step, output, l, k), system->segments))
 					rows = o < e->model->outputs ? e->model->outputs : o + 1;
 	return rows;
 }
@@ -45,7 +44,7 @@ static void emit_direct_factors(const struct emitter *e)
 			note[o] = format("%s%s", o < e->model->outputs ? "" : "a highest derivative in ", output->name);
 			for (int l = 0; l < system->loads; l++)
 				for (int k = 0; k < system->load[l].columns; k++)
-					*to++ = round_rational(output->load[l][k * system->segments + s]);
+					*to++ = round_rational(direct_factors(e->step, output, l, k)[s]);
 		}
 	emit_array(e, "Factors of the load states in each segment of time", "direct", 3, size, value, note);
 }

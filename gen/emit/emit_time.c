@@ -124,7 +124,7 @@ static void emit_leftover_now(const struct emitter *e)
 void emit_series_vector(const struct emitter *e, bool looped)
 {
 	const struct layout *layout = &e->step->layout;
-	const bool whole = e->step->forced && e->system->segments == 1;
+	const bool whole = e->step->forced && e->system->segments == 1 && !e->model->relative;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
 	if (looped || layout->powers)
 		say(e, "    int i;\n");
@@ -142,14 +142,23 @@ void emit_series_vector(const struct emitter *e, bool looped)
 /* ---- loads that change their formula ---- */
 
 /* Of the load states that the step leaves out: their places in rows of what they add, and in x; returns how many */
-static int emit_forced_places(const struct emitter *e)
+static int list_forced_places(const struct emitter *e, int *place)
 {
-	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = 0;
+	int count = 0;
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
 		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++) {
-			place[2 * count] = column + j;
-			place[2 * count++ + 1] = e->step->layout.load[l] + j;
+			if (place) {
+				place[2 * count] = column + j;
+				place[2 * count + 1] = e->step->layout.load[l] + j;
+			}
+			count++;
 		}
+	return count;
+}
+
+static int emit_forced_places(const struct emitter *e)
+{
+	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = list_forced_places(e, place);
 	if (count)
 		emit_integer_rows(e, "int", format("forced_at[%d][2]", count), count, 2, place);
 	return count;
@@ -229,12 +238,25 @@ void emit_held_leftover(const struct emitter *e)
 	say(e, "    double left[%d];\n", e->system->channels);
 }
 
-/* y, for the user, from the head of x */
+/* Differences are kept, and what loads sustain is added to the states as written. */
+static bool adds_sustained(const struct emitter *e)
+{
+	return e->step->forced && e->model->relative;
+}
+
+/* y, for the user, from the head of x; behind it the load states */
 void emit_hand_over(const struct emitter *e)
 {
 	if (e->model->relative)
 		say(e, "    $n_written(s, x, y);\n");
-	else
+	if (adds_sustained(e))
+		say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "        const double *const part = $n_forced_part[%s][$N_STATES + i];\n"
+		       "        for (k = 0; k < %d; k++) { y[i] += part[$n_forced_at[k][0]] * x[$n_forced_at[k][1]]; "
+		       "}\n"
+		       "        y[i] -= s->start[i];\n"
+		       "    }\n", e->system->segments > 1 ? "segment" : "0", list_forced_places(e, NULL));
+	if (!e->model->relative)
 		say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] = x[i]; }\n");
 }
 
@@ -279,16 +301,22 @@ static void emit_series_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	const bool blocks = is_blockwise(e);
-	if (!blocks)
+	const bool changes = e->system->segments > 1, blocks = !changes && is_blockwise(e), adds = adds_sustained(e);
+	if (adds)
+		emit_at_start(e);
+	if (!blocks && !changes)
 		say(e, "    %sconst pl_series series = {%d, $N_STATES, %d, %d, %s[0]};  "
 		       "/* size, states, degree, halvings */\n"
 		       "    double work[%d];\n", e->step->branches > 1 ? "" : "static ", layout->size, series->degree,
 		    series->halvings, slope_text(e), 2 * layout->size);
 	say(e, "    double x[%d];\n", layout->size);
-	emit_series_vector(e, !e->model->relative);
-	say(e, "    %s;\n", blocks ? format("%s_pass_blocks(%s, tau, x)", e->name, slope_text(e))
-				    : "pl_series_advance(&series, tau, x, work)");
+	emit_series_vector(e, !e->model->relative || adds);
+	if (adds)
+		say(e, "    int k;\n");
+	say(e, "    %s;\n", changes ? format("const int segment = %s_pass_changes(s, %s, 0, tau, x)", e->name,
+					     slope_text(e))
+			    : blocks ? format("%s_pass_blocks(%s, tau, x)", e->name, slope_text(e))
+				     : "pl_series_advance(&series, tau, x, work)");
 	emit_hand_over(e);
 }
 
@@ -299,9 +327,11 @@ void emit_at(const struct emitter *e)
 		emit_series_slopes(e);
 	if (!changes && is_blockwise(e))
 		emit_passing_algorithm(e);
+	if (!changes && adds_sustained(e))
+		emit_forced_places(e);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
 	emit_if_any(e->kind->held, e);
-	if (changes)
+	if (changes && !adds_sustained(e))
 		emit_passing_at(e);
 	else
 		emit_series_at(e);

@@ -128,7 +128,7 @@ void emit_conversions(const struct emitter *e)
 		emit_gains(e, order, at + order * coords, kept + order * coords);
 	}
 	say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] += s->set[i]; }\n");
-	for (int order = 0; order < 2; order++)
+	for (int order = 0; order < 2 && !e->step->forced; order++)
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
 	say(e, "}\n");
 }

@@ -194,7 +194,7 @@ const char *place_in_loop(const struct emitter *e)
 /* s->y is not the state as it is known outside: NAME_get makes that */
 static bool is_read_whole(const struct emitter *e)
 {
-	return e->step->forced || e->step->modal || e->step->normal;
+	return (e->step->forced && !rows_sustained(e->step)) || e->step->modal || e->step->normal;
 }
 
 /* The states wanted. `velocities`: without masses; else as the struct has them. */

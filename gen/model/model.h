@@ -297,6 +297,8 @@ void relative_value(const struct relative *r, int coord, mpq_t *const *value, mp
 /* that of what is kept there */
 struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation);
 void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
+/* Of each written state its factors over those kept, then what is added */
+mpq_t *relative_rows(const struct model *model);
 int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
 
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */

@@ -806,6 +806,24 @@ void relative_values(const struct model *model, mpq_t *written, mpq_t *kept)
 	}
 }
 
+mpq_t *relative_rows(const struct model *model)
+{
+	const struct relative *r = model->relative;
+	const struct linear *from = &r->written->system, *to = &model->system;
+	const int width = to->states + 1;
+	mpq_t *rows = rationals((size_t)(from->states * width));
+	for (int i = 0; i < from->states; i++) {
+		const struct form *form = r->form[i >= from->n][from->coord[i]];
+		for (int k = 0; k < form->terms; k++) {
+			const struct basis *basis = &form->term[k].basis;
+			const int at = basis->kind == BASIS_ONE ? to->states
+							: basis->order ? to->velocity[basis->index] : basis->index;
+			mpq_set(rows[i * width + at], form->term[k].factor);
+		}
+	}
+	return rows;
+}
+
 int relative_place(const struct model *model, int written)
 {
 	const struct linear *from = &model->relative->written->system;

@@ -306,7 +306,7 @@ void explain_json(FILE *to, const struct step *step)
 			drift.phase);
 	if (step->rounding.known)
 		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
-			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
+			step->rounding.steps, step->rounding.relative, step->rounding.state);
 	if (step->choice)
 		json_needs(to, step);
 	json_cost(to, step);

@@ -6,19 +6,17 @@
  * The forced part y_p of a load, P z with the load states z, solves the equations by itself: P J = A P + B, z' = J
  * z, y' = A y + B z. Then y - y_p moves freely, and nothing of the load's size is ever rounded into it; y_p is added
  * where the state is read. Near a pole y_p is large and y small: there the loads stay in the step. Which is better
- * is decided by a bound of either over the first steps. */
-#include "step/step.h"
+ * is decided by a bound of either over the first steps.
+ *
+ * Where differences of coordinates are kept, a load that drives one of them fast is in all that are measured from it,
+ * and what is written as their sum would be the small rest of large numbers: so y_p is added to the states as written,
+ * each by factors of its own, and the bound is of these too. */
+#include "step/kept.h"
 
 #include <math.h>
 
 enum {
-	STEPS = 1000,
-	BITS = 320,
-	SPARE = 64,                 /* of these; what is left tells what is 0 */
-	LIMIT_SIZE = 64,
-	LIMIT_FORCED_STATES = 32,
 	LIMIT_SOLVED = 48,
-	LIMIT_SEGMENTS = 16,
 	TURNING = 3,                /* roundings where a load state is turned from its anchor */
 	FEW_LOADS = 8
 };
@@ -110,201 +108,46 @@ static struct coefficient rounded(mpq_srcptr q)
 	return c;
 }
 
+/* P of the states as written, below that of those kept; from their rows over these and a constant, NULL: the same */
+static void add_written(int states, int columns, const mpq_t *row, mpq_t *P)
+{
+	for (int i = 0; row && i < states; i++)
+		for (int j = 0; j < states; j++)
+			for (int k = 0; k < columns && mpq_sgn(row[i * (states + 1) + j]) != 0; k++)
+				rational_addmul(P[(states + i) * columns + k], row[i * (states + 1) + j],
+						P[j * columns + k]);
+}
+
 /* The load's columns of `part` and `change`; false: it has no forced part, or one beyond the range */
-static bool fill_forced(const struct linear *system, int l, struct forced *forced)
+static bool fill_forced(const struct linear *system, int l, const mpq_t *written, struct forced *forced)
 {
 	const struct load *load = &system->load[l];
 	int states = system->states, all = load_columns(system), first = first_column(system, l),
-	    *state = ARRAY(int, states);
+	    *state = ARRAY(int, states), rows = forced->rows;
 	int m = moved_states(system, l, state);
 	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
 	const mpq_t *inverse = shifted_inverse(system, load->wave, m, state);
 	mpq_t *before = NULL;
 	for (int s = 0; s < system->segments && inverse; s++) {
-		mpq_t *P = rationals((size_t)(states * load->columns));
+		mpq_t *P = rationals((size_t)(rows * load->columns));
 		solve_forced(system, l, s, m, state, inverse, P);
-		for (int i = 0; i < states * load->columns; i++) {
-			size_t cell = (size_t)((s * states + i / load->columns) * all + first + i % load->columns);
+		add_written(states, load->columns, written, P);
+		for (int i = 0; i < rows * load->columns; i++) {
+			int row = i / load->columns, column = first + i % load->columns;
+			size_t cell = (size_t)((s * rows + row) * all + column);
 			if (beyond_range(P[i]))
 				return false;
 			forced->part[cell] = rounded(P[i]);
-			if (s == 0)
-				mpq_set(forced->exact[cell], P[i]);
-			if (!before)
+			mpq_set(forced->exact[cell], P[i]);
+			if (!before || row >= states)
 				continue;
 			mpq_sub(before[i], before[i], P[i]);
-			forced->change[cell - (size_t)(states * all)] = rounded(before[i]);
+			forced->change[((s - 1) * states + row) * all + column] = rounded(before[i]);
 		}
 		before = P;
 	}
 	return inverse != NULL;
-}
-
-/* ---- the exact course of the model over its first steps ---- */
-
-struct course {
-	int steps;
-	double *y, *z;              /* [steps + 1][states], [steps + 1][load columns] */
-	int *segment;               /* [steps + 1] */
-	double *largest;            /* per state */
-	double *sum, *peak;         /* states x states: sum and largest of |Phi^m| */
-};
-
-struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the series' matrix */
-
-static bool make_flow(const struct step *step, const struct layout *place, int segment, struct flow *flow)
-{
-	int size = place->size;
-	struct taylor *taylor =
-		taylor_of(size, augmented_matrix(place, &step->branch->system, segment), step->model->h);
-	if (!taylor_enclose(taylor, BITS))
-		return false;
-	flow->E = ARRAY(mpfr_t, (size_t)(size * size));
-	INTERVAL value = OVER_BITS(BITS);
-	for (int i = 0; i < size * size; i++) {
-		mpfr_init2(flow->E[i], BITS);
-		taylor_entry(taylor, i / size, i % size, value);
-		mpfi_mid(flow->E[i], value);
-	}
-	return true;
-}
-
-/* A sum of which all but the last digits cancel is 0, as that of a state that stays at 0 by symmetry: its last digits
- * are those that E is rounded by. */
-static void advance(int size, const mpfr_t *E, mpfr_t *x, mpfr_t *next)
-{
-	for (int i = 0; i < size; i++) {
-		mpfr_exp_t largest = mpfr_get_emin();
-		mpfr_set_zero(next[i], 1);
-		for (int j = 0; j < size; j++) {
-			if (mpfr_zero_p(E[i * size + j]) || mpfr_zero_p(x[j]))
-				continue;
-			mpfr_fma(next[i], E[i * size + j], x[j], next[i], MPFR_RNDN);
-			mpfr_exp_t exponent = mpfr_get_exp(E[i * size + j]) + mpfr_get_exp(x[j]);
-			largest = exponent > largest ? exponent : largest;
-		}
-		if (!mpfr_zero_p(next[i]) && mpfr_get_exp(next[i]) < largest - (mpfr_exp_t)(BITS - SPARE))
-			mpfr_set_zero(next[i], 1);
-	}
-	for (int i = 0; i < size; i++)
-		mpfr_swap(x[i], next[i]);
-}
-
-static int segment_at(const struct linear *system, mpq_srcptr t)
-{
-	int segment = 0;
-	while (segment < system->segments - 1 && mpq_cmp(system->change[segment], t) <= 0)
-		segment++;
-	return segment;
-}
-
-static bool note_course(const struct step *step, const struct layout *place, const mpfr_t *x, struct course *c, int k)
-{
-	int states = step->branch->system.states, columns = step->branch->whole->columns;
-	bool finite = true;
-	for (int i = 0; i < states; i++) {
-		double y = mpfr_get_d(x[i], MPFR_RNDN);
-		c->y[k * states + i] = y;
-		c->largest[i] = fmax(c->largest[i], fabs(y));
-		finite = finite && isfinite(y);
-	}
-	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
-		for (int j = 0; j < step->branch->system.load[l].columns; j++, column++) {
-			double z = place->load[l] < 0 ? 0 : mpfr_get_d(x[place->load[l] + j], MPFR_RNDN);
-			c->z[k * columns + column] = z;
-			finite = finite && isfinite(z);
-		}
-	return finite;
-}
-
-/* Step by step, from the spec's initial values, inputs 0; a change of formula is taken at the step after it: sizes
- * matter here. */
-static bool follow(const struct step *step, const struct layout *place, struct course *c)
-{
-	int size = place->size;
-	mpfr_t *x = ARRAY(mpfr_t, size), *next = ARRAY(mpfr_t, size);
-	struct flow *flow = ARRAY(struct flow, step->branch->system.segments);
-	RATIONAL t = ZERO, value = ZERO;
-	for (int i = 0; i < size; i++) {
-		mpfr_inits2(BITS, x[i], next[i], NULL);
-		mpfr_set_zero(x[i], 1);
-		if (i < step->branch->system.states)
-			mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
-	}
-	for (int l = 0; l < step->branch->system.loads; l++)
-		for (int j = 0; j < step->branch->system.load[l].columns && place->load[l] >= 0; j++) {
-			load_state(&step->branch->system.load[l], j, t, value);
-			mpfr_set_q(x[place->load[l] + j], value, MPFR_RNDN);
-		}
-	bool good = true;
-	for (int k = 0; k <= c->steps && good; k++) {
-		mpq_set_si(t, k, 1);
-		mpq_mul(t, t, step->model->h);
-		c->segment[k] = segment_at(&step->branch->system, t);
-		good = note_course(step, place, (const mpfr_t *)x, c, k);
-		struct flow *now = &flow[c->segment[k]];
-		good = good && (now->E || make_flow(step, place, c->segment[k], now));
-		if (good)
-			advance(size, (const mpfr_t *)now->E, x, next);
-	}
-	for (int i = 0; i < size; i++)
-		mpfr_clears(x[i], next[i], NULL);
-	for (int s = 0; s < step->branch->system.segments; s++)
-		for (int i = 0; flow[s].E && i < size * size; i++)
-			mpfr_clear(flow[s].E[i]);
-	return good;
-}
-
-/* How far errors reach: what one at each step adds up to at most, and the most that becomes of one */
-static bool add_powers_of_phi(const struct step *step, struct course *c)
-{
-	int n = step->branch->system.states;
-	double *power = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n)), largest = 0;
-	c->sum = ARRAY(double, (size_t)(n * n));
-	c->peak = ARRAY(double, (size_t)(n * n));
-	for (int i = 0; i < n; i++)
-		power[i * n + i] = 1;
-	for (int m = 0; m < c->steps; m++) {
-		for (int i = 0; i < n * n; i++) {
-			c->sum[i] += fabs(power[i]);
-			c->peak[i] = fmax(c->peak[i], fabs(power[i]));
-			largest = fmax(largest, c->sum[i]);
-			next[i] = 0;
-		}
-		for (int i = 0; i < n; i++)
-			for (int k = 0; k < n; k++)
-				for (int j = 0; j < n && !step->branch->whole->Phi[i * n + k].zero; j++)
-					next[i * n + j] += step->branch->whole->Phi[i * n + k].value * power[k * n + j];
-		double *swap = power;
-		power = next;
-		next = swap;
-	}
-	return isfinite(largest);
-}
-
-/* Where a model is stepped in several ways it is followed once. */
-static bool make_course(const struct step *step, struct course *c)
-{
-	static const struct model *last;
-	static struct course followed;
-	static bool good;
-	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
-	struct layout place = layout_of(&step->branch->system, 0);
-	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES ||
-	    step->branch->system.segments > LIMIT_SEGMENTS)
-		return false;
-	if (last != step->model) {
-		followed = (struct course){ .steps = STEPS,
-					    .y = ARRAY(double, rows *states),
-					    .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
-					    .segment = ARRAY(int, rows),
-					    .largest = ARRAY(double, states) };
-		good = follow(step, &place, &followed);
-		last = step->model;
-	}
-	*c = followed;
-	return good && add_powers_of_phi(step, c);
 }
 
 /* ---- a bound of rounding ---- */
@@ -410,7 +253,7 @@ static double unit_of(const struct step *step)
 	return step->model->asked.single ? 0x1p-24 : 0x1p-53;
 }
 
-static double part_of(const struct reckoning *r, int state, bool sizes)
+static double part_of(const struct reckoning *r, int row, bool sizes)
 {
 	const struct table *table = r->step->branch->whole;
 	double sum = 0;
@@ -418,7 +261,7 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 		if (!r->forced->load[r->load_of[column]])
 			continue;
 		const struct coefficient *c =
-			&r->forced->part[(r->course->segment[r->k] * table->states + state) * table->columns + column];
+			&r->forced->part[(r->course->segment[r->k] * r->forced->rows + row) * table->columns + column];
 		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
 		/* of a factor, perhaps to 0 */
 		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step);
@@ -444,14 +287,18 @@ static double change_of(const struct reckoning *r, int state)
 	return sum;
 }
 
-/* What one step adds to the errors of the states at most, after k steps; `from` is the state as kept */
-static void reckon_step(struct reckoning *r, double *largest)
+/* What one step adds to the errors of the states at most, and how large they are, after k steps; `from` is the state
+ * as kept */
+static void reckon_step(struct reckoning *r, double *largest, double *most)
 {
 	const struct program *program = r->step->program;
 	int n = r->step->branch->system.states;
 	struct rounded *now = ARRAY(struct rounded, n), *old = ARRAY(struct rounded, n);
-	for (int i = 0; i < n; i++)
-		old[i] = now[i] = (struct rounded){ r->course->y[r->k * n + i] - part_of(r, i, false), 0 };
+	for (int i = 0; i < n; i++) {
+		old[i] = now[i] = (struct rounded){ r->course->y[r->k * r->course->rows + i] - part_of(r, i, false),
+						    0 };
+		most[i] = fmax(most[i], fabs(old[i].value));
+	}
 	r->from = program->in_order ? now : old;
 	for (int i = 0; i < program->assignments; i++) {
 		struct rounded value = reckon(r, &program->assignment[i]);
@@ -461,30 +308,52 @@ static void reckon_step(struct reckoning *r, double *largest)
 		largest[i] = fmax(largest[i], now[i].error);
 }
 
+/* Of a state as written: its value at the last set, and what has been gained of those kept and of the forced part */
+static double read_written(const struct course *c, int n, int i, const double *most, double first, double last)
+{
+	enum { MORE = 4 };              /* of a difference, a ratio and its product, the forced part */
+	int terms = 0;
+	double sum = 0;
+	for (int k = 0; k < n; k++) {
+		terms += !mpfr_zero_p(c->written[i * (n + 1) + k]);
+		sum += fabs(written_factor(c, n, i, k)) * 2 * most[k];
+	}
+	return first + last + (terms + MORE) * sum;
+}
+
+static const char *name_of_row(const struct step *step, int row)
+{
+	int states = step->branch->system.states;
+	return row < states ? step->model->state_name[row] : step->model->relative->written->state_name[row - states];
+}
+
 /* Over the whole course, relative to each state's largest value; the worst */
 static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
 {
-	int n = step->branch->system.states, *load_of = ARRAY(int, step->branch->whole->columns);
-	double *each = ARRAY(double, n), *first = ARRAY(double, n), *last = ARRAY(double, n);
+	int n = step->branch->system.states, rows = c->rows, *load_of = ARRAY(int, step->branch->whole->columns);
+	double *each = ARRAY(double, n), *most = ARRAY(double, n), *first = ARRAY(double, rows),
+	       *last = ARRAY(double, rows);
 	const double least = step->model->asked.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
 	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
-	struct rounding bound = { .known = true, .steps = c->steps };
+	struct rounding bound = { .known = true, .steps = c->steps, .state = name_of_row(step, 0) };
 	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
 		for (int j = 0; j < step->branch->system.load[l].columns; j++)
 			load_of[column++] = l;
-	for (int i = 0; i < n; i++)
+	for (int i = 0; i < rows; i++)
 		first[i] = fabs(c->y[i]) + part_of(&r, i, true) + fabs(c->y[i] - part_of(&r, i, false));
 	for (r.k = 0; r.k < c->steps; r.k++) {
-		reckon_step(&r, each);
-		for (int i = 0; i < n; i++) {
+		reckon_step(&r, each, most);
+		for (int i = 0; i < rows; i++)
 			last[i] = fmax(last[i], part_of(&r, i, true));
+		for (int i = 0; i < n; i++)
 			first[i] += change_of(&r, i);
-		}
 	}
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < rows; i++) {
 		double error = last[i] + c->largest[i];
+		if (i >= n)
+			error += read_written(c, n, i - n, most, first[i], last[i]);
 		for (int j = 0; j < n; j++)
-			error += c->sum[i * n + j] * each[j] + c->peak[i * n + j] * first[j];
+			error += c->sum[i * n + j] * each[j] + (1 + (i >= n)) * c->peak[i * n + j] * first[j];
 		error *= unit_of(step) / c->largest[i];
 		bound.tiny = bound.tiny || (c->largest[i] > 0 && c->largest[i] < least);
 		if (c->largest[i] < least)
@@ -492,7 +361,7 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 		bound.known = bound.known && isfinite(error);
 		if (error > bound.relative) {
 			bound.relative = error;
-			bound.state = i;
+			bound.state = name_of_row(step, i);
 		}
 	}
 	return bound;
@@ -506,7 +375,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 	const struct linear *system = &step->branch->system;
 	int columns = step->branch->whole->columns;
 	struct tape *t = tape_new();
-	tape_of_forced(t, step, "");
+	tape_of_forced(t, step, forced->written, "");
 	const struct tape_cost cost = tape_cost(t);
 	struct program program = { .uses = ARRAY(bool, columns), .multiplications = cost.multiplications,
 				   .additions = cost.additions };
@@ -569,15 +438,17 @@ void plan_forced(struct step *step)
 	step->rounding = bound_of(step, &course, NULL);
 	if (!step->rounding.known || step->rounding.relative <= much || step->model->tuning)
 		return;
+	const mpq_t *written = step->model->relative ? relative_rows(step->model) : NULL;
+	const size_t cells = (size_t)(system->segments * course.rows * step->branch->whole->columns);
 	struct forced *forced = NEW(struct forced);
-	forced->load = ARRAY(bool, system->loads);
-	forced->part =
-		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
-	forced->exact = rationals((size_t)(system->states * step->branch->whole->columns));
-	forced->change =
-		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	*forced = (struct forced){ .load = ARRAY(bool, system->loads),
+				   .rows = course.rows,
+				   .written = course.rows - system->states,
+				   .part = ARRAY(struct coefficient, cells),
+				   .exact = rationals(cells),
+				   .change = ARRAY(struct coefficient, cells) };
 	for (int l = 0; l < system->loads; l++) {
-		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced);
+		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, written, forced);
 		any = any || able[l];
 	}
 	if (any)
@@ -588,8 +459,7 @@ const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
 	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a "
-		      "%sstate (%s)%s",
-		      r->steps, step->branch->system.inputs ? " with inputs 0" : "", r->relative,
-		      step->model->relative ? "kept " : "", step->model->state_name[r->state],
+		      "state (%s)%s",
+		      r->steps, step->branch->system.inputs ? " with inputs 0" : "", r->relative, r->state,
 		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What certificates of outputs share: the step as a map over the state as it is kept, in double. */
+/* What bounds of rounding share: the step as a map over the state as it is kept, in double, and the model's exact
+ * course. */
 #ifndef PLGEN_KEPT_H
 #define PLGEN_KEPT_H
 
@@ -23,6 +24,16 @@ struct kept {                       /* the step over the state as it is kept: y+
 struct extent {                     /* of an output, over all samples */
 	double most, last, slack;   /* by the loads and from the start, as walked through; how far that may be off */
 	double lower;               /* of the largest, inputs counted */
+};
+/* The exact course of the model from the spec's initial values, inputs 0: rows are the states as they are kept; where
+ * these are not as written, then those */
+struct course {
+	int steps, rows;
+	const mpfr_t *written;      /* of each state as written: factors of those kept, and a constant */
+	double *y, *z;              /* [steps + 1][row], [steps + 1][load columns] */
+	int *segment;               /* [steps + 1] */
+	double *largest;            /* per row */
+	double *sum, *peak;         /* rows x states: sum and largest of |what it reads of Phi^m| */
 };
 struct errors {
 	const struct step *step;
@@ -49,6 +60,10 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 /* what reads slopes of inputs is bounded, not attained */
 double slopes_of_inputs(const struct linear *system, const struct kept *k, double h);
 struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k);
+
+/* Followed in 320 bits, and how far errors reach in it; false: the model is too large, or leaves the range */
+bool make_course(const struct step *step, struct course *c);
+double written_factor(const struct course *c, int states, int written, int kept); /* of a state as written */
 
 /* ---- lasting.c: bounds of the same, of so many samples that they are not walked through ---- */
 

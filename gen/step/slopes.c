@@ -9,12 +9,28 @@ void tell_range(const struct step *step)
 	error(step->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
 }
 
+/* Does this entry of x belong to a load that the step leaves out? */
+static bool is_left_out(const struct step *step, int entry)
+{
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; step->forced && l < system->loads; l++) {
+		int from = step->layout.load[l];
+		if (step->forced->load[l] && entry >= from && entry < from + system->load[l].columns)
+			return true;
+	}
+	return false;
+}
+
+/* Where differences are kept, what the step leaves out is added to the states as written. */
 double *slopes_of(const struct step *step, int branch)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
 	RATIONALS *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
 	double *A = ARRAY(double, 2 * cells);
+	const size_t size = (size_t)step->layout.size, states = (size_t)step->branch[branch].system.states;
 	for (size_t i = 0; i < cells; i++) {
+		if (step->model->relative && i / size < states && is_left_out(step, (int)(i % size)))
+			continue;
 		A[i] = round_rational(exact[i]);
 		A[cells + i] = isfinite(A[i]) ? rounding_rest(exact[i]) : 0;
 	}
@@ -34,18 +50,6 @@ static struct load_slopes place_of_loads(const struct step *step)
 		place.columns += system->load[l].columns;
 	}
 	return place;
-}
-
-/* Does this entry of x belong to a load that the step leaves out? */
-static bool is_left_out(const struct step *step, int entry)
-{
-	const struct linear *system = &step->branch->system;
-	for (int l = 0; step->forced && l < system->loads; l++) {
-		int from = step->layout.load[l];
-		if (step->forced->load[l] && entry >= from && entry < from + system->load[l].columns)
-			return true;
-	}
-	return false;
 }
 
 static double *load_slopes_in(const struct step *step, const struct load_slopes *place, int segment)

@@ -205,9 +205,11 @@ struct program {
 /* part times the load states solves the equations: what some loads sustain by themselves */
 struct forced {
 	bool *load;                 /* per load: one of them; then the step is without it */
-	struct coefficient *part;   /* [segment of time][states x load columns] */
-	mpq_t *exact;               /* the same in the first segment */
-	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
+	int rows, written;          /* the states as they are kept, and those as written from this row on */
+	struct coefficient *part;   /* [segment of time][row][load column] */
+	mpq_t *exact;               /* the same */
+	/* [segment of time][state][load column]: what the state that is kept gains from there to the next */
+	struct coefficient *change;
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
 };
@@ -226,7 +228,8 @@ struct anchors {                    /* load states at an anchor, and tables for 
 };
 struct rounding {                   /* a bound over the first steps from the initial values, inputs 0 */
 	bool known;
-	int steps, state;           /* the state where it is largest */
+	int steps;
+	const char *state;          /* as written or as it is kept: where it is largest */
 	double relative;            /* to the state's largest value */
 	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
 };
@@ -353,7 +356,12 @@ enum { PLACE_REST, PLACE_CARRY };   /* `part` of TAPE_ACCUMULATE */
 const struct linear *system_of_outputs(const struct step *step); /* of regions one with all segments of time */
 /* Column of the loads; TAPE_NONE: the constant 1 */
 tape_ref tape_of_column(struct tape *t, const struct linear *system, int column);
-void tape_of_forced(struct tape *t, const struct step *step, const char *vector); /* what loads sustain by themselves */
+/* What loads sustain by themselves, of step->forced the rows from `first` on */
+void tape_of_forced(struct tape *t, const struct step *step, int first, const char *vector);
+/* Rows of outputs read the state as it is kept, and what loads sustain of it by the factors of the load states */
+bool rows_sustained(const struct step *step);
+/* Per segment of time, what a row of outputs takes of a load state, by itself and so */
+const mpq_t *direct_factors(const struct step *step, const struct output *output, int load, int column);
 /* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
 bool has_second_word(const struct product *p, const struct step *step);

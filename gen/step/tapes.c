@@ -257,6 +257,31 @@ bool differs_in_time(const mpq_t *factor, int segments)
 	return changes;
 }
 
+bool rows_sustained(const struct step *step)
+{
+	bool rows = step->forced && step->model->relative;
+	for (int o = 0; rows && o < step->model->outputs; o++)
+		rows = !step->model->output[o].left;
+	return rows;
+}
+
+const mpq_t *direct_factors(const struct step *step, const struct output *output, int load, int column)
+{
+	const struct linear *system = system_of_outputs(step);
+	const mpq_t *own = output->load[load] + column * system->segments;
+	int at = column, columns = load_columns(system);
+	for (int l = 0; l < load; l++)
+		at += system->load[l].columns;
+	if (!rows_sustained(step) || !is_forced(step, at))
+		return own;
+	mpq_t *sum = rationals_copied(system->segments, own);
+	for (int s = 0; s < system->segments; s++)
+		for (int i = 0; i < system->states; i++)
+			rational_addmul(sum[s], output->state[i],
+					step->forced->exact[(s * step->forced->rows + i) * columns + at]);
+	return sum;
+}
+
 static int load_terms(struct tape *t, const struct step *step, const struct output *output, tape_ref *term)
 {
 	const struct linear *system = system_of_outputs(step);
@@ -264,7 +289,7 @@ static int load_terms(struct tape *t, const struct step *step, const struct outp
 	int terms = 0;
 	for (int l = 0, column = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++, column++) {
-			const mpq_t *factor = output->load[l] + k * system->segments;
+			const mpq_t *factor = direct_factors(step, output, l, k);
 			const bool differs = differs_in_time(factor, system->segments);
 			if (!differs && mpq_sgn(factor[0]) == 0)
 				continue;
@@ -304,29 +329,30 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 
 /* ---- the forced part ---- */
 
-static bool sustains(const struct step *step, int state, int column)
+static bool sustains(const struct step *step, int row, int column)
 {
 	const struct table *table = step->branch->whole;
 	bool any = false;
 	for (int s = 0; s < step->branch->system.segments && is_forced(step, column); s++)
-		any = any || step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
+		any = any || step->forced->part[(s * step->forced->rows + row) * table->columns + column].value != 0;
 	return any;
 }
 
-void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
+void tape_of_forced(struct tape *t, const struct step *step, int first, const char *vector)
 {
+	const struct model *model = first ? step->model->relative->written : step->model;
 	const struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
 	tape_ref *term = ARRAY(tape_ref, table->columns + 1);
 	for (int i = 0; i < table->states; i++) {
-		int terms = 0, at = i * table->columns;
+		int terms = 0, at = (first + i) * table->columns;
 		for (int k = 0; k < table->columns; k++) {
-			if (!sustains(step, i, k))
+			if (!sustains(step, first + i, k))
 				continue;
 			tape_ref x = tape_of_column(t, system, k);
 			term[terms++] = system->segments > 1 ? entry(t, TABLE_FORCED, at + k, x)
 						: number_times(t, step->forced->part[at + k].value, x);
 		}
-		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->state_name[i]);
+		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, model->state_name[i]);
 	}
 }
