@@ -207,7 +207,8 @@ static void emit_gathering(const struct emitter *e)
 		param[k] = param_of_column(e->step, column[k]);
 	emit_int_list(e, "stays", stays, column);
 	emit_int_list(e, "stay_param", stays, param);
-	emit_int_list(e, "pair", pair.count, pair.number);
+	if (any_still(e->step))
+		emit_int_list(e, "pair", pair.count, pair.number);
 	say_macro(e, "STAYS", whole_text(stays));
 	say_macro(e, "PAIRS", whole_text(pair.count));
 	say_macro(e, "STILL", whole_text(any_still(e->step)));
