@@ -100,8 +100,9 @@ expressions_of() { # ID
 
 # facts_of ID: of its C sets `scheme`; `inputs`, `pieces`, `own_region`, `selftest` and `lanes`: whether it has them;
 # `real`; `adds`, the additions of a step; `tolerance`, 0 where no lengths of steps are chosen by one; `regions`, how
-# many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, the largest by
-# which its banner measures one coordinate from another, 10*x - y, at least 1
+# many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, at least 1: the
+# largest by which its banner measures one coordinate from another, 10*x - y, times the largest by which such states are
+# larger than another in the references of the selftest, since that is the sum of them and a difference as large
 facts_of() {
 	eval "$(awk -v id="$1" '
 		BEGIN { real = "double"; regions = ratio = adds = 1; may = 0 }
@@ -122,6 +123,8 @@ facts_of() {
 		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
 		/is kept apart from what moves in it:/ && !lists++ {
 			sub(/;.*/, "")
+			apart = $0 " "
+			gsub(/[^A-Za-z0-9_]/, " ", apart)
 			for (count = split($0, part, /[^0-9.*\/]+/); count > 0; count--) {
 				if (split(part[count], of, /[*\/]/) < 2)
 					continue
@@ -129,7 +132,27 @@ facts_of() {
 				ratio = most > ratio ? most : ratio
 			}
 		}
+		/_known_unit\[[0-9]+\] = / { units = ""; listing = 1 }
+		listing { units = units $0; listing = !/};/ }
 		END {
+			all = banner
+			sub(/.* State y = /, "", all)
+			sub(/.*{/, "", units)
+			split(all, name, ", ")
+			for (count = split(units, unit, ","); count > 0; count--) {
+				primes = gsub(/\047/, "", name[count])
+				sub(/\..*/, "", name[count])
+				if (!index(apart, " " name[count] " "))
+					continue
+				if (!(primes in least) || unit[count] + 0 < least[primes])
+					least[primes] = unit[count] + 0
+				if (unit[count] + 0 > most_of[primes])
+					most_of[primes] = unit[count] + 0
+			}
+			sizes = 1
+			for (primes in least)
+				sizes = most_of[primes] > sizes * least[primes] ? most_of[primes] / least[primes] : sizes
+			ratio *= sizes
 			match(banner, /(error is|terms are) below [0-9.e-]+ of/)
 			split(substr(banner, RSTART, RLENGTH), of)
 			tolerance = RLENGTH > 0 ? of[4] : 0
