@@ -102,7 +102,8 @@ expressions_of() { # ID
 # `real`; `adds`, the additions of a step; `tolerance`, 0 where no lengths of steps are chosen by one; `regions`, how
 # many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, at least 1: the
 # largest by which its banner measures one coordinate from another, 10*x - y, times the largest by which such states are
-# larger than another in the references of the selftest, since that is the sum of them and a difference as large
+# larger than another in the references of the selftest, since that is the sum of them and a difference as large;
+# `lost`, what outputs lose with the modes that are dropped
 facts_of() {
 	eval "$(awk -v id="$1" '
 		BEGIN { real = "double"; regions = ratio = adds = 1; may = 0 }
@@ -151,15 +152,18 @@ facts_of() {
 			}
 			sizes = 1
 			for (primes in least)
-				sizes = most_of[primes] > sizes * least[primes] ? most_of[primes] / least[primes] : sizes
+				if (most_of[primes] > sizes * least[primes])
+					sizes = most_of[primes] / least[primes]
 			ratio *= sizes
+			if (match(banner, /outputs lose at most [^(]*/))
+				lost = substr(banner, RSTART + 20, RLENGTH - 21)
 			match(banner, /(error is|terms are) below [0-9.e-]+ of/)
 			split(substr(banner, RSTART, RLENGTH), of)
 			tolerance = RLENGTH > 0 ? of[4] : 0
 			printf "scheme=%s tolerance=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ",
 				scheme, tolerance, inputs ? "yes" : "", pieces ? "yes" : "",
 				own_region ? "yes" : "", selftest ? "yes" : "", lanes ? "yes" : ""
-			printf "may=%s real=%s adds=%d regions=%.17g ratio=%s", may, real, adds,
+			printf "lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s", lost, may, real, adds,
 				own_region ? regions : 0, ratio
 		}' "$1.h" "$1.c")"
 }
@@ -305,7 +309,7 @@ batch_add() {
 			"$solution, ${selftest:-NULL}," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
 			"\"$impact\", $adds, $region, $regions, $other, $ratio, $tolerance," \
-			"$by_eighths, $may},"
+			"$by_eighths, \"$lost\", $may},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
