@@ -33,7 +33,7 @@ struct subject {
 	double tolerance;           /* to which lengths of steps are chosen; 0: they are not */
 	const pl_model *fine;       /* by eighths of what it steps at once, where a fixed order of h is held against */
 	const pl_modelf *finef;     /* steps to a tolerance; NULL: it is not */
-	const char *lost;           /* what each output loses with modes that are dropped: " NAME VALUE, ..."; "": nothing */
+	const char *lost;           /* by output, with modes that are dropped: " NAME VALUE, ..." */
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
 };
 
