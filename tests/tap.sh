@@ -62,6 +62,13 @@ runtime_archive() {
 	ar rcs "$archive" runtime_objects/*.o || exit 99
 }
 
+# python ARGUMENT ...: python3 itself, not what may choose among several, and without the packages of its site, which
+# take most of its start
+python() {
+	: "${python_itself:=$(python3 -c 'import sys; print(sys.executable)')}"
+	"$python_itself" -I -S "$@"
+}
+
 # main_of NAME [OPTIONS]: sets `main` to what a compiler links as runtime/host/plmain.c of that model, which is compiled
 # once for the same options; $root is that of the sources
 main_of() {

@@ -103,21 +103,28 @@ static void unlink_chunk(struct chunk *chunk)
 	chunk->after->before = chunk->before;
 }
 
-static void *new_chunk(size_t size)
+static void *new_chunk(size_t size, bool zeroed)
 {
-	struct chunk *chunk = size > SIZE_MAX - sizeof *chunk ? NULL : malloc(sizeof *chunk + size);
+	struct chunk *chunk = NULL;
+	if (size <= SIZE_MAX - sizeof *chunk)       /* fresh pages are zero, and much of a large block stays so */
+		chunk = zeroed ? calloc(1, sizeof *chunk + size) : malloc(sizeof *chunk + size);
 	if (!chunk)
 		out_of_memory();
 	link_chunk(chunk);
 	return chunk + 1;
 }
 
-static void *ring_new(size_t size)
+static void *new_block(size_t size, bool zeroed)
 {
-	void *block = size <= SMALL ? new_cell(size) : new_chunk(size);
+	void *block = size <= SMALL ? new_cell(size) : new_chunk(size, zeroed);
 	*size_of(block) = size;
 	held += sizeof(struct chunk) + size;     /* however it is kept */
-	return block;
+	return zeroed && size <= SMALL ? memset(block, 0, size) : block;
+}
+
+static void *ring_new(size_t size)
+{
+	return new_block(size, false);
 }
 
 static void give_back(void *block)
@@ -234,7 +241,7 @@ void *allocate(size_t count, size_t size)
 	if (size && count > SIZE_MAX / size)
 		out_of_memory();
 	check_bytes(count * size);
-	return memset(ring_new(count * size), 0, count * size);
+	return new_block(count * size, true);
 }
 
 void *enlarge(void *chunk, size_t count, size_t size)

@@ -30,8 +30,8 @@ agrees() {
             { ! grep -q 'M_INPUTS = 0' m.h || what=-DHAS_INPUTS=0; } &&
             { ! grep -q M_BATCH_FACTORS m.h || what="$what -DTUNED"; } &&
             { ! grep -q '^#define PL_FLOAT_ONLY' m.h || what="$what -DREAL_FLOAT"; } &&
-            $compiler -std=c99 $flags $warnings -I"$root/runtime" -c m.c -o m.o &&
-            $compiler -std=c99 $flags $what -I"$root/runtime" -I. "$here/batch.c" m.o "$archive" -lm -o m &&
+            $compiler $flags $warnings -I"$root/runtime" -c m.c -o m.o &&
+            $compiler $flags $what -I"$root/runtime" -I. "$here/batch.c" m.o "$archive" -lm -o m &&
             ./m "$units"
     } >log 2>&1
     result $? "$spec${*:+ $*}, $compiler $flags"
@@ -53,9 +53,9 @@ while read -r spec options; do
         *) bits=0 ;;
     esac
     # shellcheck disable=SC2086
-    agrees $bits "${CC:-cc}" -O0 "$spec" $options
-    [ -n "${LONG:-}" ] || continue
-    for compiler in "${CC:-cc}" clang; do
+    [ -n "${LONG:-}" ] || { agrees $bits "$run_cc" '' "$spec" $options; continue; }
+    agrees $bits "${CC:-cc} -std=c99" -O0 "$spec" $options
+    for compiler in "${CC:-cc} -std=c99" 'clang -std=c99'; do
         # shellcheck disable=SC2086
         agrees 300 "$compiler" '-O2 -march=native' "$spec" $options
         # shellcheck disable=SC2086

@@ -178,7 +178,7 @@ FIELD(pressed)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 3 * cosl(2 * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] -
+    d[1] = 3 * cos_of(2 * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] -
         (I(0) ? 1e8L * (y[0] - 0.5L) + 2e4L * y[1] : 0);
 }
 
@@ -193,7 +193,7 @@ FIELD(braked)
 {
     UNUSED;
     d[0] = y[1];
-    d[1] = 5000 * cosl(2 * t) - 1e4L * SIGN(0) * y[1] * y[1] - 5000 * y[0] - 100 * y[0] * y[0] * y[0];
+    d[1] = 5000 * cos_of(2 * t) - 1e4L * SIGN(0) * y[1] * y[1] - 5000 * y[0] - 100 * y[0] * y[0] * y[0];
 }
 
 EXPRESSIONS(of_position)       { (void)t; e[0] = y[0]; }

@@ -9,16 +9,21 @@ set -u
 plgen=$1
 root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 
 runtime_archive "$root/runtime"
+plmain=$root/runtime/host/plmain.c
+for real in double float; do
+    ${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror $([ $real = double ] || echo -DFLOAT) \
+        -I"$root/runtime" -DMODEL=rec -c "$plmain" -o plmain.o >log 2>&1
+    result $? "plmain.c in $real compiles without a warning"
+done
 
 # driver FILE.c NAME PROGRAM [FLAGS]
 driver() {
-    options="-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-}"
-    main_of "$2" "$options" >>log 2>&1
     # shellcheck disable=SC2086
-    ${CC:-cc} $options -I"$root/runtime" $main "$1" "$archive" -lm -o "$3" >>log 2>&1
+    $run_cc ${4-} -I"$root/runtime" -DMODEL="$2" "$plmain" "$1" "$archive" -lm -o "$3" >>log 2>&1
 }
 
 # 41 samples of two inputs, 0.05 s apart, neither 0 at the start
@@ -162,7 +167,7 @@ int main(void)
 }
 EOF
 "$plgen" -o touch_pl.c touch.spec 2>log && "$plgen" -o fixed_pl.c fixed.spec 2>>log &&
-    ${CC:-cc} -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
+    $run_cc -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
 result $? 'piecewise linear: held before the first step, the sample decides the region, and nothing is crossed'
 
 # ---- the other type; times ----
@@ -170,9 +175,9 @@ result $? 'piecewise linear: held before the first step, the sample decides the 
 printf "model two\nparam k = 4\ntunable k\ncoord x\ninit x = 1\nx'' + k*x = 0\nstep 0.01\n" >two.spec
 : >log
 mkdir later && cp "$root"/runtime/*.h later && sed -i 's/PL_MODEL_VERSION = [0-9]*/PL_MODEL_VERSION = 99/' later/plrt.h
-"$plgen" two.spec >two.c && ${CC:-cc} -std=c99 -Ilater -c two.c -o later.o 2>>log &&
-    ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=two "$root/runtime/host/plmain.c" later.o "$archive" -lm -o later_two \
-        2>>log && ./later_two 1 >found.csv 2>said
+"$plgen" two.spec >two.c && $run_cc -Ilater -c two.c -o later.o 2>>log &&
+    $run_cc -I"$root/runtime" -DMODEL=two "$plmain" later.o "$archive" -lm -o later_two 2>>log &&
+    ./later_two 1 >found.csv 2>said
 [ $? -eq 2 ] && [ ! -s found.csv ] && grep -q 'whose descriptors have version 99, and plmain.c with one of version' said
 result $? 'a model compiled with a plrt.h of another version: told'
 for real in double float; do

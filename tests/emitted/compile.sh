@@ -81,7 +81,13 @@ same_columns() {
 }
 
 runtime_archive "$root/runtime"
-driver() {          # driver FILE.c NAME PROGRAM [FLAGS [LIBRARIES]]
+# driver FILE.c NAME PROGRAM [FLAGS [LIBRARIES]]: with MERGE=1 or LONG=1 in the compiler's own dialect, else only to run
+driver() {
+    if ! merging; then
+        # shellcheck disable=SC2086
+        $run_cc -I"$root/runtime" "-DMODEL=$2" "$root/runtime/host/plmain.c" "$1" "$archive" ${5-} -o "$3" >>log 2>&1
+        return
+    fi
     main_of "$2" "${4-}" >>log 2>&1
     # shellcheck disable=SC2086
     ${CC:-cc} ${4-} -I"$root/runtime" $main "$1" "$archive" ${5-} -o "$3" >>log 2>&1
@@ -123,7 +129,7 @@ for f in "$root"/runtime/*.c; do
 done
 
 mkdir runtime models
-for m in $models; do cp "$m/stdout.c" "models/$m.c"; done
+for m in $models; do cp "$m/$m.c" "$m/$m.h" models; done
 for f in $runtime; do cp "$f.c" "runtime/$f.c"; done
 
 # needs FOLDER TITLE NAME ...: do these files of the folder need the runtime, memcpy and memset at most?
@@ -228,7 +234,11 @@ for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     done
     long && for f in $runtime; do sources="$sources ../$f.c"; done
     # shellcheck disable=SC2086
-    (cd program_c && "$c" -std=c99 -I"$root/runtime" -c $sources) >log 2>&1 &&
+    if merging; then
+        (cd program_c && "$c" -std=c99 -I"$root/runtime" -c $sources)
+    else
+        cp models/*.o program_c         # of these files, by that compiler
+    fi >log 2>&1 &&
         "$cpp" -std=c++17 $warnings -I"$root/runtime" $includes main.cpp program_c/*.o "$archive" \
             -o program >>log 2>&1 &&
         ./program >values 2>>log

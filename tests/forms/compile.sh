@@ -77,10 +77,7 @@ no_double_instruction() {
             skip "$2, $compiler" 'no such compiler, no objdump, or another processor'
             continue
         fi
-        case ${1##*/} in
-            history_*) long && level=-O2 || level=-O0 ;;    # without an optimiser no conversion goes unseen
-            *) level=-O2 ;;
-        esac
+        long && level=-O2 || level=-O0          # without an optimiser no conversion goes unseen
         if [ "${1%/*}" = "$root/runtime" ] && [ "$compiler" = "${GCCS:-gcc}" ] && [ -n "${PLRT-}" ]; then
             ar p "$PLRT" "runtime_${1##*/}.o" >out.o 2>log  # as the build folder has it
         else

@@ -77,7 +77,7 @@ for file in vim/vimfiles/syntax/plgen.vim plgen/vscode/syntaxes/plgen.tmLanguage
 	result $? "$file: $(wc -l <words) words"
 done
 for file in package.json language-configuration.json syntaxes/plgen.tmLanguage.json; do
-	python3 -m json.tool "$prefix/share/plgen/vscode/$file" >/dev/null 2>log
+	python -m json.tool "$prefix/share/plgen/vscode/$file" >/dev/null 2>log
 	result $? "vscode/$file is JSON"
 done
 if command -v vim >/dev/null 2>&1; then

@@ -121,11 +121,13 @@ only() {
     scheme=$2
     shift 2
     if ! "$plgen" --scheme "$scheme" -o model.c "$spec" 2>log ||
-        ! gcc -std=c99 -O0 -fno-builtin -I"$root/runtime" -c model.c -o model.o >log 2>&1; then
+        ! $run_cc -I"$root/runtime" -c model.c -o model.o >log 2>&1; then
         result 1 "$(basename "$spec"), $scheme: compiled"
         return
     fi
-    nm -u model.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset)$' | sort >found
+    # tcc: memmove of an assignment, a conversion of its own library
+    nm -u model.o | awk '{ print $NF }' |
+        grep -v -E '^(pl_[a-z_]*|mem(cpy|set|move)|__floatun[sd]i[sd]f|_GLOBAL_OFFSET_TABLE_)$' | sort >found
     : >expected
     [ $# -eq 0 ] || printf '%s\n' "$@" | sort >expected
     comm -23 found expected >log               # what the runtime does in its stead (cos(w*t), exp(a*t)) may be missing

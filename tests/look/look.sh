@@ -187,7 +187,7 @@ unlinear() {
 		[ $? -eq 1 ] && [ ! -s out ] && grep -qF "they would leave out '$first'" log && grep -qF -- "$3" log ||
 			good=1
 	done
-	"$plgen" --explain=json "$1.spec" >json 2>>log && python3 -c '
+	"$plgen" --explain=json "$1.spec" >json 2>>log && python -c '
 import json, sys
 told = json.load(open("json"))
 print(told["linear"], told["left_out"])

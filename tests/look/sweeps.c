@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STATES = 4, COLUMNS = 4, ROWS = 64, PERIODS = 300, SAMPLES = 600, BETWEEN = 10 };
+enum { STATES = 4, COLUMNS = 4, ROWS = 64, PERIODS = 150, SAMPLES = 600, BETWEEN = 10 };
 
 /* ---- the equations ---- */
 

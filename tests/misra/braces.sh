@@ -13,7 +13,7 @@ if ! command -v python3 >/dev/null 2>&1; then
 fi
 
 printf 'void f(int a)\n{\n    if (a > (1)) {  /* for */\n        a = 0;\n    } else\n        a = 1;\n}\n' >bare.c
-python3 "$look" bare.c >log 2>&1
+python "$look" bare.c >log 2>&1
 [ $? -eq 1 ] && grep -q '^bare.c: else a = 1;' log && grep -q '^1 bodies' log
 result $? 'a body without is noticed'
 
@@ -44,10 +44,10 @@ for spec in sdcsf gear1 pendulum oscillator quarter_car_bumps; do
 done
 make tuned_x tests/tunable/changes.spec
 make selftest_x models/sdcsf.spec --selftest
-[ ! -s log ] && python3 "$look" ./*_x.c ./*_rhs.c ./*_float.c ./*_batch.c >log 2>&1
+[ ! -s log ] && python "$look" ./*_x.c ./*_rhs.c ./*_float.c ./*_batch.c >log 2>&1
 result $? "generated code: $(tail -n 1 log)"
 bodies=$(sed -n '$s/ bodies.*//p' log)
-python3 "$look" "$root"/runtime/*.[ch] "$root"/runtime/fmi/*.[ch] >log 2>&1
+python "$look" "$root"/runtime/*.[ch] "$root"/runtime/fmi/*.[ch] >log 2>&1
 result $? "the runtime: $(tail -n 1 log)"
 shared=$(sed -n '$s/ bodies.*//p' log)
 [ "${bodies:-0}" -gt 500 ] && [ "${shared:-0}" -gt 800 ]

@@ -11,7 +11,7 @@ for name in guards guards_kept events crossings crossings_kept region cut peak d
 done
 PLGEN_RUNTIME=$work/runtime
 export PLGEN_RUNTIME
-compiler=$(command -v gcc || command -v cc)
+compiler=$(command -v tcc || command -v gcc || command -v cc)
 mkdir 'a folder with blanks' tools
 cat >'tools/my cc' <<X
 #!/bin/sh

@@ -28,7 +28,7 @@ keys() {
 	name=$1
 	spec=$2
 	shift 2
-	"$plgen" --explain=json "$@" "$spec" 2>log >json && python3 -c '
+	"$plgen" --explain=json "$@" "$spec" 2>log >json && python -c '
 import json, sys
 def once(members):
     names = [name for name, value in members]

@@ -64,18 +64,34 @@ static void flow(const struct hand_system *s, const struct hand_state *now, real
 	}
 }
 
+/* The last series: what is halved towards a crossing begins where it did before */
+static struct {
+	struct hand_system of;
+	struct hand_state from;
+	real y[TERMS + 1][2 * HAND_MASSES];
+} kept;
+
+static void flow_once(const struct hand_system *s, const struct hand_state *now)
+{
+	if (memcmp(&kept.from, now, sizeof *now) == 0 && memcmp(&kept.of, s, sizeof *s) == 0)
+		return;
+	flow(s, now, kept.y);
+	kept.from = *now;
+	kept.of = *s;
+}
+
 /* The state tau later in one region; pieces so short that the series is as good as exact */
 static struct hand_state ahead(const struct hand_system *s, const struct hand_state *from, real tau)
 {
 	struct hand_state now = *from;
 	const int pieces = 1 + (int)(fabsl(tau) / 0.1L);
 	for (int piece = 0; piece < pieces; piece++) {
-		real y[TERMS + 1][2 * HAND_MASSES], dt = tau / pieces;
-		flow(s, &now, y);
+		const real dt = tau / pieces;
+		flow_once(s, &now);
 		for (int i = 0; i < 2 * s->n; i++) {
 			real sum = 0;
 			for (int k = TERMS; k >= 0; k--)
-				sum = sum * dt + y[k][i];
+				sum = sum * dt + kept.y[k][i];
 			now.y[i] = sum;
 		}
 		now.t = from->t + tau * (piece + 1) / pieces;
