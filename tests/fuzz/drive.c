@@ -511,31 +511,36 @@ static void run_steps(void)
 }
 
 /* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
- * more than what rounding makes of a step that begins in another region. */
+ * more than what rounding makes of a step that begins in another region. From here, or from where what sticks slips. */
+static bool ramps_from(int input, bool far)
+{
+	double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
+	void *const s = malloc(of->whole->size);
+	bool ramp = false;
+	if (!s)
+		exit(3);
+	for (int j = 0; j < of->whole->states; j++)
+		start[j] = far ? (j % 2 ? -2 : 2) + j * 0.3 : 0.25 + j * 0.01;
+	for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
+		of->whole->init(s);
+		u[input] = round ? 1 : 0;
+		of->whole->step(s, u);
+		of->whole->set(s, 0, start);
+		u[input] = 0.5;
+		of->whole->step(s, u);
+		of->whole->get(s, seen[round]);
+		of->whole->out(s, seen[round] + of->whole->states);
+	}
+	for (int j = 0; j < of->whole->states + of->whole->outputs; j++)
+		ramp = ramp || fabs(seen[0][j] - seen[1][j]) > 1e-10 * fmax(1, fabs(seen[0][j]));
+	free(s);
+	return ramp;
+}
+
 static void find_ramps(void)
 {
-	for (int i = 0; i < of->whole->inputs; i++) {
-		double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
-		void *const s = malloc(of->whole->size);
-		if (!s)
-			exit(3);
-		ramps[i] = false;
-		for (int j = 0; j < of->whole->states; j++)
-			start[j] = 0.25 + j * 0.01;
-		for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
-			of->whole->init(s);
-			u[i] = round ? 1 : 0;
-			of->whole->step(s, u);
-			of->whole->set(s, 0, start);
-			u[i] = 0.5;
-			of->whole->step(s, u);
-			of->whole->get(s, seen[round]);
-			of->whole->out(s, seen[round] + of->whole->states);
-		}
-		for (int j = 0; j < of->whole->states + of->whole->outputs; j++)
-			ramps[i] = ramps[i] || fabs(seen[0][j] - seen[1][j]) > 1e-10 * fmax(1, fabs(seen[0][j]));
-		free(s);
-	}
+	for (int i = 0; i < of->whole->inputs; i++)
+		ramps[i] = ramps_from(i, false) || ramps_from(i, true);
 }
 
 /* How far the truth takes a neighbour away: as far it takes errors of steps that are behind. Distances are those of
