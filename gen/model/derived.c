@@ -100,8 +100,8 @@ static struct node *derived_name(struct spec *spec, struct node *node)
 static void derive_in(struct spec *spec, struct node **place, bool divides)
 {
 	struct node *node = *place;
-	struct symbol *s = node && node->kind == NODE_NAME ? node->symbol : NULL;
-	if (!node || !first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
+	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	if (!first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
 		return;
 	if (is_number(node) && is_other(node, divides)) {
 		*place = derived_name(spec, node);
@@ -118,23 +118,103 @@ static void derive_in(struct spec *spec, struct node **place, bool divides)
 	}
 }
 
-void derive_params(struct spec *spec)
+/* ---- what the target reads ---- */
+
+/* All expressions of the spec but values of params, initial values and what holds for plgen alone */
+static void each_expression(struct spec *spec, void (*visit)(void *context, struct node **place), void *context)
 {
-	spread_tuned(spec);
 	for (int i = 0; i < spec->equations; i++) {
-		derive_in(spec, &spec->equation[i].left, false);
-		derive_in(spec, &spec->equation[i].right, false);
+		visit(context, &spec->equation[i].left);
+		visit(context, &spec->equation[i].right);
 	}
 	for (int i = 0; i < spec->elements; i++)
-		derive_in(spec, &spec->element[i].value, false);
+		visit(context, &spec->element[i].value);
 	for (int i = 0; i < spec->whens; i++) {
-		derive_in(spec, &spec->when[i].guard, false);
-		derive_in(spec, &spec->when[i].gap, false);
-		derive_in(spec, &spec->when[i].restitution, false);
-		for (int k = 0; k < spec->when[i].jumps; k++)
-			derive_in(spec, &spec->when[i].jump[k].value, false);
+		struct when *when = &spec->when[i];
+		struct node **place[] = { &when->guard, &when->gap, &when->restitution };
+		for (int k = 0; k < 3; k++)
+			if (*place[k])
+				visit(context, place[k]);
+		for (int k = 0; k < when->jumps; k++)
+			visit(context, &when->jump[k].value);
 	}
 	for (struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_OUTPUT && s->value)
-			derive_in(spec, &s->value, false);
+			visit(context, &s->value);
+}
+
+static void derive_here(void *context, struct node **place)
+{
+	derive_in(context, place, false);
+}
+
+void derive_params(struct spec *spec)
+{
+	spread_tuned(spec);
+	each_expression(spec, derive_here, spec);
+}
+
+static void add_read(void *context, struct node **place)
+{
+	*(unsigned *)context |= params_read(*place);
+}
+
+void warn_of_unread(const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	unsigned read = 0;
+	each_expression(model->spec, add_read, &read);
+	for (int k = 0; k < spec->tunables - spec->derived && !model->relative; k++)
+		if (!(read >> k & 1))
+			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
+				    spec->tunable[k].symbol->name);
+}
+
+/* ---- what cannot be found there ---- */
+
+/* What seems to be a sum of products of its i-th operand, and is none. A load's frequency may be tunable, its phase is
+ * looked at with the model. */
+static bool stays_here(const struct node *node, int i)
+{
+	const bool wave = node->function == FN_SIN || node->function == FN_COS;
+	return node->kind == NODE_COMPARE || (node->kind == NODE_CHOOSE && i == 0) ||
+	       (node->kind == NODE_POWER && i == 1) ||
+	       (node->kind == NODE_CALL && (!wave || is_number(node->child[i])));
+}
+
+static _Noreturn void refuse_decided(const struct node *node, const struct node *name)
+{
+	const bool call = node->kind == NODE_CALL, power = node->kind == NODE_POWER;
+	const char *one_more = format("%d expressions that are no sums of products are found on the target, and this "
+				      "is one more", LIMIT_DERIVED);
+	error(name->at,
+	      is_number(node) ? one_more
+	      : call ? "what tunables alone make is found on the target; make what it gives a tunable of its own"
+		     : "which way it goes is decided when plgen runs: where formulas change is fixed",
+	      "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name,
+	      call ? format("%s()", function_name(node->function)) : power ? "an exponent" : "a condition");
+}
+
+/* Of what moves in regions the sign is one of those that have to stay. */
+static void check_in(void *context, struct node **place)
+{
+	const bool *regions = context;
+	struct node *node = *place;
+	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
+	if (symbol && symbol->tuned && !symbol->tunable && symbol->value && !symbol->tuning_checked) {
+		symbol->tuning_checked = true;
+		check_in(context, &symbol->value);
+	}
+	for (int i = 0; i < node->children; i++) {
+		const struct node *name = first_tuned(node->child[i]);
+		if (name && stays_here(node, i) && (!*regions || is_number(node)))
+			refuse_decided(node, name);
+		check_in(context, &node->child[i]);
+	}
+}
+
+void check_tuned(const struct model *model)
+{
+	bool regions = model->switching;
+	each_expression(model->spec, check_in, &regions);
 }

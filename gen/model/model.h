@@ -970,8 +970,6 @@ bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
 bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
 _Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
 void add_tuned_unit(struct tuned_equations *all, int row, int column);
-void warn_of_idle(const struct elsewhere *s);
-void check_tuned(const struct model *model, bool regions);      /* what is no such sum, by the text */
 
 struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */
 	const struct model *model;
@@ -992,16 +990,18 @@ const bool *find_factors(struct building *b);   /* per tunable param, of regions
 /* Puts names of further params, spec->derived of them, in the place of what no sum of products is. Again it finds
  * nothing. */
 void derive_params(struct spec *spec);
+void warn_of_unread(const struct model *model);
+void check_tuned(const struct model *model);    /* what is left of it leaves the statement */
 
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
 const struct node *first_tuned(const struct node *node);
-unsigned params_of_tunable(const struct spec *spec, int tunable);  /* the given ones it follows from, a bit each */
+unsigned params_read(const struct node *node);  /* the given ones it follows from, a bit each */
+unsigned params_of_tunable(const struct spec *spec, int tunable);
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
 struct tuning *list_tunables(const struct model *model);
-void warn_of_unread(const struct model *model);
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
 /* at values related by nothing; NULL: no param is tunable in this way */
 const struct model *model_elsewhere(const struct model *model);

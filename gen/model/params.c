@@ -29,58 +29,23 @@ int param_of_input(const struct spec *spec, int input)
 	return k;
 }
 
-static unsigned params_read(const struct node *node)
+unsigned params_read(const struct node *node)
 {
-	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	unsigned params = 0;
 	if (s && s->tunable && !s->derived)
 		return 1u << (s->tunable - 1);
-	if (s && s->tuned && s->value)
-		params = params_read(s->value);
+	if (s && s->tuned && s->value && !s->made_of)
+		s->made_of = params_read(s->value);
 	for (int i = 0; i < node->children; i++)
 		params |= params_read(node->child[i]);
-	return params;
+	return s ? s->made_of : params;
 }
 
 unsigned params_of_tunable(const struct spec *spec, int tunable)
 {
 	const struct symbol *s = spec->tunable[tunable].symbol;
 	return s->derived ? params_read(s->value) : 1u << tunable;
-}
-
-static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
-{
-	const struct reads own = reads_of(model, count, form);
-	for (int k = 0; k < model->spec->tunables; k++)
-		all->param[k] = all->param[k] || own.param[k];
-	for (int i = model->spec->inputs; i < model->system.inputs; i++)
-		if (own.input[i])
-			all->param[param_of_input(model->spec, i)] = true;
-}
-
-void warn_of_unread(const struct model *model)
-{
-	if ((model->switching && rubs(model->switching)) || model->drags > 0)
-		return;         /* rows of regions, and what holds beside a series, may read them, too */
-	const struct spec *spec = model->spec;
-	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
-	for (int k = 0; k < model->operators; k++)
-		read_by(&all, model, model->channels, (const struct form *const *)model->operator[k].left);
-	for (int i = 0; i < model->n && model->whole; i++)
-		read_by(&all, model, 1, &(const struct form *){ model->whole->residual[i].form });
-	for (int i = 0; i < model->outputs; i++) {
-		read_by(&all, model, model->output[i].left != NULL, &(const struct form *){ model->output[i].left });
-		for (int k = spec->inputs; k < model->system.inputs; k++)
-			if (mpq_sgn(model->output[i].input[0][k]) != 0)
-				all.param[param_of_input(spec, k)] = true;
-	}
-	for (int i = spec->tunables - spec->derived; i < spec->tunables; i++)
-		for (int k = 0; k < spec->tunables && (all.param[i] || (model->factor && model->factor[i])); k++)
-			all.param[k] = all.param[k] || (params_of_tunable(spec, i) >> k & 1);
-	for (int k = 0; k < spec->tunables - spec->derived; k++)
-		if (!all.param[k] && !(model->factor && model->factor[k]))
-			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
-				    spec->tunable[k].symbol->name);
 }
 
 struct tuning *list_tunables(const struct model *model)

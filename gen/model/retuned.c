@@ -360,7 +360,7 @@ static void check_outputs(const struct model *model)
 static void check_regions(const struct model *model)
 {
 	const struct spec *spec = model->spec;
-	check_tuned(model, true);
+	check_tuned(model);
 	check_outputs(model);
 	if (model->switching->sliders > 0)
 		error(spec->tunable[0].at, "a small mass slides with its own inertia",
@@ -377,7 +377,6 @@ static void check_linear(const struct model *model)
 		error(model->spec->tunable[0].at,
 		      "tunable params are for scheme exact, and for what a scheme leaves over",
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
-	check_tuned(model, false);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
 		if (name)
@@ -391,6 +390,7 @@ static void check_linear(const struct model *model)
 			      "an output that is linear may: give the derivative one of its own",
 			      "output '%s' is not linear and reads a derivative that tunable params change",
 			      model->highest[k]->name);
+	check_tuned(model);
 }
 
 /* An instance has A and e^{A d} of each */
@@ -429,8 +429,6 @@ static void find(void *context)
 	fit_rows(s);
 	if (!regions)
 		number_rows(s);
-	if (!s->model->relative)
-		warn_of_idle(s);
 }
 
 bool find_tuning(struct model *model, const struct request *request)
@@ -445,12 +443,13 @@ bool find_tuning(struct model *model, const struct request *request)
 	if (model->keeps_params) {
 		model->held = t;
 		model->retuned = model->factor ? t : NULL;
-		if (!model->relative)
-			warn_of_unread(model);
 	} else {
 		model->tuning = t;
 	}
-	return (model->keeps_params && !model->factor) || statement_guard(find, &s);
+	if ((model->factor || !model->keeps_params) && !statement_guard(find, &s))
+		return false;
+	warn_of_unread(model);
+	return true;
 }
 
 int retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index)

@@ -94,6 +94,7 @@ struct symbol {
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
 	/* it is tunable, or made of something that is; of that: check_tuned has looked through its value */
 	bool tuned, tuning_checked;
+	unsigned made_of;           /* given tunables, a bit each; 0: not looked at yet */
 	int tunable;                /* its number in the statements `tunable`, from 1; 0: it stands in none */
 	bool derived;               /* of these: it follows from others; else, derived.c has looked through its value */
 	bool factor;                /* tunable, and in regions no input: it changes their matrices; */
