@@ -79,7 +79,7 @@ static void mark_own(const struct emitter *e, const struct pieces *p, struct loo
 {
 	const struct tuning *r = e->model->retuned;
 	int size = e->step->layout.size, n = expressions_of(e);
-	const bool *reached = reached_in_regions(e->step, l->branch), systems = changes(e, l->branch);
+	const bool *reached = reached_elsewhere(e->step, l->branch), systems = changes(e, l->branch);
 	bool *whole = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),
 	     *off = ARRAY(bool, (size_t)(n * size));
 	for (int i = 0; i < e->system->states * size && systems; i++)

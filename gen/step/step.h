@@ -880,9 +880,8 @@ void plan_rest(struct step *step);                           /* step->rest */
 
 /* in its table: what vanishes at these values only is no zero */
 void mark_tuned_zeros(struct step *step);
-/* size x size: x_i follows x_j in time, in a branch's region (-1: some) and for some values of the params; of retuned
- * models */
-bool *reached_in_regions(const struct step *step, int branch);
+/* size x size: x_i follows x_j in time, in a branch's region (-1: some), for some values of the params */
+bool *reached_elsewhere(const struct step *step, int branch);
 
 /* ---- exact.c: exact numbers of the equations that stand in the code as they are, each rounded once ---- */
 

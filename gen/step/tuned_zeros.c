@@ -1,28 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which factors of a step are 0 whatever the tunable params are: the others may not be left out of the code. */
+/* Which factors of a step are 0 whatever the tunable params are: the others may not be left out of the code. What the
+ * equations are for values that are related by nothing tells it. */
 #include "step/step.h"
 
-/* x_i' reads x_j, for some values of the params: states, load states, inputs as in the series of `step` */
-static bool *couplings(const struct step *step)
+static void add_couplings(const struct step *step, const struct linear *system, bool *reads)
 {
-	const struct tuning *t = step->model->tuning;
-	const struct linear *system = &step->branch->system;
-	int size = step->layout.size, states = system->states;
-	mpq_t *A = augmented_matrix(&step->layout, system, 0);
-	bool *reads = ARRAY(bool, (size_t)(size * size));
-	for (int i = 0; i < size * size; i++)
-		reads[i] = mpq_sgn(A[i]) != 0;
-	for (int k = 0; k < system->n; k++) {
-		bool *row = reads + (system->velocity[k] >= 0 ? system->velocity[k] : k) * size;
-		for (int j = 0; j < t->x.size; j++) {
-			bool load = j >= states && j < states + system->segments * t->x.loads;
-			int at = load         ? states + (j - states) % t->x.loads
-				 : j < states ? j
-					      : j - (system->segments - 1) * t->x.loads;
-			row[at] = row[at] || t->acts[k * t->x.size + j];
-		}
+	const int size = step->layout.size;
+	for (int s = 0; s < system->segments; s++) {
+		mpq_t *A = augmented_matrix(&step->layout, system, s);
+		for (int i = 0; i < size * size; i++)
+			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
+		rationals_free(A, (size_t)(size * size));
 	}
-	return reads;
 }
 
 /* Reaching over any number of couplings */
@@ -34,6 +23,19 @@ static bool *reach(int size, bool *reads)
 				reads[i * size + j] = reads[i * size + j] ||
 						      (reads[i * size + k] && reads[k * size + j]);
 	return reads;
+}
+
+bool *reached_elsewhere(const struct step *step, int branch)
+{
+	const struct model *other = model_elsewhere(step->model);
+	const struct switching *own = step->model->switching;
+	bool *reads = ARRAY(bool, (size_t)(step->layout.size * step->layout.size));
+	if (!own)
+		add_couplings(step, &other->system, reads);
+	for (int r = 0; own && r < own->regions; r++)   /* systems that are equal for all values are one here */
+		if (own->region[r].possible && (branch < 0 || own->region[r].system == branch))
+			add_couplings(step, &other->switching->system[other->switching->region[r].system], reads);
+	return reach(step->layout.size, reads);
 }
 
 /* Does an input act on a state, by itself or by one of its derivatives? */
@@ -50,7 +52,7 @@ void mark_tuned_zeros(struct step *step)
 	struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
 	int n = table->states, size = step->layout.size;
-	const bool *reached = reach(size, couplings(step));
+	const bool *reached = reached_elsewhere(step, -1);
 	for (int i = 0; i < n; i++) {
 		const bool *row = reached + i * size;
 		for (int j = 0; j < n; j++) {
@@ -66,28 +68,4 @@ void mark_tuned_zeros(struct step *step)
 				table->input[i * table->inputs + column].zero =
 					!reaches(row + step->layout.input[input], system->input[input].hold);
 	}
-}
-
-/* What the columns of a retuned row are, x has too, in the same places. */
-bool *reached_in_regions(const struct step *step, int branch)
-{
-	const struct tuning *r = step->model->retuned;
-	int size = step->layout.size;
-	bool *reads = ARRAY(bool, (size_t)(size * size));
-	for (int k = 0; k < step->branches; k++) {
-		if (branch >= 0 && k != branch)
-			continue;
-		const struct linear *system = &step->branch[k].system;
-		mpq_t *A = augmented_matrix(&step->layout, system, 0);
-		for (int i = 0; i < size * size; i++)
-			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
-		rationals_free(A, (size_t)(size * size));
-		for (int i = 0; i < system->n; i++) {
-			int place = retuned_place(r, RETUNED_SLOPE, k, i);
-			bool *row = reads + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
-			for (int j = 0; j < size && place >= 0; j++)
-				row[j] = row[j] || retuned_reads(r, place, j);
-		}
-	}
-	return reach(size, reads);
 }
