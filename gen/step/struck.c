@@ -280,8 +280,9 @@ static void note_touching(struct through *t, unsigned struck, mpfr_srcptr off)
 	}
 }
 
-/* By the stated rule: where infinitely many bounces take no more than 2^-23 h (float: 2^-10) */
-static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
+/* By the stated rule: where infinitely many bounces take no more than 2^-23 h (float: 2^-10). What lies already is
+ * pressed by what comes to rest on it, and gets its share of the momentum. */
+static bool come_to_rest(struct through *t, struct chain *chain, mpfr_srcptr off)
 {
 	mpq_t brief, one;
 	mpfi_t left;
@@ -292,7 +293,7 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 	mpq_div_2exp(brief, t->whole->h, t->whole->asked.single && !t->whole->asked.solution ? 10 : 23);
 	for (int k = 0; k < t->s->impacts && known; k++) {
 		const struct impact *p = &t->s->impact[k];
-		if (!(struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 ||
+		if (!(chain->struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 ||
 				!touches(t, p))
 			continue;
 		bool presses = time_left(t, p, left, &known);
@@ -304,10 +305,10 @@ static bool come_to_rest(struct through *t, unsigned struck, mpfr_srcptr off)
 		if (!known || mpfr_sgn(&left->left) > 0)
 			continue;
 		mpfi_add_q(left, left, brief);
-		jump(t, p->in[t->segment].jumps, p->in[t->segment].still);
-		go_to(t, p, rest_of(t->s, t->segment, p));
-		through_hold(t);
-		note_impact(t, k, true, off);
+		const int before = t->passed;
+		lay(t, 1u << k, chain, off);
+		if (t->passed == before)
+			continue;
 		mpfi_add(t->list[t->passed - 1].at, t->list[t->passed - 1].at, left);
 		t->list[t->passed - 1].stands = stands;
 		known = through_settle(t, NULL, off);
@@ -423,7 +424,7 @@ bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	if (!through_follow(t))
 		return false;
 	through_hold(t);
-	if (!through_settle(t, NULL, off) || !come_to_rest(t, chain.struck, off) || !rest_together(t, &chain, off))
+	if (!through_settle(t, NULL, off) || !come_to_rest(t, &chain, off) || !rest_together(t, &chain, off))
 		return false;
 	note_touching(t, chain.struck, off);
 	return true;
