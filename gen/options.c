@@ -254,7 +254,7 @@ static const struct row {
 	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", .take = take_rows },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", .text = AT(depfile) },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", .flag = AT(request.selftest) },
-	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call",
+	{ "batch", NULL, "also emit NAME_batch: many instances in one call",
 	  .flag = AT(request.batch) },
 	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", .text = AT(fmu) },
 	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", .take = take_fmu_version },

@@ -162,7 +162,7 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		emit_if_any(e->kind->at, e);
 	if (has_jump(e))
 		emit_jump(e);
-	if (e->model->asked.batch)
+	if (e->model->asked.batch && !e->model->delays)
 		emit_batch(e);
 	if (e->model->asked.selftest)
 		emit_selftest(e, has_jump(e));

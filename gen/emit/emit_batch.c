@@ -49,31 +49,46 @@ static const char *row_list(const struct emitter *e)
 	return list;
 }
 
+/* Of a model with delayed inputs those that are given */
+static int inputs_of(const struct emitter *e)
+{
+	return e->model->delays ? e->model->delays->inputs : given_inputs(e);
+}
+
+/* As lanes, or each by itself */
 static void declare_instances(const struct emitter *e, const struct batch *b)
 {
+	const char *alone = e->step->no_lanes;
 	say(e, "\n"
 	       "/* Many instances in one call, all at one time%s. In each array the instance is the fastest: entry i\n"
-	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init. */\n",
-	    e->system->inputs ? " and under the same inputs" : "");
-	say(e, "enum { $N_BATCH_ROWS = %d%s };\n", rows_of(e),
+	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init.%s */\n",
+	    inputs_of(e) ? " and under the same inputs" : "",
+	    alone ? format("\n * Each takes its steps by itself: %s.", alone) : "");
+	say(e, "enum { $N_BATCH_ROWS = %s%s };\n",
+	    alone ? spell(e, "(int)((sizeof(struct $n) + sizeof(double) - 1) / sizeof(double))")
+		  : format("%d", rows_of(e)),
 	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
 	say(e, "typedef struct $n_instances {\n"
 	       "    size_t count;\n"
-	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s, as in struct $n */\n", row_list(e));
+	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s */\n",
+	    alone ? "the bytes of its struct" : spell(e, "%s, as in struct $n", row_list(e)));
 	if (b->factors)
 		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have "
 		       "those of shared */\n");
 	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
 	       "NULL: not kept */\n"
-	       "    $n shared;        /* what all share: time%s%s; its states are not used */\n"
-	       "} $n_instances;\n", e->system->inputs ? ", the last sample" : "",
-	    e->phases || e->growths ? ", phases of loads" : "");
+	       "    $n shared;        /* %s */\n"
+	       "} $n_instances;\n",
+	    alone ? "a copy of the first"
+		  : format("what all share: time%s%s; its states are not used",
+			   e->system->inputs ? ", the last sample" : "",
+			   e->phases || e->growths ? ", phases of loads" : ""));
 }
 
 void emit_batch_declarations(const struct emitter *e)
 {
-	struct batch b = plan_batch(e);
-	bool inputs = e->system->inputs > 0;
+	const struct batch b = e->step->no_lanes ? (struct batch){ .e = e } : plan_batch(e);
+	bool inputs = inputs_of(e) > 0;
 	declare_instances(e, &b);
 	say(e, "void   $n_batch_init($n_instances *b);%31s/* t = 0; of each the spec's initial values%s */\n", "",
 	    b.factors ? " and coefficients" : "");
@@ -83,6 +98,9 @@ void emit_batch_declarations(const struct emitter *e)
 	if (b.factors)
 		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
+	if (e->step->no_lanes)
+		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
+		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
 	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n\n",
 	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
@@ -188,8 +206,20 @@ static void emit_include(const struct batch *b)
 	say(e, "#include \"batch.h\"\n");
 }
 
+static void emit_each(const struct emitter *e)
+{
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs_of(e) }, { "OUTPUTS", e->model->outputs });
+	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
+	say_macro(e, "INSTANCES", spell(e, "$n_instances"));
+	say_include(e, "each.h");
+}
+
 void emit_batch(const struct emitter *e)
 {
+	if (e->step->no_lanes) {
+		emit_each(e);
+		return;
+	}
 	struct batch b = plan_batch(e);
 	open_algorithm(e, &(struct size){ NULL, 0 });
 	say(e, "#include \"lanes.h\"\n");

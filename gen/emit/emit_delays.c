@@ -64,6 +64,8 @@ void emit_delay_declarations(const struct emitter *core)
 	if (core->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"), "the sample now");
 	declare_driven_step(e, "one step of h");
+	if (e->model->asked.batch)
+		emit_batch_declarations(e);
 	announce(e, spell(e, "extern const pl_model $n_model;"), "");
 	close_declarations(e);
 }
@@ -117,6 +119,8 @@ void emit_delays(const struct emitter *core)
 	const struct emitter outer = around(core), *e = &outer;
 	say(e, "\n/* ---- $n: the samples of delayed inputs ---- */\n");
 	emit_samples_of_core(e);
+	if (e->model->asked.batch)
+		emit_batch(e);
 	say(e, "\n");
 	emit_model(e, delays_of(e)->inputs, false);
 }

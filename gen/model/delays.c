@@ -86,7 +86,6 @@ static void check_request(const struct building *b, const struct symbol *s)
 	const struct request *r = b->request;
 	const char *what = r->solution  ? "--solution"
 			   : r->selftest ? "--selftest"
-			   : r->batch    ? "--batch"
 					 : NULL;
 	if (what)
 		error(s->at, NULL, "%s does not go with delayed inputs", what);

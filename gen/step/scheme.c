@@ -344,7 +344,7 @@ static void build(void *context)
 	if (model->asked.selftest)
 		need_closed_form(step);
 	if (model->asked.batch)
-		need_batch(step);
+		find_lanes(step);
 	check_peaks(step);
 	count_peaks(step);
 	program_check(step);

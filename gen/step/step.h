@@ -293,6 +293,7 @@ struct step {                       /* everything that is emitted for one model 
 	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
 	 * others */
 	int carries, *carry;
+	const char *no_lanes;       /* why instances of a batch step each by itself; NULL: as lanes, or there is none */
 	struct anchors *anchors;    /* NULL: functions of loads in every step */
 	const char *no_anchors;     /* why, where a load has some; NULL: there are anchors, or none has */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
@@ -1354,7 +1355,7 @@ int  highest_state(const struct linear *system, int coord);  /* the state whose 
 
 /* ---- batch.c: many instances in one call ---- */
 
-void need_batch(const struct step *step);                   /* leaves the statement where the model has none */
+void find_lanes(struct step *step);                         /* whether they step as lanes */
 
 /* ---- scheme.c: the step of a model ---- */
 

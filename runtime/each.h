@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* each.h: NAME_batch of a model whose instances share nothing: each takes its steps by itself, as NAME_step takes them,
+ * between its place in the arrays and back. Included by the file of the model, which defines before it
+ *
+ *     PL_TYPE, PL_INSTANCES          one instance, and the struct that the header has of many
+ *     PL_ROWS                        numbers that one PL_TYPE takes up
+ *     PL_STATES, PL_INPUTS, PL_OUTPUTS */
+#include "numbers.h"
+
+#include <string.h>
+
+/* How many bytes of an instance are in row i: in the last there may be fewer. */
+static size_t PL(row_size)(const PL_TYPE *s, size_t i)
+{
+    const size_t left = sizeof *s - i * sizeof(real);
+    return left < sizeof(real) ? left : sizeof(real);
+}
+
+void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
+{
+    size_t i;
+    for (i = 0; i < PL_ROWS; i++) {
+        memcpy((char *)s + i * sizeof(real), &b->y[i * b->count + j], PL(row_size)(s, i));
+    }
+}
+
+void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    size_t i;
+    for (i = 0; i < PL_ROWS; i++) {
+        memcpy(&b->y[i * b->count + j], (const char *)s + i * sizeof(real), PL(row_size)(s, i));
+    }
+}
+
+/* Its peaks are what its outputs are now. */
+static void PL(batch_begin)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    real out[PL_OUTPUTS];
+    size_t i;
+    PL(batch_give)(b, j, s);
+    PL(out)(s, out);
+    for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
+        b->peak[i * b->count + j] = pl_magnitude(out[i]);
+    }
+}
+
+void PL(batch_init)(PL_INSTANCES *b)
+{
+    size_t j;
+    PL(init)(&b->shared);
+    for (j = 0; j < b->count; j++) {
+        PL(batch_begin)(b, j, &b->shared);
+    }
+}
+
+void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    PL(set)(&one, PL(time)(&one), y);
+    PL(batch_begin)(b, j, &one);
+}
+
+void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    PL(get)(&one, y);
+}
+
+int PL(batch_status)(const PL_INSTANCES *b, size_t j)
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    return PL(status)(&one);
+}
+
+static void PL(batch_tell)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
+{
+    real now[PL_OUTPUTS];
+    size_t i;
+    PL(out)(s, now);
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        const size_t at = i * b->count + j;
+        if (out) {
+            out[at] = now[i];
+        }
+        if (b->peak && pl_magnitude(now[i]) > b->peak[at]) {
+            b->peak[at] = pl_magnitude(now[i]);
+        }
+    }
+}
+
+static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, real *out)
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    for (; n > 0; n--) {
+#if PL_INPUTS > 0
+        PL(step)(&one, u);
+        u += PL_INPUTS;
+#else
+        (void)u;
+        PL(step)(&one);
+#endif
+        if (out || b->peak) {
+            PL(batch_tell)(b, j, &one, out);
+        }
+        out = out ? out + PL_OUTPUTS * b->count : NULL;
+    }
+    PL(batch_give)(b, j, &one);
+}
+
+#if PL_INPUTS > 0
+void PL(batch)(PL_INSTANCES *b, size_t n, const real *u, real *out)
+#else
+void PL(batch)(PL_INSTANCES *b, size_t n, real *out)
+#endif
+{
+    size_t j;
+    for (j = 0; j < b->count; j++) {
+#if PL_INPUTS > 0
+        PL(batch_one)(b, j, n, u, out);
+#else
+        PL(batch_one)(b, j, n, NULL, out);
+#endif
+    }
+    if (b->count > 0) {
+        PL(batch_take)(b, 0, &b->shared);
+    }
+}
+
+#include "undef.h"
