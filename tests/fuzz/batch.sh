@@ -103,10 +103,11 @@ expressions_of() { # ID
 # many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, at least 1: the
 # largest by which its banner measures one coordinate from another, 10*x - y, times the largest by which such states are
 # larger than another in the references of the selftest, since that is the sum of them and a difference as large;
-# `lost`, what outputs lose with the modes that are dropped
+# `lost`, what outputs lose with the modes that are dropped; `written`: 1 where plgen warns that differences lose digits
 facts_of() {
 	eval "$(awk -v id="$1" '
-		BEGIN { real = "double"; regions = ratio = adds = 1; may = 0 }
+		BEGIN { real = "double"; regions = ratio = adds = 1; may = written = 0 }
+		FILENAME ~ /said$/ { written += /keeps coordinates as they are written/; next }
 		FILENAME ~ /h$/ {
 			own_region += $0 ~ "^int *" id "_region\\("
 			selftest += index($0, id "_selftest")
@@ -163,9 +164,9 @@ facts_of() {
 			printf "scheme=%s tolerance=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ",
 				scheme, tolerance, inputs ? "yes" : "", pieces ? "yes" : "",
 				own_region ? "yes" : "", selftest ? "yes" : "", lanes ? "yes" : ""
-			printf "lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s", lost, may, real, adds,
-				own_region ? regions : 0, ratio
-		}' "$1.h" "$1.c")"
+			printf "written=%d lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s",
+				written, lost, may, real, adds, own_region ? regions : 0, ratio
+		}' "$1.h" "$1.c" "$1.said")"
 }
 
 # slopes ID: a function of one form around ID_rhs
@@ -309,7 +310,7 @@ batch_add() {
 			"$solution, ${selftest:-NULL}," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
 			"\"$impact\", $adds, $region, $regions, $other, $ratio, $tolerance," \
-			"$by_eighths, \"$lost\", $may},"
+			"$by_eighths, \"$lost\", $written, $may},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"

@@ -34,6 +34,7 @@ struct subject {
 	const pl_model *fine;       /* by eighths of what it steps at once, where a fixed order of h is held against */
 	const pl_modelf *finef;     /* steps to a tolerance; NULL: it is not */
 	const char *lost;           /* by output, with modes that are dropped: " NAME VALUE, ..." */
+	int written;                /* positions that may move as a whole stay as written: differences round as they */
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
 };
 
