@@ -850,9 +850,10 @@ static void try_reduction(const char *text)
 {
     trial.spec = text;
     struct model *full = model_of(text);
-    struct model *reduced = full ? model_reduce(full) : NULL;
     if (!full)
         return;
+    full->asked.reduce = true;
+    struct model *reduced = model_reduce(full);
     const size_t rank = observable_rank(full);
     trial.scheme = "exact (reduced)";
     trial.compared++;

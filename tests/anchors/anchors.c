@@ -218,7 +218,11 @@ int main(void)
 {
     const struct variant *v;
     const bool is_long = getenv("LONG") != NULL;
-    for (v = VARIANTS; v->model; v += 2)
-        judge(v, is_long ? 1000000 : 10000, is_long ? 2e-13 : 2e-14);
+    for (v = VARIANTS; v->model; v += 2) {
+        /* its load of growing size makes the motion chaotic: what begins a unit in the last place apart is 0.002 apart
+         * after 200,000 steps */
+        const bool forgets = strncmp(v->model->name, "apart", 5) == 0;
+        judge(v, is_long && !forgets ? 1000000 : 10000, is_long ? 2e-13 : 2e-14);
+    }
     return tap_end();
 }

@@ -243,17 +243,19 @@ static const char *exact(real x)
 static char whole[1 << 14];
 static const struct relative *kept;
 
-/* Where the spec asks for that */
-static struct model *reduced(struct model *model)
+/* Reduced, where the spec asks for that */
+static struct model *made(const char *text, struct request *request)
 {
-    return model && strstr(whole, "#always --reduce") ? model_reduce(model) : model;
+    request->reduce = strstr(whole, "#always --reduce");
+    struct spec *spec = spec_of("spec", text);
+    struct model *model = spec ? model_build(spec, request) : NULL;
+    return model ? model_reduce(model) : NULL;
 }
 
 static void find_kept(void)
 {
     struct request *request = NEW(struct request);
-    request->reduce = strstr(whole, "#always --reduce");
-    struct model *model = reduced(model_build(spec_of("spec", format("%s", whole)), request));
+    struct model *model = made(format("%s", whole), request);
     kept = model && model->written == model && find_tuning(model, request) ? relative_of(model) : NULL;
 }
 
@@ -268,8 +270,7 @@ static const struct step *generator(const struct tuned *m, const char *text, con
     request->definition = ARRAY(const char *, (size_t)m->model->params);
     for (int k = 0; k < m->model->params && p; k++)
         request->definition[request->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
-    struct spec *spec = spec_of("spec", text);
-    struct model *model = spec ? reduced(model_build(spec, request)) : NULL;
+    struct model *model = made(text, request);
     return model ? step_build(model) : NULL;
 }
 
@@ -606,14 +607,14 @@ struct trial_batch {
     const char *text;
     const bool *varies;                 /* per output */
     uint64_t seed;
-    unsigned long sets;                 /* 0: the nominal coefficients */
+    unsigned long first, sets;          /* 0 sets: the nominal coefficients */
     const struct family *family;        /* NULL: draw_near */
 };
 
 static void try_batch(const struct trial_batch *b)
 {
     real p[LIMIT_TUNABLES];
-    for (unsigned long k = 0; k < b->sets; k++) {
+    for (unsigned long k = b->first; k < b->first + b->sets; k++) {
         random_state = (b->seed + k) * UINT64_C(0x9e3779b97f4a7c15) + 7;
         below(2);
         const real h = b->family ? b->family->draw(p) : draw_near(b->m, p);
@@ -622,7 +623,7 @@ static void try_batch(const struct trial_batch *b)
         if (verbose && met.failed == before)
             show_case();
     }
-    for (int i = 0; i < KNOWN && !b->family; i++)
+    for (int i = 0; i < KNOWN && !b->family && b->first == 0; i++)
         if (strcmp(known[i].name, b->m->name) == 0) {
             for (int k = 0; k < b->m->model->params; k++)
                 p[k] = (real)known[i].value[k];
@@ -659,10 +660,24 @@ static bool try_case(void *context)
     return met.failed == 0 && met.compared > 0;
 }
 
+static void run_piece(struct trial_batch *b)
+{
+    const char *what = b->sets ? format("sets of params %lu to %lu", b->first, b->first + b->sets - 1)
+        : "nominal coefficients, bit for bit";
+    run_case(format(TYPE ", %s: %s", name_of(b), what), 0, try_case, b);
+}
+
+/* The generator gives nothing back before it ends: in pieces, each a process */
 static void run(struct trial_batch *b)
 {
-    const char *what = b->sets ? format("%lu sets of params", b->sets) : "nominal coefficients, bit for bit";
-    run_case(format(TYPE ", %s: %s", name_of(b), what), 0, try_case, b);
+    enum { AT_A_TIME = 50 };
+    const unsigned long all = b->sets;
+    b->first = 0;
+    do {
+        b->sets = all - b->first < AT_A_TIME ? all - b->first : AT_A_TIME;
+        run_piece(b);
+        b->first += b->sets;
+    } while (b->first < all);
 }
 
 int main(int argc, char **argv)
