@@ -9,6 +9,7 @@
 #include "stop_auto_pl.h"
 #include "nested_radau_pl.h"
 #include "circle_auto_pl.h"
+#include "quadrant.h"
 #include "systems.h"
 #include "tap.h"
 
@@ -102,7 +103,7 @@ static void driven(real t, const real *y, const real *u, real *d)
     const real now = held_u[0] + (t - held_from) * held_u[2];
     (void)u;
     d[0] = y[1];
-    d[1] = cosl(1.7L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] -
+    d[1] = cos_of(1.7L * t) - 0.1L * y[1] - y[0] - y[0] * y[0] * y[0] -
         (interval_of[0] ? 20 * (y[0] - 0.3L - now) : 0) - (interval_of[1] ? y[0] * y[0] : 0);
 }
 

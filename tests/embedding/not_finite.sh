@@ -152,7 +152,7 @@ q[4]'' + q[4]^3 + (q[4] - q[3])^3 + (q[4] - q[5])^3 = 0
 q[5]'' + q[5]^3 + (q[5] - q[4])^3 + (q[5] - q[6])^3 = 0
 q[6]'' + q[6]^3 + (q[6] - q[5])^3 = 0
 EOF
-[ "${LONG:-}" ] || apart=4        # twelve states, and steps that are halved until they are given up
+[ "${LONG:-}" ] || apart=8        # twelve states, and steps that are halved until they are given up
 each 'a chain' auto
 apart=1
 

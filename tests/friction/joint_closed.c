@@ -3,6 +3,7 @@
  * ramps, where what each bears after a ramp follows from what it bore before (the play operator). */
 #include "drive.h"
 #include "joint_closed_variants.h"
+#include "quadrant.h"
 #include "tap.h"
 #include "worse.h"
 
@@ -36,10 +37,10 @@ static void masing(int step)
 	run_state(&r, &y);
 	r.of->model->out(r.state, out);
 	z = -0.26L;                             /* the last end before t = 20 is at 19 pi/3: x = -0.3 */
-	if (0.3L * cosl(60) - z > 0.04L)
-		z = 0.3L * cosl(60) - 0.04L;
+	if (0.3L * cos_of(60) - z > 0.04L)
+		z = 0.3L * cos_of(60) - 0.04L;
 	is_close(y, (double)z, 1e-14, "masing %d: where the slider is", step);
-	is_close(out[0], (double)(50 * (0.3L * cosl(60) - z)), 1e-12, "masing %d: what it bears", step);
+	is_close(out[0], (double)(50 * (0.3L * cos_of(60) - z)), 1e-12, "masing %d: what it bears", step);
 	run_free(&r);
 }
 
@@ -48,7 +49,7 @@ static void placed(int step)
 {
 	struct run r = run_new(variant_of(joint_closed_table, "masing_%d", step));
 	double y = 0, h = r.of->model->h;
-	wide x = 0.3L * cosl(3 * (wide)h);
+	wide x = 0.3L * cos_of(3 * (wide)h);
 	run_set(&r, &y);
 	run_step(&r, NULL);
 	run_state(&r, &y);
@@ -177,7 +178,7 @@ static void knock(int step)
 static wide leaning_place(wide t)
 {
 	int half = (int)(3 * t / pi);
-	wide x = 0.3L * cosl(3 * t), F = 2 + 3 * (x > 0 ? x : 0), end = half % 2 ? -0.26L : 0.3L - 2.9L / 50;
+	wide x = 0.3L * cos_of(3 * t), F = 2 + 3 * (x > 0 ? x : 0), end = half % 2 ? -0.26L : 0.3L - 2.9L / 50;
 	if (half % 2)
 		return x - F / 50 > end ? x - F / 50 : end;
 	if (half == 0)
@@ -208,7 +209,7 @@ static void leaning(int step)
 		r.of->model->out(r.state, out);
 		wide z = leaning_place(n * (wide)h);
 		off = worse(off, fabs(y[1] - (double)z));
-		bears = worse(bears, fabs(out[0] - (double)(50 * (0.3L * cosl(3 * n * (wide)h) - z))));
+		bears = worse(bears, fabs(out[0] - (double)(50 * (0.3L * cos_of(3 * n * (wide)h) - z))));
 	}
 	is_close(off, 0, 1e-13, "leaning %d: where the slider is", step);
 	is_close(bears, 0, 1e-11, "leaning %d: what it bears", step);
@@ -222,9 +223,9 @@ static void leaning(int step)
 /* The same equations by Runge and Kutta's method of order 4 in long double; the forces of friction */
 static void pressed_slopes(wide t, const wide *z, wide *slope, wide *force)
 {
-	wide x = 0.3L * cosl(3 * t), v = -0.9L * sinl(3 * t), q = 50 * (x - z[0]), p = 40 * (x - z[1]) + 0.4L * v;
+	wide x = 0.3L * cos_of(3 * t), v = -0.9L * sin_of(3 * t), q = 50 * (x - z[0]), p = 40 * (x - z[1]) + 0.4L * v;
 	wide F = 1 + 5 * x > 0 ? 1 + 5 * x : 0;
-	force[0] = held_to(q, 2 + cosl(5 * t));
+	force[0] = held_to(q, 2 + cos_of(5 * t));
 	force[1] = held_to(p, F);
 	slope[0] = (q - force[0]) / 0.3L;
 	slope[1] = (p - force[1]) / 0.4L;

@@ -6,7 +6,10 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { STEPS = 400, TIMES = 64, PEAKS = 4, INPUTS = 3 };
+#ifndef STEPS
+#define STEPS 400
+#endif
+enum { TIMES = 64, PEAKS = 4, INPUTS = 3 };
 static double c = 3, k = 900, h = M_H;
 
 static double draw(void)                /* -1 .. 1 */

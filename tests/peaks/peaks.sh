@@ -27,7 +27,8 @@ finds() {
 }
 
 finds peaks ''
-finds tuned -DTUNED
+# what is tuned finds values between steps by a matrix of two words
+finds tuned "-DTUNED $([ -n "${LONG:-}" ] || echo -DSTEPS=150)"
 if [ -n "${LONG:-}" ]; then
     finds peaks '' --step 0.01
     finds peaks '' --step 0.2
