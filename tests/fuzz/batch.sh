@@ -104,6 +104,7 @@ expressions_of() { # ID
 # largest by which its banner measures one coordinate from another, 10*x - y, times the largest by which such states are
 # larger than another in the references of the selftest, since that is the sum of them and a difference as large;
 # `lost`, what outputs lose with the modes that are dropped; `written`: 1 where plgen warns that differences lose digits
+# `few`: "yes" for 3 stages, which for a small tolerance may want more internal steps within h than it tries
 facts_of() {
 	eval "$(awk -v id="$1" '
 		BEGIN { real = "double"; regions = ratio = adds = 1; may = written = 0 }
@@ -120,6 +121,7 @@ facts_of() {
 		/^ \* Scheme [a-z0-9]/ && !scheme { scheme = $3; sub(/[^a-z0-9].*/, "", scheme) }
 		/piecewise linear/ { pieces++ }
 		/kick-drift-kick/ { adds = 3 }
+		/ 3 stages, of order 5/ { few = "yes" }
 		/^ \* / { banner = banner substr($0, 3) }
 		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
 		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
@@ -164,8 +166,8 @@ facts_of() {
 			printf "scheme=%s tolerance=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ",
 				scheme, tolerance, inputs ? "yes" : "", pieces ? "yes" : "",
 				own_region ? "yes" : "", selftest ? "yes" : "", lanes ? "yes" : ""
-			printf "written=%d lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s",
-				written, lost, may, real, adds, own_region ? regions : 0, ratio
+			printf "few=%s written=%d lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s",
+				few, written, lost, may, real, adds, own_region ? regions : 0, ratio
 		}' "$1.h" "$1.c" "$1.said")"
 }
 
@@ -234,7 +236,7 @@ batch_add() {
 	fi
 	facts_of "$id"
 	fine=
-	if [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; then
+	if [ "$few" ] || { [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; }; then
 		fine=f$id
 		shorter="$(printf '%s\n' "$given" | sed 's/ --step [^ ]*//') --step $(step_of "$id")/8"
 		if ! make_c "$fine" "$spec" "$shorter"; then

@@ -474,6 +474,33 @@ static void judge_peaks(void)
 	}
 }
 
+/* From here on the model by eighths of what it steps at once, or no longer */
+static void by_eighths(bool now)
+{
+	static struct subject finer;
+	static const struct subject *coarse;
+	if (now) {
+		coarse = of;
+		finer = *of;
+		finer.model = of->fine;
+		finer.modelf = of->finef;
+	}
+	of = now ? &finer : coarse;
+}
+
+/* For good: h too is that of these, and other params are not known with it. */
+static void judge_eighths(void)
+{
+	const bool own = of->whole == of->model;
+	static struct subject eighth;
+	by_eighths(true);
+	eighth = *of;
+	eighth.fine = NULL, eighth.finef = NULL, eighth.tuned = NULL;
+	eighth.whole = own ? eighth.model : eighth.whole;
+	of = &eighth;
+	h = of->model ? of->model->h : (double)of->modelf->h;
+}
+
 static void run_steps(void)
 {
 	void *const s = fresh();
@@ -505,9 +532,12 @@ static void run_steps(void)
 	judge_peaks();
 	const int status = of->model ? of->model->status ? of->model->status(s) : 0
 		: of->modelf->status ? of->modelf->status(s) : 0;
-	if (status & ~of->may)
-		complain("status %d after %d steps", status, STEPS);
 	free(s);
+	if (status == PL_TOO_MANY_STEPS && (of->fine || of->finef) && of->tolerance > 0) {
+		judge_eighths();
+		run_steps();
+	} else if (status & ~of->may)
+		complain("status %d after %d steps", status, STEPS);
 }
 
 /* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
@@ -657,16 +687,6 @@ struct beside {
 	double before[MOST];
 };
 
-static struct subject finer;
-static const struct subject *coarse;
-
-static void by_eighths(bool now)
-{
-	if (now)
-		coarse = of;
-	of = now ? &finer : coarse;
-}
-
 static struct beside begin(void)
 {
 	struct beside b = { .model = fresh(), .whole = malloc(of->whole->size) };
@@ -675,9 +695,6 @@ static struct beside begin(void)
 	model_init(b.model);
 	of->whole->init(b.whole);
 	if (of->fine || of->finef) {
-		finer = *of;
-		finer.model = of->fine;
-		finer.modelf = of->finef;
 		by_eighths(true);
 		b.fine = fresh();
 		model_init(b.fine);

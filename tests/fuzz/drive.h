@@ -31,8 +31,8 @@ struct subject {
 	int (*whole_region)(const void *s);     /* that of `whole`, where it has the same expressions; or NULL */
 	double ratio;               /* what is kept of coordinates that move as a whole may be so much larger */
 	double tolerance;           /* to which lengths of steps are chosen; 0: they are not */
-	const pl_model *fine;       /* by eighths of what it steps at once, where a fixed order of h is held against */
-	const pl_modelf *finef;     /* steps to a tolerance; NULL: it is not */
+	const pl_model *fine;       /* by eighths of what it steps at once: of a fixed order held against steps to a */
+	const pl_modelf *finef;     /* tolerance, or of few stages that may want too many internal steps; or NULL */
 	const char *lost;           /* by output, with modes that are dropped: " NAME VALUE, ..." */
 	int written;                /* positions that may move as a whole stay as written: differences round as they */
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
