@@ -138,14 +138,9 @@ void banner_leftover(const struct emitter *e)
 
 static void banner_breakpoints(const struct emitter *e, const struct expansion *x)
 {
-	for (int i = 0; i < x->expressions; i++) {
-		const struct divided *d = &x->expression[i];
-		mpq_t *rising = rising_breakpoints(d);
-		const char *at = "";
-		for (int k = 0; k < d->breaks; k++)
-			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
-		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
-	}
+	for (int i = 0; i < x->expressions; i++)
+		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)),
+		    rising_text(&x->expression[i]));
 	if (regions_of_series(x))
 		banner_sentence(e, region_number);
 }
@@ -306,13 +301,10 @@ static void banner_expressions(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
 	const struct switching *s = model->switching;
-	for (int i = 0; i < s->expressions; i++) {
-		const char *at = "";
-		for (int k = 0; k < s->expression[i].breaks; k++)
-			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
+	for (int i = 0; i < s->expressions; i++)
 		say(e, " *     expression %d: %s%s, at %s\n", i, printable(form_text(model, s->expression[i].form)),
-		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "", at);
-	}
+		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "",
+		    breakpoints_text(s->expression[i].breaks, (const mpq_t *)s->expression[i].at));
 }
 
 static void banner_region_number(const struct emitter *e)

@@ -2,15 +2,10 @@
 /* What is held beside a series, and what strikes: in words and as JSON. */
 #include "report/report.h"
 
-static int rank_of(const struct step *step, int expression, int breakpoint)
-{
-	return step->divided->expression[expression].rank[breakpoint];
-}
-
 /* The interval of its expression in which it is held */
 static int held_in(const struct step *step, const struct series_hold *hold)
 {
-	return rank_of(step, hold->expression, hold->breakpoint) + 1;
+	return step->divided->expression[hold->expression].rank[hold->breakpoint] + 1;
 }
 
 const char *contact_text(const struct step *step, int hold)

@@ -4,39 +4,19 @@
 
 #include <math.h>
 
-static void json_name(FILE *to, const char *name)
+static void member_names(FILE *to, const char *key, int count, const char *const *name)
 {
-	fprintf(to, "\"%s\"", name);       /* names are identifiers with primes: nothing to escape */
+	fputs("  ", to);
+	json_names(to, key, count, name);
+	fputs(",\n", to);
 }
 
-static void json_names(FILE *to, const char *key, int count, const char *const *name)
-{
-	fprintf(to, "  \"%s\": [", key);
-	for (int i = 0; i < count; i++) {
-		fputs(i ? ", " : "", to);
-		json_name(to, name[i]);
-	}
-	fputs("],\n", to);
-}
-
-static void json_matrix(FILE *to, const char *key, int rows, int columns, const double *value)
-{
-	fprintf(to, "  \"%s\": [", key);
-	for (int i = 0; i < rows; i++) {
-		fputs(i ? ",\n    [" : "\n    [", to);
-		for (int j = 0; j < columns; j++)
-			fprintf(to, "%s%s", j ? ", " : "", json_number(value[i * columns + j]));
-		fputc(']', to);
-	}
-	fputs("],\n", to);
-}
-
+/* Square */
 static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *A)
 {
-	double *value = ARRAY(double, (size_t)(n * n));
-	for (int i = 0; i < n * n; i++)
-		value[i] = nearest_double(A[i]);
-	json_matrix(to, key, n, n, value);
+	fputs("  ", to);
+	json_rationals(to, "    ", key, n, n, A);
+	fputs(",\n", to);
 }
 
 static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
@@ -194,7 +174,7 @@ static void json_dropped(FILE *to, const struct model *model)
 		name[i] = spec->unseen_name[i];
 	for (int i = 0; i < model->reduction.dropped; i++)
 		name[spec->unseen + i] = model->reduction.dropped_name[i];
-	json_names(to, "dropped", spec->unseen + model->reduction.dropped, name);
+	member_names(to, "dropped", spec->unseen + model->reduction.dropped, name);
 }
 
 static void json_scene(FILE *to, const struct spec *spec)
@@ -215,18 +195,15 @@ static void json_bounds(FILE *to, const struct model *model)
 	for (int i = 0; i < model->system.states && absolute && looks; i++) {
 		if (mpq_sgn(absolute[i]) == 0)
 			continue;
-		fputs(any ? ", " : "  \"absolute\": {", to);
-		json_name(to, model->state_name[i]);
-		fprintf(to, ": %s", shortest(round_rational(absolute[i])));
+		fprintf(to, "%s\"%s\": %s", any ? ", " : "  \"absolute\": {", model->state_name[i],
+			shortest(round_rational(absolute[i])));
 		any = true;
 	}
 	fputs(any ? "},\n" : "", to);
-	for (int i = 0; i < model->ranges; i++) {
-		fputs(i ? ", " : "  \"ranges\": {", to);
-		json_name(to, model->state_name[model->range[i].state]);
-		fprintf(to, ": [%s, %s]", shortest(round_rational(model->range[i].low)),
+	for (int i = 0; i < model->ranges; i++)
+		fprintf(to, "%s\"%s\": [%s, %s]", i ? ", " : "  \"ranges\": {",
+			model->state_name[model->range[i].state], shortest(round_rational(model->range[i].low)),
 			shortest(round_rational(model->range[i].high)));
-	}
 	fputs(model->ranges ? "},\n" : "", to);
 }
 
@@ -259,22 +236,23 @@ void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const char **output = ARRAY(const char *, model->outputs);
-	double *Phi = ARRAY(double, (size_t)(model->system.states * model->system.states));
+	const int states = model->system.states;
+	double *Phi = ARRAY(double, (size_t)(states * states));
 	const char **input = ARRAY(const char *, model->system.inputs);
 	for (int i = 0; i < model->system.inputs; i++)
 		input[i] = model->system.input[i].name;
 	for (int i = 0; i < model->outputs; i++)
 		output[i] = model->output[i].name;
-	for (int i = 0; i < model->system.states * model->system.states; i++)
+	for (int i = 0; i < states * states; i++)
 		Phi[i] = step->shown->branch->whole->Phi[i].value;
 	fprintf(to,
 		"{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  "
 		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
 		model->name, scheme_name(model->scheme), step_form_name(step->form),
 		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
-	json_names(to, "states", model->system.states, model->state_name);
-	json_names(to, "outputs", model->outputs, output);
-	json_names(to, "inputs", model->spec->inputs, input);
+	member_names(to, "states", states, model->state_name);
+	member_names(to, "outputs", model->outputs, output);
+	member_names(to, "inputs", model->spec->inputs, input);
 	json_dropped(to, model);
 	if (model->shortened)
 		json_shortening(to, model);
@@ -289,8 +267,11 @@ void explain_json(FILE *to, const struct step *step)
 	json_nonlinear(to, step);
 	if (!is_nonlinear(step))
 		json_linear(to, step);
-	if (!step->shown->no_phi)
-		json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
+	if (!step->shown->no_phi) {
+		fputs("  ", to);
+		json_matrix(to, "    ", "Phi", states, states, states, Phi);
+		fputs(",\n", to);
+	}
 	json_loads(to, step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));

@@ -107,13 +107,10 @@ static long most_of_regions(const struct step *step)
 static void person_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "    expression %d: %s%s breakpoints", i, spoken_expression(step->shown->model, i),
-			s->expression[i].segments > 1 ? ";" : ",");
-		for (int k = 0; k < s->expression[i].breaks; k++)
-			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
-		fputc('\n', to);
-	}
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, "    expression %d: %s%s breakpoints %s\n", i, spoken_expression(step->shown->model, i),
+			s->expression[i].segments > 1 ? ";" : ",",
+			breakpoints_text(s->expression[i].breaks, (const mpq_t *)s->expression[i].at));
 }
 
 /* What chooses formulas by the state, of a series */
@@ -125,14 +122,9 @@ void person_divided(FILE *to, const struct step *step)
 					      step->collocation ? "an internal step" : "a series");
 	fprintf(to, "The state chooses formulas; %s, at most %d times%s:\n", ends, max_events(step->model),
 		step->cut ? "" : " in a step");
-	for (int i = 0; i < x->expressions; i++) {
-		const struct divided *d = &x->expression[i];
-		mpq_t *rising = rising_breakpoints(d);
-		fprintf(to, "    expression %d: %s, breakpoints", i, divided_text(step, i));
-		for (int k = 0; k < d->breaks; k++)
-			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
-		fputc('\n', to);
-	}
+	for (int i = 0; i < x->expressions; i++)
+		fprintf(to, "    expression %d: %s, breakpoints %s\n", i, divided_text(step, i),
+			rising_text(&x->expression[i]));
 	if (step->expansion)
 		person_contacts(to, step);
 }
@@ -262,17 +254,23 @@ void person_regions(FILE *to, const struct step *step)
 
 /* ---- JSON ---- */
 
+static void json_expression(FILE *to, int i, const char *text, int breaks, mpq_t *at)
+{
+	SCRATCH double *rounded = ARRAY(double, breaks);
+	for (int k = 0; k < breaks; k++)
+		rounded[k] = nearest_double(at[k]);
+	fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": ", i ? "," : "", text);
+	json_numbers(to, breaks, rounded);
+	fputs("}", to);
+}
+
 static void json_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	fputs("  \"expressions\": [", to);
-	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
-			spoken_expression(step->shown->model, i));
-		for (int k = 0; k < s->expression[i].breaks; k++)
-			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
-		fputs("]}", to);
-	}
+	for (int i = 0; i < s->expressions; i++)
+		json_expression(to, i, spoken_expression(step->shown->model, i), s->expression[i].breaks,
+				s->expression[i].at);
 	fputs("],\n", to);
 }
 
@@ -323,40 +321,33 @@ static void json_impacts(FILE *to, const struct model *model)
 	fputs("],\n", to);
 }
 
-static void json_region_list(FILE *to, const struct switching *s)
+/* Of the model, a line each; of a part, and what each adds to the number of the model's */
+static void json_region_list(FILE *to, const struct switching *s, const struct region_part *part,
+			     const struct switching *all)
 {
-	bool first = true;
-	fputs("  \"regions\": [", to);
-	for (int r = 0; r < s->regions; r++) {
+	const char *next = part ? "" : "\n    ", *between = part ? ", " : ",\n    ";
+	fputs("\"regions\": [", to);
+	for (int r = 0; r < s->regions && (s->expressions > 0 || !part); r++) {
 		if (!s->region[r].possible)
 			continue;
-		fprintf(to, "%s\n    {\"number\": %d%s, \"matrix\": %d}", first ? "" : ",", r % regions_at_once(s),
-			json_segment(s, r), s->region[r].system);
-		first = false;
+		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", next,
+			part ? share_of_region(part, all, r) : r % regions_at_once(s), json_segment(s, r),
+			s->region[r].system);
+		next = between;
 	}
-	fputs("],\n", to);
 }
 
-/* number: what a region of the part adds to that of the model */
 static void json_part(FILE *to, const struct switching *all, int index)
 {
 	const struct region_part *part = &all->part[index];
 	const struct switching *s = part->model->switching;
-	bool first = true;
-	fprintf(to, "%s\n    {\"coordinates\": [", index ? "," : "");
-	for (int i = 0; i < part->model->n; i++)
-		fprintf(to, "%s\"%s\"", i ? ", " : "", part->model->coord_name[i]);
-	fputs("], \"expressions\": [", to);
+	fprintf(to, "%s\n    {", index ? "," : "");
+	json_names(to, "coordinates", part->model->n, part->model->coord_name);
+	fputs(", \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++)
 		fprintf(to, "%s%d", i ? ", " : "", part->expression[i]);
-	fputs("],\n     \"regions\": [", to);
-	for (int r = 0; r < s->regions && s->expressions > 0; r++) {
-		if (!s->region[r].possible)
-			continue;
-		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", first ? "" : ", ",
-			share_of_region(part, all, r), json_segment(s, r), s->region[r].system);
-		first = false;
-	}
+	fputs("],\n     ", to);
+	json_region_list(to, s, part, all);
 	fputs("]}", to);
 }
 
@@ -371,7 +362,9 @@ void json_regions(FILE *to, const struct step *step)
 	if (s->impacts > 0)
 		json_impacts(to, step->shown->model);
 	if (!s->parts) {
-		json_region_list(to, s);
+		fputs("  ", to);
+		json_region_list(to, s, NULL, NULL);
+		fputs("],\n", to);
 		return;
 	}
 	fputs("  \"parts\": [", to);
@@ -383,14 +376,9 @@ void json_divided(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->divided;
 	fputs("  \"expressions\": [", to);
-	for (int i = 0; i < x->expressions; i++) {
-		mpq_t *rising = rising_breakpoints(&x->expression[i]);
-		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
-			json_text(divided_text(step, i)));
-		for (int k = 0; k < x->expression[i].breaks; k++)
-			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(rising[k]));
-		fputs("]}", to);
-	}
+	for (int i = 0; i < x->expressions; i++)
+		json_expression(to, i, json_text(divided_text(step, i)), x->expression[i].breaks,
+				rising_breakpoints(&x->expression[i]));
 	fputs("],\n", to);
 	if (step->expansion)
 		json_contacts(to, step);

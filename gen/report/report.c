@@ -76,3 +76,49 @@ const char *json_number(double value)
 {
 	return isfinite(value) ? format("%.17g", value) : "null";
 }
+
+void json_numbers(FILE *to, int count, const double *value)
+{
+	for (int i = 0; i < count; i++)
+		fprintf(to, "%s%s", i ? ", " : "[", json_number(value[i]));
+	fputs(count ? "]" : "[]", to);
+}
+
+void json_names(FILE *to, const char *key, int count, const char *const *name)
+{
+	fprintf(to, "\"%s\": [", key);
+	for (int i = 0; i < count; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", name[i]);
+	fputs("]", to);
+}
+
+void json_matrix(FILE *to, const char *indent, const char *key, int rows, int columns, int stride, const double *value)
+{
+	fprintf(to, "\"%s\": [", key);
+	for (int i = 0; i < rows; i++) {
+		fprintf(to, "%s\n%s", i ? "," : "", indent);
+		json_numbers(to, columns, value + i * stride);
+	}
+	fputs("]", to);
+}
+
+void json_rationals(FILE *to, const char *indent, const char *key, int rows, int columns, const mpq_t *value)
+{
+	SCRATCH double *rounded = ARRAY(double, (size_t)(rows * columns) + 1);
+	for (int i = 0; i < rows * columns; i++)
+		rounded[i] = nearest_double(value[i]);
+	json_matrix(to, indent, key, rows, columns, columns, rounded);
+}
+
+const char *breakpoints_text(int count, const mpq_t *at)
+{
+	const char *text = "";
+	for (int k = 0; k < count; k++)
+		text = format("%s%s%s", text, k ? ", " : "", readable_text(at[k]));
+	return text;
+}
+
+const char *rising_text(const struct divided *d)
+{
+	return breakpoints_text(d->breaks, (const mpq_t *)rising_breakpoints(d));
+}

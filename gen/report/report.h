@@ -15,6 +15,13 @@ const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
 const char *json_text(const char *name);                    /* a file's name, as it is in quotes */
 const char *json_number(double value);                      /* null where it is not finite, which JSON cannot say */
+void json_numbers(FILE *to, int count, const double *value); /* [1, 2] */
+void json_names(FILE *to, const char *key, int count, const char *const *name); /* a member: identifiers with primes */
+/* A member, row by row in lines of their own; of rows of a wider matrix, `stride` entries apart */
+void json_matrix(FILE *to, const char *indent, const char *key, int rows, int columns, int stride, const double *value);
+void json_rationals(FILE *to, const char *indent, const char *key, int rows, int columns, const mpq_t *value);
+const char *breakpoints_text(int count, const mpq_t *at);   /* 1, 2 */
+const char *rising_text(const struct divided *d);           /* likewise */
 
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 

@@ -119,29 +119,10 @@ static double *held_matrix(const struct space *s)
 
 /* ---- JSON ---- */
 
-static const char *number_text(double value)
+static void json_exact(FILE *to, const char *key, int rows, int columns, mpq_t *value)
 {
-	return isfinite(value) ? format("%.17g", value) : "null";
-}
-
-static void json_rows(FILE *to, const char *key, int rows, int columns, int stride, const double *value)
-{
-	fprintf(to, "\"%s\": [", key);
-	for (int i = 0; i < rows; i++) {
-		fputs(i ? ",\n      [" : "\n      [", to);
-		for (int j = 0; j < columns; j++)
-			fprintf(to, "%s%s", j ? ", " : "", number_text(value[i * stride + j]));
-		fputc(']', to);
-	}
-	fputs("]", to);
-}
-
-static void json_exact(FILE *to, const char *key, int rows, int columns, mpq_t *const value)
-{
-	SCRATCH double *rounded = ARRAY(double, (size_t)(rows * columns) + 1);
-	for (int i = 0; i < rows * columns; i++)
-		rounded[i] = nearest_double(value[i]);
-	json_rows(to, key, rows, columns, columns, rounded);
+	fputs(",\n    ", to);
+	json_rationals(to, "      ", key, rows, columns, (const mpq_t *)value);
 }
 
 static void json_discrete(FILE *to, const struct space *s)
@@ -149,43 +130,39 @@ static void json_discrete(FILE *to, const struct space *s)
 	double *held = s->slopes || s->model->system.states > LIMIT_HELD_STATES ? NULL : held_matrix(s);
 	int size = s->states + s->drives;
 	if (!held) {
-		fputs("    \"discrete\": null},\n", to);
+		fputs(",\n        \"discrete\": null},\n", to);
 		return;
 	}
-	fprintf(to, "    \"discrete\": {\"h\": %.17g, ", nearest_double(s->model->h));
-	json_rows(to, "A", s->states, s->states, size, held);
+	fprintf(to, ",\n        \"discrete\": {\"h\": %.17g, ", nearest_double(s->model->h));
+	json_matrix(to, "      ", "A", s->states, s->states, size, held);
 	fputs(",\n     ", to);
-	json_rows(to, "B", s->states, s->drives, size, held + s->states);
+	json_matrix(to, "      ", "B", s->states, s->drives, size, held + s->states);
 	fputs(",\n     ", to);
-	json_exact(to, "C", s->outputs, s->states, s->C);
+	json_rationals(to, "      ", "C", s->outputs, s->states, (const mpq_t *)s->C);
 	fputs(",\n     ", to);
-	json_exact(to, "D", s->outputs, s->drives, s->D);
+	json_rationals(to, "      ", "D", s->outputs, s->drives, (const mpq_t *)s->D);
 	fputs("}},\n", to);
 }
 
 static void json_space(FILE *to, const struct model *model)
 {
 	struct space s = space_of(model);
-	fputs("  \"ss\": {\"inputs\": [", to);
+	const char **input = ARRAY(const char *, s.drives), **output = ARRAY(const char *, s.outputs);
 	for (int d = 0; d < s.drives; d++)
-		fprintf(to, "%s\"%s\"", d ? ", " : "", s.drive[d].name);
-	fputs("], \"outputs\": [", to);
+		input[d] = s.drive[d].name;
 	for (int i = 0; i < s.outputs; i++)
-		fprintf(to, "%s\"%s\"", i ? ", " : "", model->output[s.output[i]].name);
-	fputs("],\n    ", to);
+		output[i] = model->output[s.output[i]].name;
+	fputs("  \"ss\": {", to);
+	json_names(to, "inputs", s.drives, input);
+	fputs(", ", to);
+	json_names(to, "outputs", s.outputs, output);
 	json_exact(to, "A", s.states, s.states, s.A);
-	fputs(",\n    ", to);
 	json_exact(to, "B", s.states, s.drives, s.B);
-	fputs(",\n    ", to);
 	json_exact(to, "C", s.outputs, s.states, s.C);
-	fputs(",\n    ", to);
 	json_exact(to, "D", s.outputs, s.drives, s.D);
-	fputs(",\n    ", to);
 	if (s.slopes) {
 		json_exact(to, "B_slope", s.states, s.drives, s.B1);
-		fputs(",\n    ", to);
 		json_exact(to, "D_slope", s.outputs, s.drives, s.D1);
-		fputs(",\n    ", to);
 	}
 	json_discrete(to, &s);
 }
@@ -194,15 +171,13 @@ static void json_shapes(FILE *to, int count, const struct mode_shape *shape, int
 {
 	fputs("  \"shapes\": [", to);
 	for (int k = 0; k < count; k++) {
-		fprintf(to, "%s\n    {\"pole\": {\"re\": %s, \"im\": %s},\n     \"re\": [", k ? "," : "",
-			number_text(mpfr_get_d(shape[k].pole->re, MPFR_RNDN)),
-			number_text(mpfr_get_d(shape[k].pole->im, MPFR_RNDN)));
-		for (int i = 0; i < n; i++)
-			fprintf(to, "%s%.17g", i ? ", " : "", shape[k].re[i]);
-		fputs("],\n     \"im\": [", to);
-		for (int i = 0; i < n; i++)
-			fprintf(to, "%s%.17g", i ? ", " : "", shape[k].im[i]);
-		fputs("]}", to);
+		fprintf(to, "%s\n    {\"pole\": {\"re\": %s, \"im\": %s},\n     \"re\": ", k ? "," : "",
+			json_number(mpfr_get_d(shape[k].pole->re, MPFR_RNDN)),
+			json_number(mpfr_get_d(shape[k].pole->im, MPFR_RNDN)));
+		json_numbers(to, n, shape[k].re);
+		fputs(",\n     \"im\": ", to);
+		json_numbers(to, n, shape[k].im);
+		fputs("}", to);
 	}
 	fputs("],\n", to);
 }
@@ -226,7 +201,7 @@ static void json_transfers(FILE *to, const struct model *model, int count, const
 	for (int k = 0; k < count; k++) {
 		fprintf(to, "%s\n    {\"output\": \"%s\", \"input\": \"%s\", \"static_gain\": %s,\n     \"zeros\": ",
 			k ? "," : "", t[k].output, t[k].drive,
-			static_gain(&t[k], gain) ? number_text(nearest_double(gain)) : "null");
+			static_gain(&t[k], gain) ? json_number(nearest_double(gain)) : "null");
 		if (t[k].N.length == 0) {
 			fputs("null}", to);
 			continue;

@@ -27,12 +27,6 @@ static double larger(double size, double x)
 	return fabs(x) <= size || isnan(size) ? size : fabs(x);
 }
 
-/* Do all eigenvalues of M lie inside the unit circle, or on it? */
-static bool is_stable(const struct course_of_mover *c)
-{
-	return spectral_radius(c->m->states, c->M) < 1 + 1e-4;
-}
-
 /* The shortest d with (I - M) d = end - trial, both in units of the scale; its largest entry. A direction in which the
  * model may stand anywhere is not moved in. */
 static double newton_step(struct course_of_mover *c, double *d)
@@ -98,7 +92,7 @@ static bool find_near(struct course_of_mover *c)
 	for (int k = 0; k < STEPS; k++) {
 		double off = period_of_trial(c);
 		if (off <= settled || (k == STEPS - 1 && off <= 1e3 * settled)) {
-			found = is_stable(c) && !(leapt && c->m->crossings > 0);
+			found = spectral_radius(c->m->states, c->M) < 1 + 1e-4 && !(leapt && c->m->crossings > 0);
 			break;
 		}
 		double by = newton_step(c, d);
