@@ -97,17 +97,25 @@ _Noreturn void not_built(const struct collector *c, struct place at, const char 
 	error(at, NULL, "%s not built yet", what);
 }
 
+/* Is x q pi, a whole number k of 1/parts of pi? */
+static bool is_part_of_pi(const struct form *x, unsigned long parts, mpz_ptr k)
+{
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), parts) > 0 || parts % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_mul_ui(k, mpq_numref(pi), parts);
+	mpz_divexact(k, k, mpq_denref(pi));
+	return true;
+}
+
 /* sin, cos of q pi are rational at multiples of pi/6 only where it shows here: 0, +-1/2, +-1 (Niven). */
 static bool niven(bool sine, const struct form *x, mpq_ptr value)
 {
 	/* 2 cos(k pi/6); 99: irrational */
 	static const int halves[12] = { 2, 99, 1, 0, -1, 99, -2, 99, -1, 0, 1, 99 };
-	mpq_srcptr pi = factor_of(x, BASIS_PI);
-	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 6) > 0 || 6 % mpz_get_ui(mpq_denref(pi)) != 0)
-		return false;
 	INTEGER k = INTEGER_ZERO;
-	mpz_mul_ui(k, mpq_numref(pi), 6);
-	mpz_divexact(k, k, mpq_denref(pi));
+	if (!is_part_of_pi(x, 6, k))
+		return false;
 	unsigned long sixth = (mpz_fdiv_ui(k, 12) + (sine ? 9 : 0)) % 12;
 	if (halves[sixth] == 99)
 		return false;
@@ -119,12 +127,9 @@ static bool niven(bool sine, const struct form *x, mpq_ptr value)
 /* tan of q pi is rational at multiples of pi/4 only. */
 static bool tangent(const struct node *node, const struct form *x, mpq_ptr value)
 {
-	mpq_srcptr pi = factor_of(x, BASIS_PI);
-	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 4) > 0 || 4 % mpz_get_ui(mpq_denref(pi)) != 0)
-		return false;
 	INTEGER k = INTEGER_ZERO;
-	mpz_mul_ui(k, mpq_numref(pi), 4);
-	mpz_divexact(k, k, mpq_denref(pi));
+	if (!is_part_of_pi(x, 4, k))
+		return false;
 	unsigned long eighth = mpz_fdiv_ui(k, 4);
 	if (eighth == 2)
 		error(node->at, NULL, "tan of an odd number of quarter turns");

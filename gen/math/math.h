@@ -214,6 +214,7 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* ---- stream.c: x' = A x, x enclosed ---- */
 
+mpfi_t *enclosures(size_t count, int precision);            /* 0, of so many bits */
 enum { STREAM_HALVINGS = 40 };
 struct stream {                       /* of one rational A (n x n) */
 	int n, precision;
@@ -259,6 +260,7 @@ enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_
 
 /* A <- D^-1 A D, D = diag(scale) powers of 2, so that rows and columns of A - I become alike in size: exact */
 void balance_map(int n, double *A, double *scale);
+double norm_of_rows(int n, const double *A);                /* the largest sum of sizes; infinite of NaN */
 struct sparse {                     /* the entries of a matrix that are not 0, row by row */
 	int rows, *start, *column;
 	double *value;

@@ -50,10 +50,10 @@ static double largest_row(const struct stream *f, const double *A)
 
 /* ---- the matrix ---- */
 
-static mpfi_t *enclosures(int count, int precision)
+mpfi_t *enclosures(size_t count, int precision)
 {
 	mpfi_t *x = ARRAY(mpfi_t, count);
-	for (int i = 0; i < count; i++) {
+	for (size_t i = 0; i < count; i++) {
 		mpfi_init2(x[i], precision);
 		mpfi_set_ui(x[i], 0);
 	}

@@ -62,7 +62,7 @@ static double *identity(int n)
 	return I;
 }
 
-static double largest_row_sum(int n, const double *A)
+double norm_of_rows(int n, const double *A)
 {
 	double largest = 0;
 	for (int i = 0; i < n; i++) {
@@ -86,8 +86,8 @@ static void add_powers(int n, const double *A, long count, double *sum, double *
 			sum[i] += fabs(power[i]);
 			most[i] = fmax(most[i], fabs(power[i]));
 		}
-		if (!last && largest_row_sum(n, power) * (double)(count - m) < 1e-12) {
-			const double after = largest_row_sum(n, power) * largest_row_sum(n, most);
+		if (!last && norm_of_rows(n, power) * (double)(count - m) < 1e-12) {
+			const double after = norm_of_rows(n, power) * norm_of_rows(n, most);
 			for (int i = 0; i < n * n; i++) {
 				sum[i] += after * (double)(count - m);
 				most[i] += after;
@@ -120,7 +120,7 @@ struct spread spread_of(int n, const double *A, long steps)
 		s.sum[i] *= WIDER;
 		s.most[i] *= WIDER;
 	}
-	s.slack = largest_row_sum(n, s.sum) * (n + 8) * 0x1p-52;
+	s.slack = norm_of_rows(n, s.sum) * (n + 8) * 0x1p-52;
 	s.known = s.slack < 1e-4;
 	for (int k = 0; k < 2; k++) {
 		discard(sum[k]);

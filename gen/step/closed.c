@@ -80,12 +80,7 @@ struct reference reference_of(const struct step *step)
 {
 	if (step->model->switching)
 		return reference_through(step);
-	size_t states = (size_t)step->branch->system.states;
-	struct reference r = { .states = (int)states, .steps = steps };
-	r.start = ARRAY(double, states);
-	r.value = ARRAY(double, states * ROWS);
-	r.between = ARRAY(double, states);
-	r.unit = ARRAY(double, states);
+	struct reference r = new_reference(step);
 	fill_rows(step, closed_forms(step, &r), &r);
 	fill_units(&r, step->model->asked.single);
 	return r;

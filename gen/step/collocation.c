@@ -5,16 +5,6 @@
 
 enum { BITS = 512 };                /* far beyond what rounding needs: entries have no more than 40 bits before it */
 
-static mpfi_t *intervals(size_t count)
-{
-	mpfi_t *x = ARRAY(mpfi_t, count);
-	for (size_t i = 0; i < count; i++) {
-		mpfi_init2(x[i], BITS);
-		mpfi_set_ui(x[i], 0);
-	}
-	return x;
-}
-
 static void intervals_free(mpfi_t *x, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
@@ -115,7 +105,7 @@ static void put_real_first(struct rectangle *zero, int count)
 /* W: [power][node], from N over x - c, synthetic division, over its value at c */
 static void lagrange(struct poly nodes, const struct rectangle *c, int stages, mpfi_t *W)
 {
-	mpfi_t *quotient = intervals((size_t)stages);
+	mpfi_t *quotient = enclosures(stages, BITS);
 	INTERVAL value = OVER_BITS(BITS);
 	for (int j = 0; j < stages; j++) {
 		mpfi_set_z(quotient[stages - 1], nodes.c[stages]);
@@ -249,7 +239,7 @@ struct collocation *collocation_of(const struct step *step)
 	struct collocation *x = NEW(struct collocation);
 	struct rectangle c[MOST], z[MOST];
 	struct poly nodes = polynomial_of_nodes(s);
-	mpfi_t *W = intervals(cells), *A = intervals(cells), *twice = intervals(cells);
+	mpfi_t *W = enclosures(cells, BITS), *A = enclosures(cells, BITS), *twice = enclosures(cells, BITS);
 	if (zeros_of(step, nodes, c, MOST) != s)
 		internal_error(step, "a collocation without its nodes");
 	sort_real(c, s);

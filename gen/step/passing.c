@@ -323,7 +323,7 @@ static void fill_units(struct reference *r, bool single)
 	}
 }
 
-static struct reference new_reference(const struct step *step)
+struct reference new_reference(const struct step *step)
 {
 	size_t states = (size_t)step->branch->system.states;
 	struct reference r = { .states = (int)states, .steps = steps };

@@ -77,31 +77,18 @@ static double *breakpoints_of(const struct step *step)
 
 /* ---- bounds: no numbers of the model, so doubles rounded up a little will do ---- */
 
-/* The largest sum of sizes in a row */
-static double norm_of(int n, const double *A)
-{
-	double norm = 0;
-	for (int i = 0; i < n; i++) {
-		double sum = 0;
-		for (int j = 0; j < n; j++)
-			sum += fabs(A[i * n + j]);
-		norm = fmax(norm, sum);
-	}
-	return norm;
-}
-
 /* Do terms, of which each is at most half of the one before, change no digit of E any more? */
 static bool are_lost(int n, const double *term, const double *E)
 {
 	double least = INFINITY;
 	for (int i = 0; i < n * n; i++)
 		least = E[i] != 0 ? fmin(least, fabs(E[i])) : least;
-	return norm_of(n, term) < ldexp(least, -60);
+	return norm_of_rows(n, term) < ldexp(least, -60);
 }
 
 static void exponential(int n, const double *A, double tau, bool sizes, double *E)
 {
-	const double turn = norm_of(n, A) * tau;
+	const double turn = norm_of_rows(n, A) * tau;
 	SCRATCH double *term = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		E[i] = term[i] = i % n == i / n;

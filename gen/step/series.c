@@ -58,16 +58,6 @@ double largest_pole_angle(const struct step *step)
 	return mpfr_get_d(angle, MPFR_RNDU);
 }
 
-static mpfr_t *positive_numbers(int count)
-{
-	mpfr_t *x = ARRAY(mpfr_t, count);
-	for (int i = 0; i < count; i++) {
-		mpfr_init2(x[i], BITS);
-		mpfr_set_zero(x[i], 1);
-	}
-	return x;
-}
-
 /* next = |A| dt term / k, entrywise: bounds the k-th term of the series by the (k-1)-th */
 static void next_term(int size, const mpfr_t *A, const mpfr_t *term, mpfr_t *next, int k)
 {
@@ -123,8 +113,8 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 int series_degree(const struct step *step, int from, int to, int halvings)
 {
 	int size = step->layout.size, cells = size * size, quiet = 0, k = 0;
-	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells),
-	       *first = positive_numbers(cells);
+	mpfr_t *A = reals(cells, BITS), *term = reals(cells, BITS), *next = reals(cells, BITS),
+	       *first = reals(cells, BITS);
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
 			RATIONALS *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);

@@ -950,6 +950,7 @@ struct reference reference_of(const struct step *step);
 
 double ulp_of(double value, bool single);
 void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
+struct reference new_reference(const struct step *step);    /* room for its rows */
 struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 /* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */

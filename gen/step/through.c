@@ -156,16 +156,6 @@ static void take_start(struct through *t, const mpq_t *initial)
 	t->exact = rational ? exact : NULL;
 }
 
-static mpfi_t *room_of(const struct through *t)
-{
-	mpfi_t *x = ARRAY(mpfi_t, t->n);
-	for (int i = 0; i < t->n; i++) {
-		mpfi_init2(x[i], t->precision);
-		mpfi_set_ui(x[i], 0);
-	}
-	return x;
-}
-
 static void make_room(struct through *t)
 {
 	const struct switching *s = t->s;
@@ -176,10 +166,10 @@ static void make_room(struct through *t)
 	t->resting = ARRAY(bool, s->expressions);
 	t->order = ARRAY(int, s->expressions);
 	t->back = ARRAY(bool, s->expressions);
-	t->x = room_of(t);
-	t->y = room_of(t);
+	t->x = enclosures(t->n, t->precision);
+	t->y = enclosures(t->n, t->precision);
 	for (int k = 0; k <= THROUGH_SLOTS; k++)
-		t->slot[k] = room_of(t);
+		t->slot[k] = enclosures(t->n, t->precision);
 	for (int k = 0; k < 2; k++)
 		t->near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
 	t->most = ARRAY(double, t->n);

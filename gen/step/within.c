@@ -27,18 +27,6 @@ static double *powers_of(int nodes, const mpq_t *node)
 	return factor;
 }
 
-static double norm_of_rows(int n, const double *matrix)
-{
-	double norm = 0;
-	for (int i = 0; i < n; i++) {
-		double sum = 0;
-		for (int j = 0; j < n; j++)
-			sum += fabs(matrix[i * n + j]);
-		norm = sum > norm ? sum : norm;
-	}
-	return norm;
-}
-
 /* Norms of all that is left over at the end, on eta and on eta' */
 static void last_norms(const struct normal *m, const struct splitting *split, double *norm)
 {
