@@ -11,11 +11,6 @@
 
 /* ---- names ---- */
 
-static bool is_runtime_name(const char *name)
-{
-	return strncmp(name, "pl_", 3) == 0 || strncmp(name, "PL_", 3) == 0;
-}
-
 /* A name that no other file and no model has: a model's never begins with pl_. */
 static const char *own_name(const struct piece *p, const char *name)
 {
@@ -66,7 +61,7 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 	const char *name = other_name(r, from->typed ? r->floats : r->aliases, format("%.*s", (int)length, word));
 	if (strcmp(name, "PL_REAL") == 0)
 		return r->single ? "float" : "double";
-	if (is_runtime_name(name))
+	if (strncmp(name, "pl_", 3) == 0 || strncmp(name, "PL_", 3) == 0)
 		return name;
 	for (int header = 0; header < 2; header++)
 		for (int i = 0; i < r->pieces; i++)

@@ -129,11 +129,6 @@ bool is_decided_call(const struct collector *c, const struct node *node, struct 
 
 /* ---- functions ---- */
 
-static struct form *negated(const struct form *x)
-{
-	return form_sum(NEW(struct form), x, true);
-}
-
 static struct form *extreme(struct collector *c, const struct node *node, struct form *const *x)
 {
 	struct form *best = x[0];
@@ -226,7 +221,7 @@ struct form *piecewise(struct collector *c, const struct node *node, struct form
 {
 	struct form *zero = NEW(struct form);
 	switch (node->function) {
-	case FN_ABS:   return order_now(c, node, x[0], zero) < 0 ? negated(x[0]) : x[0];
+	case FN_ABS:   return order_now(c, node, x[0], zero) < 0 ? form_sum(NEW(struct form), x[0], true) : x[0];
 	case FN_SGN:   return form_number(order_now(c, node, x[0], zero));
 	case FN_MIN:
 	case FN_MAX:   return extreme(c, node, x);

@@ -13,11 +13,6 @@ static int stages(const struct emitter *e)
 	return e->step->collocation->stages;
 }
 
-static bool changes(const struct emitter *e)
-{
-	return e->system->segments > 1;
-}
-
 static bool switches(const struct emitter *e)
 {
 	return e->step->expansion != NULL;
@@ -50,7 +45,7 @@ void emit_collocation_members(const struct emitter *e)
 	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
 	       "extrapolated */\n",
 	    rows(e), is_divided(e) ? ", 3: a crossing" : "");
-	if (changes(e))
+	if (e->system->segments > 1)
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
 	if (switches(e))
 		say(e, "    int series, stiff;    /* the polynomial is a series; the next one is of the collocation "
@@ -264,16 +259,11 @@ static void emit_include(const struct emitter *e)
 
 /* ---- the step ---- */
 
-static const char *u_argument(const struct emitter *e)
-{
-	return e->system->inputs ? "u" : "NULL";
-}
-
 static void emit_step_function(const struct emitter *e)
 {
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
-	       "    const int wrong = $n_collocated(s, %s);\n", step_parameters(e), u_argument(e));
+	       "    const int wrong = $n_collocated(s, %s);\n", step_parameters(e), e->system->inputs ? "u" : "NULL");
 	emit_step_end(e);
 	say(e, "    $n_settle(s, wrong);\n"
 	       "}\n");

@@ -8,18 +8,13 @@ static const struct cut *cut_of(const struct emitter *e)
 	return e->step->cut;
 }
 
-static bool changes(const struct emitter *e)
-{
-	return e->system->segments > 1;
-}
-
 /* ---- the header ---- */
 
 void emit_cut_members(const struct emitter *e)
 {
 	int count = cut_of(e)->look->expressions;
 	emit_divided_members(e);
-	if (e->system->inputs == 0 && !changes(e))
+	if (e->system->inputs == 0 && e->system->segments <= 1)
 		say(e, "    double end[2][%d], terms[%d];  /* of each expression at the end of the last step */\n"
 		       "    int ended;            /* they are there */\n", count, count);
 }

@@ -197,11 +197,6 @@ void emit_load_advance(const struct emitter *e, const char *steps)
 
 /* ---- load states ---- */
 
-static bool is_plain_constant(const struct load *load)
-{
-	return is_polynomial(load->wave) && load->powers == 1;
-}
-
 const char *load_operand(const struct emitter *e, int load, int column)
 {
 	if (is_polynomial(e->system->load[load].wave) && column < 2)
@@ -239,11 +234,6 @@ static const char *now_of(const struct emitter *e, const char *what, const char 
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
 }
 
-static const char *phase_now(const struct emitter *e, int i)
-{
-	return now_of(e, "phase", "pl_turn", i);
-}
-
 static const char *growth_now(const struct emitter *e, int i)
 {
 	return now_of(e, "growth", "pl_growth", i);
@@ -279,7 +269,7 @@ void emit_load_functions(const struct emitter *e, int l)
 	bool turns = oscillates(load->wave), grows = e->growth[l] >= 0;
 	const char *pair = e->at_anchor ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
 	if (turns)
-		say(e, "    pl_cossin(%s, %s);\n", phase_now(e, e->phase[l]), pair);
+		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_turn", e->phase[l]), pair);
 	if (turns && grows)
 		say(e, "    growth = pl_growth_value(%s);\n"
 		       "    %s *= growth;\n"
@@ -313,6 +303,6 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 	if (growth)
 		say(e, "    double growth;\n");
 	for (int l = 0; l < e->system->loads; l++)
-		if (loads[l] && !is_plain_constant(&e->system->load[l]))
+		if (loads[l] && !(is_polynomial(e->system->load[l].wave) && e->system->load[l].powers == 1))
 			emit_one_load(e, l);
 }

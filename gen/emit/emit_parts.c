@@ -87,11 +87,6 @@ static const char *note_of_slopes(const struct emitter *part)
 				: "x' = A x; x = states, load states, inputs";
 }
 
-static const char *note_of_pieces(const struct emitter *part)
-{
-	return keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}";
-}
-
 /* Regions without expressions, one in each segment of time: what the search has of those is not read. */
 static void emit_linear_tables(const struct emitter *part)
 {
@@ -105,7 +100,7 @@ static void emit_linear_tables(const struct emitter *part)
 		halvings[k] = part->step->branch[k].halvings;
 	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
 		     of_branches(part, &pieces, OF_PIECE(slopes)), names_of_rows(part));
-	put_matrices(part, "pieces", note_of_pieces(part), branches, rows, size,
+	put_matrices(part, "pieces", keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}", branches, rows, size,
 		     of_branches(part, &pieces, keeps_rest(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
 		     names_of_rows(part));
 	put_wholes(part, false, "matrix", "in each segment of time", s->segments, matrix);

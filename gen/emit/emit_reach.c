@@ -5,11 +5,6 @@
 
 #include <math.h>
 
-static int order_of(const struct emitter *e)
-{
-	return e->step->expansion->order;
-}
-
 static const struct truncation *truncation(const struct emitter *e)
 {
 	return &e->model->truncation;
@@ -64,7 +59,7 @@ void emit_reach_tables(const struct emitter *e)
 {
 	if (!truncation(e)->adaptive || e->system->inputs)
 		return;
-	int order = order_of(e), most = most_served(e);
+	int order = e->step->expansion->order, most = most_served(e);
 	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
 	mpq_t bound, steps;
 	mpq_inits(bound, steps, NULL);

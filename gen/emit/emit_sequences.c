@@ -50,11 +50,6 @@ const struct emitter *sloping(const struct emitter *e)
 
 /* ---- what is asked of it ---- */
 
-static bool changes(const struct emitter *e)
-{
-	return e->system->segments > 1;
-}
-
 bool is_divided(const struct emitter *e)
 {
 	return e->step->divided != NULL;
@@ -62,7 +57,7 @@ bool is_divided(const struct emitter *e)
 
 bool has_offset(const struct emitter *e)
 {
-	return e->model->truncation.adaptive || changes(e) || is_divided(e);
+	return e->model->truncation.adaptive || e->system->segments > 1 || is_divided(e);
 }
 
 bool spans_steps(const struct emitter *e)

@@ -88,11 +88,6 @@ static const char *claim(struct identifiers *c, const char *wish)
 	return name;
 }
 
-static const char *component_name(const struct identifiers *c, const struct symbol *s, int component, int order)
-{
-	return c->symbol[s->number].component[order][component];
-}
-
 const char *c_name(const struct identifiers *c, const struct symbol *s, int order)
 {
 	return c->symbol[s->number].name[order];
@@ -102,7 +97,7 @@ const char *written_local(const struct identifiers *c, const struct model *writt
 {
 	int coord = written->system.coord[state], order = state >= written->n;
 	const struct symbol *s = written->frame.coord[coord];
-	return s->length ? component_name(c, s, coord - s->index, order) : c_name(c, s, order);
+	return s->length ? c->symbol[s->number].component[order][coord - s->index] : c_name(c, s, order);
 }
 
 /* s'' as s_dot_dot, q[1] as q1, (a - b)' as a_from_b_dot; a factor in front goes */

@@ -60,11 +60,6 @@ bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to)
 	return stays_positive(force, false, from, to);
 }
 
-static bool stays_below_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to)
-{
-	return force->terms > 0 && stays_positive(force, true, from, to);
-}
-
 bool never_falls_below(const struct form *force)
 {
 	RATIONAL start = ZERO;
@@ -73,7 +68,7 @@ bool never_falls_below(const struct form *force)
 
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to)
 {
-	if (stays_below_zero(force, from, to))
+	if (force->terms > 0 && stays_positive(force, true, from, to))
 		error(node->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
 		      "the force of friction is below 0");
 }

@@ -124,11 +124,6 @@ static struct mode_basis *basis_of(const struct linear *system)
 
 /* ---- shares ---- */
 
-static double share_of(double part, double sum)
-{
-	return part == 0 ? 0 : isinf(part) ? HUGE_VAL : part / sum;
-}
-
 static void find_shares(struct modes *modes)
 {
 	const int outputs = modes->model->outputs, inputs = modes->model->system.inputs;
@@ -143,7 +138,7 @@ static void find_shares(struct modes *modes)
 			for (int i = 0; i < modes->count; i++) {
 				struct mode *mode = &modes->mode[i];
 				const double part = e ? mode->by_input[o * inputs + e - 1] : mode->size[o];
-				const double share = share_of(part, sum);
+				const double share = part == 0 ? 0 : isinf(part) ? HUGE_VAL : part / sum;
 				mode->share = share > mode->share ? share : mode->share;
 			}
 		}

@@ -9,11 +9,6 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 
 /* ---- is it? ---- */
 
-static bool has_atoms(const struct form *form)
-{
-	return form->terms > 0 && form->term[form->terms - 1].basis.atom;
-}
-
 /* In every segment of time; where there are several, somewhere with a breakpoint: factors of what is linear may not
  * change alone. */
 bool is_piecewise_linear(const struct building *b)
@@ -25,7 +20,7 @@ bool is_piecewise_linear(const struct building *b)
 			const struct form *form = b->snapshot[s].residual[i].form;
 			if (!is_piecewise_form(form))
 				return false;
-			divided = divided || has_atoms(form);
+			divided = divided || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
 		}
 	return divided;
 }

@@ -224,11 +224,6 @@ static const struct atom *first_atom(const struct building *b, bool all)
 	return first;
 }
 
-static bool keeps_atoms(const struct building *b)
-{
-	return first_atom(b, true) != NULL;
-}
-
 /* Scheme exact was asked for, and what it would have to switch on it cannot */
 static void tell_atom(void *context)
 {
@@ -338,7 +333,7 @@ static bool settle_scheme(struct building *b)
 			statement_guard(part_loads, b);
 		return !diagnostics_errors();
 	}
-	if (model->scheme == SCHEME_EXACT && keeps_atoms(b))
+	if (model->scheme == SCHEME_EXACT && first_atom(b, true))
 		return statement_guard(tell_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);

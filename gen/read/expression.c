@@ -305,12 +305,6 @@ static struct node *read_inlined(struct parser *p, const struct symbol *symbol, 
 	return inlined(symbol->value, token.at, p->end);
 }
 
-/* What has a value at other times; of others a bracket behind them is a missing operator */
-static bool is_delayable(const struct symbol *symbol)
-{
-	return symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT;
-}
-
 /* delayed: NAME { ' } ( expression ), an input as it was: an input by itself, which the text does not declare */
 static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, struct token token)
 {
@@ -368,7 +362,8 @@ struct node *resolve_name(struct parser *p, struct token token)
 	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
 		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
 	struct node *node = node_new(NODE_NAME, token.at);
-	if (is_op(p, "(") && is_delayable(symbol))
+	/* of others a bracket behind them is a missing operator */
+	if (is_op(p, "(") && (symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT))
 		symbol = read_delay(p, symbol, token);
 	node->symbol = symbol;
 	node->depth = symbol->value ? symbol->value->depth + 1 : 0;

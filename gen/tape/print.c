@@ -32,11 +32,6 @@ static bool is_shared(const struct printing *p, tape_ref ref)
 	return named || (!plain && p->uses[ref] > 1);
 }
 
-static bool is_wide(const struct printing *p, tape_ref ref)
-{
-	return p->wide && p->wide[ref];
-}
-
 static const char *widened(const struct printing *p, tape_ref ref, const char *text)
 {
 	return p->wide && !p->wide[ref] ? format("%s(%s)", p->to->lanes->widen, text) : text;
@@ -46,7 +41,7 @@ static const char *declare(struct printing *p, tape_ref ref, const char *text)
 {
 	const char *name = tape_node(p->t, ref)->name;
 	name = name ? name : format("part%d", ++p->parts);
-	const char *type = is_wide(p, ref) ? p->to->lanes->type : p->to->real;
+	const char *type = p->wide && p->wide[ref] ? p->to->lanes->type : p->to->real;
 	fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", type, name, text);
 	return p->local[ref] = name;
 }
@@ -71,16 +66,11 @@ static const char *argument_of(struct printing *p, tape_ref ref)
 
 /* ---- operations ---- */
 
-static bool is_sum(const struct printing *p, tape_ref ref)
-{
-	return tape_node(p->t, ref)->op == TAPE_ADD && !is_shared(p, ref);
-}
-
 /* What is negative is subtracted. Of (a + b) + (c + d) lines break at the middle of what is too long for one, of
  * a + b + c + d before what would not fit. */
 static const char *sum_text(struct printing *p, const struct tape_node *n, int indent)
 {
-	bool halves = is_sum(p, n->b);
+	bool halves = tape_node(p->t, n->b)->op == TAPE_ADD && !is_shared(p, n->b);
 	const char *left = text_of(p, n->a, halves ? PRODUCT : SUM, indent + halves);
 	const char *right = text_of(p, n->b, PRODUCT, indent + 1), *sign = *right == '-' ? "-" : "+";
 	right += *right == '-';

@@ -41,11 +41,6 @@ static tape_ref square(struct tape *t, tape_ref a)
 	return tape_binary(t, TAPE_MUL, a, a);
 }
 
-static tape_ref minus_one(struct tape *t, tape_ref a)
-{
-	return tape_binary(t, TAPE_ADD, a, tape_number(t, -1));
-}
-
 /* f'(x) of a function of one argument; y is f(x) */
 static tape_ref slope_of_function(struct tape *t, enum function function, tape_ref x, tape_ref y)
 {
@@ -74,7 +69,7 @@ static tape_ref slope_of_power(struct tape *t, tape_ref power, const struct tape
 {
 	if (which)
 		return tape_binary(t, TAPE_MUL, power, tape_call(t, FN_LOG, n->a));
-	return product(t, n->b, tape_binary(t, TAPE_POWER, n->a, minus_one(t, n->b)));
+	return product(t, n->b, tape_binary(t, TAPE_POWER, n->a, tape_binary(t, TAPE_ADD, n->b, tape_number(t, -1))));
 }
 
 static tape_ref slope_of_atan2(struct tape *t, const struct tape_node *n, int which)
@@ -101,18 +96,13 @@ static tape_ref partial(struct tape *t, tape_ref ref, int which)
 	}
 }
 
-static bool is_asked(const struct tape_node *n, enum tape_op kind, int index, int part)
-{
-	return n->op == kind && n->index == index && n->part == part;
-}
-
 tape_ref tape_forward(struct tape *t, tape_ref ref, enum tape_op kind, int index, int part)
 {
 	SCRATCH tape_ref *slope = ARRAY(tape_ref, ref + 1);
 	tape_ref zero = tape_number(t, 0), one = tape_number(t, 1);
 	for (int i = 0; i <= ref; i++) {
 		const struct tape_node n = *tape_node(t, i);
-		slope[i] = is_asked(&n, kind, index, part) ? one : zero;
+		slope[i] = (n.op == kind && n.index == index && n.part == part) ? one : zero;
 		if (n.op == TAPE_SELECT && !n.choice)
 			slope[i] = tape_select(t, n.a, slope[n.b], slope[n.c]);
 		const tape_ref operand[3] = { n.a, n.b, n.c };
