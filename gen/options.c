@@ -54,8 +54,6 @@ static bool is_second(const char *option, const char *value, const char *first, 
 	return strcmp(value, second) == 0;
 }
 
-static void take_header(struct options *options, const char *value) { (void)value; set_print(options, PRINT_HEADER); }
-
 static void take_explain(struct options *options, const char *value)
 {
 	if (value && strcmp(value, "json") != 0 && strcmp(value, "program") != 0)
@@ -72,12 +70,6 @@ static void take_solution(struct options *options, const char *value)
 	options->request.solution = true;
 }
 
-static void take_response(struct options *options, const char *value)
-{
-	set_print(options, PRINT_RESPONSE);
-	options->value = value;
-}
-
 static void take_plot(struct options *options, const char *value)
 {
 	const char *wrong = wrong_picture(value);
@@ -85,12 +77,6 @@ static void take_plot(struct options *options, const char *value)
 		wrong_usage(format("--plot takes %s, found '%s'", PICTURE_KINDS, wrong));
 	set_print(options, PRINT_PLOT);
 	options->value = value;
-}
-
-static void take_report(struct options *options, const char *value)
-{
-	(void)value;
-	set_print(options, PRINT_REPORT);
 }
 
 static void take_real(struct options *options, const char *value)
@@ -117,13 +103,19 @@ static void take_loads(struct options *options, const char *value)
 	options->request.loads_left = is_second("--loads", value, "exact", "leftover");
 }
 
-static void take_anchors(struct options *options, const char *value)
+/* 0: it is none from 1 to `most` */
+static int count_of(const char *value, int most)
 {
 	char *end;
-	long steps = strtol(value, &end, 10);
-	if (*value < '0' || *value > '9' || *end || steps < 1 || steps > MOST_ANCHORED)
+	const long count = strtol(value, &end, 10);
+	return *value < '0' || *value > '9' || *end || count < 1 || count > most ? 0 : (int)count;
+}
+
+static void take_anchors(struct options *options, const char *value)
+{
+	options->request.anchors = count_of(value, MOST_ANCHORED);
+	if (!options->request.anchors)
 		wrong_usage(format("--anchors takes a number of steps, 1 to %d, found '%s'", MOST_ANCHORED, value));
-	options->request.anchors = (int)steps;
 }
 
 static void take_definition(struct options *options, const char *value)
@@ -156,11 +148,9 @@ static void take_fmu_binary(struct options *options, const char *value)
 
 static void take_rows(struct options *options, const char *value)
 {
-	char *end;
-	long rows = strtol(value, &end, 10);
-	if (*end || end == value || rows < 1 || rows > LIMIT_BLOCK_ROWS)
+	options->request.rows = count_of(value, LIMIT_BLOCK_ROWS);
+	if (!options->request.rows)
 		wrong_usage(format("--rows takes a number from 1 to %d, found '%s'", LIMIT_BLOCK_ROWS, value));
-	options->request.rows = (int)rows;
 }
 
 static void print_usage(struct options *options, const char *value);
@@ -221,21 +211,22 @@ static const struct row {
 	const char *help;               /* NULL: of the last line, which lists those that need no words */
 	void (*take)(struct options *options, const char *value);
 	const char *(*values)(const char *separator); /* closes the help */
-	/* without `take`: what is set to the value, to true. 0: neither is, it is a line of usage only */
+	/* without `take`: what is set to the value, to true; what is printed. All 0: it is a line of usage only */
 	size_t text, flag;
+	enum print print;
 } rows[] = {
 	{ "o", "FILE.c", "write FILE.c and the header FILE.h beside it", .text = AT(output) },
-	{ "header", NULL, "print the header instead of the C", .take = take_header },
+	{ "header", NULL, "print the header instead of the C", .print = PRINT_HEADER },
 	{ "explain", "[=json]", "print what was derived: matrices, B(s), poles, Phi, cost", .take = take_explain },
 	{ "explain", "=program", "print what a step does, before it is C", .take = NULL },
 	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", .take = take_solution },
 	{ "response", "F0:F1[:N]", "print the frequency response from F0 to F1 Hz as CSV, N frequencies (200)",
-	  .take = take_response },
+	  .text = AT(value), .print = PRINT_RESPONSE },
 	{ "amplitude", "A", "of an excitation: clearances are swept by it, up and down (--response, --plot frf)",
 	  .text = AT(amplitude) },
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
 	  .take = take_plot },
-	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .take = take_report },
+	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .print = PRINT_REPORT },
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", .flag = AT(rhs) },
 	{ "step", "EXPR", "instead of the spec's step", .text = AT(request.step) },
 	{ "scheme", "NAME", "instead of the spec's: ", .values = all_schemes, .text = AT(request.scheme) },
@@ -319,7 +310,7 @@ static const char *fill_known(struct option *known)
 		const struct row *row = &rows[i];
 		if (is_short(row))
 			letters = format("%s%s%s", letters, row->name, row->argument ? ":" : "");
-		else if (row->take || row->text || row->flag)
+		else if (row->take || row->text || row->flag || row->print)
 			*known++ = (struct option){ row->name, values_of(row), NULL, LONG + i };
 	}
 	return letters;
@@ -375,11 +366,13 @@ static _Noreturn void not_taken(int option, const char *word)
 
 static void take(const struct row *row, struct options *options, const char *value)
 {
+	if (row->print)
+		set_print(options, row->print);
 	if (row->take)
 		row->take(options, value);
 	else if (row->text)
 		*(const char **)((char *)options + row->text) = value;
-	else
+	else if (row->flag)
 		*(bool *)((char *)options + row->flag) = true;
 }
 
