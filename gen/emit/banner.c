@@ -324,14 +324,7 @@ void banner_regions(const struct emitter *e)
 	if (s->segments > 1)
 		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
 	banner_expressions(e);
-	for (int i = 0, shown = 0; i < s->frictions; i++)
-		if (!is_repeated(s, i))
-			say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", shown++,
-			    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
-			    stick_of(s, &s->friction[i]), s->friction[i].expression);
-	for (int i = 0; i < s->sliders; i++)
-		if (!is_repeated_slider(s, i))
-			say(e, " *     slider: %s\n", slider_text(s, i));
+	say(e, "%s", frictions_text(s, " *     "));
 	banner_impacts(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
@@ -384,13 +377,6 @@ void banner_parts(const struct emitter *e)
 	banner_region_number(e);
 }
 
-static void banner_irrationals(const struct emitter *e)
-{
-	const char *which = irrationals_text(&e->model->irrationals);
-	if (*which)
-		say(e, " * Irrational constants (%s) were taken as rationals of %d bits.\n", which, IRRATIONAL_BITS);
-}
-
 /* ; X = 0.5*x1 + 0.5*x2 */
 static const char *centre_text(const struct relative *r)
 {
@@ -407,11 +393,9 @@ static const char *centre_text(const struct relative *r)
 static void banner_relative(const struct emitter *e)
 {
 	const struct relative *r = e->model->relative;
-	const char *list = "", *centre = centre_text(r);
-	for (int j = 0; j < r->written->n; j++)
-		if (r->link[j].kind != LINK_NONE)
-			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
-	say(e, " * What may move as a whole is kept apart from what moves in it: %s%s.\n", list, centre);
+	const char *centre = centre_text(r);
+	say(e, " * What may move as a whole is kept apart from what moves in it: %s%s.\n", relative_text(e->model),
+	    centre);
 	if (*centre)
 		say(e, " * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n");
 }
@@ -585,7 +569,9 @@ void emit_banner(const struct emitter *e)
 	banner_poles(e);
 	say(e, " *\n");
 	e->kind->banner(e);
-	banner_irrationals(e);
+	const char *irrationals = irrationals_text(&e->model->irrationals);
+	if (irrationals)
+		say(e, " * %s\n", irrationals);
 	banner_cost(e);
 	banner_needs(e);
 	banner_form(e);

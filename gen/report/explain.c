@@ -111,17 +111,6 @@ static void person_tuning(FILE *to, const struct step *step)
 		person_blocks(to, step->blocks);
 }
 
-/* What the step keeps in the place of positions and velocities as written */
-static void person_relative(FILE *to, const struct model *model)
-{
-	const struct relative *r = model->relative;
-	const char *list = "";
-	for (int j = 0; j < r->written->n; j++)
-		if (r->link[j].kind != LINK_NONE)
-			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
-	fprintf(to, "What may move as a whole is kept apart from what moves in it: the step keeps %s.\n", list);
-}
-
 static void person_operations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -141,10 +130,9 @@ static void person_operations(FILE *to, const struct step *step)
 		fprintf(to, ".\nThe look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
 			"none passes its peak",
 			program->peak_multiplications, program->peak_additions);
-	if (step->model->relative) {
-		fputs(".\n", to);
-		person_relative(to, step->model);
-	}
+	if (step->model->relative)
+		fprintf(to, ".\nWhat may move as a whole is kept apart from what moves in it: the step keeps %s.\n",
+			relative_text(step->model));
 	struct drift drift = drift_of(step);
 	if (drift.known)
 		fprintf(to, ".\n%s", drift_text(&drift));
@@ -419,10 +407,9 @@ void explain_person(FILE *to, const struct step *step)
 		person_left_out(to, step);
 	else
 		person_poles(to, step->model, step->written);
-	const char *irrational = irrationals_text(&model->irrationals);
-	if (*irrational)
-		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
-			IRRATIONAL_BITS);
+	const char *irrationals = irrationals_text(&model->irrationals);
+	if (irrationals)
+		fprintf(to, "\n%s\n", irrationals);
 	fputc('\n', to);
 	person_course(to, step);
 	person_step(to, step);

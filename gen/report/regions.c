@@ -129,19 +129,20 @@ void person_divided(FILE *to, const struct step *step)
 		person_contacts(to, step);
 }
 
-/* What rubs, and where it sticks: its expression, and the interval of that */
-static void person_frictions(FILE *to, const struct switching *s)
+const char *frictions_text(const struct switching *s, const char *indent)
 {
+	const char *text = "";
 	for (int i = 0, shown = 0; i < s->frictions; i++) {
 		const struct node *node = s->friction[i].atom->node;
-		if (is_repeated(s, i))
-			continue;
-		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", shown++,
-			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
+		if (!is_repeated(s, i))
+			text = format("%s%sfriction %d: %s; sticks in interval %d of expression %d\n", text, indent,
+				      shown++, text_between(node->start, node->end), stick_of(s, &s->friction[i]),
+				      s->friction[i].expression);
 	}
 	for (int i = 0; i < s->sliders; i++)
 		if (!is_repeated_slider(s, i))
-			fprintf(to, "    slider: %s\n", slider_text(s, i));
+			text = format("%s%sslider: %s\n", text, indent, slider_text(s, i));
+	return text;
 }
 
 static void person_intervals(FILE *to, const struct switching *s, int region)
@@ -188,7 +189,7 @@ static void person_of_one_part(FILE *to, const struct step *step)
 		"is correctly rounded.\n",
 		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	person_expressions(to, step);
-	person_frictions(to, s);
+	fputs(frictions_text(s, "    "), to);
 	person_impacts(to, step->shown->model);
 	if (s->sharing)
 		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",

@@ -59,7 +59,18 @@ const char *irrationals_text(const struct irrationals *used)
 			text = format("%s%s%s", text, *text ? ", " : "", function_name((enum function)f));
 	if (used->root)
 		text = format("%s%s%s", text, *text ? ", " : "", "roots");
-	return text;
+	return *text ? format("Irrational constants (%s) were taken as rationals of %d bits.", text, IRRATIONAL_BITS)
+		     : NULL;
+}
+
+const char *relative_text(const struct model *model)
+{
+	const struct relative *r = model->relative;
+	const char *list = "";
+	for (int j = 0; j < r->written->n; j++)
+		if (r->link[j].kind != LINK_NONE)
+			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
+	return list;
 }
 
 const char *json_text(const char *name)

@@ -12,7 +12,8 @@ const char *pole_text(const struct pole_report *report);
 const char *pole_row(const struct pole_report *report, int width);
 double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
-const char *irrationals_text(const struct irrationals *used);
+const char *irrationals_text(const struct irrationals *used); /* a sentence; NULL: there are none */
+const char *relative_text(const struct model *model);       /* what is kept in the place of positions: X, r1 */
 const char *json_text(const char *name);                    /* a file's name, as it is in quotes */
 const char *json_number(double value);                      /* null where it is not finite, which JSON cannot say */
 void json_numbers(FILE *to, int count, const double *value); /* [1, 2] */
@@ -37,6 +38,8 @@ void json_reach(FILE *to, const struct step *step);
 
 /* ---- regions.c: formulas that the state chooses ---- */
 
+/* What rubs, a line each, and where it sticks: its expression, and the interval of that */
+const char *frictions_text(const struct switching *s, const char *indent);
 void person_regions(FILE *to, const struct step *step);     /* of a model of straight pieces */
 void json_regions(FILE *to, const struct step *step);        /* members of an object */
 void person_divided(FILE *to, const struct step *step);     /* of a series */
