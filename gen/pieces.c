@@ -131,6 +131,13 @@ struct reader {
 };
 
 static void read_file(struct runtime *r, const char *name);
+static void read_lines(struct reader *f, const char *rest);
+
+/* A header without a guard is a part of the file that includes it, but for the types of plrt.h. */
+static bool stands_alone(const char *name)
+{
+	return strncmp(name, "pl", 2) == 0 || strstr(runtime_text(name), "#ifndef PL");
+}
 
 static const char *without_ending(const char *name)
 {
@@ -231,6 +238,10 @@ static bool take_directive(struct reader *f, const char *line)
 	    (!r->single && strcmp(line, "#include \"floats.h\"") == 0))
 		return true;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
+		if (!stands_alone(name)) {
+			read_lines(f, runtime_text(name));
+			return true;
+		}
 		*MORE(r->include, r->includes) = (struct include){ f->file, without_ending(name) };
 		read_file(r, name);
 		return true;
@@ -262,6 +273,19 @@ static const char *full_text(const char *name)
 	return need_memory(full);
 }
 
+static void read_lines(struct reader *f, const char *rest)
+{
+	while (*rest) {
+		const char *line = format("%.*s", (int)strcspn(rest, "\n"), rest);
+		rest += strlen(line) + 1;
+		if (*line == '#' && !*f->text && take_condition(f, line))
+			continue;
+		if (f->left_out || (*line == '#' && !*f->text && take_directive(f, line)))
+			continue;
+		take_line(f, line);
+	}
+}
+
 static void read_file(struct runtime *r, const char *name)
 {
 	struct reader f = { .runtime = r, .file = without_ending(name), .comment = "", .text = "" };
@@ -269,15 +293,7 @@ static void read_file(struct runtime *r, const char *name)
 		if (strcmp(r->piece[i].file, f.file) == 0)
 			return;
 	const char *rest = strstr(runtime_text(name), "#define PL(") ? full_text(name) : runtime_text(name);
-	while (*rest) {
-		const char *line = format("%.*s", (int)strcspn(rest, "\n"), rest);
-		rest += strlen(line) + 1;
-		if (*line == '#' && !*f.text && take_condition(&f, line))
-			continue;
-		if (f.left_out || (*line == '#' && !*f.text && take_directive(&f, line)))
-			continue;
-		take_line(&f, line);
-	}
+	read_lines(&f, rest);
 }
 
 /* ---- all of it ---- */

@@ -73,6 +73,7 @@ static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
     at->time = 0;
     at->next = contact->last;
     at->strike = at->freed = -1;
+    at->unlisted = 0;
     at->status = 0;
     at->chain = none;
 }

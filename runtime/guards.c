@@ -4,7 +4,7 @@
  * What is to stick and what is to slip after an event is found by looking at all combinations of those that are at
  * rest. */
 #include "ladder.h"
-#include "sticking.h"
+#include "impacts.h"
 
 /* ---- the start ---- */
 
@@ -27,10 +27,43 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
     }
 }
 
-void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *work)
+/* A state with nothing listed; before the first impact of a step */
+static instant instant_of(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    instant at;
+    at.x = x;
+    at.c = c;
+    at.crossing = crossing;
+    at.work = work;
+    at.time = 0;
+    at.before = c->region;
+    at.chain = no_impact(m->h);
+    return at;
+}
+
+/* What is on a breakpoint that stands twice is held first, but for what flies off. */
+static void hold_first(const pl_guards *m, instant *at)
 {
     walk w;
-    int first = 0;
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
+        if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
+            const int impact = impact_of(m, w.i, w.interval + 1);
+            real noise;
+            if (magnitude(excess(m, at->c, &w, w.interval, at->x, &noise)) > noise) {
+                continue;
+            }
+            enter(m->matrix, at->c, at->c->region + w.stride);
+            if (impact >= 0 && magnitude(speed_of(m, at, impact)) > 0) {
+                go_to(m, at, w.i, free_of(m, impact));
+            }
+        }
+    }
+}
+
+void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *work)
+{
+    instant at;
+    int first = 0, i;
     while (m->matrix[first] < 0) {
         first++;
     }
@@ -38,24 +71,15 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
     c->crossings = c->status = c->rested = 0;
     c->matrix = m->matrix[first];
     enter(m->matrix, c, 0);
-    follow(m, 1, x, c, (pl_crossing *)0, 0);
-    /* at rest: let it stick first */
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
-        if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
-            const int impact = impact_of(m, w.i, w.interval + 1);
-            real noise;
-            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise) {
-                continue;
-            }
-            enter(m->matrix, c, c->region + w.stride);
-            if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0) {
-                go_to(m, c, &m->impact[impact], free_of(&m->impact[impact]));
-            }
-        }
+    for (i = 0; i < WORDS * m->size; i++) {
+        work[i] = x[i];
     }
-    settle(m, c->region, x, c, (pl_crossing *)0, 0, work);
-    decide(m, x, c, work);
-    settle(m, c->region, x, c, (pl_crossing *)0, 0, work);
+    at = instant_of(m, work, c, (pl_crossing *)0, work + WORDS * m->size);
+    follow(m, &at, 1);
+    hold_first(m, &at);
+    settle(m, &at, 0);
+    decide(m, at.x, c, at.work);
+    settle(m, &at, 0);
 }
 
 /* ---- a piece ---- */
@@ -119,17 +143,14 @@ static void level(const pl_guards *m, int region, const pl_guard *g, const real 
 {
     const int side = g->leads < 0 ? 1 : -1;
     walk w;
-    resting r;
+    int held;
     if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0)) {
         return;
     }
     w = switch_of(m, region, g->expression);
-    r.expression = g->expression;
-    r.stick = w.interval - side;
-    r.stride = w.stride;
-    r.impact = -1;
-    if (r.stick > 0 && r.stick < w.breaks && !(w.at[r.stick] > w.at[r.stick - 1]) &&
-        is_let_go(m, region, &r, side, x, work)) {
+    held = w.interval - side;
+    if (held > 0 && held < w.breaks && !(w.at[held] > w.at[held - 1]) &&
+        is_let_go(m, region, g->expression, side, x, work)) {
         f->coefficient[1] = 0;
     }
 }
@@ -217,150 +238,39 @@ static event move(const pl_guards *m, pl_contact *c, const climb *at, real dt, c
 
 /* ---- a step ---- */
 
-/* Whether what rests there is pressed, by more than rounding */
-static int is_pressed(const pl_guards *m, int region, int expression, const real *x)
+/* Into the region to which a guard leads, or by the impact that begins there; 0: there is no more room. */
+static int pass(const pl_guards *m, instant *at, const pl_guard *g)
 {
-    int k, any = 0;
-    for (k = m->first[region]; k < m->first[region + 1]; k++) {
-        if (m->guard[k].expression == expression) {
-            if (!(pull_of(m, k, x) < 0)) {
-                return 0;
-            }
-            any = 1;
-        }
-    }
-    return any;
-}
-
-/* The largest acceleration by which one of those that touch is pressed, and the most that rounding does to their
- * places: they lie on each other, and what that takes one by moves another one.  work: size */
-static real most_pressed(const pl_guards *m, const pl_contact *c, const real *x, real *rounding, real *work)
-{
-    const int n = m->size;
-    real most = 0, press, noise;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if (touches(m, c, &m->impact[k], x)) {
-            const walk w = switch_of(m, c->region, m->impact[k].expression);
-            (void)excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
-            *rounding = larger(*rounding, noise);
-        }
-    }
-    pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
-    for (k = 0; k < m->impacts; k++) {
-        if (touches_by(m, c, &m->impact[k], x, *rounding)) {
-            press = dot(n, m->speed + (ptrdiff_t)k * n, work);
-            most = larger(most, press);
-        }
-    }
-    return most;
-}
-
-/* Several contacts that are as good as at rest together, those of them that fly as bits: all that any of them could
- * still do is over within `brief` [s] under the force that presses one of them, or lower than rounding.  work: size */
-static uint32_t near_rest(const pl_guards *m, const pl_contact *c, real brief, const real *x, real *work)
-{
-    real noise = 0;
-    const real most = most_pressed(m, c, x, &noise, work), fastest = most * brief / 2;
-    uint32_t set = 0;
-    int k, together = 0;
-    for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
-        const walk w = switch_of(m, c->region, p->expression);
-        real unused, e, speed;
-        if (p->rest < 0 || (w.interval != free_of(p) && w.interval != p->rest)) {
-            continue;
-        }
-        e = excess(m, c, &w, p->breakpoint, x, &unused);
-        speed = magnitude(speed_of(m, k, x));
-        if ((p->upward ? e : -e) < -larger(noise, fastest * brief)) {
-            continue;
-        }
-        e = 1 - p->restitution;
-        if (w.interval == p->rest) {
-            together++;
-        } else if (speed <= fastest * e || speed * speed <= 2 * most * noise * e * e) {
-            set |= (uint32_t)1 << k;
-            together++;
-        }
-    }
-    return together > 1 ? set : 0;
-}
-
-/* Several that strike each other come to rest together if all of them are pressed then. */
-static void rest_together(const pl_guards *m, uint32_t set, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                          real *work)
-{
-    pl_contact then = *c;
-    const uint32_t laid = seat(m, set, &then);
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if (laid >> k & 1 && !is_pressed(m, then.region, m->impact[k].expression, x)) {
-            return;
-        }
-    }
-    list_rests(m, lay(m, laid, x, c, work), c, crossing, time);
-    settle(m, c->region, x, c, crossing, time, work);
-}
-
-/* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
-static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                         real *work)
-{
-    const real brief = (c->crossings > m->max_events - MOST ? SPAN : BRIEF) * m->h;
-    uint32_t set;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
-        const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
-        const real left = along / (1 - e);
-        if (!(left >= 0 && left <= brief) || !touches(m, c, p, x)) {
-            continue;
-        }
-        list_rests(m, lay(m, (uint32_t)1 << k, x, c, work), c, crossing, time + left);
-        settle(m, c->region, x, c, crossing, time, work);
-    }
-    set = near_rest(m, c, BRIEF * m->h, x, work);
-    if (struck != 0 && set != 0) {
-        rest_together(m, set, x, c, crossing, time, work);
-    }
-}
-
-/* Into the region to which a guard leads, or by the impact that begins there */
-static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, pl_crossing *crossing, real time,
-                pl_chain *chain, real *work)
-{
-    const int rest = impact_of(m, g->expression, switch_of(m, c->region, g->expression).interval);
-    const int before = c->region;
+    const int rest = impact_of(m, g->expression, interval_of(m, at, g->expression));
+    pl_chain *chain = &at->chain;
     uint32_t struck = 0;
+    at->before = at->c->region;
     if (g->impact < 0) {
-        chain->full = !has_time(chain) ||
-                    !has_listed(m, rest >= 0 && m->impact[rest].restitution < 1, c, crossing, time, g->expression,
-                                g->breakpoint, g->upward);
-        c->status |= chain->full ? PL_TOO_MANY_EVENTS : 0;
+        chain->full = !has_time(chain) || !has_listed(m, at, rest >= 0 && m->impact[rest].restitution < 1, at->time,
+                                                      g->expression, g->breakpoint, g->upward);
+        say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
     }
     if (g->impact < 0 || m->impact[g->impact].rest < 0) {
-        enter(m->matrix, c, c->region + g->leads);
+        enter(m->matrix, at->c, at->c->region + g->leads);
     }
-    assign(m, m->hold[c->region], x, work);
+    keep(m, at);
     if (g->impact >= 0) {
-        struck = collide(m, g->impact, x, c, crossing, time, chain, work);
-        follow(m, 0, x, c, crossing, time);
+        struck = collide(m, at, g->impact);
+        follow(m, at, 0);
     }
-    settle(m, before, x, c, crossing, time, work);
-    come_to_rest(m, struck, x, c, crossing, time, work);
-    assign(m, m->hold[c->region], x, work);
+    settle(m, at, 1);
+    come_to_rest(m, at, struck);
+    keep(m, at);
     return !chain->full;
 }
 
 /* At the start, or behind a change of the loads: what holds may have moved, and what moves may have jumped. */
-static void take_up(const pl_guards *m, int jumped, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                    pl_chain *chain, real *work)
+static void take_up(const pl_guards *m, instant *at, int jumped)
 {
-    follow(m, jumped, x, c, crossing, time);
-    (void)collide(m, -1, x, c, crossing, time, chain, work);
-    settle(m, c->region, x, c, crossing, time, work);
-    assign(m, m->hold[c->region], x, work);
+    follow(m, at, jumped);
+    (void)collide(m, at, -1);
+    settle(m, at, 0);
+    keep(m, at);
 }
 
 /* Whether what is held is where it is held.  work: WORDS */
@@ -397,32 +307,30 @@ static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, r
 
 void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
-    pl_chain chain = no_impact(m->h);
+    instant at = instant_of(m, x, c, crossing, work);
+    at.time = time;
     c->crossings = 0;
-    take_up(m, 1, x, c, crossing, time, &chain, work);
+    take_up(m, &at, 1);
 }
 
 /* What is beyond the guard of a bounce by more than rounding is told. */
-static void check_places(const pl_guards *m, const real *x, pl_contact *c, real *work)
+static void check_places(const pl_guards *m, const instant *at)
 {
     const int n = m->size;
     int k;
     for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
         const real *speed = m->speed + (ptrdiff_t)k * n;
-        const walk w = switch_of(m, c->region, p->expression);
         real noise, e;
-        if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p))) {
+        if (!is_before(m, at, k)) {
             continue;
         }
-        e = excess(m, c, &w, p->breakpoint, x, &noise);
-        e = p->upward ? e : -e;
+        e = depth(m, at, k, &noise);
         if (!(e > DEEP * noise)) {
             continue;
         }
-        pl_multiply(n, n, matrix_of(m->A, m, c->matrix), x, work);
-        if (e > DEEP * (noise + m->h * noise_of(sizes(n, speed, x) + m->h * sizes(n, speed, work)))) {
-            c->status |= PL_PENETRATED;
+        pl_multiply(n, n, matrix_now(m, at), at->x, at->work);
+        if (e > DEEP * (noise + m->h * noise_of(sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work)))) {
+            at->c->status |= PL_PENETRATED;
         }
     }
 }
@@ -432,56 +340,58 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     const int n = m->size;
     real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
     int splits = m->max_splits, fresh = 1, clear = 1;
-    climb at = at_top;
-    pl_chain chain = no_impact(m->h);
+    climb up = at_top;
+    instant at = instant_of(m, x, c, crossing, room);
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
         if (!is_taken_up(m, c, x, room)) {
-            take_up(m, 0, x, c, crossing, 0, &chain, room);
+            take_up(m, &at, 0);
         }
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
+        const real longest = stand(&up, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
         int whole = left > longest * (1 - REST);
-        const real dt = shortened(m, c, x, whole ? longest : left, room);
+        const real dt = shortened(m, &at, whole ? longest : left);
         event first;
         whole = whole && dt >= longest;
         if (whole) {
-            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y, rest);
+            take_piece(n, &up, &m->ladder, m->Phi, c->matrix, x, y, rest);
             assign(m, m->hold[c->region], y, room);
-            if (m->matrix[c->region] >= 0 && (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room)
+            if (m->matrix[c->region] >= 0 && (up.rung > 0 ? stays_clear_far(m, c, &up, x, y, bend, room)
                                                           : stays_clear(m, c, x, y, room))) {
-                keep_piece(n, &at, y, x, rest);
+                keep_piece(n, &up, y, x, rest);
                 left -= dt;
                 fresh = 0;
-                rise(&at);
+                rise(&up);
                 continue;
             }
         }
-        if (fall(&at)) {
+        if (fall(&up)) {
             continue;
         }
         clear = 0;
         if (fresh) { /* the region may be another one now */
             fresh = 0;
-            take_up(m, 0, x, c, crossing, tau - left, &chain, room);
-            at.bent = 0;
+            at.time = tau - left;
+            take_up(m, &at, 0);
+            up.bent = 0;
             continue;
         }
-        first = move(m, c, &at, dt, whole ? y : (real *)0, &splits, x, rest, room);
+        first = move(m, c, &up, dt, whole ? y : (real *)0, &splits, x, rest, room);
         assign(m, m->hold[c->region], x, room);
-        at.bent = 0;
-        if (splits < 0 || is_lost(&at, n, x)) {
+        up.bent = 0;
+        if (splits < 0 || is_lost(&up, n, x)) {
             break; /* x is held: this region may not be the one, and may be unstable */
         }
         left -= first.s * dt;
         if (first.guard < 0) {
-            rise(&at);
+            rise(&up);
             continue;
         }
-        to_the_ground(&at);
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, &chain, room)) {
+        to_the_ground(&up);
+        at.time = tau - left;
+        if (!pass(m, &at, &m->guard[first.guard])) {
             if (m->guard[first.guard].impact >= 0) {
                 break; /* x is held on the guard: beyond it the impact would not come any more */
             }
@@ -489,7 +399,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
     }
     if (!clear) {
-        check_places(m, x, c, room);
+        check_places(m, &at);
     }
 }
 

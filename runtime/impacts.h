@@ -1,16 +1,37 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* impacts.h: where x is between breakpoints and guards, and impacts at one instant, which act one after the other; for
- * the runtime's own use: by guards.c. */
+/* impacts.h: a state of a piecewise-linear model at one instant, and what contacts.h asks of its impacts and of those
+ * at rest; for the runtime's own use: by guards.c. */
 #ifndef PLRT_IMPACTS_H
 #define PLRT_IMPACTS_H
 
-#include "chain.h"
 #include "kept.h"
 #include "regions.h"
+
+typedef pl_guards contacts;
+
+typedef struct instant {
+    real *x;
+    pl_contact *c;
+    pl_crossing *crossing; /* NULL: nothing is listed */
+    real *work;            /* size, or as much as assignments of one set */
+    real time;             /* after the start of the step [s] */
+    int before;            /* the region before what happens now */
+    pl_chain chain;
+} instant;
+
+/* How many at rest are looked at together: 3^MOST combinations */
+enum { MOST = 6 };
+
+#include "contacts.h"
 
 static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
 {
     return all + WORDS * (ptrdiff_t)matrix * m->size * m->size;
+}
+
+static const real *matrix_now(const pl_guards *m, const instant *at)
+{
+    return matrix_of(m->A, m, at->c->matrix);
 }
 
 /* ---- regions ---- */
@@ -55,55 +76,6 @@ static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const
     return 0;
 }
 
-/* What follows from an event is listed where there is room, and counted. */
-static void tell(int max_events, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
-                 int upward)
-{
-    if (c->crossings < max_events) {
-        (void)list(max_events, c, crossing, time, expression, breakpoint, upward);
-    } else {
-        c->total++;
-    }
-}
-
-/* The interval before the guard of a bounce */
-static int free_of(const pl_impact *p)
-{
-    return p->rest + (p->upward ? -1 : 1);
-}
-
-/* Whether a bounce stops an expression that would go this way */
-static int is_stopped(const pl_guards *m, const walk *w, int way)
-{
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
-        if (p->expression == w->i && p->rest >= 0 && p->upward == (way > 0) &&
-            (w->interval == p->rest || w->interval == free_of(p))) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* An expression that has left its interval other than by an event: by an input, a load or a jump.  Past a bounce a jump
- * alone leads (`jumped`): what rounding has taken beyond one is still before it. */
-static void follow(const pl_guards *m, int jumped, const real *x, pl_contact *c, pl_crossing *crossing, real time)
-{
-    walk w;
-    int way;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
-        for (; (way = outside(m, c, &w, x)) != 0 && (jumped || !is_stopped(m, &w, way)); w.interval += way) {
-            if (crossing) {
-                tell(m->max_events, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
-            }
-            enter(m->matrix, c, c->region + way * w.stride);
-        }
-    }
-}
-
-/* ---- impacts ---- */
-
 static walk switch_of(const pl_guards *m, int region, int expression)
 {
     walk w;
@@ -113,281 +85,341 @@ static walk switch_of(const pl_guards *m, int region, int expression)
     return w;
 }
 
-/* The speed at which impact k comes closer, 0 where that is but rounding */
-static real speed_of(const pl_guards *m, int k, const real *x)
+static int interval_of(const pl_guards *m, const instant *at, int expression)
+{
+    return switch_of(m, at->c->region, expression).interval;
+}
+
+static int interval_before(const pl_guards *m, const instant *at, int expression)
+{
+    return switch_of(m, at->before, expression).interval;
+}
+
+static void go_to(const pl_guards *m, instant *at, int expression, int interval)
+{
+    const walk w = switch_of(m, at->c->region, expression);
+    enter(m->matrix, at->c, at->c->region + (interval - w.interval) * w.stride);
+}
+
+static void renew(const pl_guards *m, instant *at)
+{
+    (void)m; /* all is read of x, when it is asked for */
+    (void)at;
+}
+
+static int can_be(const pl_guards *m, const instant *at)
+{
+    return m->matrix[at->c->region] >= 0;
+}
+
+static void keep(const pl_guards *m, instant *at)
+{
+    assign(m, m->hold[at->c->region], at->x, at->work);
+}
+
+/* ---- the list ---- */
+
+static int listed(const instant *at)
+{
+    return at->c->crossings;
+}
+
+static void count_rest(instant *at)
+{
+    at->c->rested++;
+}
+
+static void say(instant *at, int status)
+{
+    at->c->status |= status;
+}
+
+/* What loses speed in contacts, or follows from an event, goes on beyond the list, and is counted. */
+static int has_listed(const pl_guards *m, instant *at, int loses, real time, int expression, int breakpoint, int upward)
+{
+    if (!at->crossing) {
+        return 1;
+    }
+    if (!loses || at->c->crossings < m->max_events) {
+        return list(m->max_events, at->c, at->crossing, time, expression, breakpoint, upward);
+    }
+    at->c->total++;
+    return 1;
+}
+
+/* An expression that has left its interval other than by an event: by an input, a load or a jump.  Past a bounce a jump
+ * alone leads: what rounding has taken beyond one is still before it. */
+static void follow(const pl_guards *m, instant *at, int jumped)
+{
+    walk w;
+    int way;
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
+        for (; (way = outside(m, at->c, &w, at->x)) != 0 && (jumped || !is_stopped(m, at, w.i, way));
+             w.interval += way) {
+            (void)has_listed(m, at, 1, at->time, w.i, w.interval - (way < 0), way > 0);
+            enter(m->matrix, at->c, at->c->region + way * w.stride);
+        }
+    }
+}
+
+/* ---- impacts ---- */
+
+static real unit(const pl_guards *m)
+{
+    (void)m;
+    return 1;
+}
+
+static real step_of(const pl_guards *m)
+{
+    return m->h;
+}
+
+static int rest_of(const pl_guards *m, int k)
+{
+    return m->impact[k].rest;
+}
+
+static real depth(const pl_guards *m, const instant *at, int k, real *noise)
+{
+    const walk w = switch_of(m, at->c->region, m->impact[k].expression);
+    const real e = excess(m, at->c, &w, m->impact[k].breakpoint, at->x, noise);
+    return m->impact[k].upward ? e : -e;
+}
+
+static real speed_of(const pl_guards *m, const instant *at, int k)
 {
     const real *row = m->speed + (ptrdiff_t)k * m->size;
     real speed;
-    speed = dot(m->size, row, x);
-    return magnitude(speed) <= noise_of(sizes(m->size, row, x) + m->impact[k].play) ? 0 : speed;
+    speed = dot(m->size, row, at->x);
+    return magnitude(speed) <= noise_of(sizes(m->size, row, at->x) + m->impact[k].play) ? 0 : speed;
 }
 
-/* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
-static int touches_by(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x, real least)
+static real speed_of_met(const pl_guards *m, instant *at, int k)
 {
-    const walk w = switch_of(m, c->region, p->expression);
-    real noise, e;
-    if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p))) {
-        return 0;
-    }
-    e = excess(m, c, &w, p->breakpoint, x, &noise);
-    return (p->upward ? e : -e) >= -larger(noise, least);
+    return speed_of(m, at, k);
 }
 
-static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
+static real press_of(const pl_guards *m, const instant *at, int k)
 {
-    return touches_by(m, c, p, x, 0);
+    real press;
+    pl_multiply(m->size, m->size, matrix_now(m, at), at->x, at->work);
+    press = dot(m->size, m->speed + (ptrdiff_t)k * m->size, at->work);
+    return press;
 }
 
-static int rests(const pl_guards *m, const pl_contact *c, const pl_impact *p)
-{
-    return switch_of(m, c->region, p->expression).interval == p->rest;
-}
-
-static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int interval)
-{
-    const walk w = switch_of(m, c->region, p->expression);
-    enter(m->matrix, c, c->region + (interval - w.interval) * w.stride);
-}
-
-/* What rounding has left of the way to the guard goes. */
-static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
-{
-    const walk w = switch_of(m, c->region, m->impact[k].expression);
-    const real *back = m->back + (ptrdiff_t)k * m->size;
-    real noise;
-    const real e = excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
-    int i;
-    for (i = 0; i < m->size; i++) {
-        take_from(m->size, i, back[i] * e, x);
-    }
-}
-
-/* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
-static uint32_t seat(const pl_guards *m, uint32_t set, pl_contact *c)
-{
-    uint32_t laid = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const int before = c->region;
-        if (!(set >> k & 1) || rests(m, c, &m->impact[k])) {
-            continue;
-        }
-        go_to(m, c, &m->impact[k], m->impact[k].rest);
-        if (m->matrix[c->region] < 0) {
-            enter(m->matrix, c, before); /* others hold it already */
-        } else {
-            laid |= (uint32_t)1 << k;
-        }
-    }
-    return laid;
-}
-
-/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
- * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
- * rest now. */
-static uint32_t lay(const pl_guards *m, uint32_t set, real *x, pl_contact *c, real *work)
-{
-    uint32_t laid;
-    int k, sweeps, moving = 1;
-    for (k = 0; k < m->impacts; k++) {
-        set |= (uint32_t)(m->impact[k].rest >= 0 && rests(m, c, &m->impact[k])) << k;
-    }
-    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
-        moving = 0;
-        for (k = 0; k < m->impacts; k++) {
-            if (set >> k & 1) {
-                moving |= magnitude(speed_of(m, k, x)) > 0;
-                assign(m, m->impact[k].still, x, work);
-                put_on(m, c, k, x);
-            }
-        }
-    }
-    laid = seat(m, set, c);
-    assign(m, m->hold[c->region], x, work);
-    return laid;
-}
-
-static void list_rests(const pl_guards *m, uint32_t laid, pl_contact *c, pl_crossing *crossing, real time)
-{
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const pl_impact *p = &m->impact[k];
-        if (laid >> k & 1) {
-            c->rested++;
-            tell(m->max_events, c, crossing, time, p->expression, p->breakpoint, p->upward);
-        }
-    }
-}
-
-/* Impacts without an end become slower and slower: what touches with less than `slow` comes to rest together. */
-static void calm(const pl_guards *m, real slow, uint32_t met, real *x, pl_contact *c, pl_crossing *crossing,
-                 const pl_chain *chain, real *work)
-{
-    uint32_t set = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if ((met >> k & 1 || touches(m, c, &m->impact[k], x)) && magnitude(speed_of(m, k, x)) <= slow &&
-            !rests(m, c, &m->impact[k])) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    list_rests(m, lay(m, set, x, c, work), c, crossing, chain->last);
-}
-
-/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
- * what has been parted for good.  0: nothing does. */
-static int give_up(const pl_guards *m, uint32_t met, real *x, pl_contact *c, pl_crossing *crossing, pl_chain *chain,
-                   real *work)
-{
-    uint32_t set = 0;
-    real fastest = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        fastest = met >> k & 1 ? larger(fastest, speed_of(m, k, x)) : fastest;
-    }
-    for (k = 0; k < m->impacts; k++) {
-        const real speed = met >> k & 1 && m->impact[k].restitution < 1 ? speed_of(m, k, x) : -16 * fastest;
-        if (speed > 0 || (chain->acting >> k & 1 && speed > -16 * fastest)) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    list_rests(m, lay(m, set, x, c, work), c, crossing, chain->last);
-    chain->impacts = MOST_AT_ONCE - SOME;
-    chain->ended++;
-    return set != 0;
-}
-
-/* A speed that is nothing but what rounding makes of forces over a step.  work: size */
-static real least_speed(const pl_guards *m, const pl_contact *c, const real *x, real *work)
+static real least_speed(const pl_guards *m, const instant *at, real least)
 {
     const int n = m->size;
-    pl_contact flying = *c;
+    pl_contact flying = *at->c;
+    instant then = *at;
     real most = 0;
     int k;
+    if (least >= 0) {
+        return least;
+    }
+    then.c = &flying;
     for (k = 0; k < m->impacts; k++) {
-        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
-            go_to(m, &flying, &m->impact[k], free_of(&m->impact[k]));
+        if (touches(m, at, k)) {
+            go_to(m, &then, m->impact[k].expression, free_of(m, k));
         }
     }
     for (k = 0; k < n; k++) {
-        work[k] = sizes(n, matrix_of(m->A, m, flying.matrix) + k * n, x);
+        at->work[k] = sizes(n, matrix_now(m, &then) + k * n, at->x);
     }
     for (k = 0; k < m->impacts; k++) {
-        if (m->impact[k].rest >= 0 && touches(m, c, &m->impact[k], x)) {
-            most = larger(most, sizes(n, m->speed + (ptrdiff_t)k * n, work));
+        if (touches(m, at, k)) {
+            most = larger(most, sizes(n, m->speed + (ptrdiff_t)k * n, at->work));
         }
     }
     return m->h * noise_of(most);
 }
 
-/* An event: what loses speed in contacts goes on beyond the list. */
-static int has_listed(const pl_guards *m, int loses, pl_contact *c, pl_crossing *crossing, real time, int expression,
-                      int breakpoint, int upward)
+static void jump(const pl_guards *m, instant *at, int k)
 {
-    if (!loses) {
-        return list(m->max_events, c, crossing, time, expression, breakpoint, upward);
+    assign(m, m->impact[k].jump, at->x, at->work);
+}
+
+static void stop(const pl_guards *m, instant *at, int k)
+{
+    assign(m, m->impact[k].still, at->x, at->work);
+}
+
+static void put_on(const pl_guards *m, instant *at, int k)
+{
+    const walk w = switch_of(m, at->c->region, m->impact[k].expression);
+    const real *back = m->back + (ptrdiff_t)k * m->size;
+    real noise;
+    const real e = excess(m, at->c, &w, m->impact[k].breakpoint, at->x, &noise);
+    int i;
+    for (i = 0; i < m->size; i++) {
+        take_from(m->size, i, back[i] * e, at->x);
     }
-    tell(m->max_events, c, crossing, time, expression, breakpoint, upward);
+}
+
+/* ---- what sticks, rests or slips ---- */
+
+static int impact_of(const pl_guards *m, int expression, int interval)
+{
+    int k;
+    for (k = m->impacts - 1; k >= 0; k--) {
+        if (m->impact[k].rest == interval && m->impact[k].expression == expression) {
+            break;
+        }
+    }
+    return k;
+}
+
+static int find_resting(const pl_guards *m, const instant *at, resting *found)
+{
+    int count = 0, k;
+    real noise = 0;
+    walk w;
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
+        for (k = 1; k < w.breaks; k++) {
+            const real e = w.at[k] - w.at[k - 1] <= 0 ? excess(m, at->c, &w, k, at->x, &noise) : 1;
+            if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST) {
+                continue;
+            }
+            found[count].impact = impact_of(m, w.i, k);
+            if (found[count].impact < 0 ? magnitude(e) > noise : !touches(m, at, found[count].impact)) {
+                continue;
+            }
+            if (found[count].impact >= 0 && magnitude(speed_of(m, at, found[count].impact)) > 0 && w.interval != k) {
+                continue; /* it flies off, or there was no room for its impact */
+            }
+            found[count].expression = w.i;
+            found[count++].held = k;
+        }
+    }
+    return count;
+}
+
+/* The force of a guard of what sticks, less its limit: above 0 where it lets go, 0 where that is but rounding */
+static real pull_of(const pl_guards *m, int k, const real *x)
+{
+    const int n = m->size, gate = m->guard[k].row;
+    const real *row = m->gate + (ptrdiff_t)gate * n, *tangent = m->gate_tangent + (ptrdiff_t)gate * n;
+    real e, noise;
+    e = dot(n, row, x);
+    e -= m->limit[k];
+    noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->gate_play[gate]);
+    return e > noise || e < -noise ? e : 0;
+}
+
+static int rises(const pl_guards *m, int region, int k, const real *x, real *work)
+{
+    const int n = m->size;
+    return heading(n, matrix_of(m->A, m, m->matrix[region]), m->gate + (ptrdiff_t)m->guard[k].row * n, x, work) > 0;
+}
+
+/* Whether a guard of what sticks lets it */
+static int is_held(const pl_guards *m, int region, int expression, const real *x, real *work)
+{
+    int k;
+    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+        const real pull = m->guard[k].expression == expression ? pull_of(m, k, x) : -1;
+        if (pull > 0 || (pull >= 0 && rises(m, region, k, x, work))) {
+            return 0;
+        }
+    }
     return 1;
 }
 
-/* Whether there is room for one more impact */
-static int has_room(const pl_guards *m, int k, pl_contact *c, pl_crossing *crossing, pl_chain *chain)
+/* Whether what would be held there is let go to this side at this instant, by a force that is at its limit but for
+ * rounding: e'' is then rounding, too, and does not say where e is heading. */
+static int is_let_go(const pl_guards *m, int region, int expression, int side, const real *x, real *work)
 {
-    const pl_impact *p = &m->impact[k];
-    if (is_listed(chain, k, c->crossings, m->max_events)) {
-        chain->full = !has_listed(m, p->restitution < 1, c, crossing, chain->last, p->expression, p->breakpoint,
-                                  p->upward);
-    }
-    if (!chain->full && !has_time(chain)) {
-        c->status |= PL_TOO_MANY_EVENTS;
-    }
-    return !chain->full;
-}
-
-/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits.  What
- * has met once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
-static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
-                        pl_chain *chain, real *work)
-{
-    uint32_t struck = 0, met = 0;
-    real slow = -1;
-    int k, calms = 0;
-    go_on(chain, time, m->h);
-    for (k = 0; k < m->impacts && !chain->full; k++) {
-        const pl_impact *p = &m->impact[k];
-        real speed = 0;
-        if (met >> k & 1 || touches(m, c, p, x)) {
-            met |= (uint32_t)1 << k;
-            speed = speed_of(m, k, x);
-        }
-        if (k != begins && !(speed > 0)) {
-            continue;
-        }
-        if (slow < 0) {
-            slow = least_speed(m, c, x, work);
-        }
-        slow = larger(slow, CALM * chain->most);
-        if (k != begins && speed <= slow) {
-            calms = 1;
-            continue;
-        }
-        chain->most = larger(chain->most, speed);
-        if (chain->impacts == MOST_AT_ONCE) {
-            chain->full = !give_up(m, met, x, c, crossing, chain, work);
-            c->status |= chain->full ? PL_TOO_MANY_EVENTS : 0;
-            begins = k = -1;
-            continue;
-        }
-        if (!has_room(m, k, c, crossing, chain)) {
-            break;
-        }
-        assign(m, p->jump, x, work);
-        if (p->rest >= 0) {
-            go_to(m, c, p, free_of(p));
-            put_on(m, c, k, x);
-            met |= (uint32_t)1 << k;
-        } else {
-            follow(m, 1, x, c, crossing, chain->last);
-            met = 0;
-        }
-        struck |= (uint32_t)1 << k;
-        begins = k == begins ? -1 : begins;
-        calms = 0;
-        k = -1;
-    }
-    if (calms) {
-        calm(m, slow, met, x, c, crossing, chain, work);
-    }
-    return struck;
-}
-
-/* How long it flies that leaves the guard of k, from how it is pressed back there; -1: for good.  work: size */
-static real flight(const pl_guards *m, const pl_contact *c, int k, const real *x, real *work)
-{
-    const real speed = speed_of(m, k, x);
-    real press;
-    if (m->impact[k].rest < 0 || speed > 0) {
-        return -1;
-    }
-    pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
-    press = dot(m->size, m->speed + (ptrdiff_t)k * m->size, work);
-    return press > 0 ? -2 * speed / press : -1;
-}
-
-/* A piece not much longer than the shortest flight that begins there */
-static real shortened(const pl_guards *m, const pl_contact *c, const real *x, real dt, real *work)
-{
+    const int stuck = region - side * switch_of(m, region, expression).stride;
     int k;
-    for (k = 0; k < m->impacts; k++) {
-        const int flies = speed_of(m, k, x) < 0 && touches(m, c, &m->impact[k], x);
-        const real along = flies ? flight(m, c, k, x, work) : 0;
-        if (along > 0) {
-            dt = smaller(dt, 2 * along);
+    if (m->matrix[stuck] < 0) {
+        return 0;
+    }
+    for (k = m->first[stuck]; k < m->first[stuck + 1]; k++) {
+        if (m->guard[k].expression == expression && m->guard[k].leads * side > 0 && !(pull_of(m, k, x) > 0) &&
+            !(pull_of(m, k, x) < 0) && rises(m, stuck, k, x, work)) {
+            return 1;
         }
     }
-    return dt;
+    return 0;
+}
+
+/* Where an expression is heading in a region */
+static int heading_in(const pl_guards *m, const instant *at, int region, int expression)
+{
+    return heading(m->size, matrix_of(m->A, m, m->matrix[region]), m->row + expression * m->size, at->x, at->work);
+}
+
+/* Whether others hold it already where it neither sticks nor rests, for no region holds it twice: friction slips there
+ * as it would but for the contacts at rest. */
+static int is_spared(const pl_guards *m, const instant *at, int region, const resting *r, int count, const resting *of,
+                     int side)
+{
+    int flying = region, i;
+    const int stuck = region - side * switch_of(m, region, of->expression).stride;
+    if (m->matrix[stuck] >= 0 || of->impact >= 0) {
+        return m->matrix[stuck] < 0;
+    }
+    for (i = 0; i < count; i++) {
+        const walk w = switch_of(m, region, r[i].expression);
+        if (r[i].impact >= 0 && w.interval == r[i].held) {
+            flying += (free_of(m, r[i].impact) - r[i].held) * w.stride;
+        }
+    }
+    return m->matrix[flying] >= 0 && heading_in(m, at, flying, of->expression) == side;
+}
+
+/* Whether one of them agrees with a region: what sticks is held, what slips moves away as it does there */
+static int agrees_one(const pl_guards *m, const instant *at, int region, const resting *r, int count,
+                      const resting *one)
+{
+    const int side = switch_of(m, region, one->expression).interval - one->held;
+    int way;
+    if (one->impact >= 0 && side == 0 && speed_of(m, at, one->impact) < 0) {
+        return 0;
+    }
+    if (one->impact >= 0 && side == (m->impact[one->impact].upward ? 1 : -1)) {
+        return 0;
+    }
+    if (side == 0) {
+        return is_held(m, region, one->expression, at->x, at->work);
+    }
+    way = heading_in(m, at, region, one->expression);
+    return way == side || (way == 0 && is_spared(m, at, region, r, count, one, side)) ||
+           is_let_go(m, region, one->expression, side, at->x, at->work);
+}
+
+static int agrees(const pl_guards *m, instant *at, const resting *r, int count, const int *interval)
+{
+    int region = at->c->region, i;
+    for (i = 0; i < count; i++) {
+        const walk w = switch_of(m, region, r[i].expression);
+        region += (interval[i] - w.interval) * w.stride;
+    }
+    if (m->matrix[region] < 0) {
+        return 0;
+    }
+    for (i = 0; i < count; i++) {
+        if (!agrees_one(m, at, region, r, count, &r[i])) {
+            return 0;
+        }
+    }
+    return 2;
+}
+
+static int is_pressed(const pl_guards *m, const instant *at, int impact)
+{
+    const int region = at->c->region;
+    int k, any = 0;
+    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+        if (m->guard[k].expression == m->impact[impact].expression) {
+            if (!(pull_of(m, k, at->x) < 0)) {
+                return 0;
+            }
+            any = 1;
+        }
+    }
+    return any;
 }
 
 #endif

@@ -248,9 +248,9 @@ typedef struct pl_events {
     int holds;        /* at most 32 */
     const pl_hold *hold;
     const PL_REAL *back; /* holds x states: what is taken from a state for a velocity of 1 */
-    int strikes;        /* at most 32, in the order in which they act at one instant */
-    const pl_strike *strike;
-    const PL_REAL *place_back; /* strikes x states: likewise for a guard of 1 */
+    int impacts;        /* at most 32, in the order in which they act at one instant */
+    const pl_strike *impact;
+    const PL_REAL *place_back; /* impacts x states: likewise for a guard of 1 */
     const int *state, *value; /* assignments: a state is set to a watch */
     int conflicts;
     const pl_conflict *conflict;
@@ -283,6 +283,8 @@ typedef struct pl_instant {
     PL_REAL time;       /* after the start of the step [s] */
     pl_crossing next;   /* the event that pl_events_next has found, */
     int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
+    int crossed, was;   /* the expression that passed a breakpoint there, or -1; its interval before */
+    int unlisted;       /* 1: what happens is not listed */
     int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS, PL_PENETRATED */
     pl_chain chain;     /* none yet: last is -h, else 0 */
 } pl_instant;

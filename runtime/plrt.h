@@ -362,7 +362,7 @@ typedef struct pl_hold {
     int expression, interval; /* held there */
     int velocity;             /* a watch: kept at 0 */
     int down, up;             /* watches: beyond 0 it is let go to the interval below, above; -1: it is not */
-    int strike;               /* the impact whose contact rests; -1: friction sticks */
+    int impact;               /* whose contact rests; -1: friction sticks */
 } pl_hold;
 
 /* Holds that cannot be all at once, as bits.  Of friction of what a contact at rest holds: it brakes what presses

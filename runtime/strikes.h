@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* strikes.h: watches, what is held, and impacts at one instant beside a series, for the runtime's own use: by
- * events.c. */
+/* strikes.h: watches, what is held beside a series, and what contacts.h asks of its impacts and of those at rest; for
+ * the runtime's own use: by events.c. */
 #ifndef PLRT_STRIKES_H
 #define PLRT_STRIKES_H
 
-#include "chain.h"
 #include "columns.h"
-#include "roots.h"
+
+typedef pl_events contacts;
+typedef pl_instant instant;
+
+/* How many at rest are looked at together: 3^MOST combinations, each with a series of its own */
+enum { MOST = 4 };
+
+#include "contacts.h"
 
 #ifdef REAL_IS_FLOAT
 #define NEAR 0x1p-10f
@@ -37,15 +43,16 @@ static real certain(const column *w)
     return magnitude(value) <= noise_of(w->terms) + TINY ? 0 : value;
 }
 
-static int is_near(const pl_events *m, const pl_instant *at, int watch)
+static int is_still(const pl_events *m, const pl_instant *at, int watch)
 {
     const column w = watched(m, at, watch);
     real noise;
     return magnitude(off_start(&w, 0, &noise)) <= noise;
 }
 
-static void refresh(const pl_instant *at)
+static void renew(const pl_events *m, pl_instant *at)
 {
+    (void)m;
     at->expand(at->from, at->interval, at->y, at->c, at->terms);
 }
 
@@ -68,28 +75,83 @@ static int holds_now(const pl_events *m, const pl_instant *at, int hold)
     return at->interval[m->hold[hold].expression] == m->hold[hold].interval;
 }
 
-static int free_of(const pl_events *m, const pl_strike *p)
+/* All that is held, as bits */
+static uint32_t held_now(const pl_events *m, const pl_instant *at)
 {
-    return m->hold[p->hold].interval + (p->upward ? -1 : 1);
+    uint32_t held = 0;
+    int i;
+    for (i = 0; i < m->holds; i++) {
+        held |= (uint32_t)holds_now(m, at, i) << i;
+    }
+    return held;
 }
 
-static int strike_at(const pl_events *m, int expression, int breakpoint, int upward)
+static int interval_of(const pl_events *m, const pl_instant *at, int expression)
+{
+    (void)m;
+    return at->interval[expression];
+}
+
+static int interval_before(const pl_events *m, const pl_instant *at, int expression)
+{
+    (void)m;
+    return expression == at->crossed ? at->was : at->interval[expression];
+}
+
+static void go_to(const pl_events *m, pl_instant *at, int expression, int interval)
+{
+    (void)m;
+    at->interval[expression] = interval;
+}
+
+static int can_be(const pl_events *m, const pl_instant *at)
+{
+    const uint32_t held = held_now(m, at);
+    int i;
+    for (i = 0; i < m->conflicts && (held & m->conflict[i].set) != m->conflict[i].set; i++) {
+        ;
+    }
+    return i == m->conflicts;
+}
+
+static int impact_at(const pl_events *m, int expression, int breakpoint, int upward)
 {
     int i;
-    for (i = m->strikes - 1; i >= 0; i--) {
-        if (m->strike[i].expression == expression && m->strike[i].breakpoint == breakpoint &&
-            m->strike[i].upward == upward) {
+    for (i = m->impacts - 1; i >= 0; i--) {
+        if (m->impact[i].expression == expression && m->impact[i].breakpoint == breakpoint &&
+            m->impact[i].upward == upward) {
             break;
         }
     }
     return i;
 }
 
-static int list(const pl_events *m, pl_instant *at, real time, int expression, int breakpoint, int upward)
+/* ---- the list ---- */
+
+static int listed(const pl_instant *at)
+{
+    return *at->crossings;
+}
+
+static void count_rest(pl_instant *at)
+{
+    (*at->rested)++;
+}
+
+static void say(pl_instant *at, int status)
+{
+    at->status |= status;
+}
+
+static int has_listed(const pl_events *m, pl_instant *at, int loses, real time, int expression, int breakpoint,
+                      int upward)
 {
     pl_crossing *crossing = at->crossing + *at->crossings;
+    if (at->unlisted) {
+        return 1;
+    }
     if (*at->crossings == m->max_events) {
-        return 0;
+        return loses;
     }
     crossing->time = time;
     crossing->expression = expression;
@@ -118,11 +180,11 @@ static void put_back(const pl_events *m, pl_instant *at, int hold)
 {
     const pl_hold *h = &m->hold[hold];
     take(at, m->states, m->back + (ptrdiff_t)hold * m->states, value_of(m, at, h->velocity));
-    if (h->strike >= 0) {
-        take(at, m->states, m->place_back + (ptrdiff_t)h->strike * m->states,
-             value_of(m, at, m->strike[h->strike].place));
+    if (h->impact >= 0) {
+        take(at, m->states, m->place_back + (ptrdiff_t)h->impact * m->states,
+             value_of(m, at, m->impact[h->impact].place));
     }
-    refresh(at);
+    renew(m, at);
 }
 
 /* Whether what is held has moved by more than rounding */
@@ -131,10 +193,10 @@ static int is_slack(const pl_events *m, const pl_instant *at, int hold)
     const pl_hold *h = &m->hold[hold];
     const column velocity = watched(m, at, h->velocity);
     column place;
-    if (h->strike < 0) {
+    if (h->impact < 0) {
         return !(certain(&velocity) >= 0 && certain(&velocity) <= 0);
     }
-    place = watched(m, at, m->strike[h->strike].place);
+    place = watched(m, at, m->impact[h->impact].place);
     return !(certain(&velocity) >= 0 && certain(&velocity) <= 0 && certain(&place) >= 0 && certain(&place) <= 0);
 }
 
@@ -193,32 +255,54 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
 
 /* ---- impacts ---- */
 
-/* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
-static int touches_by(const pl_events *m, const pl_instant *at, const pl_strike *p, real least)
+static real unit(const pl_events *m)
 {
-    const int interval = at->interval[p->expression];
-    column w;
-    real noise;
-    if (p->hold < 0 || (interval != m->hold[p->hold].interval && interval != free_of(m, p))) {
-        return 0;
-    }
-    w = watched(m, at, p->place);
-    return off_start(&w, 0, &noise) >= -larger(noise, least);
+    return m->h;
 }
 
-static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
+static real step_of(const pl_events *m)
 {
-    return touches_by(m, at, p, 0);
+    (void)m;
+    return 1;
 }
 
-static real speed_of(const pl_events *m, const pl_instant *at, const pl_strike *p)
+static int rest_of(const pl_events *m, int k)
 {
-    const column w = watched(m, at, p->speed);
+    return m->impact[k].hold < 0 ? -1 : m->hold[m->impact[k].hold].interval;
+}
+
+static real depth(const pl_events *m, const pl_instant *at, int k, real *noise)
+{
+    const column place = watched(m, at, m->impact[k].place);
+    return off_start(&place, 0, noise);
+}
+
+static real speed_of(const pl_events *m, const pl_instant *at, int k)
+{
+    const column w = watched(m, at, m->impact[k].speed);
     const real speed = certain(&w);
     return magnitude(speed) <= at->chain.least ? 0 : speed;
 }
 
-/* The states of these assignments, all from the same state */
+static real speed_of_met(const pl_events *m, pl_instant *at, int k)
+{
+    at->chain.least = larger(at->chain.least, noise_of(magnitude(press_of(m, at, k))));
+    return speed_of(m, at, k);
+}
+
+static real press_of(const pl_events *m, const pl_instant *at, int k)
+{
+    const column w = watched(m, at, m->impact[k].speed);
+    return column_at(&w, 1);
+}
+
+static real least_speed(const pl_events *m, const pl_instant *at, real least)
+{
+    (void)m;
+    return larger(least, at->chain.least);
+}
+
+/* The states of so many assignments, all from the same state */
 static void assign(const pl_events *m, pl_instant *at, int first, int count)
 {
     int k;
@@ -226,25 +310,25 @@ static void assign(const pl_events *m, pl_instant *at, int first, int count)
         at->y[m->state[k]] = value_of(m, at, m->value[k]);
         at->rest[m->state[k]] = 0;
     }
-    refresh(at);
+    renew(m, at);
 }
 
-/* Whether a bounce stops an expression that would go this way */
-static int is_stopped(const pl_events *m, const pl_instant *at, int expression, int way)
+static void jump(const pl_events *m, pl_instant *at, int k)
 {
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        const pl_strike *p = &m->strike[k];
-        if (p->expression == expression && p->hold >= 0 && p->upward == (way > 0) &&
-            (at->interval[expression] == m->hold[p->hold].interval || at->interval[expression] == free_of(m, p))) {
-            return 1;
-        }
-    }
-    return 0;
+    assign(m, at, m->impact[k].jump, m->impact[k].jumps);
 }
 
-/* Into the intervals where a jump has put expressions.  Past a bounce a jump of a state alone leads (`jumped`): what
- * rounding has taken beyond one is still before it. */
+static void stop(const pl_events *m, pl_instant *at, int k)
+{
+    assign(m, at, m->impact[k].still, m->impact[k].jumps);
+}
+
+static void put_on(const pl_events *m, pl_instant *at, int k)
+{
+    take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, m->impact[k].place));
+    renew(m, at);
+}
+
 static void follow(const pl_events *m, pl_instant *at, int jumped)
 {
     const pl_divided *d = m->divided;
@@ -268,182 +352,106 @@ static void follow(const pl_events *m, pl_instant *at, int jumped)
                 way = 0;
             }
             if (way != 0) {
-                (void)list(m, at, at->time, i, *interval - (way < 0), way > 0);
+                (void)has_listed(m, at, 1, at->time, i, *interval - (way < 0), way > 0);
             }
             *interval += way;
         }
     }
-    refresh(at);
+    renew(m, at);
 }
 
-static void tell_rests(const pl_events *m, uint32_t laid, pl_instant *at)
+/* ---- what is held, and what is not ---- */
+
+static int find_resting(const pl_events *m, const pl_instant *at, resting *found)
 {
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        if (laid >> k & 1) {
-            (void)list(m, at, at->time, m->strike[k].expression, m->strike[k].breakpoint, m->strike[k].upward);
-            (*at->rested)++;
+    int count = 0, i;
+    for (i = 0; i < m->holds && count < MOST; i++) {
+        const pl_hold *h = &m->hold[i];
+        const int side = at->interval[h->expression] - h->interval;
+        if (side < -1 || side > 1) {
+            continue;
         }
+        if (side != 0 && i != at->freed && !is_still(m, at, h->velocity)) {
+            continue;
+        }
+        if (side != 0 && i != at->freed && h->impact >= 0 && !touches(m, at, h->impact)) {
+            continue;
+        }
+        found[count].expression = h->expression;
+        found[count].held = h->interval;
+        found[count].impact = h->impact;
+        found[count++].hold = i;
     }
+    return count;
 }
 
-static int conflicts_now(const pl_events *m, const pl_instant *at)
+/* Where friction slips of what a contact holds, by bits of all that is held: 1 or -1; 0: it is free to move */
+static int side_beside(const pl_events *m, uint32_t held, int hold)
 {
-    uint32_t held = 0;
     int i;
-    for (i = 0; i < m->holds; i++) {
-        held |= (uint32_t)holds_now(m, at, i) << i;
-    }
-    for (i = 0; i < m->conflicts && (held & m->conflict[i].set) != m->conflict[i].set; i++) {
-        ;
-    }
-    return i < m->conflicts;
-}
-
-/* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
-static uint32_t seat(const pl_events *m, uint32_t set, pl_instant *at)
-{
-    uint32_t laid = 0;
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        const pl_strike *p = &m->strike[k];
-        if (!(set >> k & 1) || holds_now(m, at, p->hold)) {
-            continue;
-        }
-        at->interval[p->expression] = m->hold[p->hold].interval;
-        if (conflicts_now(m, at)) {
-            at->interval[p->expression] = free_of(m, p);
-        } else {
-            laid |= (uint32_t)1 << k;
+    for (i = 0; i < m->conflicts; i++) {
+        if (m->conflict[i].hold == hold && ((held | (uint32_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
+            return m->conflict[i].side;
         }
     }
-    refresh(at);
-    return laid;
+    return 0;
 }
 
-/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
- * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
- * rest now. */
-static uint32_t lay(const pl_events *m, uint32_t set, pl_instant *at)
+/* Whether one of them agrees with the intervals, of which the series is: as agrees */
+static int agrees_one(const pl_events *m, const pl_instant *at, uint32_t held, const resting *r)
 {
-    uint32_t laid;
-    int k, sweeps, moving = 1;
-    for (k = 0; k < m->strikes; k++) {
-        set |= (uint32_t)(m->strike[k].hold >= 0 && holds_now(m, at, m->strike[k].hold)) << k;
+    const pl_hold *h = &m->hold[r->hold];
+    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, held, r->hold);
+    int leaves;
+    if (beside != 0) {
+        return side == beside ? 2 : 0;
     }
-    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
-        moving = 0;
-        for (k = 0; k < m->strikes; k++) {
-            if (set >> k & 1) {
-                moving |= magnitude(speed_of(m, at, &m->strike[k])) > 0;
-                assign(m, at, m->strike[k].still, m->strike[k].jumps);
-                take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, m->strike[k].place));
-                refresh(at);
+    /* Another impact has parted it; without one, a speed is what rounding has left. */
+    if (at->strike >= 0 && r->impact >= 0 && speed_of(m, at, r->impact) < 0) {
+        return at->interval[r->expression] == free_of(m, r->impact) ? 2 : 0;
+    }
+    if (side == 0) {
+        return lets_go(m, at, r->hold, 0) > 0 || lets_go(m, at, r->hold, 1) > 0 ? 0 : 2;
+    }
+    if ((side > 0 ? h->up : h->down) < 0) {
+        return 0;
+    }
+    leaves = lets_go(m, at, r->hold, side > 0);
+    return leaves < 0 ? 0 : leaves == 0 ? 1 : 2;
+}
+
+static int agrees(const pl_events *m, pl_instant *at, const resting *r, int count, const int *interval)
+{
+    int agreed = 2, i;
+    for (i = 0; i < count; i++) {
+        at->interval[r[i].expression] = interval[i];
+    }
+    if (!can_be(m, at)) {
+        return 0;
+    }
+    renew(m, at);
+    for (i = 0; i < count && agreed != 0; i++) {
+        const int one = agrees_one(m, at, held_now(m, at), &r[i]);
+        agreed = one < agreed ? one : agreed;
+    }
+    return agreed;
+}
+
+static int is_pressed(const pl_events *m, const pl_instant *at, int impact)
+{
+    const int hold = m->impact[impact].hold;
+    int up, any = 0;
+    for (up = 0; up < 2; up++) {
+        const int watch = up ? m->hold[hold].up : m->hold[hold].down;
+        if (watch >= 0) {
+            const column w = watched(m, at, watch);
+            if (!(certain(&w) < 0)) {
+                return 0;
             }
+            any = 1;
         }
     }
-    laid = seat(m, set, at);
-    keep(m, at);
-    return laid;
-}
-
-/* Impacts without an end become slower and slower: what has met and has at most this speed comes to rest together. */
-static void calm(const pl_events *m, real slow, uint32_t met, pl_instant *at)
-{
-    uint32_t set = 0;
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        if (met >> k & 1 && magnitude(speed_of(m, at, &m->strike[k])) <= slow) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    tell_rests(m, lay(m, set, at), at);
-}
-
-/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
- * what has been parted for good.  0: nothing does. */
-static int give_up(const pl_events *m, uint32_t met, pl_instant *at)
-{
-    uint32_t set = 0;
-    real fastest = 0;
-    int k;
-    for (k = 0; k < m->strikes; k++) {
-        fastest = met >> k & 1 ? larger(fastest, speed_of(m, at, &m->strike[k])) : fastest;
-    }
-    for (k = 0; k < m->strikes; k++) {
-        const int loses = met >> k & 1 && m->strike[k].restitution < 1;
-        const real speed = loses ? speed_of(m, at, &m->strike[k]) : -16 * fastest;
-        if (speed > 0 || (at->chain.acting >> k & 1 && speed > -16 * fastest)) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    tell_rests(m, lay(m, set, at), at);
-    at->chain.impacts = MOST_AT_ONCE - SOME;
-    at->chain.ended++;
-    return set != 0;
-}
-
-/* Whether there is room for one more impact: what loses speed goes on beyond the list. */
-static int has_room(const pl_events *m, int k, pl_instant *at)
-{
-    const pl_strike *p = &m->strike[k];
-    if (is_listed(&at->chain, k, *at->crossings, m->max_events) &&
-        !list(m, at, at->time, p->expression, p->breakpoint, p->upward)) {
-        at->chain.full = !(p->restitution < 1);
-    }
-    return !at->chain.full && has_time(&at->chain);
-}
-
-/* All impacts at this instant; begins: the one whose guard was met.  Returns those that acted, as bits.  What has met
- * once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
-static uint32_t collide(const pl_events *m, int begins, pl_instant *at)
-{
-    uint32_t struck = 0, met = 0;
-    real slow = 0;
-    int k, calms = 0;
-    go_on(&at->chain, at->time, m->h);
-    for (k = 0; k < m->strikes && !at->chain.full; k++) {
-        const pl_strike *p = &m->strike[k];
-        real speed = 0;
-        if (met >> k & 1 || touches(m, at, p)) {
-            const column w = watched(m, at, p->speed);
-            met |= (uint32_t)1 << k;
-            at->chain.least = larger(at->chain.least, noise_of(magnitude(column_at(&w, 1))));
-            speed = speed_of(m, at, p);
-            slow = larger(at->chain.least, CALM * at->chain.most);
-        }
-        if (k != begins && speed <= slow) {
-            calms |= speed > 0;
-            continue;
-        }
-        at->chain.most = larger(at->chain.most, speed);
-        if (at->chain.impacts == MOST_AT_ONCE) {
-            at->chain.full = !give_up(m, met, at);
-            begins = k = -1;
-            continue;
-        }
-        if (!has_room(m, k, at)) {
-            break;
-        }
-        assign(m, at, p->jump, p->jumps);
-        if (p->hold >= 0) {
-            at->interval[p->expression] = free_of(m, p);
-            take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, p->place));
-            refresh(at);
-            met |= (uint32_t)1 << k;
-        } else {
-            follow(m, at, 1);
-            met = 0;
-        }
-        struck |= (uint32_t)1 << k;
-        begins = k == begins ? -1 : begins;
-        calms = 0;
-        k = -1;
-    }
-    if (calms) {
-        calm(m, slow, met, at);
-    }
-    return struck;
+    return any;
 }
 
 #endif

@@ -1,0 +1,556 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* contacts.h: the law of contacts at one instant, for the runtime's own use: by guards.c and events.c.  Impacts act one
+ * after the other; where that has no end they become slower and slower, and what touches comes to rest.  What sticks,
+ * rests or slips behind an event is the combination of those at rest in which all agree.
+ *
+ * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
+ * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations.  contacts: impacts, as
+ * impact[k] with expression, breakpoint, upward and restitution; h; max_events.  instant: a state and what stands of
+ * it, with time [s] after the start of the step, and chain. */
+#include "roots.h"
+
+/* How many impacts there may be at one instant before they are ended, and how many more before they are ended again;
+ * how many are listed; how many events there may be in a step; how often speeds are taken from what comes to rest; how
+ * many places of the list are left for what comes to rest */
+enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 1000, LAST = 6 };
+
+/* CALM: of the fastest impact, what is slower is over.  BRIEF: of h, what is over by then is at rest.  SPAN: of h,
+ * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
+ * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force: sweeps that
+ * leave 7/8 of a speed take it there before there are too many. */
+#ifdef REAL_IS_FLOAT
+#define CALM 0x1p-20f
+#define BRIEF PL_BRIEFF
+#define SPAN 0x1p-8f
+#define TINY 0x1p-96f
+#else
+#define CALM 0x1p-48
+#define BRIEF PL_BRIEF
+#define SPAN 0x1p-10
+#define TINY 0x1p-192
+#endif
+#define DEEP 64
+
+/* An expression at rest, or next to where it would be with no velocity */
+typedef struct resting {
+    int expression, held; /* the interval in which it is held */
+    int impact;           /* whose contact rests there; -1: friction sticks */
+    int hold;             /* which of them that is, for the file's own use */
+} resting;
+
+/* ---- what the law asks of the file that includes it ---- */
+
+/* The unit in which it counts time [s], and h in that unit */
+static real unit(const contacts *m);
+static real step_of(const contacts *m);
+
+/* The interval of an expression, and into another one; renew: behind such changes, what stands of the state */
+static int interval_of(const contacts *m, const instant *at, int expression);
+static void go_to(const contacts *m, instant *at, int expression, int interval);
+static void renew(const contacts *m, instant *at);
+
+/* Whether nothing that is held there excludes another */
+static int can_be(const contacts *m, const instant *at);
+
+/* The interval in which the contact of impact k rests; -1: it is no bounce */
+static int rest_of(const contacts *m, int k);
+
+/* How far beyond the guard of impact k, and what rounding may have done to that */
+static real depth(const contacts *m, const instant *at, int k, real *noise);
+
+/* The speed at which it comes closer [1/s], 0 where that is but rounding; the rate of that [1/unit] */
+static real speed_of(const contacts *m, const instant *at, int k);
+static real press_of(const contacts *m, const instant *at, int k);
+
+/* The speed of one that has met; a speed that is nothing but what rounding makes of forces over a step, once it is
+ * asked for at this instant (below 0: never yet) */
+static real speed_of_met(const contacts *m, instant *at, int k);
+static real least_speed(const contacts *m, const instant *at, real least);
+
+/* The state by the jump of impact k; by that with restitution 0; without what rounding has left of the way to it */
+static void jump(const contacts *m, instant *at, int k);
+static void stop(const contacts *m, instant *at, int k);
+static void put_on(const contacts *m, instant *at, int k);
+
+/* What is held is put where it is held. */
+static void keep(const contacts *m, instant *at);
+
+/* Each expression into the interval where it is now; jumped: past a bounce, too */
+static void follow(const contacts *m, instant *at, int jumped);
+
+/* An event is listed where there is room; 0: there is none, and no speed is lost, so that it may not go on. */
+static int has_listed(const contacts *m, instant *at, int loses, real time, int expression, int breakpoint, int upward);
+
+static int listed(const instant *at);
+static void count_rest(instant *at);
+static void say(instant *at, int status);
+
+/* Whether what rests there is pressed, by more than rounding */
+static int is_pressed(const contacts *m, const instant *at, int k);
+
+/* Those at rest, at most MOST; the interval of one before this instant */
+static int find_resting(const contacts *m, const instant *at, resting *found);
+static int interval_before(const contacts *m, const instant *at, int expression);
+
+/* Whether all of them agree with these intervals of theirs, what is held is not let go, what is not is: 2; 1: it hangs
+ * in the balance.  May leave them there, not renewed. */
+static int agrees(const contacts *m, instant *at, const resting *r, int count, const int *interval);
+
+/* ---- impacts that follow each other ---- */
+
+/* Before the first impact of a step */
+static inline pl_chain no_impact(real h)
+{
+    pl_chain chain;
+    chain.last = -h;
+    chain.most = chain.least = 0;
+    chain.acting = 0;
+    chain.close = chain.impacts = chain.ended = chain.all = chain.full = 0;
+    return chain;
+}
+
+static void go_on(pl_chain *chain, real time, real h)
+{
+    if (time - chain->last > SPAN * h) {
+        chain->most = 0;
+        chain->close = 0;
+    }
+    if (time > chain->last) {
+        chain->impacts = chain->ended = 0;
+        chain->acting = 0;
+    }
+    chain->last = time;
+}
+
+/* One more event; 0: there have been too many in this step. */
+static int has_time(pl_chain *chain)
+{
+    chain->full = ++chain->all > MOST_IN_STEP;
+    return !chain->full;
+}
+
+/* One more impact, number k.  Whether it is listed: the list has the first ones of an instant and, once it is half
+ * full, of no time to speak of. */
+static int is_listed(pl_chain *chain, int k, int count, int most)
+{
+    if (chain->impacts % (SOME / 2) == 0 && chain->ended == 0) {
+        chain->acting = 0;
+    }
+    chain->acting |= (uint32_t)1 << k;
+    chain->impacts++;
+    chain->close++;
+    return chain->impacts <= LISTED_AT_ONCE && !(2 * count > most && chain->close > LISTED_AT_ONCE);
+}
+
+/* Whether there is room for one more impact */
+static int has_room(const contacts *m, instant *at, int k)
+{
+    pl_chain *chain = &at->chain;
+    const int expression = m->impact[k].expression, breakpoint = m->impact[k].breakpoint;
+    if (is_listed(chain, k, listed(at), m->max_events)) {
+        chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, expression, breakpoint,
+                                  m->impact[k].upward);
+    }
+    if (!chain->full && !has_time(chain)) {
+        say(at, PL_TOO_MANY_EVENTS);
+    }
+    return !chain->full;
+}
+
+/* ---- places ---- */
+
+/* The interval before the guard of a bounce */
+static int free_of(const contacts *m, int k)
+{
+    return rest_of(m, k) + (m->impact[k].upward ? -1 : 1);
+}
+
+static int rests(const contacts *m, const instant *at, int k)
+{
+    return interval_of(m, at, m->impact[k].expression) == rest_of(m, k);
+}
+
+/* Whether a bounce flies before its guard, or rests */
+static int is_before(const contacts *m, const instant *at, int k)
+{
+    return rest_of(m, k) >= 0 &&
+           (rests(m, at, k) || interval_of(m, at, m->impact[k].expression) == free_of(m, k));
+}
+
+/* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
+static int touches_by(const contacts *m, const instant *at, int k, real least)
+{
+    real noise, beyond_it;
+    if (!is_before(m, at, k)) {
+        return 0;
+    }
+    beyond_it = depth(m, at, k, &noise);
+    return beyond_it >= -larger(noise, least);
+}
+
+static int touches(const contacts *m, const instant *at, int k)
+{
+    return touches_by(m, at, k, 0);
+}
+
+/* Whether a bounce stops an expression that would go this way */
+static int is_stopped(const contacts *m, const instant *at, int expression, int way)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (m->impact[k].expression == expression && m->impact[k].upward == (way > 0) && is_before(m, at, k)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* How long it flies that leaves the guard of k, from how it is pressed back there [unit]; -1: for good */
+static real flight(const contacts *m, const instant *at, int k)
+{
+    real speed, press;
+    if (rest_of(m, k) < 0) {
+        return -1;
+    }
+    speed = speed_of(m, at, k);
+    if (speed > 0) {
+        return -1;
+    }
+    press = press_of(m, at, k);
+    return press > 0 ? -2 * speed / press : -1;
+}
+
+/* A length [unit] not much longer than the shortest flight that begins there */
+static real shortened(const contacts *m, const instant *at, real length)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const int flies = speed_of(m, at, k) < 0 && touches(m, at, k) && !rests(m, at, k);
+        const real along = flies ? flight(m, at, k) : 0;
+        if (along > 0) {
+            length = smaller(length, 2 * along);
+        }
+    }
+    return length;
+}
+
+/* ---- contacts that come to rest ---- */
+
+/* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
+static uint32_t seat(const contacts *m, instant *at, uint32_t set)
+{
+    uint32_t laid = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const int expression = m->impact[k].expression, before = interval_of(m, at, expression);
+        if (!(set >> k & 1) || rests(m, at, k)) {
+            continue;
+        }
+        go_to(m, at, expression, rest_of(m, k));
+        if (can_be(m, at)) {
+            laid |= (uint32_t)1 << k;
+        } else {
+            go_to(m, at, expression, before); /* others hold it already */
+        }
+    }
+    renew(m, at);
+    return laid;
+}
+
+/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
+ * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
+ * rest now. */
+static uint32_t lay(const contacts *m, instant *at, uint32_t set)
+{
+    uint32_t laid;
+    int k, sweeps, moving = 1;
+    for (k = 0; k < m->impacts; k++) {
+        set |= (uint32_t)(rest_of(m, k) >= 0 && rests(m, at, k)) << k;
+    }
+    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
+        moving = 0;
+        for (k = 0; k < m->impacts; k++) {
+            if (set >> k & 1) {
+                moving |= magnitude(speed_of(m, at, k)) > 0;
+                stop(m, at, k);
+                put_on(m, at, k);
+            }
+        }
+    }
+    laid = seat(m, at, set);
+    keep(m, at);
+    return laid;
+}
+
+/* They come to rest, listed at this time. */
+static void lay_down(const contacts *m, instant *at, uint32_t set, real time)
+{
+    const uint32_t laid = lay(m, at, set);
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (laid >> k & 1) {
+            count_rest(at);
+            (void)has_listed(m, at, 1, time, m->impact[k].expression, m->impact[k].breakpoint, m->impact[k].upward);
+        }
+    }
+}
+
+/* Impacts without an end become slower and slower: what has met and has at most the speed `slow` rests together. */
+static void calm(const contacts *m, instant *at, real slow, uint32_t met)
+{
+    uint32_t set = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (met >> k & 1 && magnitude(speed_of(m, at, k)) <= slow && !rests(m, at, k)) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    lay_down(m, at, set, at->chain.last);
+}
+
+/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
+ * what has been parted for good.  0: nothing does. */
+static int give_up(const contacts *m, instant *at, uint32_t met)
+{
+    uint32_t set = 0;
+    real fastest = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        fastest = met >> k & 1 ? larger(fastest, speed_of(m, at, k)) : fastest;
+    }
+    for (k = 0; k < m->impacts; k++) {
+        const real speed = met >> k & 1 && m->impact[k].restitution < 1 ? speed_of(m, at, k) : -16 * fastest;
+        if (speed > 0 || (at->chain.acting >> k & 1 && speed > -16 * fastest)) {
+            set |= (uint32_t)1 << k;
+        }
+    }
+    lay_down(m, at, set, at->chain.last);
+    at->chain.impacts = MOST_AT_ONCE - SOME;
+    at->chain.ended++;
+    return set != 0;
+}
+
+/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits.  What
+ * has met once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
+static uint32_t collide(const contacts *m, instant *at, int begins)
+{
+    pl_chain *chain = &at->chain;
+    uint32_t struck = 0, met = 0;
+    real slow = -1;
+    int k, calms = 0;
+    go_on(chain, at->time, m->h);
+    for (k = 0; k < m->impacts && !chain->full; k++) {
+        real speed = 0;
+        if (met >> k & 1 || touches(m, at, k)) {
+            met |= (uint32_t)1 << k;
+            speed = speed_of_met(m, at, k);
+        }
+        if (k != begins && !(speed > 0)) {
+            continue;
+        }
+        slow = larger(least_speed(m, at, slow), CALM * chain->most);
+        if (k != begins && speed <= slow) {
+            calms = 1;
+            continue;
+        }
+        chain->most = larger(chain->most, speed);
+        if (chain->impacts == MOST_AT_ONCE) {
+            chain->full = !give_up(m, at, met);
+            if (chain->full) {
+                say(at, PL_TOO_MANY_EVENTS);
+            }
+            begins = k = -1;
+            continue;
+        }
+        if (!has_room(m, at, k)) {
+            break;
+        }
+        jump(m, at, k);
+        if (rest_of(m, k) >= 0) {
+            go_to(m, at, m->impact[k].expression, free_of(m, k));
+            put_on(m, at, k);
+            met |= (uint32_t)1 << k;
+        } else {
+            follow(m, at, 1);
+            met = 0;
+        }
+        struck |= (uint32_t)1 << k;
+        begins = k == begins ? -1 : begins;
+        calms = 0;
+        k = -1;
+    }
+    if (calms) {
+        calm(m, at, slow, met);
+    }
+    return struck;
+}
+
+/* ---- what sticks, rests or slips ---- */
+
+/* Lists what changes from these intervals to those. */
+static void list_changes(const contacts *m, instant *at, const resting *r, int count, const int *from, const int *to)
+{
+    int i, k;
+    for (i = 0; i < count; i++) {
+        for (k = from[i]; k < to[i]; k++) {
+            (void)has_listed(m, at, 1, at->time, r[i].expression, k, 1);
+        }
+        for (k = from[i]; k > to[i]; k--) {
+            (void)has_listed(m, at, 1, at->time, r[i].expression, k - 1, 0);
+        }
+    }
+}
+
+static void enter_all(const contacts *m, instant *at, const resting *r, int count, const int *interval)
+{
+    int i;
+    for (i = 0; i < count; i++) {
+        go_to(m, at, r[i].expression, interval[i]);
+    }
+    renew(m, at);
+}
+
+/* Those at rest in the combination of this number, three ways each: what it costs, by changes and then by what slips */
+static int combine(const resting *r, int count, int number, const int *before, int *interval)
+{
+    int cost = 0, i;
+    for (i = 0; i < count; i++, number /= 3) {
+        interval[i] = r[i].held + number % 3 - 1;
+        cost += (interval[i] != before[i]) * 2 * MOST + (number % 3 != 1);
+    }
+    return cost;
+}
+
+/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none. */
+static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before)
+{
+    int best = -1, least = 0, all = 1, number, i;
+    for (i = 0; i < count; i++) {
+        all *= 3;
+    }
+    for (number = 0; number < all; number++) {
+        int interval[MOST], agreed, cost = combine(r, count, number, before, interval);
+        if (best >= 0 && cost >= least) {
+            continue;
+        }
+        agreed = agrees(m, at, r, count, interval);
+        cost += agreed == 1 ? 8 * MOST * MOST : 0;
+        if (agreed != 0 && (best < 0 || cost < least)) {
+            best = number;
+            least = cost;
+        }
+    }
+    return best;
+}
+
+/* What is at rest: whether it is held, and where else it goes.  Changes count from where things were before the instant
+ * with `turned`, so that what turns round changes once; else from now. */
+static void settle(const contacts *m, instant *at, int turned)
+{
+    resting r[MOST];
+    int now[MOST], before[MOST], next[MOST], best, i;
+    const int count = find_resting(m, at, r);
+    for (i = 0; i < count; i++) {
+        now[i] = interval_of(m, at, r[i].expression);
+        before[i] = turned ? interval_before(m, at, r[i].expression) : now[i];
+    }
+    if (count == 0 || agrees(m, at, r, count, now) == 2) {
+        return;
+    }
+    best = best_of(m, at, r, count, before);
+    if (best < 0) {
+        say(at, PL_UNDECIDED);
+        enter_all(m, at, r, count, now);
+    } else {
+        (void)combine(r, count, best, before, next);
+        list_changes(m, at, r, count, now, next);
+        enter_all(m, at, r, count, next);
+    }
+}
+
+/* ---- behind impacts ---- */
+
+/* The largest rate at which one of those that touch is pressed [1/unit], and the most that rounding does to their
+ * places: they lie on each other, and what that takes one by moves another one. */
+static real most_pressed(const contacts *m, const instant *at, real *rounding)
+{
+    real most = 0, noise;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        if (touches(m, at, k)) {
+            (void)depth(m, at, k, &noise);
+            *rounding = larger(*rounding, noise);
+        }
+    }
+    for (k = 0; k < m->impacts; k++) {
+        if (touches_by(m, at, k, *rounding)) {
+            most = larger(most, press_of(m, at, k));
+        }
+    }
+    return most;
+}
+
+/* Several contacts that are as good as at rest together, those of them that fly as bits: all that any of them could
+ * still do is over within BRIEF of h under the force that presses one of them, or lower than rounding. */
+static uint32_t near_rest(const contacts *m, const instant *at)
+{
+    real noise = 0, unused;
+    const real brief = BRIEF * step_of(m), most = most_pressed(m, at, &noise), fastest = most * brief / 2;
+    uint32_t set = 0;
+    int k, together = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const real loss = 1 - m->impact[k].restitution;
+        real speed;
+        if (!is_before(m, at, k) || depth(m, at, k, &unused) < -larger(noise, fastest * brief * unit(m))) {
+            continue;
+        }
+        speed = magnitude(speed_of(m, at, k));
+        if (rests(m, at, k)) {
+            together++;
+        } else if (speed <= fastest * loss || unit(m) * speed * speed <= 2 * most * noise * loss * loss) {
+            set |= (uint32_t)1 << k;
+            together++;
+        }
+    }
+    return together > 1 ? set : 0;
+}
+
+/* Several that strike each other come to rest together if all of them are pressed then. */
+static void rest_together(const contacts *m, instant *at, uint32_t set)
+{
+    const uint32_t laid = seat(m, at, set);
+    int k, pressed = 1;
+    for (k = 0; k < m->impacts; k++) {
+        pressed = pressed && (!(laid >> k & 1) || is_pressed(m, at, k));
+    }
+    for (k = 0; k < m->impacts; k++) {
+        if (laid >> k & 1) {
+            go_to(m, at, m->impact[k].expression, free_of(m, k));
+        }
+    }
+    renew(m, at);
+    if (pressed) {
+        lay_down(m, at, laid, at->time);
+        settle(m, at, 0);
+    }
+}
+
+/* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
+static void come_to_rest(const contacts *m, instant *at, uint32_t struck)
+{
+    const real brief = (listed(at) > m->max_events - LAST ? SPAN : BRIEF) * step_of(m);
+    uint32_t set;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const real e = m->impact[k].restitution, along = struck >> k & 1 && e < 1 ? flight(m, at, k) : -1;
+        const real left = along / (1 - e);
+        if (left >= 0 && left <= brief && touches(m, at, k)) {
+            lay_down(m, at, (uint32_t)1 << k, at->time + left * unit(m));
+            settle(m, at, 0);
+        }
+    }
+    set = struck != 0 ? near_rest(m, at) : 0;
+    if (set != 0) {
+        rest_together(m, at, set);
+    }
+}
