@@ -173,8 +173,8 @@ static int rests(const contacts *m, const instant *at, int k)
 /* Whether a bounce flies before its guard, or rests */
 static int is_before(const contacts *m, const instant *at, int k)
 {
-    return rest_of(m, k) >= 0 &&
-           (rests(m, at, k) || interval_of(m, at, m->impact[k].expression) == free_of(m, k));
+    const int rest = rest_of(m, k), interval = rest < 0 ? -1 : interval_of(m, at, m->impact[k].expression);
+    return rest >= 0 && (interval == rest || interval == free_of(m, k));
 }
 
 /* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */

@@ -260,13 +260,19 @@ static PL_INLINE double PL(sum)(const double *row, const double *x)
 #endif
 #include "unmet.h"
 
-/* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
- * through memory. */
+/* s over h in a region, where it is sure that no guard is met; x: what acts, behind the states.  Those are read here one
+ * by one, as they are stored: two in one load would wait for that, and what regions have in common is not made before
+ * it is known which one it is.  Stored here, as what all regions store behind them goes through memory. */
 static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 {
-    double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
+    const volatile double *const y = s->y;
+    double now[PL_SIZE], end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
     int i;
-    if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
+    PL_EACH
+    for (i = 0; i < PL_SIZE; i++) {
+        now[i] = i < PL_STATES ? y[PL_PLACE(i)] : x[i];
+    }
+    if (!PL(keeps_all)(&PL(switching), region, now, end, size, place)) {
         return 0;
     }
     PL_EACH
@@ -281,14 +287,8 @@ static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 {
     const int region = s->contact PL_PART.region;
-    int clear = 0;
+    int clear = 0, i;
 #if PL_FEW_REGIONS
-    const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
-    int i;
-    PL_UNROLL
-    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
-        x[i] = y[PL_PLACE(i)];
-    }
     PL_UNROLL
     for (i = 0; i < PL_REGIONS && !PL_SOFT; i++) {
         if (i == region) {
@@ -299,7 +299,12 @@ static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
     clear = !PL_SOFT && PL(unmet)(s, region, x);
 #endif
     if (!clear) {
-        PL(by_search)(s, x);
+        real again[PL_VECTOR]; /* so that x itself has no place in memory, which each step would have to fill */
+        PL_EACH
+        for (i = 0; i < PL_VECTOR; i++) {
+            again[i] = x[i];
+        }
+        PL(by_search)(s, again);
     }
 }
 #endif

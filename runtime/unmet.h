@@ -13,7 +13,7 @@ static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, dou
     PL_EACH
     for (k = first; k < last; k++) {
         const double *const value = m->value + k * PL_SIZE;
-        if (!(pl_magnitude(x[m->state[k]] - PL_SUM(value, x)) <= 0.0)) {
+        if (!(pl_magnitude(PL_SUM(value, x) - x[m->state[k]]) <= 0.0)) {
             return 0;
         }
         place[k - first] = 0.0 + PL_SUM(value, end);
@@ -26,14 +26,21 @@ static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, dou
 }
 
 /* Whether guard k keeps below its limit from x to end: by its chord, h^2/8 of its second derivative, and what rounding
- * may hide at the start, 8 units in the last place of all terms; those of x are in the table */
+ * may hide at the start, 9 units in the last place of all terms; those of x are in the table */
 static PL_INLINE int PL(keeps)(const pl_guards *m, int k, const double *x, const double *end, const double *size)
 {
     const int row = m->guard[k].row;
     const double from = PL_SUM(m->gate + row * PL_SIZE, x), to = PL_SUM(m->gate + row * PL_SIZE, end);
-    const double off = PL_SUM(m->chord_error + row * PL_SIZE, size)
-                     + 1.7763568412e-15 * (pl_magnitude(m->limit[k]) + m->gate_play[row]);
-    return (from > to ? from : to) + off < m->limit[k];
+    const double off = PL_SUM(m->chord_error + row * PL_SIZE, size);
+    return (from > to ? from : to) + off < m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->gate_play[row]);
+}
+
+/* Row i of a product, with 0 in the place of -0 as the search has it.  Where what multiplies x_i is above 0 there is no
+ * -0 unless x_i was one; the addition that is spared there is one of the few that the next step waits for. */
+static PL_INLINE double PL(row_of)(const pl_guards *m, const double *matrix, int i, const double *x)
+{
+    const double sum = PL_SUM(matrix + i * PL_SIZE, x);
+    return matrix[i * PL_SIZE + i] > 0.0 ? sum : 0.0 + sum;
 }
 
 /* x over h in a region to end, and whether it is sure that nothing is met.  size, place: for sizes of x, and work */
@@ -41,14 +48,14 @@ static PL_INLINE int PL(keeps_all)(const pl_guards *m, int region, const double 
                                    double *place)
 {
     const int which = m->matrix[region], set = m->hold[region];
-    double all = 0.0;
+    double all = -0.0; /* which adds nothing: a compiler need not add it */
     int i;
     if (which < 0 || (PL_SOFT && pl_not_finite(x, PL_SIZE))) {
         return 0;
     }
     PL_EACH
     for (i = 0; i < PL_SIZE; i++) {
-        end[i] = 0.0 + PL_SUM(m->Phi + (which * PL_SIZE + i) * PL_SIZE, x);
+        end[i] = PL(row_of)(m, m->Phi + which * PL_SIZE * PL_SIZE, i, x);
         size[i] = pl_magnitude(x[i]);
         all += PL_SOFT ? 0.0 : size[i];
     }
