@@ -260,9 +260,9 @@ static PL_INLINE double PL(sum)(const double *row, const double *x)
 #endif
 #include "unmet.h"
 
-/* s over h in a region, where it is sure that no guard is met; x: what acts, behind the states.  Those are read here one
- * by one, as they are stored: two in one load would wait for that, and what regions have in common is not made before
- * it is known which one it is.  Stored here, as what all regions store behind them goes through memory. */
+/* s over h in a region, where it is sure that no guard is met; x: what acts, behind the states.  Those are read here
+ * one by one, as they are stored: two in one load would wait for that, and what regions have in common is not made
+ * before it is known which one it is.  Stored here, as what all regions store behind them goes through memory. */
 static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 {
     const volatile double *const y = s->y;
