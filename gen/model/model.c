@@ -600,7 +600,7 @@ static void check_reduction(const struct building *b)
 {
 	struct model *model = b->model;
 	const char *why = model->switching		  ? "what regions hold depends on the coordinates"
-			  : model->scheme != SCHEME_EXACT ? "what the scheme leaves over depends on the coordinates"
+			  : !steps_exactly(model)  ? "what the scheme leaves over depends on the coordinates"
 			  : model->ranges > 0		  ? "a range is of a state as written"
 			  : model->delays		  ? "there are delayed inputs"
 							  : NULL;

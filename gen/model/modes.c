@@ -32,7 +32,7 @@ static const char *objection(const struct model *model)
 		return "the equations are piecewise linear, and each region has modes of its own";
 	if (model->obstacle || model->operators)
 		return "the equations are not linear, and modes are of linear ones";
-	if (model->scheme != SCHEME_EXACT)
+	if (!steps_exactly(model))
 		return "that needs scheme exact";
 	if (model->tuning)
 		return "there are tunable params, and modes follow from them";

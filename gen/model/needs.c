@@ -46,6 +46,12 @@ static bool has_linear_form(const struct output *output)
 	return !output->left && output->state;
 }
 
+bool steps_exactly(const struct model *model)
+{
+	return model->scheme == SCHEME_EXACT ||
+	       (model->channels == 0 && !has_contacts(model) && !scheme_row(model->scheme)->holds_coupling);
+}
+
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
 bool is_measured(const struct model *model)
 {
@@ -82,7 +88,7 @@ static void check_certified(const struct finding *f)
 		      "the model has tunable params: what their values do to the error is not bounded");
 	if (is_measured(model))
 		return;
-	if (model->scheme != SCHEME_EXACT)
+	if (!steps_exactly(model))
 		error(at, "without it the step is exact, and its rounding is certified",
 		      "a need is certified for scheme exact, and scheme %s is asked for", scheme_name(model->scheme));
 	if (model->relative && !model->declared_outputs)

@@ -117,7 +117,7 @@ void need_closed_form(const struct step *step)
 		[KIND_NORMAL] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
-	if (!why && step->model->scheme != SCHEME_EXACT)
+	if (!why && !steps_exactly(step->model))
 		why = format("scheme %s approximates", scheme_name(step->model->scheme));
 	if (why)
 		error((struct place){ source_argument("--selftest"), 0 }, NULL,
