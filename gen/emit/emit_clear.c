@@ -88,7 +88,7 @@ static void mark_own(const struct emitter *e, const struct pieces *p, struct loo
 		int place = retuned_place(r, RETUNED_EXPRESSION, 0, i);
 		for (int k = 0; k < size; k++) {
 			int at = i * size + k;
-			row[at] = place >= 0 && retuned_reads(r, place, k);
+			row[at] = place >= 0 && r->acts[place * size + k];
 			for (int j = 0; j < size && (row[at] || p->row[at] != 0) && (systems || place >= 0); j++)
 				off[i * size + j] = off[i * size + j] || reached[k * size + j];
 		}

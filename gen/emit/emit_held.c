@@ -70,13 +70,10 @@ void emit_held_declarations(const struct emitter *e)
 static void banner_blocks(const struct emitter *e)
 {
 	const struct tuned_blocks *p = e->step->blocks;
-	int touched = 0;
-	for (int b = 0; b < p->blocks; b++)
-		touched += p->block[b].group->tuned;
 	if (!p->solved)
 		say(e, "They touch %s independent blocks, and factors of the others stay.\n"
 		       " * ",
-		    touched == p->blocks ? format("all %d", touched) : format("%d of %d", touched, p->blocks));
+		    p->touched == p->all ? format("all %d", p->all) : format("%d of %d", p->touched, p->all));
 	say(e, "$n_retune computes factors from other values%s on the\n"
 	       " * target; of the spec's they are these, correctly rounded. It needs some %d KB of stack.\n",
 	    p->whole ? " and another h" : "", p->kilobytes);

@@ -70,37 +70,21 @@ const char **emit_equations(const struct emitter *e, const struct tuning *t, int
 	return text;
 }
 
-/* Blocks in tables: all where NAME_at is there, else those that params touch */
-static bool is_listed(const struct emitter *e, int block)
-{
-	return e->step->series.emitted || blocks_of_step(e)->block[block].group->tuned;
-}
-
 /* Outputs and frequencies that the equations of no block have */
 static bool has_others(const struct emitter *e)
 {
 	return !blocks_of_step(e)->solved && blocks_of_step(e)->others.all.rows > 0;
 }
 
-static int number_of_block(const struct emitter *e, int block)
-{
-	int number = 0;
-	for (int b = 0; b < block; b++)
-		number += is_listed(e, b);
-	return number;
-}
-
-/* Of the listed blocks, then, where there are some, of what belongs to none */
+/* Of the blocks, then, where there are some, of what belongs to none */
 static const char **emit_all_equations(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)p->blocks + 1);
-	int count = 0;
 	for (int b = 0; b < p->blocks; b++)
-		if (is_listed(e, b))
-			list[count++] = &p->block[b].part.all;
-	list[count] = &p->others.all;
-	return emit_equations(e, e->model->tuning, count + has_others(e), list);
+		list[b] = &p->block[b].part.all;
+	list[p->blocks] = &p->others.all;
+	return emit_equations(e, e->model->tuning, p->blocks + has_others(e), list);
 }
 
 /* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
@@ -129,21 +113,6 @@ static int add_places(struct lists *l, int count, const int *place)
 	return first;
 }
 
-/* Where its x is found in that of the whole */
-static int add_columns(struct lists *l, const struct emitter *e, const struct tuned_block *b)
-{
-	const struct group *g = b->group;
-	const struct table *table = e->step->branch->whole;
-	const int first = l->count;
-	for (int i = 0; i < g->states; i++)
-		add_place(l, g->state[i * g->blocks + b->block]);
-	for (int k = 0; k < g->loads; k++)
-		add_place(l, table->states + g->load[k]);
-	for (int k = 0; k < g->inputs; k++)
-		add_place(l, table->states + table->columns + g->input[k]);
-	return first;
-}
-
 static const char *list_text(const struct emitter *e, int count, int first)
 {
 	return count ? format("%s_places + %d", e->name, first) : "NULL";
@@ -164,13 +133,9 @@ static void emit_all_entries(const struct emitter *e)
 	const struct tuned_blocks *p = blocks_of_step(e);
 	struct fixed_slope *all = NULL;
 	int count = 0;
-	for (int b = 0; b < p->blocks; b++) {
-		if (!is_listed(e, b))
-			continue;
-		ENLARGE(all, (size_t)(count + p->block[b].slopes));
+	for (int b = 0; b < p->blocks; b++)
 		for (int i = 0; i < p->block[b].slopes; i++)
-			all[count++] = p->block[b].slope[i];
-	}
+			*MORE(all, count) = p->block[b].slope[i];
 	emit_entries(e, count, all);
 }
 
@@ -191,21 +156,19 @@ static const char *block_text(const struct emitter *e, const struct tuned_block 
 	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
 	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
 	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
-	const char *places = placed ? list_text(e, 1, add_columns(l, e, b)) : "NULL";
+	const char *places = placed ? list_text(e, 1, add_places(l, b->size, b->from)) : "NULL";
 	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations,
 		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
 		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
 }
 
-static void emit_blocks(const struct emitter *e, int listed, const char *const *text)
+static void emit_blocks(const struct emitter *e, const char *const *text)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	say(e, "\n/* Independent blocks%s */\n"
-	       "static const pl_block $n_block[%d] = {\n", listed < p->blocks ? " that params touch" : "", listed);
+	       "static const pl_block $n_block[%d] = {\n", p->blocks < p->all ? " that params touch" : "", p->blocks);
 	for (int b = 0; b < p->blocks; b++)
-		if (is_listed(e, b))
-			say(e, "    %s,  /* %s */\n", text[b],
-			    e->model->state_name[p->block[b].group->state[p->block[b].block]]);
+		say(e, "    %s,  /* %s */\n", text[b], e->model->state_name[p->block[b].from[0]]);
 	say(e, "};\n");
 }
 
@@ -258,7 +221,7 @@ static const char *group_text(const struct emitter *e, const struct tuned_block 
 	const struct group *g = first->group;
 	const struct group_shape shape = shape_of_group(e, g);
 	const bool alike = g->kind == GROUP_ALIKE, by_columns = g->kind == GROUP_COLUMNS;
-	const int number = number_of_block(e, (int)(first - blocks_of_step(e)->block)), taps = l->taps;
+	const int number = (int)(first - blocks_of_step(e)->block), taps = l->taps;
 	const int from = l->place.count, samples = add_samples(l, e, g);
 	const char *entry = alike ? add_alike(l, e, g, false, shape.rows) : "NULL";
 	const char *load = alike ? add_alike(l, e, g, true, shape.changing) : "NULL";
@@ -280,33 +243,27 @@ static void emit_groups_of(const struct emitter *e, int groups, const char *cons
 static void emit_reads(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	int *reads = ARRAY(int, (size_t)p->blocks), listed = 0;
+	int *reads = ARRAY(int, (size_t)p->blocks);
 	for (int b = 0; b < p->blocks; b++)
-		if (is_listed(e, b))
-			reads[listed++] = (int)p->block[b].part.params;
-	emit_integers(e, "unsigned short", "reads", listed, reads);
+		reads[b] = (int)p->block[b].part.params;
+	emit_integers(e, "unsigned short", "reads", p->blocks, reads);
 }
 
 static void emit_block_tables(const struct emitter *e, const char *const *equations)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const char **block = ARRAY(const char *, (size_t)p->blocks), **group = ARRAY(const char *, (size_t)p->blocks);
-	const int listed = number_of_block(e, p->blocks);
 	struct listed lists = { 0 };
 	int entry = 0, groups = 0;
-	for (int b = 0; b < p->blocks; b++) {
-		if (!is_listed(e, b))
-			continue;
-		block[b] = block_text(e, &p->block[b], &lists.place, equations[number_of_block(e, b)], entry);
-		entry += p->block[b].slopes;
-	}
+	for (int b = 0; b < p->blocks; entry += p->block[b++].slopes)
+		block[b] = block_text(e, &p->block[b], &lists.place, equations[b], entry);
 	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
 		if (p->block[b].group->tuned)
 			group[groups++] = group_text(e, &p->block[b], &lists);
 	emit_all_entries(e);
 	emit_lists(e, &lists);
-	if (listed)
-		emit_blocks(e, listed, block);
+	if (p->blocks)
+		emit_blocks(e, block);
 	if (groups && !p->solved)
 		emit_reads(e);
 	if (groups)
@@ -411,7 +368,7 @@ void emit_retune(const struct emitter *e)
 	const char **equations = emit_all_equations(e);
 	emit_block_tables(e, equations);
 	if (has_others(e))
-		emit_others(e, equations[number_of_block(e, blocks_of_step(e)->blocks)]);
+		emit_others(e, equations[blocks_of_step(e)->blocks]);
 	emit_rows_of_loads(e);
 	if (e->step->series.emitted)
 		emit_vector_now(e);

@@ -10,32 +10,27 @@ int place_in(int count, const int *list, int what)
 	return place;
 }
 
-static const char *block_factor(const struct emitter *e, int state, int place)
+/* x: of the table, in one segment of time; its loads have a column for each */
+static const char *own_entry(const struct emitter *e, const char *table, int row, int x, int states, int loads)
 {
-	const struct table *table = e->step->branch->whole;
-	int index, row, load = place - table->states, input = load - table->columns;
-	const struct group *g = group_of_state(e->step, state, &index, &row);
 	const int segments = e->system->segments;
-	const char *later = "";
-	if (load < 0)
-		place = place_in(g->states, g->state, place);
-	else if (input >= 0)
-		place = g->states + segments * g->loads + place_in(g->inputs, g->input, input);
-	else
-		place = g->states + place_in(g->loads, g->load, load);
-	if (load >= 0 && input < 0 && segments > 1)
-		later = format(" + s->segment * %d", g->loads);
-	return format("s->coeffs.rows%d[%d][%d%s]", index, row, place, later);
+	if (x >= states + loads)
+		x += (segments - 1) * loads;
+	else if (x >= states && segments > 1)
+		return format("s->coeffs.%s[%d][%d + s->segment * %d]", table, row, x, loads);
+	return format("s->coeffs.%s[%d][%d]", table, row, x);
 }
 
-static const char *tuned_entry(const struct emitter *e, const char *table, int row, int column)
+/* Of the block that has this state */
+static const char *own_factor(const struct emitter *e, int state, int x)
 {
-	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
-	if (column >= states + loads)
-		column += (segments - 1) * loads;
-	else if (column >= states && segments > 1)
-		return format("s->coeffs.%s[%d][%d + s->segment * %d]", table, row, column, loads);
-	return format("s->coeffs.%s[%d][%d]", table, row, column);
+	const struct tuned_block *b = e->step->blocks->block;
+	const bool solved = e->step->blocks->solved;
+	int row = place_in(b->group->states, b->from, state);
+	for (; row == b->group->states; row = place_in(b->group->states, b->from, state))
+		b++;
+	return own_entry(e, solved ? "step" : format("rows%d", b->index), row, place_in(b->size, b->from, x),
+			 b->group->states, b->group->loads);
 }
 
 /* Entry of a table with so many columns */
@@ -48,7 +43,7 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 {
 	const struct table *table = e->step->branch->whole;
 	const int width = table->states + table->columns + table->inputs, i = n->index;
-	const struct tuning *tuning = e->model->tuning;
+	const struct layout *x = e->model->tuning ? &e->model->tuning->x : NULL;
 	switch (n->part) {
 	case TABLE_TURNED: return format("turned[%d]", i);
 	case TABLE_FACTOR: return cell("factor", i, table->columns);
@@ -56,11 +51,10 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 	case TABLE_FORCED: return cell(spell(e, "$n_forced_part[s->segment]"), i, table->columns);
 	case TABLE_LEFT:   return format("left[%d]", i);
 	case TABLE_SEEN:   return spell(e, "$n_dot($n_seen[%d], s->y)", i);
-	case TABLE_OWN_OUT: return tuned_entry(e, "out", i / tuning->x.size - e->model->n, i % tuning->x.size);
-	default: break;
+	case TABLE_OWN_OUT:
+		return own_entry(e, "out", i / x->size - e->model->n, i % x->size, e->system->states, x->loads);
+	default: return own_factor(e, i / width, i % width);
 	}
-	return e->step->blocks->solved ? tuned_entry(e, "step", i / width, i % width)
-				       : block_factor(e, i / width, i % width);
 }
 
 bool is_tuned_output(const struct emitter *e, const struct output *output)

@@ -925,7 +925,7 @@ struct tuning {
 	struct retuned_block *block;
 	int outputs, frequencies;   /* of a linear model: of its rows, behind those of coordinates */
 	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
-	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
+	bool *acts;                 /* rows x columns, solved: whether it is anything but 0 for some values */
 	int monomials;
 	struct tuned_monomial *monomial;
 	const struct model *other;  /* at values that are related by nothing: what holds there holds for all */
@@ -933,7 +933,6 @@ struct tuning {
 /* model->tuning, or held and retuned, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
 int  retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index);
-bool retuned_reads(const struct tuning *t, int place, int column); /* this row may have something but 0 there */
 
 /* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
 

@@ -309,17 +309,16 @@ static void fit_rows(struct elsewhere *s)
 	}
 }
 
-/* ---- of a linear model ---- */
-
-static void mark_acting(struct elsewhere *s, const struct retuned_row *row)
+static void mark_acting(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
-	bool *acts = t->acts + row->place * t->x.size;
-	for (int j = 0; j < t->x.size; j++)
-		acts[j] = mpq_sgn(entry_seen(s, 0, index_of(s, (int)(row - t->row), j))) != 0;
+	t->acts = ARRAY(bool, (size_t)(t->all.rows * t->x.size));
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->x.size && t->row[i].place >= 0; j++)
+			t->acts[t->row[i].place * t->x.size + j] = mpq_sgn(entry_seen(s, 0, index_of(s, i, j))) != 0;
 }
 
-/* All its rows are of one system, as they are or solved */
+/* Of a linear model, whose rows are all of one system, as they are or solved */
 static void number_rows(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
@@ -327,17 +326,13 @@ static void number_rows(struct elsewhere *s)
 		t->all = t->block[0].all;
 	t->output = ARRAY(int, s->model->outputs);
 	t->frequency = ARRAY(int, s->model->system.loads);
-	t->acts = ARRAY(bool, (size_t)(t->all.rows * t->x.size));
-	for (const struct retuned_row *row = t->row; row < t->row + t->rows; row++) {
-		if (row->kind == RETUNED_OUTPUT) {
-			t->output[row->index] = row->place;
-			t->outputs += row->place >= 0;
-		} else if (row->kind == RETUNED_FREQUENCY) {
-			t->frequency[row->index] = row->place;
-			t->frequencies += row->place >= 0;
-		}
-		if (row->place >= 0)
-			mark_acting(s, row);
+	for (int i = 0; i < s->model->outputs; i++) {
+		t->output[i] = retuned_place(t, RETUNED_OUTPUT, 0, i);
+		t->outputs += t->output[i] >= 0;
+	}
+	for (int i = 0; i < s->model->system.loads; i++) {
+		t->frequency[i] = retuned_place(t, RETUNED_FREQUENCY, 0, i);
+		t->frequencies += t->frequency[i] >= 0;
 	}
 }
 
@@ -427,6 +422,7 @@ static void find(void *context)
 		check_size(s->tuning, regions->systems);
 	}
 	fit_rows(s);
+	mark_acting(s);
 	if (!regions)
 		number_rows(s);
 }
@@ -458,17 +454,4 @@ int retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int in
 		if (t->row[i].kind == kind && t->row[i].of == of && t->row[i].index == index)
 			return t->row[i].place;
 	return -1;
-}
-
-/* What is solved reads all that any of its equations reads. */
-bool retuned_reads(const struct tuning *t, int place, int column)
-{
-	const struct tuned_equations *all = &t->all;
-	bool reads = false;
-	for (int b = 0; b < t->blocks; b++)
-		if (place >= t->block[b].place && place < t->block[b].place + t->block[b].all.rows)
-			all = &t->block[b].all;
-	for (const struct tuned_term *term = all->term; term < all->term + all->terms; term++)
-		reads = reads || (term->column == column && (all->solves || term->row == place));
-	return reads;
 }

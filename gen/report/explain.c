@@ -78,16 +78,6 @@ static void person_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
-/* Of a large step: which of its independent blocks they touch */
-static void person_blocks(FILE *to, const struct tuned_blocks *p)
-{
-	int touched = 0;
-	for (int b = 0; b < p->blocks; b++)
-		touched += p->block[b].group->tuned;
-	fprintf(to, "They touch %d of %d independent blocks; %s.\n", touched, p->blocks,
-		p->whole ? "another h does, too" : "the others have tables, of this h");
-}
-
 static void person_tuning(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -108,7 +98,8 @@ static void person_tuning(FILE *to, const struct step *step)
 		fprintf(to, "; the equations there have %d term%s%s.\n", t->all.terms, t->all.terms == 1 ? "" : "s",
 			t->all.solves ? ", and are solved for the highest derivatives" : "");
 	if (step->blocks && !step->blocks->solved)
-		person_blocks(to, step->blocks);
+		fprintf(to, "They touch %d of %d independent blocks; %s.\n", step->blocks->touched, step->blocks->all,
+			step->blocks->whole ? "another h does, too" : "the others have tables, of this h");
 }
 
 static void person_operations(FILE *to, const struct step *step)

@@ -975,14 +975,14 @@ struct tuned_block {                /* an independent block; x: its states, load
 	struct tuned_part part;     /* its highest derivatives, then frequencies of its loads */
 	int derivatives;            /* of the rows, */
 	int *place;                 /* and of which state each is */
-	int size;                   /* of x */
+	int size, *from;            /* of x, and which of the whole each is */
 	int slopes;
 	struct fixed_slope *slope;  /* entries of A that no param changes */
 	int turns, *turn;           /* pairs of load states whose frequency changes: row of the part, place in x */
 };
 struct tuned_blocks {
-	int blocks;
-	struct tuned_block *block;  /* in the order of groups */
+	int blocks, all, touched;   /* those that the code has, of all, of which params touch some */
+	struct tuned_block *block;  /* in the order of groups; where NAME_at is not there, those that params touch */
 	bool solved;                /* there is one, the whole model, whose equations have what others would */
 	/* outputs and frequencies that depend on params, and what accelerations these read */
 	struct tuned_part others;

@@ -22,34 +22,21 @@ double *nominal_outputs(const struct step *step)
 	return value;
 }
 
-/* Is this entry of A w or -w of a load whose frequency depends on params? */
-static bool is_tuned_frequency(const struct step *step, int row, int column)
-{
-	const struct linear *system = &step->branch->system;
-	for (int l = 0; l < system->loads && step->model->tuning; l++) {
-		int from = step->layout.load[l];
-		bool inside = row >= from && row < from + system->load[l].columns;
-		bool pair = row != column && (row - from) / 2 == (column - from) / 2;
-		if (step->model->tuning->frequency[l] >= 0 && inside && pair)
-			return true;
-	}
-	return false;
-}
-
 int fixed_slopes(const struct step *step, struct fixed_slope **list)
 {
 	const struct linear *system = &step->branch->system;
+	const struct model *other = step->model->tuning ? step->model->tuning->other : NULL;
 	int size = step->layout.size, count = 0;
-	mpq_t *A = augmented_matrix(&step->layout, system, 0);
+	RATIONALS *A = augmented_matrix(&step->layout, system, 0);
+	RATIONALS *there = augmented_matrix(&step->layout, other ? &other->system : system, 0);
 	*list = ARRAY(struct fixed_slope, (size_t)(size * size));
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
-			bool derivative = i < system->states && (i >= system->n || system->velocity[i] < 0);
-			if (derivative || mpq_sgn(A[i * size + j]) == 0 || is_tuned_frequency(step, i, j))
+			const bool derivative = i < system->states && (i >= system->n || system->velocity[i] < 0);
+			mpq_srcptr entry = A[i * size + j];
+			if (derivative || mpq_sgn(entry) == 0 || !mpq_equal(entry, there[i * size + j]))
 				continue;
-			struct coefficient value = equation_number(step->model, A[i * size + j]);
-			(*list)[count++] = (struct fixed_slope){ i, j, value };
+			(*list)[count++] = (struct fixed_slope){ i, j, equation_number(step->model, entry) };
 		}
-	rationals_free(A, (size_t)size * (size_t)size);
 	return count;
 }

@@ -115,8 +115,21 @@ static unsigned params_of(const struct step *step, int monomial)
 	return params;
 }
 
-/* Its terms: those of its rows. column: per column of struct tuning, its place */
-static void take_terms(struct tuned_part *part, const struct step *step, const int *column)
+/* Where its x has a column of that of struct tuning: loads in each segment of time. NULL: it has all */
+static int column_in(const struct step *step, const struct tuned_block *b, const int *place, int column)
+{
+	const struct layout *x = &step->model->tuning->x;
+	const int states = step->branch->system.states, load = column - states, loads = x->segments * x->loads;
+	if (!b)
+		return column;
+	if (load < 0)
+		return place[column];
+	const int segment = load < loads ? load / x->loads : x->segments - 1, at = place[column - segment * x->loads];
+	return at < 0 ? at : at + segment * b->group->loads;
+}
+
+/* Its terms: those of its rows. place: per x of the whole, that in the block's */
+static void take_terms(struct tuned_part *part, const struct step *step, const struct tuned_block *b, const int *place)
 {
 	const struct tuning *t = step->model->tuning;
 	struct tuned_equations *all = &part->all;
@@ -126,11 +139,14 @@ static void take_terms(struct tuned_part *part, const struct step *step, const i
 		unknown[part->unknown[i]] = i;
 	}
 	all->solves = t->all.solves;
+	all->columns = b ? b->size + (t->x.segments - 1) * b->group->loads : t->x.size;
 	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++) {
 		if (row[term->row] < 0)
 			continue;
 		const bool of_w = term->column >= t->x.size, rate = term->row >= left;
-		const int at = of_w ? unknown[term->column - t->x.size] : rate ? 0 : column[term->column];
+		const int at = of_w   ? unknown[term->column - t->x.size]
+			       : rate ? 0
+				      : column_in(step, b, place, term->column);
 		if (at < 0)
 			internal_error(step, "a term of tunable params leaves its independent block");
 		struct tuned_term *own = MORE(all->term, all->terms);
@@ -148,34 +164,21 @@ int width_of_equations(const struct tuned_equations *all)
 
 /* ---- a block ---- */
 
-static int *columns_of(struct tuned_block *b, const struct step *step)
-{
-	const struct tuning *t = step->model->tuning;
-	const struct group *g = b->group;
-	int *column = nowhere(t->x.size), states = step->branch->system.states, segments = t->x.segments;
-	for (int i = 0; i < g->states; i++)
-		column[g->state[i * g->blocks + b->block]] = i;
-	for (int s = 0; s < segments; s++)
-		for (int k = 0; k < g->loads; k++)
-			column[states + s * t->x.loads + g->load[k]] = g->states + s * g->loads + k;
-	for (int k = 0; k < g->inputs; k++)
-		column[states + segments * t->x.loads + g->input[k]] = g->states + segments * g->loads + k;
-	b->part.all.columns = g->states + segments * g->loads + g->inputs;
-	return column;
-}
-
-/* Places in its x of what stands in the x of the whole */
-static int *places_of(const struct tuned_block *b, const struct step *step)
+/* Its x, and where that of the whole stands in it */
+static int *take_x(struct tuned_block *b, const struct step *step)
 {
 	const struct group *g = b->group;
 	const struct table *table = step->branch->whole;
 	int *place = nowhere(step->layout.size);
+	b->from = ARRAY(int, (size_t)(g->states + g->loads + g->inputs));
 	for (int i = 0; i < g->states; i++)
-		place[g->state[i * g->blocks + b->block]] = i;
+		b->from[b->size++] = g->state[i * g->blocks + b->block];
 	for (int k = 0; k < g->loads; k++)
-		place[table->states + g->load[k]] = g->states + k;
+		b->from[b->size++] = table->states + g->load[k];
 	for (int k = 0; k < g->inputs; k++)
-		place[table->states + table->columns + g->input[k]] = g->states + g->loads + k;
+		b->from[b->size++] = table->states + table->columns + g->input[k];
+	for (int i = 0; i < b->size; i++)
+		place[b->from[i]] = i;
 	return place;
 }
 
@@ -213,7 +216,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 {
 	const struct linear *system = &step->branch->system;
 	struct tuned_block b = { .group = group, .index = index, .block = block };
-	int *parent = components(step), *column = columns_of(&b, step), *place = places_of(&b, step);
+	int *parent = components(step), *place = take_x(&b, step);
 	const bool whole = !step->program->loops;
 	if (!whole)
 		add_component(&b.part, step, parent,
@@ -221,7 +224,6 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	b.derivatives = whole ? system->n : b.part.all.rows;
 	for (int row = 0; whole && row < system->n + step->model->tuning->outputs; row++)
 		add_row(&b.part, row, row);
-	b.size = group->states + group->loads + group->inputs;
 	b.place = ARRAY(int, (size_t)b.derivatives);
 	for (int i = 0; i < b.derivatives; i++) {
 		const int coord = b.part.unknown[i];
@@ -229,7 +231,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	}
 	take_slopes(&b, place, count, fixed);
 	take_turns(&b, step, place);
-	take_terms(&b.part, step, column);
+	take_terms(&b.part, step, &b, place);
 	return b;
 }
 
@@ -256,10 +258,6 @@ static void plan_others(struct tuned_blocks *p, const struct step *step)
 	const struct tuning *t = step->model->tuning;
 	const int loads = step->branch->system.loads;
 	p->others = (struct tuned_part){ 0 };
-	int *column = ARRAY(int, (size_t)t->x.size);
-	for (int k = 0; k < t->x.size; k++)
-		column[k] = k;
-	p->others.all.columns = t->x.size;
 	add_read_components(&p->others, step);
 	p->first_output = p->others.all.rows;
 	for (int row = 0; row < t->outputs; row++)
@@ -270,7 +268,7 @@ static void plan_others(struct tuned_blocks *p, const struct step *step)
 			p->frequency[l] = p->others.all.rows;
 			add_row(&p->others, t->frequency[l], t->frequency[l]);
 		}
-	take_terms(&p->others, step, column);
+	take_terms(&p->others, step, NULL, NULL);
 }
 
 /* ---- the whole ---- */
@@ -348,12 +346,13 @@ void plan_tuned_blocks(struct step *step)
 	for (int k = 0; k < (p->solved ? 1 : program->groups); k++) {
 		p->whole = p->whole && group[k].tuned;
 		numbers += numbers_of(step, &group[k]);
+		p->touched += group[k].tuned ? group[k].blocks : 0;
 		for (int b = 0; b < group[k].blocks; b++) {
-			ENLARGE(p->block, (size_t)p->blocks + 1);
-			p->block[p->blocks] = block_of(step, &group[k], k, b, count, fixed);
-			check_size(step, &p->block[p->blocks]);
-			larger_of(&most, p->block[p->blocks].size);
-			measure_block(p, step, &p->block[p->blocks++]);
+			struct tuned_block *block = MORE(p->block, p->all);
+			*block = block_of(step, &group[k], k, b, count, fixed);
+			check_size(step, block);
+			larger_of(&most, block->size);
+			measure_block(p, step, block);
 		}
 	}
 	p->others = p->block[0].part;
@@ -366,5 +365,8 @@ void plan_tuned_blocks(struct step *step)
 	larger_of(&stack, p->more);
 	p->kilobytes = 1 + real * (numbers + 2 * stack) / 1024;
 	step->series.emitted = most <= LIMIT_TUNED_BLOCK;
+	for (int b = 0; b < p->all; b++)
+		if (step->series.emitted || p->block[b].group->tuned)
+			p->block[p->blocks++] = p->block[b];
 	step->blocks = p;
 }
