@@ -214,16 +214,9 @@ static struct course *kept_reference(struct measuring *m, struct roads *roads, i
 	struct course *course = road_of(roads, 0, NULL, why);
 	if (!course || course->samples * course->needs > MOST_KEPT)
 		return course;
+	course->kept = true;
 	*MORE(m->keeps, m->kept) = (struct kept_course){ roads->h, drive, course };
 	return course;
-}
-
-static void release(const struct measuring *m, struct course *course)
-{
-	for (int i = 0; i < m->kept; i++)
-		if (m->keeps[i].course == course)
-			return;
-	course_free(course);
 }
 
 double tried_from(struct measuring *m, struct alternative *a, struct ready *ready, const double *start, int drive,
@@ -251,7 +244,8 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 		a->cost = a->step_cost / roads->h;
 	}
 	a->why = trial.why ? trial.why : a->why;
-	release(m, reference);
+	if (!reference->kept)
+		course_free(reference);
 	return trial.why ? HUGE_VAL : worst;
 }
 

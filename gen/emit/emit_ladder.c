@@ -55,6 +55,11 @@ static const char **names_of_rung(const struct emitter *e)
 	return all;
 }
 
+static int rows_of_rung(const struct emitter *e)
+{
+	return keeps_rest(e) ? 2 * e->step->layout.size : e->step->layout.size + 1;
+}
+
 static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 {
 	int size = e->step->layout.size, rows = rows_of_rung(e), count = 0;
@@ -68,12 +73,7 @@ static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 		      count, rows, size, rung, names_of_rung(e));
 }
 
-int rows_of_rung(const struct emitter *e)
-{
-	return keeps_rest(e) ? 2 * e->step->layout.size : e->step->layout.size + 1;
-}
-
-int rows_of_reach(const struct emitter *e, const struct guards *g)
+static int rows_of_reach(const struct emitter *e, const struct guards *g)
 {
 	return g ? g->reaches : rungs_of_all(e) * e->model->switching->expressions;
 }

@@ -71,8 +71,6 @@ void emit_spacing(const struct emitter *e);
 void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
 const char *ladder_text(const struct emitter *e, const struct guards *guards);
 int rungs_of_all(const struct emitter *e);
-int rows_of_rung(const struct emitter *e);
-int rows_of_reach(const struct emitter *e, const struct guards *guards);
 void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);

@@ -67,6 +67,7 @@ struct course {                     /* what needs are of, at t = 0, h, 2 h, ... 
 	long samples, *end;         /* after the first: all, and of each need */
 	int needs;
 	double *value, *low;        /* [sample][need]; of an exact one its second word, else NULL */
+	bool kept;                  /* for another one to be tried */
 };
 double longest_need(const struct model *model);              /* [s] when the last ends */
 struct course *course_of(const struct model *model, double h); /* up to there, its values not known yet */

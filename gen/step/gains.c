@@ -33,17 +33,10 @@ static void set_acting(const struct step *step, double *first, double *second)
 static void fill_gain_of_loads(const struct step *step, mpq_srcptr d, double *first, double *second)
 {
 	const struct layout *layout = &step->layout;
-	const struct linear *system = &step->branch->system;
-	for (int l = 0; l < system->loads; l++) {
-		const struct load *load = &system->load[l];
-		int n = load->columns, at = layout->load[l];
-		for (int i = 0; i < n * n && at >= 0; i++) {
-			struct response *response = response_of_load_state(load, i / n, i % n);
-			int cell = (at + i / n) * layout->size + at + i % n;
-			struct coefficient c = response_value(response, d, true, step->model->asked.step_at,
-							      column_text(load, i / n));
-			set_words(step, c.value, i / n == i % n ? -1 : 0, c.low, first + cell, second + cell);
-		}
+	growth_of_loads(step, d, first, second);
+	for (int k = layout->first_load; k < layout->first_load + layout->loads; k++) {
+		int cell = k * layout->size + k;
+		set_words(step, first[cell], -1, second[cell], first + cell, second + cell);
 	}
 }
 

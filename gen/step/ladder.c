@@ -10,8 +10,7 @@
 
 /* ---- e^{A d} of a region over x = states, load states, inputs ---- */
 
-/* The load states among themselves */
-static void fill_load_states(const struct step *step, mpq_srcptr d, double *Phi)
+void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double *low)
 {
 	const struct layout *layout = &step->layout;
 	const struct linear *system = &step->branch->system;
@@ -20,9 +19,12 @@ static void fill_load_states(const struct step *step, mpq_srcptr d, double *Phi)
 		int n = load->columns, at = layout->load[l];
 		for (int i = 0; i < n * n && at >= 0; i++) {
 			struct response *response = response_of_load_state(load, i / n, i % n);
-			const char *what = column_text(load, i / n);
-			Phi[(at + i / n) * layout->size + at + i % n] =
-				response_value(response, d, false, step->model->asked.step_at, what).value;
+			const struct coefficient c = response_value(response, d, low, step->model->asked.step_at,
+								    column_text(load, i / n));
+			const int cell = (at + i / n) * layout->size + at + i % n;
+			Phi[cell] = c.value;
+			if (low)
+				low[cell] = c.low;
 		}
 	}
 }
@@ -77,7 +79,7 @@ double *Phi_over(const struct step *step, const struct table *table, int halving
 	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)halvings);
 	fill_state_rows(step, table, Phi);
 	fill_inputs(step, table, Phi);
-	fill_load_states(step, d, Phi);
+	growth_of_loads(step, d, Phi, NULL);
 	fill_input_states(step, d, Phi);
 	return Phi;
 }

@@ -270,7 +270,8 @@ double size_of_bounded(const struct step *step, const double *row)
 	return size;
 }
 
-void fold_loads(const struct step *step, double *bound, double *still)
+/* What loads that are never above 1 add to a bound over x goes from there to *still. */
+static void fold_loads(const struct step *step, double *bound, double *still)
 {
 	for (int l = 0; l < step->branch->system.loads; l++) {
 		const struct load *load = &step->branch->system.load[l];
