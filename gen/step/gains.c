@@ -30,6 +30,25 @@ static void set_acting(const struct step *step, double *first, double *second)
 	*second += value - top;
 }
 
+void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double *low)
+{
+	const struct layout *layout = &step->layout;
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; l < system->loads; l++) {
+		const struct load *load = &system->load[l];
+		int n = load->columns, at = layout->load[l];
+		for (int i = 0; i < n * n && at >= 0; i++) {
+			struct response *response = response_of_load_state(load, i / n, i % n);
+			const struct coefficient c = response_value(response, d, low, step->model->asked.step_at,
+								    column_text(load, i / n));
+			const int cell = (at + i / n) * layout->size + at + i % n;
+			Phi[cell] = c.value;
+			if (low)
+				low[cell] = c.low;
+		}
+	}
+}
+
 static void fill_gain_of_loads(const struct step *step, mpq_srcptr d, double *first, double *second)
 {
 	const struct layout *layout = &step->layout;

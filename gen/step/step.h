@@ -515,9 +515,9 @@ double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x 
 /* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
  * state has one word */
 double *gain_of(const struct step *step, const struct table *table, int halvings);
-/* ladder.c: of load states among themselves over d, to size x size; low: the second words, NULL: none. */
+/* e^{A d} of load states among themselves, to Phi, size x size; low: the second words, NULL: none */
 void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double *low);
-/* e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
+/* ladder.c: e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
  * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an
  * instance has its tables */
 void plan_ladder(struct step *step, int branch);
