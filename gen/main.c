@@ -27,8 +27,11 @@ static bool make_model(struct work *w)
 	w->model = model_build(w->spec, request);
 	if (w->model)
 		w->model = model_reduce(w->model);
-	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
+	if (w->model && !request->solution)
+		w->model = find_tuning(w->model, request);
+	if (!w->model)
 		return false;
+	w->spec = w->model->spec;
 	w->model = model_shorten(w->model);
 	return w->model;
 }

@@ -144,7 +144,7 @@ static bool list_products(struct fit *f, signed char *power, int k)
 		return true;
 	}
 	for (int j = 0; j < EXPONENTS; j++) {
-		bool possible = j == FIT_DEGREE || (f->depends[k] && f->exponent[k][j]);
+		bool possible = f->depends[k] ? f->exponent[k][j] : j == FIT_DEGREE;
 		for (int i = 0; i < k && possible && j != FIT_DEGREE; i++)
 			possible = power[i] == 0 || f->together[k][i];
 		power[k] = (signed char)(j - FIT_DEGREE);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Params that are made of tunable ones in another way than as sums of products: sin(p), sqrt(k/m), the 1 + p of
- * x/(1 + p), p > 1 ? a : b. Each is a tunable param of its own, behind those of the spec, which the target finds from
- * these by its expression. */
+ * x/(1 + p), p > 1 ? a : b; where an entry has too many products, all sums. Each is a tunable param of its own, behind
+ * those of the spec, which the target finds from these by its expression. */
 #include "model/model.h"
 
 /* ---- what a sum of products is not ---- */
@@ -56,10 +56,11 @@ static bool is_number(const struct node *node)
 	return number;
 }
 
-static bool is_other(const struct node *node, bool divides)
+static bool is_other(const struct spec *spec, const struct node *node, bool divides)
 {
 	return node->kind == NODE_CALL || node->kind == NODE_CHOOSE || node->kind == NODE_COMPARE ||
-	       (node->kind == NODE_POWER && whole_exponent(node->child[1]) == 0) || (divides && !is_product(node));
+	       (node->kind == NODE_POWER && whole_exponent(node->child[1]) == 0) ||
+	       ((divides || spec->derives_sums) && !is_product(node));
 }
 
 /* ---- in its place ---- */
@@ -103,7 +104,7 @@ static void derive_in(struct spec *spec, struct node **place, bool divides)
 	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	if (!first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
 		return;
-	if (is_number(node) && is_other(node, divides)) {
+	if (is_number(node) && is_other(spec, node, divides)) {
 		*place = derived_name(spec, node);
 		return;
 	}
@@ -151,7 +152,16 @@ static void derive_here(void *context, struct node **place)
 void derive_params(struct spec *spec)
 {
 	spread_tuned(spec);
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->derived = s->derived && s->tunable;  /* -D gives it another value */
 	each_expression(spec, derive_here, spec);
+}
+
+struct spec *spec_again(const struct spec *spec)
+{
+	struct spec *again = parse_spec(spec->source);
+	again->derives_sums = spec->derives_sums;
+	return again;
 }
 
 static void add_read(void *context, struct node **place)

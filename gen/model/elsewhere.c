@@ -30,7 +30,7 @@ static void build_there(void *context)
 	struct request request = *s->request;
 	request.tunable = s->values;
 	request.factor = s->factor;
-	s->found = model_build(parse_spec(s->model->spec->source), &request);
+	s->found = model_build(spec_again(s->model->spec), &request);
 	if (s->found && !s->factor)
 		s->found = model_reduce(s->found);
 	if (!s->found)

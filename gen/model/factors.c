@@ -15,7 +15,7 @@ static void build_attempt(void *context)
 	struct request request = *a->b->request;
 	request.tunable = a->nominal;
 	request.factor = a->factor;
-	if (!model_build(parse_spec(a->b->spec->source), &request))
+	if (!model_build(spec_again(a->b->spec), &request))
 		abandon();
 }
 

@@ -930,8 +930,9 @@ struct tuning {
 	struct tuned_monomial *monomial;
 	const struct model *other;  /* at values that are related by nothing: what holds there holds for all */
 };
-/* model->tuning, or held and retuned, where something is tunable; false: it was said why not */
-bool find_tuning(struct model *model, const struct request *request);
+/* model->tuning, or held and retuned, where something is tunable: of this model, or of one whose sums of params are
+ * params of their own; NULL: it was said why not */
+struct model *find_tuning(struct model *model, const struct request *request);
 int  retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index);
 
 /* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
@@ -990,6 +991,7 @@ const bool *find_factors(struct building *b);   /* per tunable param, of regions
 /* Puts names of further params, spec->derived of them, in the place of what no sum of products is. Again it finds
  * nothing. */
 void derive_params(struct spec *spec);
+struct spec *spec_again(const struct spec *spec);   /* from its text, where the same params are put there */
 void warn_of_unread(const struct model *model);
 void check_tuned(const struct model *model);    /* what is left of it leaves the statement */
 

@@ -177,6 +177,8 @@ static bool fit_row(struct elsewhere *s, struct tuned_equations *all, int row, i
 
 static void need_fit(const struct elsewhere *s, bool fits)
 {
+	if (!fits && !s->model->spec->derives_sums && !s->model->relative)
+		abandon();              /* it is tried again */
 	if (!fits && s->model->switching)
 		refuse_fit(s, "regions", "only masses in equations may be sums");
 	if (!fits)
@@ -427,10 +429,19 @@ static void find(void *context)
 		number_rows(s);
 }
 
-bool find_tuning(struct model *model, const struct request *request)
+static struct model *find_by_sums(const struct model *model, const struct request *request)
+{
+	struct spec *spec = spec_again(model->spec);
+	spec->derives_sums = true;
+	struct model *again = model_build(spec, request);
+	again = again ? model_reduce(again) : NULL;
+	return again ? find_tuning(again, request) : NULL;
+}
+
+struct model *find_tuning(struct model *model, const struct request *request)
 {
 	if (model->spec->tunables == 0)
-		return true;
+		return model;
 	struct tuning *t = list_tunables(model);
 	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->factor,
 			       .near = model->factor ? t->nominal : NULL, .read = read_rows };
@@ -443,9 +454,9 @@ bool find_tuning(struct model *model, const struct request *request)
 		model->tuning = t;
 	}
 	if ((model->factor || !model->keeps_params) && !statement_guard(find, &s))
-		return false;
+		return diagnostics_errors() ? NULL : find_by_sums(model, request);
 	warn_of_unread(model);
-	return true;
+	return model;
 }
 
 int retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index)

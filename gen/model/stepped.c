@@ -56,7 +56,8 @@ static struct model *model_over_differences(struct model *model, struct spec *sp
 	model = undivided(model, spec, again);
 	again->relative = model ? relative_of(model) : NULL;
 	struct model *relative = again->relative ? model_build(spec, again) : NULL;
-	if (!relative || !find_tuning(relative, again))
+	relative = relative ? find_tuning(relative, again) : NULL;
+	if (!relative)
 		return NULL;
 	relative->reduction.irreducible = model->reduction.irreducible;
 	if (relative->switching)

@@ -256,7 +256,8 @@ static void find_kept(void)
 {
     struct request *request = NEW(struct request);
     struct model *model = made(format("%s", whole), request);
-    kept = model && model->written == model && find_tuning(model, request) ? relative_of(model) : NULL;
+    model = model && model->written == model ? find_tuning(model, request) : NULL;
+    kept = model ? relative_of(model) : NULL;
 }
 
 /* p NULL: the spec's values and step */

@@ -125,8 +125,10 @@ static struct model *model_of(const char *text, const struct spec *tunables, con
             format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
     }
     struct spec *spec = spec_of("spec", text);
+    if (spec && tunables)
+        spec->derives_sums = tunables->derives_sums;
     struct model *model = spec ? model_build(spec, request) : NULL;
-    return model && (tunables || find_tuning(model, request)) ? model : NULL;
+    return model && !tunables ? find_tuning(model, request) : model;
 }
 
 /* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. */
