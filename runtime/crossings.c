@@ -9,10 +9,21 @@
 #include "regions.h"
 #include "roots.h"
 
-static const real *matrix_of(const real *all, const pl_switching *m, const pl_contact *c)
+typedef pl_switching searched;
+
+typedef struct instant {
+    real *x;
+    pl_contact *c;
+    pl_crossing *crossing;
+    real *work;
+} instant;
+
+static const real *matrix_of(const pl_switching *m, const pl_contact *c)
 {
-    return all + WORDS * (ptrdiff_t)c->matrix * m->size * m->size;
+    return m->A + WORDS * (ptrdiff_t)c->matrix * m->size * m->size;
 }
+
+#define matrix_now(m, at) matrix_of(m, (at)->c)
 
 static const real *rows_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
@@ -61,7 +72,7 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
             continue;
         }
         if (!possible) {
-            sign = heading(m->size, matrix_of(m->A, m, c), m->row + w.i * m->size, x, work);
+            sign = heading(m->size, matrix_of(m, c), m->row + w.i * m->size, x, work);
             if (sign != 0) {
                 enter(m->matrix, c, c->region + ((sign > 0) - above) * w.stride);
             }
@@ -155,7 +166,7 @@ static int stays_clear_far(const pl_switching *m, const pl_contact *c, climb *at
     real *from = work, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
     const real *reach = m->ladder.reach + ((ptrdiff_t)m->ladder.first[c->matrix] * s + at->rung - 1) * n;
     int i;
-    look_at_bend(at, n, matrix_of(m->A, m, c), x, bend, work);
+    look_at_bend(at, n, matrix_of(m, c), x, bend, work);
     pl_multiply(s, n, m->row, x, from);
     pl_multiply(s, n, m->row, y, to);
     for (i = 0; i < s; i++, reach += (ptrdiff_t)at->rungs * n) {
@@ -167,20 +178,21 @@ static int stays_clear_far(const pl_switching *m, const pl_contact *c, climb *at
 
 /* ---- the first crossing in a piece of a step ---- */
 
-typedef struct found {
-    real s; /* 1 without a crossing */
+typedef struct event { /* a crossing */
+    real s;
+    int any;
     int expression, breakpoint, upward;
     int stride; /* of the expression, between regions */
-} found;
+} event;
 
-static const found nothing = {1, -1, 0, 0, 0};
+static const event no_event = {1, 0, -1, 0, 0, 0};
 
-/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
-static PL_APART found first_crossing(const pl_switching *m, int region, real *coefficients, int *splits)
+/* coefficients: (degree + 1) x size; after them 2 (degree + 1) for work */
+static PL_APART event first_event(const pl_switching *m, const instant *at, real *coefficients, int *splits)
 {
-    const int terms = m->degree + 1;
+    const int terms = m->degree + 1, region = at->c->region;
     real *e = coefficients + terms * m->size;
-    found first = nothing;
+    event first = no_event;
     beyond f;
     walk w;
     f.degree = m->degree;
@@ -201,6 +213,7 @@ static PL_APART found first_crossing(const pl_switching *m, int region, real *co
                 continue;
             }
             first.s = s;
+            first.any = 1;
             first.expression = w.i;
             first.breakpoint = breakpoint;
             first.upward = upward;
@@ -212,92 +225,45 @@ static PL_APART found first_crossing(const pl_switching *m, int region, real *co
 
 /* ---- a step, piece by piece ---- */
 
+#define limited(m, at, length) (length)
+#define hold(m, at, y, work) ((void)0) /* nothing is */
+
+static int is_clear(const pl_switching *m, const instant *at, climb *up, const real *y, real *bend, real *work)
+{
+    return up->rung > 0 ? stays_clear_far(m, at->c, up, at->x, y, bend, work) : stays_clear(m, at->c, at->x, y, work);
+}
+
 /* An expression that has left its interval, other than by a crossing, goes into that where it is. */
-static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl_crossing *crossing)
+static void take_up(const pl_switching *m, instant *at, real time)
 {
     walk w;
     int way;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
-        for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
-            (void)list(m->max_events, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
-            enter(m->matrix, c, c->region + way * w.stride);
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
+        for (; (way = outside(m, at->c, &w, at->x)) != 0; w.interval += way) {
+            (void)list(m->max_events, at->c, at->crossing, time, w.i, w.interval - (way < 0), way > 0);
+            enter(m->matrix, at->c, at->c->region + way * w.stride);
         }
     }
 }
 
-/* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at
- * the end of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
-static found move(const pl_switching *m, pl_contact *c, const climb *at, real dt, const real *y, int *splits, real *x,
-                  real *rest, real *work)
+static int pass(const pl_switching *m, instant *at, const event *e, real time)
 {
-    found first = nothing;
-    real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
-    expand_piece(m->size, m->degree, matrix_of(m->A, m, c), dt, x, coefficients, low);
-    if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
-        part_of_piece(m->size, m->degree, coefficients, low, 1, x, (real *)0);
-        return nothing;
-    }
-    if (*splits >= 0) {
-        first = first_crossing(m, c->region, coefficients, splits);
-    }
-    if (*splits < 0) {
-        c->status = PL_TOO_MANY_EVENTS;
-        first = nothing;
-    }
-    if (y && first.expression < 0) {
-        keep_piece(m->size, at, y, x, rest);
-    } else {
-        part_of_piece(m->size, m->degree, coefficients, low, first.s, x, at->rungs > 0 ? rest : (real *)0);
-    }
-    return first;
+    const int listed = list(m->max_events, at->c, at->crossing, time, e->expression, e->breakpoint, e->upward);
+    enter(m->matrix, at->c, at->c->region + (e->upward ? e->stride : -e->stride));
+    return listed ? GO_ON : SEARCH_NO_MORE;
 }
+
+#include "pieces.h"
 
 void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
-    const int n = m->size;
-    real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
-    int splits = m->max_splits, fresh = 1;
-    climb at = at_top;
+    instant at;
+    at.x = x;
+    at.c = c;
+    at.crossing = crossing;
+    at.work = work;
     c->crossings = 0;
-    while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&at, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
-        const int whole = left > longest * (1 - REST);
-        const real dt = whole ? longest : left;
-        found first;
-        if (whole) {
-            take_piece(n, &at, &m->ladder, m->Phi, c->matrix, x, y, rest);
-            if (at.rung > 0 ? stays_clear_far(m, c, &at, x, y, bend, room) : stays_clear(m, c, x, y, room)) {
-                keep_piece(n, &at, y, x, rest);
-                left -= dt;
-                fresh = 0;
-                rise(&at);
-                continue;
-            }
-        }
-        if (fall(&at)) {
-            continue;
-        }
-        if (fresh) { /* the region may be another one now */
-            fresh = 0;
-            follow_jumps(m, x, c, crossing);
-            continue;
-        }
-        first = move(m, c, &at, dt, whole ? y : NULL, &splits, x, rest, room);
-        at.bent = 0;
-        if (splits < 0 || is_lost(&at, n, x)) {
-            break; /* x is held: this region may not be the one, and may be unstable */
-        }
-        left -= first.s * dt;
-        if (first.expression < 0) {
-            rise(&at);
-            continue;
-        }
-        if (!list(m->max_events, c, crossing, tau - left, first.expression, first.breakpoint, first.upward)) {
-            splits = -1; /* no further search */
-        }
-        enter(m->matrix, c, c->region + (first.upward ? first.stride : -first.stride));
-        to_the_ground(&at);
-    }
+    (void)go(m, &at, tau, 1);
 }
 
 void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)

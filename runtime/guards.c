@@ -132,10 +132,14 @@ static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, c
     return 1;
 }
 
+typedef pl_guards searched;
+
 typedef struct event {
-    real s;    /* 1 without one */
-    int guard; /* -1: none */
+    real s;
+    int any, guard;
 } event;
+
+static const event no_event = {1, 0, -1};
 
 /* What a force that is at its limit but for rounding has let go moves with a slope that is rounding, too: where that
  * points back it is no event. */
@@ -176,14 +180,17 @@ static int is_turned(const pl_guards *m, int region, const pl_guard *g, const be
     return apart > 0;
 }
 
-/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
-static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
+/* coefficients: (degree + 1) x size; after them 2 (degree + 1) + 4 size for work */
+static event first_event(const pl_guards *m, const instant *at, real *coefficients, int *splits)
 {
-    const int terms = m->degree + 1, n = m->size;
+    const int terms = m->degree + 1, n = m->size, region = at->c->region;
     real *e = coefficients + terms * n;
-    event first = {1, -1};
+    event first = no_event;
     beyond f;
     int k;
+    if (!can_be(m, at)) {
+        return no_event;
+    }
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
@@ -204,46 +211,31 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
             continue;
         }
         first.s = s;
+        first.any = 1;
         first.guard = k;
-    }
-    return first;
-}
-
-/* Moves x on over a piece of length dt, or to the first event in it; splits < 0: without looking for one. */
-static event move(const pl_guards *m, pl_contact *c, const climb *at, real dt, const real *y, int *splits, real *x,
-                  real *rest, real *work)
-{
-    const event none = {1, -1};
-    event first = none;
-    real *const low = work, *const coefficients = work + (WORDS - 1) * m->size;
-    expand_piece(m->size, m->degree, matrix_of(m->A, m, c->matrix), dt, x, coefficients, low);
-    if (pl_not_finite(coefficients, (m->degree + 1) * m->size)) {
-        part_of_piece(m->size, m->degree, coefficients, low, 1, x, (real *)0);
-        return none;
-    }
-    if (*splits >= 0 && m->matrix[c->region] >= 0) {
-        first = first_event(m, c->region, coefficients, splits);
-    }
-    if (*splits < 0) {
-        c->status |= PL_TOO_MANY_EVENTS;
-        first = none;
-    }
-    if (y && first.guard < 0) {
-        keep_piece(m->size, at, y, x, rest);
-    } else {
-        part_of_piece(m->size, m->degree, coefficients, low, first.s, x, at->rungs > 0 ? rest : (real *)0);
     }
     return first;
 }
 
 /* ---- a step ---- */
 
-/* Into the region to which a guard leads, or by the impact that begins there; 0: there is no more room. */
-static int pass(const pl_guards *m, instant *at, const pl_guard *g)
+#define limited shortened
+#define hold(m, at, y, work) assign(m, (m)->hold[(at)->c->region], y, work)
+
+static int is_clear(const pl_guards *m, const instant *at, climb *up, const real *y, real *bend, real *work)
 {
+    return can_be(m, at) && (up->rung > 0 ? stays_clear_far(m, at->c, up, at->x, y, bend, work)
+                                          : stays_clear(m, at->c, at->x, y, work));
+}
+
+/* Into the region to which a guard leads, or by the impact that begins there */
+static int pass(const pl_guards *m, instant *at, const event *e, real time)
+{
+    const pl_guard *g = &m->guard[e->guard];
     const int rest = impact_of(m, g->expression, interval_of(m, at, g->expression));
     pl_chain *chain = &at->chain;
     uint32_t struck = 0;
+    at->time = time;
     at->before = at->c->region;
     if (g->impact < 0) {
         chain->full = !has_time(chain) || !has_listed(m, at, rest >= 0 && m->impact[rest].restitution < 1, at->time,
@@ -261,17 +253,28 @@ static int pass(const pl_guards *m, instant *at, const pl_guard *g)
     settle(m, at, 1);
     come_to_rest(m, at, struck);
     keep(m, at);
-    return !chain->full;
+    if (!chain->full) {
+        return GO_ON;
+    }
+    return g->impact >= 0 ? STAY : SEARCH_NO_MORE; /* beyond its guard an impact would not come any more */
 }
 
 /* At the start, or behind a change of the loads: what holds may have moved, and what moves may have jumped. */
-static void take_up(const pl_guards *m, instant *at, int jumped)
+static void decide_anew(const pl_guards *m, instant *at, int jumped)
 {
     follow(m, at, jumped);
     (void)collide(m, at, -1);
     settle(m, at, 0);
     keep(m, at);
 }
+
+static void take_up(const pl_guards *m, instant *at, real time)
+{
+    at->time = time;
+    decide_anew(m, at, 0);
+}
+
+#include "pieces.h"
 
 /* Whether what is held is where it is held.  work: WORDS */
 static int is_in_place(const pl_guards *m, const pl_contact *c, const real *x, real *work)
@@ -310,7 +313,7 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     instant at = instant_of(m, x, c, crossing, work);
     at.time = time;
     c->crossings = 0;
-    take_up(m, &at, 1);
+    decide_anew(m, &at, 1);
 }
 
 /* What is beyond the guard of a bounce by more than rounding is told. */
@@ -337,68 +340,13 @@ static void check_places(const pl_guards *m, const instant *at)
 
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
-    const int n = m->size;
-    real left = tau, *y = work, *bend = y + WORDS * n, *rest = bend + n, *room = rest + 2 * n;
-    int splits = m->max_splits, fresh = 1, clear = 1;
-    climb up = at_top;
-    instant at = instant_of(m, x, c, crossing, room);
+    instant at = instant_of(m, x, c, crossing, work);
+    const int holds = m->hold[c->region] >= 0;
     c->crossings = 0;
-    if (m->hold[c->region] >= 0) {
-        if (!is_taken_up(m, c, x, room)) {
-            take_up(m, &at, 0);
-        }
-        fresh = 0;
+    if (holds && !is_taken_up(m, c, x, work)) {
+        take_up(m, &at, 0);
     }
-    while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&up, &m->ladder, m->halvings, c->matrix, m->h, left, n, rest);
-        int whole = left > longest * (1 - REST);
-        const real dt = shortened(m, &at, whole ? longest : left);
-        event first;
-        whole = whole && dt >= longest;
-        if (whole) {
-            take_piece(n, &up, &m->ladder, m->Phi, c->matrix, x, y, rest);
-            assign(m, m->hold[c->region], y, room);
-            if (m->matrix[c->region] >= 0 && (up.rung > 0 ? stays_clear_far(m, c, &up, x, y, bend, room)
-                                                          : stays_clear(m, c, x, y, room))) {
-                keep_piece(n, &up, y, x, rest);
-                left -= dt;
-                fresh = 0;
-                rise(&up);
-                continue;
-            }
-        }
-        if (fall(&up)) {
-            continue;
-        }
-        clear = 0;
-        if (fresh) { /* the region may be another one now */
-            fresh = 0;
-            at.time = tau - left;
-            take_up(m, &at, 0);
-            up.bent = 0;
-            continue;
-        }
-        first = move(m, c, &up, dt, whole ? y : (real *)0, &splits, x, rest, room);
-        assign(m, m->hold[c->region], x, room);
-        up.bent = 0;
-        if (splits < 0 || is_lost(&up, n, x)) {
-            break; /* x is held: this region may not be the one, and may be unstable */
-        }
-        left -= first.s * dt;
-        if (first.guard < 0) {
-            rise(&up);
-            continue;
-        }
-        to_the_ground(&up);
-        at.time = tau - left;
-        if (!pass(m, &at, &m->guard[first.guard])) {
-            if (m->guard[first.guard].impact >= 0) {
-                break; /* x is held on the guard: beyond it the impact would not come any more */
-            }
-            splits = -1; /* no further search */
-        }
-    }
-    if (!clear) {
+    if (!go(m, &at, tau, !holds)) {
         check_places(m, &at);
     }
 }

@@ -8,6 +8,7 @@
 #include "kept.h"
 
 enum { TOP = 32, PATIENCE = 16 }; /* TOP: above every rung */
+enum { GO_ON, SEARCH_NO_MORE, STAY }; /* behind an event: STAY, x is held there for the rest of the step */
 
 typedef struct climb {
     int rung, rungs;  /* where it is; rungs: that of h */
