@@ -35,16 +35,7 @@ bool holds_friction(const struct building *b)
 
 void tell_no_friction(const struct building *b)
 {
-	const struct model *model = b->model;
-	const struct node *node = first_friction(b)->node;
-	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
-		error(node->at, "scheme exact has it beside what is piecewise linear",
-		      "scheme taylor has no friction beside loads that change their formula in time");
-	if (b->request->loads_left)
-		error(node->at, "without --loads leftover they are exact",
-		      "what goes from event to event, as friction does, leaves no load over");
-	error(node->at, "scheme exact, of what is piecewise linear, and scheme taylor go from event to event",
-	      "scheme %s has no friction, which sticks and slips", scheme_name(model->scheme));
+	tell_no_events(b, first_friction(b)->node->at);
 }
 
 /* ---- where it sticks ---- */

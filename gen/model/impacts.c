@@ -164,18 +164,18 @@ bool strikes_change(const struct building *b)
 	return changes;
 }
 
-void tell_no_impacts(const struct building *b)
+void tell_no_events(const struct building *b, struct place at)
 {
-	const struct model *model = b->model;
-	struct place at = b->spec->when->at;
+	const enum scheme scheme = b->model->scheme;
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
-		      "what goes from event to event, as impacts do, leaves no load over");
-	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
+		      "a scheme that goes from event to event leaves no load over");
+	if ((scheme == SCHEME_TAYLOR || scheme == SCHEME_EXACT) && b->model->system.segments > 1)
 		error(at, "scheme exact has them beside what is piecewise linear",
-		      "scheme taylor has no impacts beside loads that change their formula in time");
-	error(at, "scheme exact, of what is piecewise linear, and scheme taylor go from event to event",
-	      "scheme %s has no impacts", scheme_name(model->scheme));
+		      "scheme taylor has no friction and impacts beside loads that change their formula in time");
+	error(at, format("scheme exact, of what is piecewise linear, and schemes taylor and auto go from event to "
+			 "event: %s does not", scheme_name(scheme)),
+	      "friction and impacts are events inside steps, at which the scheme does not stop");
 }
 
 /* ---- what a jump does to a form ---- */

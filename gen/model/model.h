@@ -632,7 +632,8 @@ bool strikes_change(const struct building *b);              /* from interval to 
 bool closes_by_jump(struct building *b, const struct impact *impact, int segment);
 void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
-_Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
+/* Why a scheme cannot treat friction or impacts */
+_Noreturn void tell_no_events(const struct building *b, struct place at);
 
 /* ---- events.c: what is held in regions, and what begins there ---- */
 

@@ -289,7 +289,7 @@ static void settle_impacts(void *context)
 	struct building *b = context;
 	bool exact = goes_by_regions(b) && !b->request->loads_left;
 	if (!exact && !goes_by_series(b))
-		tell_no_impacts(b);
+		tell_no_events(b, b->spec->when->at);
 	build_impacts(b);
 	if (diagnostics_errors())
 		abandon();
@@ -305,11 +305,25 @@ static void settle_contacts(void *context)
 	find_contacts(context);
 }
 
+/* Of the two that scheme auto chooses between only series go from event to event. */
+static void stay_with_series(struct building *b)
+{
+	struct model *model = b->model;
+	if (!scheme_row(model->scheme)->switches || (model->impacts == 0 && !holds_friction(b)))
+		return;
+	say_note(model->asked.scheme_at, "scheme %s goes by series alone: its collocation does not go from event to "
+		 "event", scheme_name(model->scheme));
+	model->scheme = SCHEME_TAYLOR;
+	model->truncation.order = model->truncation.stages = 0;
+	choose_order(model, b->request->single);
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->impacts == 0;
+	stay_with_series(b);
 	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
