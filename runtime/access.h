@@ -6,8 +6,9 @@
  *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set
  *     PL_NORMAL                  so many normal modes, from which PL(of_modes)(which, mode, q) makes coordinates
  *     PL_MOMENTA                 1: s->y is PL(mass)[] times a state
- *     PL_FORCED                  1: s->y is without PL(forced)(s, now), as written without PL(sustained)(s, now), which
- *                                is in s->start as it was at the last set
+ *     PL_FORCED                  1: s->y is without PL(forced)(s, now); of PL_RELATIVE that is PL_SUSTAINED, a table of
+ *                                PL_COLUMNS, times what PL(forced_loads)(s, load) gives; behind it stand the rows of
+ *                                the states as written, whose product was s->start at the last set
  *     PL_WHOLE                   1: outputs read PL(kept)(s, x), of PL_RELATIVE too
  *     PL_KEPT, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
@@ -69,6 +70,38 @@ static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
     }
 }
 
+#if PL_FORCED && PL_RELATIVE
+static void PL(sustained)(const real part[PL_STATES][PL_COLUMNS], const real load[PL_COLUMNS], real now[PL_STATES])
+{
+    int i, j;
+    for (i = 0; i < PL_STATES; i++) {
+        now[i] = 0;
+        for (j = 0; j < PL_COLUMNS; j++) {
+            now[i] += part[i][j] * load[j];
+        }
+    }
+}
+
+/* To y, the states as written, what these load states have moved them by since the last set */
+static void PL(add_sustained)(const PL_TYPE *s, const real part[PL_STATES][PL_COLUMNS], const real load[PL_COLUMNS],
+                              real y[PL_STATES])
+{
+    real now[PL_STATES];
+    int i;
+    PL(sustained)(part, load, now);
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] += now[i] - s->start[i];
+    }
+}
+
+static void PL(forced)(const PL_TYPE *s, real now[PL_STATES])
+{
+    real load[PL_COLUMNS];
+    PL(forced_loads)(s, load);
+    PL(sustained)(PL_SUSTAINED, load, now);
+}
+#endif
+
 #if PL_FORCED && (!PL_RELATIVE || PL_WHOLE)
 /* With it: what rounds off in the sum counts, so that it is what was set */
 static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
@@ -112,7 +145,11 @@ static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
 #endif
     }
 #if PL_RELATIVE
-    PL(sustained)(s, s->start);
+    {
+        real load[PL_COLUMNS];
+        PL(forced_loads)(s, load);
+        PL(sustained)(PL_SUSTAINED + PL_STATES, load, s->start);
+    }
 #endif
 }
 #endif
@@ -263,12 +300,9 @@ void PL(get)(const PL_TYPE *s, real y[PL_STATES])
 #endif
 #if PL_FORCED && PL_RELATIVE
     {
-        real now[PL_STATES];
-        int i;
-        PL(sustained)(s, now);
-        for (i = 0; i < PL_STATES; i++) {
-            y[i] += now[i] - s->start[i];
-        }
+        real load[PL_COLUMNS];
+        PL(forced_loads)(s, load);
+        PL(add_sustained)(s, PL_SUSTAINED + PL_STATES, load, y);
     }
 #endif
 }

@@ -201,6 +201,7 @@
 #undef PL_STILL
 #undef PL_STRAIGHT
 #undef PL_SUM
+#undef PL_SUSTAINED
 #undef PL_SWAY
 #undef PL_SWEEPS
 #undef PL_SWIFT

@@ -94,6 +94,11 @@ void emit_access(const struct emitter *e)
 		   { "OWN", e->model->held || e->kind->own_factors }, { "RAMPS", e->ramps },
 		   { "TAPS", most_taps_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
+	if (step->forced && step->forced->written) {
+		say_macro(e, "COLUMNS", whole_text(step->branch->whole->columns));
+		say_macro(e, "SUSTAINED", spell(e, e->system->segments > 1 ? "$n_forced_part[s->segment]"
+									   : "$n_forced_part[0]"));
+	}
 	if (e->phases)
 		say_macro(e, "PHASE_RATE", phase_rate_text(e));
 	say_include(e, "access.h");

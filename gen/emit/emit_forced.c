@@ -39,7 +39,7 @@ static void emit_forced_tables(const struct emitter *e)
 {
 	const struct forced *forced = e->step->forced;
 	int segments = e->system->segments;
-	if (segments > 1 || (forced->written && e->step->series.emitted))
+	if (segments > 1 || forced->written)
 		print_forced(e, "forced_part", "factors of the load states in each segment of time", segments,
 			     forced->rows, forced->part);
 	if (forced->changes) {
@@ -49,21 +49,31 @@ static void emit_forced_tables(const struct emitter *e)
 	}
 }
 
-static void emit_part(const struct emitter *e, const char *what, const char *name, int first)
+/* The states as they are kept, and as they are written, are read by one table. */
+static void emit_forced_loads(const struct emitter *e)
 {
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
-	tape_of_forced(formulas_tape(f), e->step, first, "now");
-	open_function(e, what, "static void $n_%s(const $n *s, double now[$N_STATES])", name);
+	int count = e->step->branch->whole->columns;
+	open_function(e, "Load states that the step leaves out, now; of the others 0",
+		      "static void $n_forced_loads(const $n *s, double load[%d])", count);
 	emit_turned_loads(e, e->step->forced->load, false);
-	emit_formulas(f, 4);
+	for (int k = 0; k < count; k++)
+		say(e, "    load[%d] = %s;\n", k,
+		    !is_forced(e->step, k) ? "0.0" : column_operand(e, k) ? column_operand(e, k) : "1.0");
 	close_function(e, "s");
 }
 
 void emit_forced(const struct emitter *e)
 {
-	const int written = e->step->forced->written;
 	emit_forced_tables(e);
-	emit_part(e, "What the loads that the step leaves out sustain now", "forced", 0);
-	if (written)
-		emit_part(e, "The same of the states as written", "sustained", written);
+	if (e->step->forced->written) {
+		emit_forced_loads(e);
+		return;
+	}
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
+	tape_of_forced(formulas_tape(f), e->step, "now");
+	open_function(e, "What the loads that the step leaves out sustain now",
+		      "static void $n_forced(const $n *s, double now[$N_STATES])");
+	emit_turned_loads(e, e->step->forced->load, false);
+	emit_formulas(f, 4);
+	close_function(e, "s");
 }

@@ -142,23 +142,14 @@ void emit_series_vector(const struct emitter *e, bool looped)
 /* ---- loads that change their formula ---- */
 
 /* Of the load states that the step leaves out: their places in rows of what they add, and in x; returns how many */
-static int list_forced_places(const struct emitter *e, int *place)
-{
-	int count = 0;
-	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
-		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++) {
-			if (place) {
-				place[2 * count] = column + j;
-				place[2 * count + 1] = e->step->layout.load[l] + j;
-			}
-			count++;
-		}
-	return count;
-}
-
 static int emit_forced_places(const struct emitter *e)
 {
-	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = list_forced_places(e, place);
+	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = 0;
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
+		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++) {
+			place[2 * count] = column + j;
+			place[2 * count++ + 1] = e->step->layout.load[l] + j;
+		}
 	if (count)
 		emit_integer_rows(e, "int", format("forced_at[%d][2]", count), count, 2, place);
 	return count;
@@ -244,18 +235,27 @@ static bool adds_sustained(const struct emitter *e)
 	return e->step->forced && e->model->relative;
 }
 
+/* By the load states in x */
+static void emit_sustained_then(const struct emitter *e)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->branch->whole->columns);
+	int column = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		for (int j = 0; j < e->system->load[l].columns; j++)
+			text[column++] = e->step->forced->load[l] ? format("x[%d]", e->step->layout.load[l] + j)
+								  : "0.0";
+	say_vector(e, "load", column, text);
+	say(e, "    $n_add_sustained(s, $n_forced_part[%s] + $N_STATES, load, y);\n",
+	    e->system->segments > 1 ? "segment" : "0");
+}
+
 /* y, for the user, from the head of x; behind it the load states */
 void emit_hand_over(const struct emitter *e)
 {
 	if (e->model->relative)
 		say(e, "    $n_written(s, x, y);\n");
 	if (adds_sustained(e))
-		say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-		       "        const double *const part = $n_forced_part[%s][$N_STATES + i];\n"
-		       "        for (k = 0; k < %d; k++) { y[i] += part[$n_forced_at[k][0]] * x[$n_forced_at[k][1]]; "
-		       "}\n"
-		       "        y[i] -= s->start[i];\n"
-		       "    }\n", e->system->segments > 1 ? "segment" : "0", list_forced_places(e, NULL));
+		emit_sustained_then(e);
 	if (!e->model->relative)
 		say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] = x[i]; }\n");
 }
@@ -301,8 +301,8 @@ static void emit_series_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	const bool changes = e->system->segments > 1, blocks = !changes && is_blockwise(e), adds = adds_sustained(e);
-	if (adds)
+	const bool changes = e->system->segments > 1, blocks = !changes && is_blockwise(e);
+	if (adds_sustained(e))
 		emit_at_start(e);
 	if (!blocks && !changes)
 		say(e, "    %sconst pl_series series = {%d, $N_STATES, %d, %d, %s[0]};  "
@@ -310,9 +310,7 @@ static void emit_series_at(const struct emitter *e)
 		       "    double work[%d];\n", e->step->branches > 1 ? "" : "static ", layout->size, series->degree,
 		    series->halvings, slope_text(e), 2 * layout->size);
 	say(e, "    double x[%d];\n", layout->size);
-	emit_series_vector(e, !e->model->relative || adds);
-	if (adds)
-		say(e, "    int k;\n");
+	emit_series_vector(e, !e->model->relative);
 	say(e, "    %s;\n", changes ? format("const int segment = %s_pass_changes(s, %s, 0, tau, x)", e->name,
 					     slope_text(e))
 			    : blocks ? format("%s_pass_blocks(%s, tau, x)", e->name, slope_text(e))
@@ -327,8 +325,6 @@ void emit_at(const struct emitter *e)
 		emit_series_slopes(e);
 	if (!changes && is_blockwise(e))
 		emit_passing_algorithm(e);
-	if (!changes && adds_sustained(e))
-		emit_forced_places(e);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
 	emit_if_any(e->kind->held, e);
 	if (changes && !adds_sustained(e))

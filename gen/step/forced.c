@@ -265,7 +265,8 @@ static double part_of(const struct reckoning *r, int row, bool sizes)
 		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
 		/* of a factor, perhaps to 0 */
 		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step);
-		int roundings = 2 + levels(table->columns) + (is_anchored(r->step, r->load_of[column]) ? TURNING : 0);
+		int roundings = 2 + (r->forced->written ? table->columns : levels(table->columns)) +
+				(is_anchored(r->step, r->load_of[column]) ? TURNING : 0);
 		double most = fabs(c->value) * load_size(r, column);
 		sum += sizes ? most * (roundings + load_roundings(r, column)) + lost : term;
 	}
@@ -375,7 +376,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 	const struct linear *system = &step->branch->system;
 	int columns = step->branch->whole->columns;
 	struct tape *t = tape_new();
-	tape_of_forced(t, step, forced->written, "");
+	tape_of_forced(t, step, "");
 	const struct tape_cost cost = tape_cost(t);
 	struct program program = { .uses = ARRAY(bool, columns), .multiplications = cost.multiplications,
 				   .additions = cost.additions };
@@ -383,6 +384,8 @@ static void count_forced(const struct step *step, struct forced *forced)
 		program.uses[column] = tape_reads(t, TAPE_LOAD, l, -1);
 	for (int i = 0; i < tape_outs(t); i++)          /* and to what is kept */
 		program.additions += tape_out(t, i)->ref != tape_number(t, 0);
+	if (forced->written)                            /* by a table */
+		program.multiplications = program.additions = system->states * columns;
 	(step->anchors ? count_turned_loads : count_loads)(&program, step);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;

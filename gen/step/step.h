@@ -357,8 +357,8 @@ enum { PLACE_REST, PLACE_CARRY };   /* `part` of TAPE_ACCUMULATE */
 const struct linear *system_of_outputs(const struct step *step); /* of regions one with all segments of time */
 /* Column of the loads; TAPE_NONE: the constant 1 */
 tape_ref tape_of_column(struct tape *t, const struct linear *system, int column);
-/* What loads sustain by themselves, of step->forced the rows from `first` on */
-void tape_of_forced(struct tape *t, const struct step *step, int first, const char *vector);
+/* What loads sustain by themselves of the states as they are kept */
+void tape_of_forced(struct tape *t, const struct step *step, const char *vector);
 /* Rows of outputs read the state as it is kept, and what loads sustain of it by the factors of the load states */
 bool rows_sustained(const struct step *step);
 /* Per segment of time, what a row of outputs takes of a load state, by itself and so */

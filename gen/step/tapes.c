@@ -338,21 +338,20 @@ static bool sustains(const struct step *step, int row, int column)
 	return any;
 }
 
-void tape_of_forced(struct tape *t, const struct step *step, int first, const char *vector)
+void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 {
-	const struct model *model = first ? step->model->relative->written : step->model;
 	const struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
 	tape_ref *term = ARRAY(tape_ref, table->columns + 1);
 	for (int i = 0; i < table->states; i++) {
-		int terms = 0, at = (first + i) * table->columns;
+		int terms = 0, at = i * table->columns;
 		for (int k = 0; k < table->columns; k++) {
-			if (!sustains(step, first + i, k))
+			if (!sustains(step, i, k))
 				continue;
 			tape_ref x = tape_of_column(t, system, k);
 			term[terms++] = system->segments > 1 ? entry(t, TABLE_FORCED, at + k, x)
 						: number_times(t, step->forced->part[at + k].value, x);
 		}
-		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, model->state_name[i]);
+		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->state_name[i]);
 	}
 }
