@@ -365,7 +365,7 @@ void emit_block_list(const struct emitter *e);
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 void emit_modal_step(const struct emitter *e, const char *const *acting_text);
 
-/* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _tune, _rhs: a step as C ---- */
+/* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _rhs: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -420,15 +420,9 @@ const char *step_parameters(const struct emitter *e);
 void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
 
-/* Of models with tunable params: */
+/* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
+
 void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */
-/* Of a group's factors in NAME_coeffs: "rows0" */
-const char *tuned_table(const struct emitter *e, const struct tuned_block *first);
-/* Calls print(e, the first of its blocks) for each group whose factors the instance has */
-void each_tuned_group(const struct emitter *e, void (*print)(const struct emitter *e, const struct tuned_block *first));
-
-/* ---- emit_tuned_blocks.c: what retune.h is told of a linear step ---- */
-
 void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
 /* Products and terms of all of the list; of each what a pl_equations has */
 const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,

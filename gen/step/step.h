@@ -953,17 +953,14 @@ void reference_start(int state, mpq_ptr value);              /* a start that has
 struct reference new_reference(const struct step *step);    /* room for its rows */
 struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
-/* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
+/* ---- tuned_blocks.c: a linear step with tunable params, a large one block by block ---- */
 
-double *nominal_outputs(const struct step *step);           /* of outputs that depend on params: outputs x columns */
+double *nominal_outputs(const struct step *step);   /* those that depend on params: x columns of struct tuning */
 struct fixed_slope {                /* an entry of A, x' = A x, that no param changes: velocities, how loads go on */
 	int row, column;
 	struct coefficient value;
 };
 int fixed_slopes(const struct step *step, struct fixed_slope **list);
-
-/* ---- tuned_blocks.c: a linear step with tunable params, a large one block by block ---- */
-
 struct tuned_part {                 /* some of the equations of struct tuning, which the target solves by themselves */
 	struct tuned_equations all;
 	int *row, *unknown;         /* of struct tuning: what row i is, and what is found in its place */
