@@ -207,8 +207,12 @@ batch_add() {
 	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead}${beside:+ --beside} in
 		*--real*|*--reduce*|*--modes*|*--need*|*--instead*|*--beside)
 			whole=w$id
+			# where regions are too many for the scheme that it would have, by that which was asked for
+			own=$(printf '%s\n' "$given" | grep -o ' --scheme [^ ]*')
 			if ! make_c "$whole" "$id.free.spec" "$plain$beside" &&
-			    { [ -z "$beside" ] || ! make_c "$whole" "$id.free.spec" "$plain"; }; then
+			    { [ -z "$beside" ] || ! make_c "$whole" "$id.free.spec" "$plain"; } &&
+			    { [ -z "$own" ] || [ -n "$(why_refused "$whole" 1)" ] ||
+				! make_c "$whole" "$id.free.spec" "$plain$own"; }; then
 				echo "the plain model: $(grep -m 1 error "$whole.said")" >"$id.wrong"
 				return
 			fi
