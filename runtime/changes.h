@@ -45,8 +45,8 @@ static void PL(pass_blocks)(const real slope[PL_SIZE][PL_SIZE], real tau, real x
         series.size = size;
         series.states = states;
         pl_series_advance(&series, tau, part, work);
-        for (i = 0; i < states; i++) {
-            x[at[i]] = part[i];
+        for (i = 0; i < (block + 1 < PL_BLOCKS ? states : size); i++) { /* what acts, behind the last that it acts on */
+            x[i < states ? at[i] : PL_STATES + i - states] = part[i];
         }
     }
 }

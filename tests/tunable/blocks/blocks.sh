@@ -93,7 +93,7 @@ for real in $types; do
 	beside 10 red "k=90 g=1" 0 --reduce --real $real
 done
 ! merging || beside 20 gusts "k=80 F=2 w=4" 0 --form direct
-! merging || beside 60 train "m=3 k=1500 F=4" 0.0625
+beside 60 train "m=3 k=1500 F=4" 0.0625
 beside 10 wide "k=90" 0
 
 : >log
