@@ -26,6 +26,20 @@
 
 /* ---- its last terms ---- */
 
+#if PL_KINDS
+/* What counts of state i in a step that began with 0 in all of its kind, where no size is known yet */
+static PL_APART real PL(least_size)(const real y[], int i)
+{
+    real most = 0;
+    int k;
+    for (k = 0; k < PL_STATES; k++) {
+        const real size = PL_KIND(k) == PL_KIND(i) ? pl_magnitude(y[k]) : 0;
+        most = size > most ? size : most;
+    }
+    return most / 1048576;
+}
+#endif
+
 /* 1 over the size that counts for column i at the start of the series, or where that is 0 of what it gains first */
 static inline real PL(unit_at)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS], int i)
 {
@@ -38,6 +52,12 @@ static inline real PL(unit_at)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_C
 #endif
 #if PL_FLOORS
     unit = PL(floor)[i] > 0 ? 1 / (now + PL(floor)[i]) : unit;
+#endif
+#if PL_KINDS
+    if (unit == 0 && i < PL_STATES) {
+        const real least = PL(least_size)(c[0], i);
+        unit = least > now ? PL(one_over)(least, 0) : unit;
+    }
 #endif
     return unit == 0 ? PL(one_over)(now > one ? now : one > two ? one : two, 1) : unit;
 }
@@ -140,6 +160,12 @@ static int PL(meets)(const PL_TYPE *s, const real start[], const real slope[], r
             if (s->unit[i] > 0 && large * s->unit[i] < 1) {
                 large = 1 / s->unit[i];
             }
+#if PL_KINDS
+            if (s->unit[i] == 0) {
+                const real least = PL(least_size)(y, i);
+                large = least > large ? least : large;
+            }
+#endif
             if (!(pl_magnitude(left[i] - along) * theta <= 2 * PL_ORDER * PL_TOLERANCE * large +
                                                           PL_SLOPE_ROUNDED * pl_magnitude(left[i]) * theta)) {
                 return 0;
