@@ -32,6 +32,7 @@ static PL_APART real PL(least_size)(const real y[], int i)
 {
     real most = 0;
     int k;
+    (void)i; /* there may be one kind alone */
     for (k = 0; k < PL_STATES; k++) {
         const real size = PL_KIND(k) == PL_KIND(i) ? pl_magnitude(y[k]) : 0;
         most = size > most ? size : most;
