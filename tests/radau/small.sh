@@ -12,6 +12,7 @@ plrun=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "${0%/*}/../tap.sh"
+. "$root/tests/run_cc.sh"
 
 runtime_archive "$root/runtime"
 main_of reaction
@@ -69,7 +70,8 @@ done
 # ---- plrun, which runs it by itself, says which state is too small for its measure ----
 
 told() {
-    "$plrun" reaction.spec 1e8 2>&1 >log | grep '^note: before t = ' >>log
+    CC=${run_cc%% *} CFLAGS=${run_cc#* } XDG_CACHE_HOME=$work/cache "$plrun" reaction.spec 1e8 2>&1 >log |
+        grep '^note: before t = ' >>log
     grep -q 'b was at most .*tolerance of b = ' log
 }
 reaction radau 'tolerance 1e-4' --step 1e6 && sed -i.bak 's/^step.*/step 1e6/' reaction.spec && told
