@@ -260,19 +260,13 @@ static PL_INLINE double PL(sum)(const double *row, const double *x)
 #endif
 #include "unmet.h"
 
-/* s over h in a region, where it is sure that no guard is met; x: what acts, behind the states.  Those are read here
- * one by one, as they are stored: two in one load would wait for that, and what regions have in common is not made
- * before it is known which one it is.  Stored here, as what all regions store behind them goes through memory. */
+/* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
+ * through memory. */
 static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 {
-    const volatile double *const y = s->y;
-    double now[PL_SIZE], end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
+    double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
     int i;
-    PL_EACH
-    for (i = 0; i < PL_SIZE; i++) {
-        now[i] = i < PL_STATES ? y[PL_PLACE(i)] : x[i];
-    }
-    if (!PL(keeps_all)(&PL(switching), region, now, end, size, place)) {
+    if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
         return 0;
     }
     PL_EACH
@@ -289,6 +283,11 @@ static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
     const int region = s->contact PL_PART.region;
     int clear = 0, i;
 #if PL_FEW_REGIONS
+    const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
+    PL_UNROLL
+    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+        x[i] = y[PL_PLACE(i)];
+    }
     PL_UNROLL
     for (i = 0; i < PL_REGIONS && !PL_SOFT; i++) {
         if (i == region) {
