@@ -180,6 +180,7 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     renew(m, at);
     if (hold_of(m, e.expression, *interval) >= 0) {
         put_back(m, at, hold_of(m, e.expression, *interval));
+        keep(m, at); /* what is held with it, before it is let go */
     }
     if (begins >= 0) {
         struck = collide(m, at, begins);

@@ -235,6 +235,15 @@ static real most_of(const column *w)
     return most;
 }
 
+/* Whether what slips is driven to this side: friction that holds more than it bears when it slides may be so by less
+ * than would hold it. */
+static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
+{
+    const column velocity = watched(m, at, m->hold[hold].velocity);
+    const real slope = column_at(&velocity, 1);
+    return m->hold[hold].impact < 0 && !holds_now(m, at, hold) && (up ? slope : -slope) > noise_of(velocity.terms);
+}
+
 /* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance.  The root at which
  * it is let go may be off by what does not show beside the force over h, as one of third order is. */
 static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
@@ -250,7 +259,10 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
     if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * most_of(&w)) {
         return 1;
     }
-    return pull > 0 ? 1 : pull < 0 ? -1 : way_of(&w);
+    if (pull > 0 || (pull < 0 && is_driven(m, at, hold, up))) {
+        return 1;
+    }
+    return pull < 0 ? -1 : way_of(&w);
 }
 
 /* ---- impacts ---- */
