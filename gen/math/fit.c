@@ -85,9 +85,8 @@ static void power_of(mpq_srcptr x, int exponent, mpq_ptr result)
 static bool try_exponents(struct fit *f, int k, int most)
 {
 	const int count = 2 * most + 1;
-	int unused;
-	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
-	      *y = rationals(count), *c = rationals(count), *sum = rationals(2);
+	mpq_t *V = rationals((size_t)(count * count)), *y = rationals(count), *c = rationals(count),
+	      *sum = rationals(2);
 	for (int i = 0; i < count; i++) {
 		mpq_t *at = near_base(f, k, i, k, 0);
 		mpq_set(y[i], value_at(f, at));
@@ -100,8 +99,7 @@ static bool try_exponents(struct fit *f, int k, int most)
 	f->depends[k] = f->depends[k] || !mpq_equal(last, y[0]);
 	if (!f->depends[k])
 		return true;
-	rational_inverse(count, V, inverse, &unused);
-	rational_product(count, count, 1, inverse, y, c);
+	rational_solve(count, V, y, c);
 	for (int j = 0; j < count; j++) {
 		f->exponent[k][j + FIT_DEGREE - most] = mpq_sgn(c[j]) != 0;
 		power_of(at[k], j - most, sum[0]);
@@ -167,9 +165,8 @@ static void product_at(const struct fit *f, int product, const mpq_t *values, mp
 /* Factors from as many points as there are products; two more points check them. */
 static bool fit_products(struct fit *f)
 {
-	int count = f->products, unused;
-	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
-	      *y = rationals(count), *sum = rationals(2);
+	const int count = f->products;
+	mpq_t *V = rationals((size_t)(count * count)), *y = rationals(count), *sum = rationals(2);
 	f->factor = rationals(count);
 	for (int i = 0; i < count; i++) {
 		const mpq_t *at = scattered(f, i + 1);
@@ -177,9 +174,8 @@ static bool fit_products(struct fit *f)
 		for (int j = 0; j < count; j++)
 			product_at(f, j, at, V[i * count + j]);
 	}
-	if (!rational_inverse(count, V, inverse, &unused))
+	if (!rational_solve(count, V, y, f->factor))
 		return false;
-	rational_product(count, count, 1, inverse, y, f->factor);
 	for (int i = count + 1; i <= count + 2; i++) {
 		const mpq_t *at = scattered(f, i);
 		mpq_set_ui(sum[0], 0, 1);

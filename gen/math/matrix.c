@@ -175,6 +175,30 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 	return first == n;
 }
 
+bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x)
+{
+	const int width = n + 1;
+	int unused;
+	mpz_t *W = integers((size_t)n * (size_t)width), *scale = integers(1);
+	RATIONALS *row = rationals(width);
+	INTEGER det = INTEGER_ZERO;
+	for (int i = 0; i < n; i++) {
+		for (int j = 0; j < n; j++)
+			mpq_set(row[j], A[i * n + j]);
+		mpq_set(row[n], y[i]);
+		to_integers(width, row, 1, scale[0], W + i * width);
+	}
+	bool regular = bareiss(n, width, W, det, &unused);
+	for (int i = 0; i < n && regular; i++) {
+		mpz_set(mpq_numref(x[i]), W[i * width + n]);
+		mpz_set(mpq_denref(x[i]), det);
+		mpq_canonicalize(x[i]);
+	}
+	integers_free(W, (size_t)n * (size_t)width);
+	integers_free(scale, 1);
+	return regular;
+}
+
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
 {
 	for (int j = 0; j < n; j++) {

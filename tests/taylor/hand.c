@@ -40,6 +40,25 @@ static void pendulum_series(const real y[], real h, real c[][2])
     }
 }
 
+/* x'' = -x, and z'' = -z + 1e-9 x, which is at rest at first; how often a series was made */
+static int series_made;
+
+static void follower_series(const real y[], real h, real c[][4])
+{
+    int k, i;
+    series_made++;
+    for (i = 0; i < 4; i++) {
+        c[0][i] = y[i];
+    }
+    for (k = 0; k < 12; k++) {
+        const real by = h / (real)(k + 1);
+        c[k + 1][0] = by * c[k][1];
+        c[k + 1][1] = -by * c[k][0];
+        c[k + 1][2] = by * c[k][3];
+        c[k + 1][3] = by * ((real)1e-9 * c[k][0] - c[k][2]);
+    }
+}
+
 #define MODEL oscillator
 #define MODEL_H 0.125
 #define MODEL_AT 1
@@ -57,6 +76,31 @@ static void pendulum_series(const real y[], real h, real c[][2])
 #define MODEL_H 16
 #define MODEL_AT 0
 #define MODEL_TOLERANCE 1e-4
+#include "written.h"
+
+#define MODEL follower
+#define MODEL_STATES 4
+#define MODEL_KINDS 1
+#define MODEL_H 10
+#define MODEL_AT 0
+#define MODEL_TOLERANCE 1e-3
+#include "written.h"
+
+#define MODEL follower_fine
+#define follower_fine_series follower_series
+#define MODEL_STATES 4
+#define MODEL_KINDS 1
+#define MODEL_H 10
+#define MODEL_AT 0
+#define MODEL_TOLERANCE 1e-6
+#include "written.h"
+
+#define MODEL follower_alone
+#define follower_alone_series follower_series
+#define MODEL_STATES 4
+#define MODEL_H 10
+#define MODEL_AT 0
+#define MODEL_TOLERANCE 1e-3
 #include "written.h"
 
 static const double epsilon = (double)REAL_EPSILON;
@@ -144,11 +188,39 @@ static void check_not_finite(void)
        s.status, (double)s.y[1]);
 }
 
+/* Series that `steps` steps of a follower take from its start */
+#define SERIES_OF(model, steps) \
+    do { \
+        model s = {.y = {1, 0, 0, 0}}; \
+        int k; \
+        series_made = 0; \
+        model##_place(&s); \
+        for (k = 0; k < (steps); k++) { \
+            model##_serve(&s, NULL); \
+        } \
+    } while (0)
+
+/* A part of a model that is at rest does not make steps short: measured by the largest of its kind it takes no more
+ * series by a coarse tolerance than by a fine one; measured by itself it does. */
+static void check_rest(void)
+{
+    int coarse_series, fine_series;
+    SERIES_OF(follower, 10);
+    coarse_series = series_made;
+    SERIES_OF(follower_fine, 10);
+    fine_series = series_made;
+    SERIES_OF(follower_alone, 10);
+    ok(coarse_series <= fine_series && coarse_series < series_made,
+       "a follower at rest, 100 s: %d series by 1e-3, %d by 1e-6, each measured by itself %d", coarse_series,
+       fine_series, series_made);
+}
+
 int main(void)
 {
     check_oscillator();
     check_pendulum();
     check_parts();
     check_not_finite();
+    check_rest();
     return tap_end();
 }

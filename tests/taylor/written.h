@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* What every model by hand has before taylor.h: two states, steps by tolerance.  The model's file defines MODEL,
- * MODEL_H, MODEL_TOLERANCE, MODEL_AT (values between steps are asked for) and MODEL_series(y, h, c). */
+/* What every model by hand has before taylor.h: steps by tolerance.  The model's file defines MODEL, MODEL_H,
+ * MODEL_TOLERANCE, MODEL_AT (values between steps are asked for) and MODEL_series(y, h, c); MODEL_STATES, where it has
+ * not two; MODEL_KINDS, 1: its even states are measured together and its odd ones, by the largest of them. */
+#ifndef MODEL_STATES
+#define MODEL_STATES 2
+#endif
+#ifndef MODEL_KINDS
+#define MODEL_KINDS 0
+#endif
 #define PASTE(a, b) a##_##b
 #define JOIN(a, b) PASTE(a, b)
 #define PL(name) JOIN(MODEL, name)
@@ -12,8 +19,8 @@
 #else
 #define PL_SINGLE 0
 #endif
-#define PL_STATES 2
-#define PL_COLUMNS 2
+#define PL_STATES MODEL_STATES
+#define PL_COLUMNS MODEL_STATES
 #define PL_MEASURED 0
 #define PL_ORDER 12
 #define PL_INPUTS 0
@@ -25,7 +32,8 @@
 #define PL_ADAPTIVE 1
 #define PL_WATCHED 0
 #define PL_REMAINDERS 3
-#define PL_KINDS 0
+#define PL_KINDS MODEL_KINDS
+#define PL_KIND(i) ((i) % 2)
 #define PL_FLOORS 0
 #define PL_UNSEEN 0
 #define PL_SLOPES 0
@@ -41,16 +49,17 @@
 #include "numbers.h"
 
 typedef struct MODEL {
-    real y[2], rest[2], t0;
+    real y[MODEL_STATES], rest[MODEL_STATES], t0;
     uint64_t k;
     int status, served, valid, most;
-    real series[PL_ORDER + 1][2], base[2], next[2], left[2], scale[2], unit[2];
+    real series[PL_ORDER + 1][MODEL_STATES], base[MODEL_STATES], next[MODEL_STATES], left[MODEL_STATES];
+    real scale[MODEL_STATES], unit[MODEL_STATES];
 } MODEL;
 
 static const real PL(last)[1] = {PL_TOLERANCE}, PL(before_last)[1] = {PL_TOLERANCE};
 
 static inline void PL(expand_from)(const MODEL *s, const real u[], const real slope[], real tau, real when, int segment,
-                                   const int interval[], const real y[], real c[][2], real terms[])
+                                   const int interval[], const real y[], real c[][MODEL_STATES], real terms[])
 {
     (void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
     PL(series)(y, PL_H, c);
@@ -70,3 +79,5 @@ static inline void PL(pass_time)(MODEL *s, const real u[])
 #undef MODEL_H
 #undef MODEL_AT
 #undef MODEL_TOLERANCE
+#undef MODEL_STATES
+#undef MODEL_KINDS
