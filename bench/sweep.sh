@@ -22,5 +22,5 @@ const int sweep_count = $count;
 EOT
 gcc -O1 -Iruntime bench/sweep.c "$work/all.c" runtime/*.c -o "$work/sweep"
 "$work/sweep" >"$out/gear1_sweep.csv"
-gnuplot -c bench/charts/gear1_sweep.gp "$out" "$out"
+sh bench/charts/picture.sh gear1_sweep "$out" "$out"
 echo "$out/gear1_sweep.svg"

@@ -3,7 +3,7 @@
 # draw.sh FOLDER [--png]: pictures and pages from the tables in FOLDER, where nothing is measured: what pictures and
 # pages need of the large tables that programs wrote (NAME_raw.csv, which doc/charts does not keep), what follows from
 # the tables (matrix.csv, break_even.csv, precision_check.csv), every picture whose tables are there, and the pages. Run
-# at the top of the source tree. A picture NAME.gp of tables that are not told here is drawn of NAME.csv.
+# at the top of the source tree.
 set -e
 folder=$1 png=$2
 charts=bench/charts
@@ -42,31 +42,10 @@ derive matrix.csv precision.csv matrix
 derive break_even.csv 'generation.csv precision.csv' break_even
 derive precision_check.csv precision_raw.csv precision_check
 
-# tables_of NAME: what NAME.gp draws
-tables_of() {
-	case $1 in
-		convergence) echo convergence.csv convergence_orders.csv ;;
-		friction) echo friction.csv friction_times.csv ;;
-		generation) echo break_even.csv ;;
-		headline) echo headline_integrators.csv headline_equal_step.csv headline_confluence.csv ;;
-		operator_map) echo operator_map.csv pl_map.csv operator_boundary.csv ;;
-		stability) echo stability_map.csv stability_boundary.csv ;;
-		*) echo "$1.csv" ;;
-	esac
-}
-
 mkdir "$work/pictures"
-for file in "$charts"/*.gp; do
-	name=$(basename "$file" .gp)
-	for table in $(tables_of "$name"); do
-		[ -f "$folder/$table" ] || continue 2
-	done
-	echo "$file"
-	! grep -q '^here.*narrow = ARG3' "$file" || echo "$file narrow"
-done >"$work/jobs"
 # shellcheck disable=SC2016
-FOLDER=$folder WORK=$work xargs -P "${JOBS:-2}" -L 1 \
-	sh -c 'exec gnuplot -c "$0" "$FOLDER" "$WORK/pictures" "$@" </dev/null' <"$work/jobs"
+sh $charts/picture.sh --list "$folder" | FOLDER=$folder WORK=$work xargs -P "${JOBS:-2}" -L 1 \
+	sh -c 'name=$1; shift; exec sh bench/charts/picture.sh "$name" "$FOLDER" "$WORK/pictures" "$@"' picture
 
 # Text and axes turn light where the reader's style is dark; areas keep their colours
 for picture in "$work"/pictures/*.svg; do

@@ -95,31 +95,28 @@ head_of() {
 	EOT
 }
 
-# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables.
+# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables; its titles, the
+# short one for links
+titles='stability|Stability and failures|Stability, quality, and where methods fail
+structural|Structural dynamics|Time integrators of structural dynamics
+energy|Energy|Energy and momentum in long runs
+papers|The papers|What the papers found, and what is measured
+convergence|Convergence|Convergence, and where frequencies meet
+limits|Generating, machine, clocks|What generating costs, how near to the machine, how times agree
+more|More|More'
 topics='stability structural energy papers convergence limits'
 
+# title_of TOPIC FIELD: 2, the short one, or 3
 title_of() {
-	case $1 in
-		stability) echo 'Stability, quality, and where methods fail' ;;
-		structural) echo 'Time integrators of structural dynamics' ;;
-		energy) echo 'Energy and momentum in long runs' ;;
-		papers) echo 'What the papers found, and what is measured' ;;
-		convergence) echo 'Convergence, and where frequencies meet' ;;
-		limits) echo 'What generating costs, how near to the machine, how times agree' ;;
-		more) echo 'More' ;;
-	esac
+	echo "$titles" | sed -n "s/^$1|//p" | cut -d '|' -f "$(($2 - 1))"
 }
 
-short_title_of() {
-	case $1 in
-		stability) echo 'Stability and failures' ;;
-		structural) echo 'Structural dynamics' ;;
-		energy) echo 'Energy' ;;
-		papers) echo 'The papers' ;;
-		convergence) echo 'Convergence' ;;
-		limits) echo 'Generating, machine, clocks' ;;
-		more) echo 'More' ;;
-	esac
+# headed HEADING NAME: the table NAME.csv with its caption below a heading
+headed() {
+	there "$2.csv" || return 0
+	printf '<h2>%s</h2>\n' "$1"
+	caption "$2"
+	table "$2.csv"
 }
 
 stability() {
@@ -144,8 +141,7 @@ stability() {
 	picture pl_map
 	numbers pl_map.csv
 	table operator_check.csv
-	there largest_step.csv && printf '<h2>The largest stable step</h2>\n' && caption largest_step
-	table largest_step.csv
+	headed 'The largest stable step' largest_step
 }
 
 structural() {
@@ -166,16 +162,12 @@ energy() {
 	picture energy_float_short
 	picture momentum_double
 	numbers energy.csv
-	there decay.csv && printf '<h2>Light damping</h2>\n' && caption decay
-	table decay.csv
+	headed 'Light damping' decay
 }
 
 papers() {
 	for source in 000 001 002 004; do
-		there papers_$source.csv || continue
-		printf '<h2>Source %s</h2>\n' "$source"
-		caption papers_$source
-		table papers_$source.csv
+		headed "Source $source" papers_$source
 		case $source in
 			000)
 				picture papers_times
@@ -209,8 +201,7 @@ limits() {
 	table generation.csv
 	picture limits
 	table limits.csv
-	there precision_check.csv && printf '<h2>How times agree</h2>\n' && caption precision_check
-	table precision_check.csv
+	headed 'How times agree' precision_check
 }
 
 # What no page has shown
@@ -232,7 +223,7 @@ links() {
 	[ "$1" = index ] || echo '<a href="index.html">All models</a>'
 	for other in $topics more; do
 		[ "$other" = "$1" ] || [ ! -f "$folder/$other.html" ] ||
-			printf '<a href="%s.html">%s</a>\n' "$other" "$(short_title_of "$other")"
+			printf '<a href="%s.html">%s</a>\n' "$other" "$(title_of "$other" 2)"
 	done
 	echo '</nav>'
 }
@@ -327,7 +318,7 @@ rest=$(more)
 for topic in $topics more; do
 	[ -f "$folder/$topic.html" ] || continue
 	{
-		head_of "$(title_of "$topic")"
+		head_of "$(title_of "$topic" 3)"
 		links "$topic"
 		if [ "$topic" = more ]; then printf '%s\n' "$rest"; else $topic; fi
 		echo '</html>'

@@ -26,3 +26,7 @@ function times_text(x) {
 	x += 0
 	return x < 9.95 ? sprintf("%.1f", x) : x < 1e5 ? sprintf("%.0f", x) : short(x)
 }
+
+# Of a finding: each row of its tables
+function of(head) { return f[column[head]] }
+function span(x) { if (low == "" || x < low) low = x; if (high == "" || x > high) high = x }

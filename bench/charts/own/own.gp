@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # gnuplot -c own.gp NAME.csv OUTDIR NAME EVERY UNITS VERDICT.txt SIGNAL: the picture of any spec
-here = system("dirname '".ARG0."'").'/..'; csv = ARG1; out = ARG2; name = ARG3
-size = '1240,660'
+here = system("dirname '".ARG0."'").'/..'; csv = ARG1; out = ARG2; name = ARG3; narrow = 0
 load here.'/style.gp'
+size = '1240,660'
 plain(m) = system("echo '".m."' | sed 's/_/\\\\_/g'")
 factors = system("sed -n 's/^title: //p' '".ARG6."'")
 set title plain(name).": how many times as fast plgen is as the best peer, where the error is below\n".\
