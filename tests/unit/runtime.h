@@ -36,7 +36,7 @@ struct room {
 
 #define ROOMS(each) \
     each(turns) each(growth) each(series) each(power) each(until) each(apply) each(crossings) each(retune) each(rate) \
-    each(dense)
+    each(dense) each(around)
 #define DECLARE_ROOM(name) extern const struct room room_of_##name;
 ROOMS(DECLARE_ROOM)
 
