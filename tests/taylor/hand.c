@@ -59,6 +59,19 @@ static void follower_series(const real y[], real h, real c[][4])
     }
 }
 
+/* An oscillator that a second spring holds above 0: x'' = -x or -4 x */
+static void spring_series_in(const real y[], real h, const int interval[], real c[][2])
+{
+    const real by = -h * (interval[0] == 1 ? 4 : 1);
+    int k;
+    c[0][0] = y[0];
+    c[0][1] = y[1];
+    for (k = 0; k < 12; k++) {
+        c[k + 1][0] = h * c[k][1] / (real)(k + 1);
+        c[k + 1][1] = by * c[k][0] / (real)(k + 1);
+    }
+}
+
 #define MODEL oscillator
 #define MODEL_H 0.125
 #define MODEL_AT 1
@@ -69,6 +82,13 @@ static void follower_series(const real y[], real h, real c[][4])
 #define MODEL_H 0.125
 #define MODEL_AT 1
 #define MODEL_TOLERANCE (16 * REAL_EPSILON)
+#include "written.h"
+
+#define MODEL spring
+#define MODEL_H 0.125
+#define MODEL_AT 1
+#define MODEL_TOLERANCE (16 * REAL_EPSILON)
+#define MODEL_BREAKPOINT 0
 #include "written.h"
 
 #define MODEL coarse
@@ -178,6 +198,45 @@ static void check_parts(void)
        (double)fine.y[0], bound, s.status);
 }
 
+/* From x = 1 at rest: x = cos 2t down to 0, then -2 sin (t - pi/4) for half a period of the first spring alone, and up
+ * again; a period is 3 pi / 2. */
+static double spring_position(double t)
+{
+    const double pi = acos(-1.0), part = fmod(t, 1.5 * pi), behind = part - 0.25 * pi;
+    return behind < 0 ? cos(2 * part) : behind < pi ? -2 * sin(behind) : sin(2 * (behind - pi));
+}
+
+static double crossing_time(int number)
+{
+    const double pi = acos(-1.0);
+    return 1.5 * pi * (number / 2) + 0.25 * pi + (number % 2 ? pi : 0.0);
+}
+
+/* Formulas that the state chooses: each crossing in its place, and the state exact behind it */
+static void check_spring(void)
+{
+    const double h = 0.125, bound = 400 * epsilon;
+    spring s = {.y = {1, 0}};
+    double worst = 0, between = 0, late = 0;
+    int k, i, crossed = 0;
+    spring_place(&s);
+    for (k = 0; k < 377; k++) {
+        real y[2];
+        spring_state_at(&s, NULL, (real)(0.625 * h), y);
+        between = fmax(between, fabs((double)y[0] - spring_position((k + 0.625) * h)));
+        spring_serve(&s, NULL);
+        worst = fmax(worst, fabs((double)s.y[0] - spring_position((k + 1) * h)));
+        for (i = 0; i < s.contact.crossings; i++) {
+            late = fmax(late, fabs(k * h + (double)s.contact.crossing[i].time - crossing_time(crossed++)));
+        }
+    }
+    ok(worst <= bound && between <= bound && s.status == 0,
+       "ten periods over a breakpoint: off the closed form by %.17g at steps, %.17g between, bound %.17g; status %d",
+       worst, between, bound, s.status);
+    ok(crossed == 20 && s.contact.total == 20 && late <= bound, "%d crossings, 20 wanted, off by %.17g s, bound %.17g",
+       crossed, late, bound);
+}
+
 /* What is no number is not followed, and the state stays as it was. */
 static void check_not_finite(void)
 {
@@ -220,6 +279,7 @@ int main(void)
     check_oscillator();
     check_pendulum();
     check_parts();
+    check_spring();
     check_not_finite();
     check_rest();
     return tap_end();

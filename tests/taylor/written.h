@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* What every model by hand has before taylor.h: steps by tolerance.  The model's file defines MODEL, MODEL_H,
  * MODEL_TOLERANCE, MODEL_AT (values between steps are asked for) and MODEL_series(y, h, c); MODEL_STATES, where it has
- * not two; MODEL_KINDS, 1: its even states are measured together and its odd ones, by the largest of them. */
+ * not two; MODEL_KINDS, 1: its even states are measured together and its odd ones, by the largest of them;
+ * MODEL_BREAKPOINT, where its first state chooses the formulas there: MODEL_series_in(y, h, interval, c) then. */
 #ifndef MODEL_STATES
 #define MODEL_STATES 2
 #endif
@@ -25,8 +26,16 @@
 #define PL_ORDER 12
 #define PL_INPUTS 0
 #define PL_SEGMENTS 1
+#ifdef MODEL_BREAKPOINT
+#define PL_EXPRESSIONS 1
+#define PL_TERMS 1
+#define PL_CHANGES 2
+#define PL_MAX_EVENTS 8
+#define PL_MAX_SPLITS 500
+#else
 #define PL_EXPRESSIONS 0
 #define PL_TERMS 0
+#endif
 #define PL_CONTACTS 0
 #define PL_CHOICES 0
 #define PL_ADAPTIVE 1
@@ -48,12 +57,27 @@
 
 #include "numbers.h"
 
+#if PL_EXPRESSIONS
+typedef struct PL(contact) {
+    uint64_t total;
+    int crossings, placed, interval[1];
+    pl_crossing last, crossing[PL_MAX_EVENTS];
+} PL(contact);
+
+static const int PL(column)[] = {0}, PL(breaks)[] = {1};
+static const real PL(breakpoint)[] = {MODEL_BREAKPOINT};
+static const pl_divided PL(divided) = {1, PL_COLUMNS, PL_ORDER, PL(column), PL(breaks), PL(breakpoint)};
+#endif
+
 typedef struct MODEL {
     real y[MODEL_STATES], rest[MODEL_STATES], t0;
     uint64_t k;
     int status, served, valid, most;
     real series[PL_ORDER + 1][MODEL_STATES], base[MODEL_STATES], next[MODEL_STATES], left[MODEL_STATES];
     real scale[MODEL_STATES], unit[MODEL_STATES];
+#if PL_EXPRESSIONS
+    PL(contact) contact;
+#endif
 } MODEL;
 
 static const real PL(last)[1] = {PL_TOLERANCE}, PL(before_last)[1] = {PL_TOLERANCE};
@@ -62,7 +86,12 @@ static inline void PL(expand_from)(const MODEL *s, const real u[], const real sl
                                    const int interval[], const real y[], real c[][MODEL_STATES], real terms[])
 {
     (void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
+#if PL_EXPRESSIONS
+    PL(series_in)(y, PL_H, interval, c);
+    terms[0] = pl_magnitude(y[0]);
+#else
     PL(series)(y, PL_H, c);
+#endif
 }
 
 static inline void PL(pass_time)(MODEL *s, const real u[])
@@ -81,3 +110,4 @@ static inline void PL(pass_time)(MODEL *s, const real u[])
 #undef MODEL_TOLERANCE
 #undef MODEL_STATES
 #undef MODEL_KINDS
+#undef MODEL_BREAKPOINT
