@@ -234,7 +234,8 @@ static void swinging_now(const swinging *s, real out[3])
     out[2] = s->y[0] + s->y[1];
 }
 
-/* From x = sin a, v = cos a: of x the largest so far is sin(a + t) until a + t = pi/2, and then 1; of v cos a, then 1 */
+/* From x = sin a, v = cos a the largest x so far is sin(a + t) until a + t = pi/2, and then 1; of v it is cos a, then 1
+ * from pi on. */
 static void largest_inside_steps(void **state)
 {
     const double start = 0.3, quarter = acos(0.0), bound = 64 * (double)REAL_EPSILON;
