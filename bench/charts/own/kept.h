@@ -18,8 +18,9 @@ INLINE void model_slope(double t, const double *y, double *f)
 #include "../adaptive.h"
 #define adaptive_open NULL
 
-/* Inputs have corners at outputs, or jumps: it begins anew there with the length that it had. length: h of its struct;
- * whole: makes its state of the model's, which stands behind `skip` entries of it */
+/* Inputs have corners at outputs, or jumps: it begins anew there with the length that it had, but ends a step at the
+ * next one, where a step is better than what is read inside a longer one. length: h of its struct; whole: makes its
+ * state of the model's, which stands behind `skip` entries of it */
 static inline bool kept_history(struct adaptive *a, const struct kind *kind, double setting, double *length,
                                 void (*whole)(const double *y, double *state), int skip, double *rows)
 {
@@ -31,16 +32,19 @@ static inline bool kept_history(struct adaptive *a, const struct kind *kind, dou
 	a->run.setting = setting;
 	a->now = now;
 	whole(history.start, state);
+	history.unit = 0;
 	bool good = solver->make(a) && solver->begin(a, 0.0, state);
 	if (INPUTS == 0 && skip == 0)
 		return good && a->walk(a, history.units, rows);
 	for (int k = 0; k < history.units && good; k++, rows += N) {
-		const double last = *length;
+		const double from = k * history.every, left = (k + 1) * history.every - from, last = *length;
 		history.unit = k;
 		if (INPUTS > 0 && k > 0) {
-			good = solver->begin(a, k * history.every, state);
+			good = solver->begin(a, from, state);
 			*length = last;
 		}
+		if (INPUTS > 0)
+			*length = left / ceil(left / *length);
 		good = good && solver->reach(a, (k + 1) * history.every, state);
 		memcpy(rows, state + skip, N * sizeof *rows);
 	}
