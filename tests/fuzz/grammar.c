@@ -897,7 +897,7 @@ int main(int argc, char **argv)
 		write_outputs();
 	const char *const operator = operator_statement(), *const stated = class >= SMOOTH && chance(20) ?
 		scheme_statement() : "", *const given = options(stated);
-	if (class == SMOOTH && *changes && strstr(given, "--loads leftover"))
+	if (class != PIECEWISE && *changes && strstr(given, "--loads leftover"))
 		class = KINKED;         /* the quadrature goes over the changes */
 	FILE *const spec = fopen(argv[2], "w"), *const c = argc > 3 ? fopen(argv[3], "w") : NULL;
 	if (!spec || (argc > 3 && !c)) {
