@@ -15,7 +15,7 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         const int twice = w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval]);
-        if (w.interval == w.breaks || twice || -excess(m, c, &w, w.interval, x, &noise) > noise) {
+        if (w.interval == w.breaks || twice || -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
             continue;
         }
         if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1])) {
@@ -49,7 +49,7 @@ static void hold_first(const pl_guards *m, instant *at)
         if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
             const int impact = impact_of(m, w.i, w.interval + 1);
             real noise;
-            if (magnitude(excess(m, at->c, &w, w.interval, at->x, &noise)) > noise) {
+            if (magnitude(excess(m, at->c, w.i, w.at[w.interval], at->x, &noise)) > noise) {
                 continue;
             }
             enter(m->matrix, at->c, at->c->region + w.stride);
@@ -146,14 +146,10 @@ static const event no_event = {1, 0, -1};
 static void level(const pl_guards *m, int region, const pl_guard *g, const real *x, beyond *f, real *work)
 {
     const int side = g->leads < 0 ? 1 : -1;
-    walk w;
-    int held;
     if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0)) {
         return;
     }
-    w = switch_of(m, region, g->expression);
-    held = w.interval - side;
-    if (held > 0 && held < w.breaks && !(w.at[held] > w.at[held - 1]) &&
+    if (is_hold(m, g->expression, interval_in(m, region, g->expression) - side) &&
         is_let_go(m, region, g->expression, side, x, work)) {
         f->coefficient[1] = 0;
     }
@@ -165,13 +161,11 @@ static int is_turned(const pl_guards *m, int region, const pl_guard *g, const be
 {
     const real *gate = m->gate + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
     real apart = 0;
-    walk w;
     int i;
     if (g->impact >= 0 || !(f->coefficient[0] > f->noise) || !(f->coefficient[1] < 0)) {
         return 0;
     }
-    w = switch_of(m, region, g->expression);
-    if (w.interval > 0 && w.interval < w.breaks && !(w.at[w.interval] > w.at[w.interval - 1])) {
+    if (is_hold(m, g->expression, interval_in(m, region, g->expression))) {
         return 0; /* it sticks: what lets it go is decided with others that rest */
     }
     for (i = 0; i < m->size; i++) {
@@ -371,6 +365,7 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
 
 #define PL(name) unmet_##name
 #define PL_SIZE m->size
+#define PL_CAPPED 0
 #define PL_SUM(row, x) sum_of(m->size, row, x)
 #define PL_EACH
 #include "unmet.h"

@@ -52,14 +52,14 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
     }
 }
 
-static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int breakpoint, const real *x, real *noise)
+/* e - b of an expression, and what rounding may have done to it */
+static real excess(const pl_guards *m, const pl_contact *c, int expression, real b, const real *x, real *noise)
 {
-    const real *row = m->row + w->i * m->size;
-    const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + w->i) * m->size;
-    const real b = w->at[breakpoint];
+    const real *row = m->row + expression * m->size;
+    const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + expression) * m->size;
     real e;
     e = dot(m->size, row, x);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[w->i]);
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[expression]);
     return e - b;
 }
 
@@ -67,38 +67,62 @@ static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int b
 static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const real *x)
 {
     real noise;
-    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise) {
+    if (w->interval < w->breaks && excess(m, c, w->i, w->at[w->interval], x, &noise) > noise) {
         return 1;
     }
-    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise) {
+    if (w->interval > 0 && -excess(m, c, w->i, w->at[w->interval - 1], x, &noise) > noise) {
         return -1;
     }
     return 0;
 }
 
-static walk switch_of(const pl_guards *m, int region, int expression)
+/* Of one expression: between the numbers of regions one of its intervals apart; its interval in a region; its
+ * breakpoints */
+static PL_APART int stride_of(const pl_guards *m, int expression)
 {
-    walk w;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w) && w.i < expression; leave(&w)) {
-        ;
+    int stride = 1, i;
+    for (i = 0; i < expression; i++) {
+        stride *= m->breaks[i] + 1;
     }
-    return w;
+    return stride;
+}
+
+static PL_APART int interval_in(const pl_guards *m, int region, int expression)
+{
+    return region / stride_of(m, expression) % (m->breaks[expression] + 1);
+}
+
+static const real *breakpoints_of(const pl_guards *m, int expression)
+{
+    const real *at = m->at;
+    int i;
+    for (i = 0; i < expression; i++) {
+        at += m->breaks[i];
+    }
+    return at;
+}
+
+/* Whether an interval is a breakpoint that stands twice, in which an expression is held */
+static int is_hold(const pl_guards *m, int expression, int interval)
+{
+    const real *b = breakpoints_of(m, expression) + interval;
+    return interval > 0 && interval < m->breaks[expression] && !(b[0] > b[-1]);
 }
 
 static int interval_of(const pl_guards *m, const instant *at, int expression)
 {
-    return switch_of(m, at->c->region, expression).interval;
+    return interval_in(m, at->c->region, expression);
 }
 
 static int interval_before(const pl_guards *m, const instant *at, int expression)
 {
-    return switch_of(m, at->before, expression).interval;
+    return interval_in(m, at->before, expression);
 }
 
 static void go_to(const pl_guards *m, instant *at, int expression, int interval)
 {
-    const walk w = switch_of(m, at->c->region, expression);
-    enter(m->matrix, at->c, at->c->region + (interval - w.interval) * w.stride);
+    const int by = interval - interval_of(m, at, expression);
+    enter(m->matrix, at->c, at->c->region + by * stride_of(m, expression));
 }
 
 static void renew(const pl_guards *m, instant *at)
@@ -180,10 +204,16 @@ static int rest_of(const pl_guards *m, int k)
     return m->impact[k].rest;
 }
 
+/* How far the expression of impact k is off its guard */
+static PL_APART real off_guard(const pl_guards *m, const instant *at, int k, real *noise)
+{
+    const pl_impact *p = &m->impact[k];
+    return excess(m, at->c, p->expression, breakpoints_of(m, p->expression)[p->breakpoint], at->x, noise);
+}
+
 static real depth(const pl_guards *m, const instant *at, int k, real *noise)
 {
-    const walk w = switch_of(m, at->c->region, m->impact[k].expression);
-    const real e = excess(m, at->c, &w, m->impact[k].breakpoint, at->x, noise);
+    const real e = off_guard(m, at, k, noise);
     return m->impact[k].upward ? e : -e;
 }
 
@@ -247,10 +277,9 @@ static void stop(const pl_guards *m, instant *at, int k)
 
 static void put_on(const pl_guards *m, instant *at, int k)
 {
-    const walk w = switch_of(m, at->c->region, m->impact[k].expression);
     const real *back = m->back + (ptrdiff_t)k * m->size;
     real noise;
-    const real e = excess(m, at->c, &w, m->impact[k].breakpoint, at->x, &noise);
+    const real e = off_guard(m, at, k, &noise);
     int i;
     for (i = 0; i < m->size; i++) {
         take_from(m->size, i, back[i] * e, at->x);
@@ -270,23 +299,29 @@ static int impact_of(const pl_guards *m, int expression, int interval)
     return k;
 }
 
+/* Whether an expression is on a breakpoint that stands twice, and does not fly off; a contact that does: there was no
+ * room for its impact */
+static int is_there(const pl_guards *m, const instant *at, const walk *w, int breakpoint, int impact)
+{
+    real noise;
+    if (impact >= 0) {
+        return touches(m, at, impact) && (w->interval == breakpoint || !(magnitude(speed_of(m, at, impact)) > 0));
+    }
+    return !(magnitude(excess(m, at->c, w->i, w->at[breakpoint], at->x, &noise)) > noise);
+}
+
 static int find_resting(const pl_guards *m, const instant *at, resting *found)
 {
     int count = 0, k;
-    real noise = 0;
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
         for (k = 1; k < w.breaks; k++) {
-            const real e = w.at[k] - w.at[k - 1] <= 0 ? excess(m, at->c, &w, k, at->x, &noise) : 1;
             if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST) {
                 continue;
             }
             found[count].impact = impact_of(m, w.i, k);
-            if (found[count].impact < 0 ? magnitude(e) > noise : !touches(m, at, found[count].impact)) {
+            if (!is_there(m, at, &w, k, found[count].impact)) {
                 continue;
-            }
-            if (found[count].impact >= 0 && magnitude(speed_of(m, at, found[count].impact)) > 0 && w.interval != k) {
-                continue; /* it flies off, or there was no room for its impact */
             }
             found[count].expression = w.i;
             found[count++].held = k;
@@ -330,7 +365,7 @@ static int is_held(const pl_guards *m, int region, int expression, const real *x
  * rounding: e'' is then rounding, too, and does not say where e is heading. */
 static int is_let_go(const pl_guards *m, int region, int expression, int side, const real *x, real *work)
 {
-    const int stuck = region - side * switch_of(m, region, expression).stride;
+    const int stuck = region - side * stride_of(m, expression);
     int k;
     if (m->matrix[stuck] < 0) {
         return 0;
@@ -356,14 +391,13 @@ static int is_spared(const pl_guards *m, const instant *at, int region, const re
                      int side)
 {
     int flying = region, i;
-    const int stuck = region - side * switch_of(m, region, of->expression).stride;
+    const int stuck = region - side * stride_of(m, of->expression);
     if (m->matrix[stuck] >= 0 || of->impact >= 0) {
         return m->matrix[stuck] < 0;
     }
     for (i = 0; i < count; i++) {
-        const walk w = switch_of(m, region, r[i].expression);
-        if (r[i].impact >= 0 && w.interval == r[i].held) {
-            flying += (free_of(m, r[i].impact) - r[i].held) * w.stride;
+        if (r[i].impact >= 0 && interval_in(m, region, r[i].expression) == r[i].held) {
+            flying += (free_of(m, r[i].impact) - r[i].held) * stride_of(m, r[i].expression);
         }
     }
     return m->matrix[flying] >= 0 && heading_in(m, at, flying, of->expression) == side;
@@ -373,7 +407,7 @@ static int is_spared(const pl_guards *m, const instant *at, int region, const re
 static int agrees_one(const pl_guards *m, const instant *at, int region, const resting *r, int count,
                       const resting *one)
 {
-    const int side = switch_of(m, region, one->expression).interval - one->held;
+    const int side = interval_in(m, region, one->expression) - one->held;
     int way;
     if (one->impact >= 0 && side == 0 && speed_of(m, at, one->impact) < 0) {
         return 0;
@@ -393,8 +427,7 @@ static int agrees(const pl_guards *m, instant *at, const resting *r, int count, 
 {
     int region = at->c->region, i;
     for (i = 0; i < count; i++) {
-        const walk w = switch_of(m, region, r[i].expression);
-        region += (interval[i] - w.interval) * w.stride;
+        region += (interval[i] - interval_in(m, region, r[i].expression)) * stride_of(m, r[i].expression);
     }
     if (m->matrix[region] < 0) {
         return 0;

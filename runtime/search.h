@@ -22,7 +22,8 @@
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
- *     PL_CLEARS                  whether most steps are seen to be clear before it is asked: of guards by unmet.h
+ *     PL_CLEARS, PL_CAPPED       whether most steps are seen to be clear before it is asked: of guards by unmet.h, with
+ *                                bit i where x_i is never above 1
  *     PL_FEW                     crossings by few.h, which is included then; 0: none */
 #include "numbers.h"
 
@@ -203,10 +204,15 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #endif
 
 #if PL_EXPRESSIONS > 0
-/* By the search, from x */
+/* By the search, from x; its states are those of s */
 static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 {
     int i;
+#if PL_CLEARS && PL_GUARDS
+    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+        x[i] = s->y[PL_PLACE(i)];
+    }
+#endif
     PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
@@ -220,7 +226,7 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 
 #if PL_CLEARS && PL_GUARDS
 /* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
-#define PL_FEW_REGIONS (PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
+#define PL_FEW_REGIONS (PL_REGIONS <= 16 && PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
 
 /* row . x in the order of the runtime's sums: of each fourth term, then these */
 #if PL_FEW_REGIONS
@@ -261,47 +267,70 @@ static PL_INLINE double PL(sum)(const double *row, const double *x)
 #include "unmet.h"
 
 /* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
- * through memory. */
+ * through memory; and one by one, as two in one store would have to be put together first. */
 static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
 {
     double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
+    volatile double *const y = s->y;
     int i;
     if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
         return 0;
     }
     PL_EACH
     for (i = 0; i < PL_STATES; i++) {
-        s->y[PL_PLACE(i)] = end[i];
+        y[PL_PLACE(i)] = end[i];
     }
     s->contact PL_PART.crossings = 0;
     return 1;
 }
 
-/* s over h by that, or by the search */
-static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
-{
-    const int region = s->contact PL_PART.region;
-    int clear = 0, i;
 #if PL_FEW_REGIONS
+#define PL_CASE(k) case k: return k < PL_REGIONS && PL(unmet)(s, k, x);
+#define PL_CASES(k) PL_CASE(k) PL_CASE(k + 1) PL_CASE(k + 2)
+
+/* The same in the region where s is */
+static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
+{
     const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
+    int i;
     PL_UNROLL
-    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+    for (i = 0; i < PL_STATES; i++) {
         x[i] = y[PL_PLACE(i)];
     }
-    PL_UNROLL
-    for (i = 0; i < PL_REGIONS && !PL_SOFT; i++) {
-        if (i == region) {
-            clear = PL(unmet)(s, i, x);
-        }
-    }
-#else
-    clear = !PL_SOFT && PL(unmet)(s, region, x);
+    switch (s->contact PL_PART.region) {
+    PL_CASES(0)
+#if PL_REGIONS > 3
+    PL_CASES(3)
+    PL_CASES(6)
 #endif
-    if (!clear) {
-        real again[PL_VECTOR]; /* so that x itself has no place in memory, which each step would have to fill */
+#if PL_REGIONS > 9
+    PL_CASES(9)
+    PL_CASES(12)
+    PL_CASE(15)
+#endif
+    default:
+        return 0;
+    }
+}
+#else
+static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
+{
+    return PL(unmet)(s, s->contact PL_PART.region, x);
+}
+#endif
+
+/* s over h by that, or by the search.  x has no place in memory there, which each step would have to fill. */
+static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+{
+    if (PL_SOFT) {
+        PL(by_search)(s, x);
+    } else if (!PL(unmet_here)(s, x)) {
+        real again[PL_VECTOR];
+        volatile real *const from = again;
+        int i;
         PL_EACH
-        for (i = 0; i < PL_VECTOR; i++) {
-            again[i] = x[i];
+        for (i = PL_STATES; i < PL_VECTOR; i++) {
+            from[i] = x[i];
         }
         PL(by_search)(s, again);
     }

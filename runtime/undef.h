@@ -24,7 +24,10 @@
 #undef PL_BOUNDS
 #undef PL_BRANCHES
 #undef PL_BREAKS
+#undef PL_CAPPED
 #undef PL_CARRIES
+#undef PL_CASE
+#undef PL_CASES
 #undef PL_CERTAIN
 #undef PL_CHANGE
 #undef PL_CHANGES

@@ -3,7 +3,7 @@
  * search: part of search.h, and for small processors of guards.c.  The search would take the same one, to the last bit:
  * sums have its order, and what is accepted here leaves nothing to take up, nothing that touches, and each guard below
  * its limit by the bound of the search.  A guard that has just been left, and one that a cubic alone clears, goes by
- * the search.  PL_SUM(row, x) is of PL_SIZE products. */
+ * the search.  PL_SUM(row, x) is of PL_SIZE products; bit i of PL_CAPPED is set where x_i is never above 1. */
 
 /* Whether what a set holds is where it is held; at the end it is put there, all from the same x.  place: size */
 static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, double *end, double *place)
@@ -56,9 +56,10 @@ static PL_INLINE int PL(keeps_all)(const pl_guards *m, int region, const double 
     }
     PL_EACH
     for (i = 0; i < PL_SIZE; i++) {
+        const int capped = i < 31 && (PL_CAPPED >> i) % 2 == 1;
         end[i] = PL(row_of)(m, m->Phi + which * PL_SIZE * PL_SIZE, i, x);
-        size[i] = pl_magnitude(x[i]);
-        all += PL_SOFT ? 0.0 : size[i];
+        size[i] = capped ? 1.0 : pl_magnitude(x[i]);
+        all += PL_SOFT || capped ? -0.0 : size[i];
     }
     if (!(all < 1e300) || (set >= 0 && !PL(holds)(m, set, x, end, place))) {
         return 0;

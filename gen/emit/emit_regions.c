@@ -254,6 +254,16 @@ void begin_macros(const struct emitter *e, const char *own)
 	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
 }
 
+/* Bit i where entry i of x is never above 1; none in a long x, whose sums are loops */
+static int capped_entries(const struct emitter *e)
+{
+	int bits = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && is_bounded_load(e->step, l); k++)
+			bits |= e->step->layout.size <= 16 ? 1 << (e->step->layout.load[l] + k) : 0;
+	return bits;
+}
+
 /* What search.h and few.h have in common, as numbers */
 static void emit_search_sizes(const struct emitter *e)
 {
@@ -265,7 +275,8 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
-		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->clears }
+		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->clears },
+		{ "CAPPED", capped_entries(e) }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		say_macro(e, all[i].name, whole_text(all[i].value));

@@ -458,16 +458,24 @@ double written_factor(const struct course *c, int n, int i, int k)
 	return mpfr_get_d(c->written[i * (n + 1) + k], MPFR_RNDN);
 }
 
+static double *written_factors(const struct course *c, int n)
+{
+	double *factor = ARRAY(double, (size_t)((c->rows - n) * n) + 1);
+	for (int at = 0; at < (c->rows - n) * n; at++)
+		factor[at] = written_factor(c, n, at / n, at % n);
+	return factor;
+}
+
 /* What the rows read of a power of Phi, whose own are the first */
-static void read_power(const struct course *c, int n, double *power)
+static void read_power(const struct course *c, int n, const double *factor, double *power)
 {
 	for (int i = 0; i < c->rows - n; i++) {
 		double *sum = power + (n + i) * n;
 		for (int j = 0; j < n; j++)
 			sum[j] = 0;
 		for (int k = 0; k < n; k++)
-			for (int j = 0; j < n && !mpfr_zero_p(c->written[i * (n + 1) + k]); j++)
-				sum[j] += written_factor(c, n, i, k) * power[k * n + j];
+			for (int j = 0; j < n && factor[i * n + k] != 0; j++)
+				sum[j] += factor[i * n + k] * power[k * n + j];
 	}
 }
 
@@ -476,13 +484,14 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 {
 	int n = step->branch->system.states;
 	const size_t cells = (size_t)(c->rows * n);
+	const double *factor = written_factors(c, n);
 	double *power = ARRAY(double, cells), *next = ARRAY(double, cells), largest = 0;
 	c->sum = ARRAY(double, cells);
 	c->peak = ARRAY(double, cells);
 	for (int i = 0; i < n; i++)
 		power[i * n + i] = 1;
 	for (int m = 0; m < c->steps; m++) {
-		read_power(c, n, power);
+		read_power(c, n, factor, power);
 		for (size_t i = 0; i < cells; i++) {
 			c->sum[i] += fabs(power[i]);
 			c->peak[i] = fmax(c->peak[i], fabs(power[i]));
