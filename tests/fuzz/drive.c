@@ -541,8 +541,9 @@ static void run_steps(void)
 }
 
 /* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
- * more than what rounding makes of a step that begins in another region. From here, or from where what sticks slips. */
-static bool ramps_from(int input, bool far)
+ * more than what rounding makes of a step that begins in another region. From here, or from so far away, where what sticks
+ * slips and the larger of two is the other one. */
+static bool ramps_from(int input, double far)
 {
 	double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
 	void *const s = malloc(of->whole->size);
@@ -550,7 +551,7 @@ static bool ramps_from(int input, bool far)
 	if (!s)
 		exit(3);
 	for (int j = 0; j < of->whole->states; j++)
-		start[j] = far ? (j % 2 ? -2 : 2) + j * 0.3 : 0.25 + j * 0.01;
+		start[j] = far != 0 ? (j % 2 ? -far : far) + j * 0.3 : 0.25 + j * 0.01;
 	for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
 		of->whole->init(s);
 		u[input] = round ? 1 : 0;
@@ -570,7 +571,7 @@ static bool ramps_from(int input, bool far)
 static void find_ramps(void)
 {
 	for (int i = 0; i < of->whole->inputs; i++)
-		ramps[i] = ramps_from(i, false) || ramps_from(i, true);
+		ramps[i] = ramps_from(i, 0) || ramps_from(i, 2) || ramps_from(i, -2);
 }
 
 /* How far the truth takes a neighbour away: as far it takes errors of steps that are behind. Distances are those of
