@@ -541,8 +541,8 @@ static void run_steps(void)
 }
 
 /* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
- * more than what rounding makes of a step that begins in another region. From here, or from so far away, where what sticks
- * slips and the larger of two is the other one. */
+ * more than what rounding makes of a step that begins in another region. From here, or from so far away, where what
+ * sticks slips, and the larger of two is the other one. */
 static bool ramps_from(int input, double far)
 {
 	double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];

@@ -50,12 +50,13 @@ END {
 		say(rival ": " rows[rival] + 0 " rows, least error " least[rival])
 	# What each reaches with its least tolerance; forces that jump cost digits, and long steps of Radau across kinks
 	# (in doc/charts/matrix.csv RADAU9 has 8.4e-7 for gear1), of which nothing damps what each leaves in bilinear.
-	# Radau of s stages holds its estimate to tolerance^((s + 1)/(2 s))/10, 2e-9 for 1e-13: in the stiff ones that shows
+	# Radau of s stages holds its estimate to tolerance^((s + 1)/(2 s))/10, 2e-9 for 1e-13: in stiff ones that shows
 	m = split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF;DOP853;RADAU5;RADAU9;RADAU13", method_of, ";")
 	split("1e-6;2e-9;2e-9;1e-7;1e-7;2e-9;1e-8;1e-8;2e-8", limit_of, ";")
 	for (i = 1; i <= m; i++) {
 		limit = name != "two_masses" ? limit_of[i] : i == 1 ? 1 : i > 7 ? 1e-4 : 1e-5
-		if (i > 6 && index(" gear1 gear2 gear3 half_car bilinear quarter_car_bumps ", " " name " ")) limit = 1e-6
+		if (i > 6 && index(" gear1 gear2 gear3 half_car bilinear quarter_car_bumps ", " " name " "))
+			limit = 1e-6
 		if (i > 6 && index(" beam4 beam15 street ", " " name " ")) limit = 1e-7
 		if (method_of[i] == "DOP853" && name == "bilinear") limit = 1e-8
 		if (!(method_of[i] in least) || least[method_of[i]] > limit + 0)
