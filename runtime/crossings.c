@@ -6,55 +6,15 @@
 #include "columns.h"
 #endif
 #include "ladder.h"
-#include "regions.h"
 #include "roots.h"
 
 typedef pl_switching searched;
-
-typedef struct instant {
-    real *x;
-    pl_contact *c;
-    pl_crossing *crossing;
-    real *work;
-} instant;
-
-static const real *matrix_of(const pl_switching *m, const pl_contact *c)
-{
-    return m->A + WORDS * (ptrdiff_t)c->matrix * m->size * m->size;
-}
-
-#define matrix_now(m, at) matrix_of(m, (at)->c)
+#define PLAY(m, i) 0
+#include "regions.h"
 
 static const real *rows_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
     return all + (ptrdiff_t)c->matrix * m->switches * m->size;
-}
-
-/* ---- regions ---- */
-
-/* e - b, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
-static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x,
-                   real *noise)
-{
-    const real *row = m->row + w->i * m->size, *tangent = rows_of(m->tangent, m, c) + w->i * m->size;
-    const real b = w->at[breakpoint];
-    real e;
-    pl_multiply(1, m->size, row, x, &e);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b));
-    return e - b;
-}
-
-/* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
-static int outside(const pl_switching *m, const pl_contact *c, const walk *w, const real *x)
-{
-    real noise;
-    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise) {
-        return 1;
-    }
-    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise) {
-        return -1;
-    }
-    return 0;
 }
 
 /* ---- the start ---- */
@@ -68,11 +28,11 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, below, &w); leave(&w)) {
         const int above = c->region / w.stride % (w.breaks + 1) - w.interval;
         int sign;
-        if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise) {
+        if (w.interval == w.breaks || -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
             continue;
         }
         if (!possible) {
-            sign = heading(m->size, matrix_of(m, c), m->row + w.i * m->size, x, work);
+            sign = heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work);
             if (sign != 0) {
                 enter(m->matrix, c, c->region + ((sign > 0) - above) * w.stride);
             }
@@ -166,7 +126,7 @@ static int stays_clear_far(const pl_switching *m, const pl_contact *c, climb *at
     real *from = work, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
     const real *reach = m->ladder.reach + ((ptrdiff_t)m->ladder.first[c->matrix] * s + at->rung - 1) * n;
     int i;
-    look_at_bend(at, n, matrix_of(m, c), x, bend, work);
+    look_at_bend(at, n, matrix_of(m->A, m, c->matrix), x, bend, work);
     pl_multiply(s, n, m->row, x, from);
     pl_multiply(s, n, m->row, y, to);
     for (i = 0; i < s; i++, reach += (ptrdiff_t)at->rungs * n) {

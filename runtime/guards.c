@@ -14,11 +14,8 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
     real noise;
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
-        const int twice = w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval]);
-        if (w.interval == w.breaks || twice || -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
-            continue;
-        }
-        if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1])) {
+        if (w.interval == w.breaks || is_hold(m, w.i, w.interval) || is_hold(m, w.i, w.interval + 1) ||
+            -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
             continue;
         }
         if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0) {
@@ -46,7 +43,7 @@ static void hold_first(const pl_guards *m, instant *at)
 {
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
-        if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
+        if (is_hold(m, w.i, w.interval + 1)) {
             const int impact = impact_of(m, w.i, w.interval + 1);
             real noise;
             if (magnitude(excess(m, at->c, w.i, w.at[w.interval], at->x, &noise)) > noise) {
@@ -131,8 +128,6 @@ static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, c
     }
     return 1;
 }
-
-typedef pl_guards searched;
 
 typedef struct event {
     real s;

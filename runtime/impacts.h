@@ -4,35 +4,14 @@
 #ifndef PLRT_IMPACTS_H
 #define PLRT_IMPACTS_H
 
-#include "kept.h"
+typedef pl_guards searched, contacts;
+#define PLAY(m, i) (m)->play[i]
 #include "regions.h"
-
-typedef pl_guards contacts;
-
-typedef struct instant {
-    real *x;
-    pl_contact *c;
-    pl_crossing *crossing; /* NULL: nothing is listed */
-    real *work;            /* size, or as much as assignments of one set */
-    real time;             /* after the start of the step [s] */
-    int before;            /* the region before what happens now */
-    pl_chain chain;
-} instant;
 
 /* How many at rest are looked at together: 3^MOST combinations */
 enum { MOST = 6 };
 
 #include "contacts.h"
-
-static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
-{
-    return all + WORDS * (ptrdiff_t)matrix * m->size * m->size;
-}
-
-static const real *matrix_now(const pl_guards *m, const instant *at)
-{
-    return matrix_of(m->A, m, at->c->matrix);
-}
 
 /* ---- regions ---- */
 
@@ -50,30 +29,6 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
     for (k = m->set[set]; k < m->set[set + 1]; k++) {
         put_value(n, m->state[k], work + WORDS * (k - m->set[set]), x);
     }
-}
-
-/* e - b of an expression, and what rounding may have done to it */
-static real excess(const pl_guards *m, const pl_contact *c, int expression, real b, const real *x, real *noise)
-{
-    const real *row = m->row + expression * m->size;
-    const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + expression) * m->size;
-    real e;
-    e = dot(m->size, row, x);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[expression]);
-    return e - b;
-}
-
-/* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
-static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const real *x)
-{
-    real noise;
-    if (w->interval < w->breaks && excess(m, c, w->i, w->at[w->interval], x, &noise) > noise) {
-        return 1;
-    }
-    if (w->interval > 0 && -excess(m, c, w->i, w->at[w->interval - 1], x, &noise) > noise) {
-        return -1;
-    }
-    return 0;
 }
 
 /* Of one expression: between the numbers of regions one of its intervals apart; its interval in a region; its

@@ -1,10 +1,32 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* regions.h: regions as intervals of expressions between breakpoints, for the runtime's own use: by crossings.c and
- * guards.c. */
+/* regions.h: regions as intervals of expressions between breakpoints, and a state in one of them, for the runtime's own
+ * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and PLAY(m, i), the size of
+ * what is never above 1 in expression i. */
 #ifndef PLRT_REGIONS_H
 #define PLRT_REGIONS_H
 
-#include "real.h"
+#include "kept.h"
+
+typedef struct instant {
+    real *x;
+    pl_contact *c;
+    pl_crossing *crossing; /* NULL: nothing is listed */
+    real *work;            /* size, or as much as assignments of one set */
+    /* Of contacts: */
+    real time;             /* after the start of the step [s] */
+    int before;            /* the region before what happens now */
+    pl_chain chain;
+} instant;
+
+static const real *matrix_of(const real *all, const searched *m, int matrix)
+{
+    return all + WORDS * (ptrdiff_t)matrix * m->size * m->size;
+}
+
+static const real *matrix_now(const searched *m, const instant *at)
+{
+    return matrix_of(m->A, m, at->c->matrix);
+}
 
 /* One switch after the other, and where a region has it:
  *     for (w = first_switch(at); arrive(switches, breaks, region, &w); leave(&w)) */
@@ -64,6 +86,30 @@ static int list(int max_events, pl_contact *c, pl_crossing *crossing, real time,
     crossing->upward = upward;
     c->total++;
     return 1;
+}
+
+/* e - b of an expression, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
+static real excess(const searched *m, const pl_contact *c, int expression, real b, const real *x, real *noise)
+{
+    const real *row = m->row + expression * m->size;
+    const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + expression) * m->size;
+    real e;
+    e = dot(m->size, row, x);
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + PLAY(m, expression));
+    return e - b;
+}
+
+/* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
+static int outside(const searched *m, const pl_contact *c, const walk *w, const real *x)
+{
+    real noise;
+    if (w->interval < w->breaks && excess(m, c, w->i, w->at[w->interval], x, &noise) > noise) {
+        return 1;
+    }
+    if (w->interval > 0 && -excess(m, c, w->i, w->at[w->interval - 1], x, &noise) > noise) {
+        return -1;
+    }
+    return 0;
 }
 
 #endif
