@@ -154,13 +154,15 @@ bool first_rise(mpfr_t *coefficient, mpfr_srcptr width, mpfr_srcptr tiny, mpfr_p
 {
 	struct sought f = { coefficient, width, tiny, 0 };
 	const double whole = mpfr_get_d(width, MPFR_RNDN);
-	double c[DEGREE + 1], power = 1, off = 1e-39;   /* above `tiny` */
+	double c[DEGREE + 1], power = 1, most = 0, off = 1e-39; /* above `tiny` */
 	double choices = 1.0001;                /* of BEYOND from k */
 	for (int k = 0; k <= DEGREE; k++, power *= whole) {
 		c[k] = mpfr_get_d(coefficient[k], MPFR_RNDN) * power;
+		most += fabs(c[k]);
 		off += 1e-10 * fabs(c[k]);
 		choices *= k > BEYOND ? k / (double)(k - BEYOND) : 1;
 		f.beyond += k < BEYOND ? 0 : choices * fabs(c[k]) / pow(whole, BEYOND);
 	}
-	return seek(&f, c, off, 0, 0, at);
+	/* nothing rises that counts as 0 all along, and to halve that would have no end */
+	return mpfr_cmp_d(tiny, most) < 0 && seek(&f, c, off, 0, 0, at);
 }
