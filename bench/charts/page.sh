@@ -95,8 +95,8 @@ head_of() {
 	EOT
 }
 
-# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables; its titles, the
-# short one for links
+# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables; its titles,
+# the short one for links
 titles='stability|Stability and failures|Stability, quality, and where methods fail
 structural|Structural dynamics|Time integrators of structural dynamics
 energy|Energy|Energy and momentum in long runs

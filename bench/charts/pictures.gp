@@ -143,7 +143,8 @@ eval heading
 eval sprintf("set tmargin %g", 1.5 + 1.15*lines_of(found) + 4.4)
 set bmargin (narrow ? 4 : 3)
 set style fill solid 1 border rgb '#ffffff'
-legend = narrow ? "blue: error below 0.001; p, poor: below 0.1; w, wrong:\nabove; d: diverged; q: gave up; r: refused" : \
+legend = narrow ? \
+	"blue: error below 0.001; p, poor: below 0.1; w, wrong:\nabove; d: diverged; q: gave up; r: refused" : \
 	'ok: error below 0.001   exact: nothing left over, ok   poor: below 0.1   wrong: above   div.: diverged   '.\
 	'quit: gave up   ref.: refused'
 set label 1 legend at screen 0.02,screen 0.0 offset 0,(narrow ? 2.2 : 1.2) left font ',10' textcolor rgb '#202020'
@@ -414,7 +415,8 @@ eval heading
 set bmargin 3.5
 set yrange [0:1.35]
 # model and step; reported; measured pl; measured exact
-bars = "< sed 's/, 30 s/; 30 s/' '".csv."' | awk -F, '$1 != \"000\" { next } $3 == \"pl\" { sub(/.*h = /, \"\", $4); ".\
+bars = "< sed 's/, 30 s/; 30 s/' '".csv."' | awk -F, '$1 != \"000\" { next } ".\
+	"$3 == \"pl\" { sub(/.*h = /, \"\", $4); ".\
 	"key = $2 \"\\\\nh = \" $4; reported = $5; pl = $6 } $3 == \"exact\" { print n++, key, reported, pl, $6 }' OFS=,"
 set boxwidth 0.24
 set xtics scale 0
