@@ -417,7 +417,8 @@ set yrange [0:1.35]
 # model and step; reported; measured pl; measured exact
 bars = "< sed 's/, 30 s/; 30 s/' '".csv."' | awk -F, '$1 != \"000\" { next } ".\
 	"$3 == \"pl\" { sub(/.*h = /, \"\", $4); ".\
-	"key = $2 \"\\\\nh = \" $4; reported = $5; pl = $6 } $3 == \"exact\" { print n++, key, reported, pl, $6 }' OFS=,"
+	"key = $2 \"\\\\nh = \" $4; reported = $5; pl = $6 } ".\
+	"$3 == \"exact\" { print n++, key, reported, pl, $6 }' OFS=,"
 set boxwidth 0.24
 set xtics scale 0
 set style fill solid 0.9 border lc rgb '#8e8e96'
