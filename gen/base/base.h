@@ -95,9 +95,11 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+int  *numbers_up_to(int count);                            /* 0, 1, ... */
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 mpq_t *rationals_copied(size_t count, const mpq_t *q);
 bool  rationals_equal(size_t count, const mpq_t *a, const mpq_t *b);
+bool  rationals_zero(size_t count, const mpq_t *q);       /* all of them are 0 */
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
 /* from the budget of LIMIT_TERMS; gives up when it is spent */

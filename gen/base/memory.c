@@ -296,6 +296,14 @@ void clear_scratch(void *block)
 	discard(scratch);
 }
 
+int *numbers_up_to(int count)
+{
+	int *number = ARRAY(int, count);
+	for (int i = 0; i < count; i++)
+		number[i] = i;
+	return number;
+}
+
 mpq_t *rationals(size_t count)
 {
 	enum { DENOMINATOR = 64 };      /* bytes of that of 0/1 */
@@ -318,6 +326,14 @@ bool rationals_equal(size_t count, const mpq_t *a, const mpq_t *b)
 {
 	for (size_t i = 0; i < count; i++)
 		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}
+
+bool rationals_zero(size_t count, const mpq_t *q)
+{
+	for (size_t i = 0; i < count; i++)
+		if (mpq_sgn(q[i]) != 0)
 			return false;
 	return true;
 }

@@ -51,7 +51,6 @@ void emit_integers(const struct emitter *e, const char *type, const char *name, 
 /* static const TYPE NAME_name = {{...}, ...}; the name has its dimensions, as entry[7][3] */
 void emit_integer_rows(const struct emitter *e, const char *type, const char *name, int rows, int columns,
 		       const int *value);
-const int *numbers_up_to(int count);                              /* 0, 1, ... */
 /* Members of NAME_coeffs: of the spec's values, numbers between the two; or in declare_members what declares them */
 void open_member(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
 void close_member(const struct emitter *e);

@@ -71,9 +71,7 @@ static bool drives(const struct emitter *e, int column)
 static bool load_drives(const struct emitter *e, int load, int from)
 {
 	bool any = false;
-	int first = 0;
-	for (int l = 0; l < load; l++)
-		first += e->system->load[l].columns;
+	int first = column_of_load(e->system, load);
 	for (int j = from; j < e->system->load[load].columns; j++)
 		any = any || drives(e, first + j);
 	return any;

@@ -174,7 +174,7 @@ static int emit_systems(const struct emitter *e)
 		first[k] = place >= 0 ? place : stays;
 	}
 	for (int i = 0; i < system->n; i++)
-		highest[i] = system->velocity[i] >= 0 ? system->velocity[i] : i;
+		highest[i] = highest_state(system, i);
 	emit_integers(e, "short", "slope_row", e->step->branches, first);
 	emit_integers(e, "short", "highest", system->n, highest);
 	if (e->model->switching->segments > 1)

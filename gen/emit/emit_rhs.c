@@ -233,7 +233,7 @@ static void emit_derivatives(const struct emitter *e)
 			say(e, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
 	for (int i = 0; i < n; i++) {
 		const char **term = ARRAY(const char *, (size_t)n);
-		int terms = 0, state = written->velocity[i] >= 0 ? written->velocity[i] : i;
+		int terms = 0, state = highest_state(written, i);
 		for (int j = 0; j < n; j++)
 			if (!factor[i * n + j].zero)
 				term[terms++] = scaled(factor[i * n + j].value, format("residual[%d]", j));

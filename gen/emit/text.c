@@ -257,14 +257,6 @@ void emit_integer_rows(const struct emitter *e, const char *type, const char *na
 	say(e, "\n};\n");
 }
 
-const int *numbers_up_to(int count)
-{
-	int *number = ARRAY(int, (size_t)count);
-	for (int i = 0; i < count; i++)
-		number[i] = i;
-	return number;
-}
-
 void emit_int_list(const struct emitter *e, const char *name, int count, const int *value)
 {
 	emit_integers(e, "int", name, count, value);

@@ -142,13 +142,6 @@ static bool symmetric_vectors(struct invariants *of, const mpq_t *mass, const mp
 
 /* ---- which eigenvalues lie together ---- */
 
-static int root_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
 static bool lie_together(const struct invariants *of, int i, int j, double far)
 {
 	const double a = hypot(of->re[i], of->im[i]), b = hypot(of->re[j], of->im[j]);
@@ -164,7 +157,7 @@ static void add_part(struct invariants *of, int *parent, int root)
 	if (of->parts)
 		part.first += of->part[of->parts - 1].members;
 	for (int i = 0; i < of->n; i++)
-		if (root_of(parent, i) == root) {
+		if (root_of_node(parent, i) == root) {
 			of->member[part.first + count++] = i;
 			upper += of->im[i] > 0;
 			lower += of->im[i] < 0;
@@ -190,21 +183,19 @@ static int by_size(const void *a, const void *b)
 
 static void find_parts(struct invariants *of, bool symmetric)
 {
-	SCRATCH int *parent = ARRAY(int, of->n);
+	SCRATCH int *parent = numbers_up_to(of->n);
 	double largest = 0;
 	of->part = ARRAY(struct invariant, of->n);
 	of->member = ARRAY(int, of->n);
-	for (int i = 0; i < of->n; i++) {
-		parent[i] = i;
+	for (int i = 0; i < of->n; i++)
 		largest = hypot(of->re[i], of->im[i]) > largest ? hypot(of->re[i], of->im[i]) : largest;
-	}
 	const double far = largest * (symmetric ? TOGETHER_FAR : TOGETHER_SPLIT);
 	for (int i = 0; i < of->n; i++)
 		for (int j = 0; j < i; j++)
 			if (lie_together(of, i, j, far))
-				parent[root_of(parent, i)] = root_of(parent, j);
+				join_nodes(parent, i, j);
 	for (int i = 0; i < of->n; i++)
-		if (root_of(parent, i) == i)
+		if (root_of_node(parent, i) == i)
 			add_part(of, parent, i);
 	qsort(of->part, (size_t)of->parts, sizeof *of->part, by_size);
 }

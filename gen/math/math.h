@@ -10,7 +10,9 @@
 /* The block of each row (0 .. n-1) and column (n .. 2n-1) of an n x n matrix, numbered in the order of their first
  * columns; how many there are: rows and columns that have nothing in common with those of others */
 int  matrix_blocks(int n, const bool *filled, int *block);
+/* Components of a graph by parent pointers, at first numbers_up_to */
 int  root_of_node(int *parent, int node);                   /* of its component: paths to it become shorter */
+void join_nodes(int *parent, int a, int b);                 /* their components become one */
 mpz_t *integers(size_t count);                              /* initialised to 0 */
 void integers_free(mpz_t *z, size_t count);
 /* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the

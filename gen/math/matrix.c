@@ -11,15 +11,18 @@ int root_of_node(int *parent, int i)
 	return i;
 }
 
+void join_nodes(int *parent, int a, int b)
+{
+	parent[root_of_node(parent, a)] = root_of_node(parent, b);
+}
+
 int matrix_blocks(int n, const bool *filled, int *block)
 {
-	SCRATCH int *parent = ARRAY(int, 2 * (size_t)n);
+	SCRATCH int *parent = numbers_up_to(2 * n);
 	int count = 0;
-	for (int i = 0; i < 2 * n; i++)
-		parent[i] = i;
 	for (int cell = 0; cell < n * n; cell++)
 		if (filled[cell])
-			parent[root_of_node(parent, cell / n)] = root_of_node(parent, n + cell % n);
+			join_nodes(parent, cell / n, n + cell % n);
 	for (int i = 0; i < 2 * n; i++)
 		block[i] = -1;
 	for (int j = 0; j < n; j++)

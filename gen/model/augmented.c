@@ -103,17 +103,13 @@ static void fill_load_rows(mpq_t *A, int size, int at, const struct load *load)
 	}
 }
 
-/* column `at` of the rows of the highest derivatives = W^-1 force */
+/* column `at` of the rows of states */
 static void fill_force(mpq_t *A, int size, int at, const struct linear *system, const mpq_t *inverse,
 		       const mpq_t *force)
 {
-	int n = system->n;
-	mpq_t *product = rationals(n);
-	rational_product(n, n, 1, inverse, force, product);
-	for (int i = 0; i < n; i++) {
-		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
-		mpq_set(A[state * size + at], product[i]);
-	}
+	RATIONALS *slopes = slopes_by_force(system, inverse, force);
+	for (int i = 0; i < system->states; i++)
+		mpq_swap(A[i * size + at], slopes[i]);
 }
 
 static void fill_load(mpq_t *A, const struct layout *x, const struct linear *system, const mpq_t *inverse, int load,
@@ -126,11 +122,10 @@ static void fill_load(mpq_t *A, const struct layout *x, const struct linear *sys
 
 mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int segment)
 {
-	int n = system->n, size = x->size, states = system->states, column;
-	RATIONALS *inverse = rationals((size_t)(n * n));
+	int n = system->n, size = x->size, states = system->states;
+	RATIONALS *inverse = inverse_of_leading(system);
 	mpq_t *A = rationals((size_t)size * (size_t)size), *unit = rationals(n);
 	RATIONALS *own = state_matrix(system, false);
-	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < states; i++)
 		for (int j = 0; j < states; j++)
 			mpq_set(A[i * size + j], own[i * states + j]);

@@ -6,14 +6,12 @@
 /* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
 static int *components(const struct linear *system)
 {
-	int n = system->n, *parent = ARRAY(int, 2 * (size_t)n);
+	int n = system->n, *parent = numbers_up_to(2 * n);
 	const mpq_t *matrix[] = { system->M, system->C, system->K, system->heldC, system->heldK };
-	for (int i = 0; i < 2 * n; i++)
-		parent[i] = i;
 	for (int k = 0; k < 5; k++)
 		for (int cell = 0; matrix[k] && cell < n * n; cell++)
 			if (mpq_sgn(matrix[k][cell]) != 0)
-				parent[root_of_node(parent, cell / n)] = root_of_node(parent, n + cell % n);
+				join_nodes(parent, cell / n, n + cell % n);
 	return parent;
 }
 
@@ -26,13 +24,11 @@ static mpq_t *submatrix(const mpq_t *A, int n, const struct block *b)
 	return part;
 }
 
-static mpq_t *subvector(const mpq_t *force, int segments, int n, const struct block *b)
+static void pick_equations(const void *context, const mpq_t *force, mpq_t *part)
 {
-	mpq_t *part = rationals((size_t)segments * (size_t)b->system.n);
-	for (int s = 0; s < segments; s++)
-		for (int i = 0; i < b->system.n; i++)
-			mpq_set(part[s * b->system.n + i], force[s * n + b->equation[i]]);
-	return part;
+	const struct block *b = context;
+	for (int i = 0; i < b->system.n; i++)
+		mpq_set(part[i], force[b->equation[i]]);
 }
 
 static void number_states(const struct linear *whole, struct block *b)
@@ -67,22 +63,7 @@ static void restrict_system(const struct linear *whole, struct block *b)
 	system->K = submatrix(whole->K, n, b);
 	system->heldC = submatrix(whole->heldC, n, b);
 	system->heldK = submatrix(whole->heldK, n, b);
-	system->load = ARRAY(struct load, whole->loads);
-	for (int l = 0; l < whole->loads; l++) {
-		system->load[l] = whole->load[l];
-		system->load[l].force = ARRAY(mpq_t *, whole->load[l].columns);
-		for (int k = 0; k < whole->load[l].columns; k++)
-			system->load[l].force[k] = subvector(whole->load[l].force[k], whole->segments, n, b);
-	}
-	system->input = ARRAY(struct input, whole->inputs);
-	for (int i = 0; i < whole->inputs; i++) {
-		system->input[i] = whole->input[i];
-		for (int k = 0; k < 2; k++)
-			system->input[i].force[k] = subvector(whole->input[i].force[k], 1, n, b);
-	}
-	system->channel = ARRAY(mpq_t *, whole->channels);
-	for (int e = 0; e < whole->channels; e++)
-		system->channel[e] = subvector(whole->channel[e], 1, n, b);
+	take_forces(system, whole, system->n, pick_equations, b);
 }
 
 struct block block_at(const struct linear *system, int *parent, int coord)

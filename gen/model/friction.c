@@ -435,11 +435,10 @@ static void check_answer(struct building *b, const struct switching *s, const st
 {
 	const struct model *model = b->model;
 	const struct linear *system = &model->system;
-	int n = model->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n));
+	int n = model->n;
+	mpq_t *inverse = inverse_of_leading(system);
 	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
 	RATIONAL answer = ZERO, part = ZERO;
-	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++) {
 		mpq_srcptr acts = factor_of_friction(b->snapshot[f->segment].residual[i].form, f);
 		for (int k = 0; k < rate->terms && acts; k++) {

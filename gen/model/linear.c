@@ -74,6 +74,74 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 	return true;
 }
 
+mpq_t *inverse_of_leading(const struct linear *system)
+{
+	int column;
+	mpq_t *inverse = rationals((size_t)system->n * (size_t)system->n);
+	leading_inverse(system, inverse, &column);
+	return inverse;
+}
+
+int highest_state(const struct linear *system, int coord)
+{
+	return system->velocity[coord] >= 0 ? system->velocity[coord] : coord;
+}
+
+mpq_t *slopes_by_force(const struct linear *system, const mpq_t *inverse, const mpq_t *force)
+{
+	RATIONALS *highest = rationals(system->n);
+	mpq_t *slopes = rationals(system->states);
+	rational_product(system->n, system->n, 1, inverse, force, highest);
+	for (int i = 0; i < system->n; i++)
+		mpq_swap(slopes[highest_state(system, i)], highest[i]);
+	return slopes;
+}
+
+/* ---- forces ---- */
+
+struct forces {                     /* of another system, to be mapped */
+	const struct linear *other;
+	int rows;
+	force_map *map;
+	const void *context;
+};
+
+static mpq_t *mapped(const struct forces *f, int segments, const mpq_t *force)
+{
+	mpq_t *to = rationals((size_t)segments * (size_t)f->rows);
+	for (int s = 0; s < segments; s++)
+		f->map(f->context, force + s * f->other->n, to + s * f->rows);
+	return to;
+}
+
+void take_forces(struct linear *system, const struct linear *other, int rows, force_map *map, const void *context)
+{
+	const struct forces f = { other, rows, map, context };
+	system->segments = other->segments;
+	system->change = other->change;
+	system->loads = other->loads;
+	system->load = ARRAY(struct load, other->loads);
+	for (int l = 0; l < other->loads; l++) {
+		system->load[l] = other->load[l];
+		system->load[l].force = ARRAY(mpq_t *, other->load[l].columns);
+		for (int k = 0; k < other->load[l].columns; k++)
+			system->load[l].force[k] = mapped(&f, other->segments, other->load[l].force[k]);
+	}
+	system->inputs = other->inputs;
+	system->input = ARRAY(struct input, other->inputs);
+	for (int i = 0; i < other->inputs; i++) {
+		system->input[i] = other->input[i];
+		for (int k = 0; k < 2; k++)
+			system->input[i].force[k] = mapped(&f, 1, other->input[i].force[k]);
+	}
+	system->channels = other->channels;
+	system->channel = ARRAY(mpq_t *, other->channels);
+	for (int e = 0; e < other->channels; e++)
+		system->channel[e] = mapped(&f, 1, other->channel[e]);
+}
+
+/* ---- states ---- */
+
 /* What multiplies a state in the equations; with the held terms of a scheme, or only those. */
 static mpq_srcptr factor_of_state(const struct linear *system, int row, int state, bool held)
 {
@@ -94,14 +162,12 @@ void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool
 /* x' = A x over the states (held terms: those that a scheme holds, alone) */
 mpq_t *state_matrix(const struct linear *system, bool held)
 {
-	int n = system->n, states = system->states, column;
-	RATIONALS *inverse = rationals((size_t)n * (size_t)n);
+	int n = system->n, states = system->states;
+	RATIONALS *inverse = inverse_of_leading(system), *highest = rationals((size_t)n * (size_t)states);
 	mpq_t *A = rationals((size_t)states * (size_t)states);
-	RATIONALS *highest = rationals((size_t)n * (size_t)states);
-	leading_inverse(system, inverse, &column);
 	highest_derivatives(system, inverse, held, highest);
 	for (int i = 0; i < n; i++) {
-		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
+		int state = highest_state(system, i);
 		for (int j = 0; j < states; j++)
 			mpq_set(A[state * states + j], highest[i * states + j]);
 		if (system->velocity[i] >= 0 && !held)
@@ -110,12 +176,17 @@ mpq_t *state_matrix(const struct linear *system, bool held)
 	return A;
 }
 
+int column_of_load(const struct linear *system, int load)
+{
+	int column = 0;
+	for (int l = 0; l < load; l++)
+		column += system->load[l].columns;
+	return column;
+}
+
 int load_columns(const struct linear *system)
 {
-	int columns = 0;
-	for (int l = 0; l < system->loads; l++)
-		columns += system->load[l].columns;
-	return columns;
+	return column_of_load(system, system->loads);
 }
 
 int input_columns(const struct linear *system)
@@ -129,9 +200,8 @@ int input_columns(const struct linear *system)
 bool load_acts(const struct linear *system, const struct load *load)
 {
 	for (int k = 0; k < load->columns; k++)
-		for (int i = 0; i < system->segments * system->n; i++)
-			if (mpq_sgn(load->force[k][i]) != 0)
-				return true;
+		if (!rationals_zero((size_t)(system->segments * system->n), load->force[k]))
+			return true;
 	return false;
 }
 
@@ -141,4 +211,40 @@ bool is_constant_column(const struct linear *system, int column)
 		if (column == 0 && is_polynomial(system->load[l].wave))
 			return true;
 	return false;
+}
+
+/* ---- what goes with a load ---- */
+
+mpq_t *shifted_inverse(int m, const mpq_t *A, mpq_srcptr a, mpq_srcptr w)
+{
+	const int size = w ? 2 * m : m;
+	int column;
+	RATIONALS *shifted = rationals((size_t)size * (size_t)size);
+	mpq_t *inverse = rationals((size_t)size * (size_t)size);
+	for (int i = 0; i < size; i++) {
+		mpq_t *row = shifted + i * size, *own = row + i / m * m;
+		for (int j = 0; j < m; j++)
+			mpq_neg(own[j], A[i % m * m + j]);
+		mpq_add(own[i % m], own[i % m], a);
+		if (w)
+			(i < m ? mpq_set : mpq_neg)(row[(i + m) % size], w);
+	}
+	return rational_inverse(size, shifted, inverse, &column) ? inverse : NULL;
+}
+
+/* Of t^k from the highest k down: (a - A) P_k + w P_k' = B_k - (k + 1) P_{k+1} */
+void solve_forced(int m, const mpq_t *shifted, const struct load *load, mpq_t *P)
+{
+	const int size = load->columns / load->powers * m;
+	RATIONALS *right = rationals(size);
+	RATIONAL above = ZERO;
+	for (int k = load->powers - 1; k >= 0; k--) {
+		mpq_t *here = P + k * size;
+		mpq_set_si(above, k + 1, 1);
+		for (int i = 0; i < size && k + 1 < load->powers; i++)
+			rational_submul(here[i], above, here[size + i]);
+		for (int i = 0; i < size; i++)
+			mpq_swap(right[i], here[i]);
+		rational_product(size, size, 1, shifted, right, here);
+	}
 }

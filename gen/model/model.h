@@ -39,10 +39,21 @@ struct linear linear_like(const struct linear *shape);      /* the same coordina
 struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */
 /* W^-1, n x n; W has the columns of M, and those of C where a coordinate is of first order. False: singular. */
 bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column);
+mpq_t *inverse_of_leading(const struct linear *system);     /* where it is known to be regular */
+int highest_state(const struct linear *system, int coord);  /* whose derivative is the highest of the coordinate */
+mpq_t *slopes_by_force(const struct linear *system, const mpq_t *inverse, const mpq_t *force); /* W^-1 force in y' */
+/* The loads, inputs and channels of another system, each force as `map` makes `rows` numbers of it */
+typedef void force_map(const void *context, const mpq_t *force, mpq_t *mapped);
+void take_forces(struct linear *system, const struct linear *other, int rows, force_map *map, const void *context);
 /* Highest derivatives of the coordinates, -W^-1 (C v + K q), n x states; `held`: of the held terms alone */
 void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool held, mpq_t *row);
 mpq_t *state_matrix(const struct linear *system, bool held); /* A of y' = A y, states x states */
+/* [a - A, w; -w, a - A]^-1, of 2m x 2m; w NULL: (a - A)^-1, m x m. NULL: a + i w is a pole */
+mpq_t *shifted_inverse(int m, const mpq_t *A, mpq_srcptr a, mpq_srcptr w);
+/* What of x' = A x + B z goes with the states z of a load, x = P z; P, columns x m, is B before */
+void solve_forced(int m, const mpq_t *shifted, const struct load *load, mpq_t *P);
 int load_columns(const struct linear *system);
+int column_of_load(const struct linear *system, int load);  /* its first */
 int input_columns(const struct linear *system);
 bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 bool load_acts(const struct linear *system, const struct load *load);

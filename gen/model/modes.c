@@ -112,9 +112,7 @@ static bool take_coordinates(struct mode_basis *basis, const struct linear *syst
 static struct mode_basis *basis_of(const struct linear *system)
 {
 	struct mode_basis *basis = NEW(struct mode_basis);
-	int column;
-	basis->inverse = rationals((size_t)system->n * (size_t)system->n);
-	leading_inverse(system, basis->inverse, &column);
+	basis->inverse = inverse_of_leading(system);
 	if (take_coordinates(basis, system))
 		return basis;
 	basis->A = state_matrix(system, false);

@@ -292,10 +292,7 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 {
 	const struct model *model = b->model;
 	struct form *lower = NEW(struct form);
-	int column;
-	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
-	      *highest = rationals((size_t)(model->n * system->states));
-	leading_inverse(system, inverse, &column);
+	mpq_t *inverse = inverse_of_leading(system), *highest = rationals((size_t)(model->n * system->states));
 	highest_derivatives(system, inverse, false, highest);
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind != BASIS_COORD || state_of(model, &form->term[i].basis) >= 0)
@@ -356,12 +353,9 @@ void build_outputs(struct building *b)
 {
 	struct model *model = b->model;
 	struct linear *system = &model->system;
-	int column;
-	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
-	      *highest = rationals((size_t)(model->n * system->states));
+	mpq_t *inverse = inverse_of_leading(system), *highest = rationals((size_t)(model->n * system->states));
 	/* what is left over is left by this one */
 	struct linear first = model->operators ? operator_system(model, 0) : *system;
-	leading_inverse(system, inverse, &column);
 	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);
 	int told = -1;                          /* the statement last told: once is enough */

@@ -9,23 +9,16 @@
 
 /* ---- which equations and coordinates go together: nodes as in blocks.c ---- */
 
-static void join(int *parent, int a, int b)
-{
-	parent[root_of_node(parent, a)] = root_of_node(parent, b);
-}
-
 static void join_form(const struct building *b, int *parent, bool *seen, int row, const struct form *form)
 {
 	for (const struct form_term **term = terms_within(form, seen); *term; term++)
 		if ((*term)->basis.kind == BASIS_COORD)
-			join(parent, row, b->model->n + (*term)->basis.index);
+			join_nodes(parent, row, b->model->n + (*term)->basis.index);
 }
 
 static int *components_of_equations(const struct building *b)
 {
-	int n = b->model->n, *parent = ARRAY(int, 2 * (size_t)n);
-	for (int i = 0; i < 2 * n; i++)
-		parent[i] = i;
+	int n = b->model->n, *parent = numbers_up_to(2 * n);
 	for (int row = 0; row < n; row++) {
 		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 		for (int s = 0; s < b->model->system.segments; s++)
@@ -66,7 +59,7 @@ static void find_components(struct parting *p)
 /* Two components become one, whose regions are still to be found. */
 static void unite(struct parting *p, int coord, int other)
 {
-	join(p->parent, p->b->model->n + other, p->b->model->n + coord);
+	join_nodes(p->parent, p->b->model->n + other, p->b->model->n + coord);
 	p->of[coord] = p->of[other] = NULL;
 }
 
@@ -366,7 +359,7 @@ static int *graph_of_parts(const struct building *b, const struct switching *s)
 	for (int p = 0; p < s->parts; p++) {
 		const struct switching *own = s->part[p].model->switching;
 		for (int k = 0; k < own->rows; k++)
-			join(parent, own->row[k], n + s->part[p].coord);
+			join_nodes(parent, own->row[k], n + s->part[p].coord);
 	}
 	return parent;
 }

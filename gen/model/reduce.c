@@ -146,53 +146,14 @@ static mpq_t *coefficients_of(const struct observable *o, const mpq_t *row)
 	return coefficient;
 }
 
-/* W^-1 force as a column over the states */
-static mpq_t *force_column(const struct linear *written, const mpq_t *inverse, const mpq_t *force)
-{
-	int n = written->n;
-	mpq_t *highest = rationals(n), *column = rationals(written->states);
-	rational_product(n, n, 1, inverse, force, highest);
-	for (int i = 0; i < n; i++)
-		mpq_set(column[written->velocity[i] >= 0 ? written->velocity[i] : i], highest[i]);
-	return column;
-}
+struct projecting { const struct observable *o; const struct linear *written; const mpq_t *inverse; };
 
-/* T W^-1 force; a force is one rational per equation */
-static void project_force(const struct observable *o, const struct linear *written, const mpq_t *inverse,
-			  const mpq_t *force, mpq_t *reduced)
+/* T W^-1 force */
+static void project_force(const void *context, const mpq_t *force, mpq_t *reduced)
 {
-	rational_product(o->rank, o->states, 1, o->row, force_column(written, inverse, force), reduced);
-}
-
-static void project_loads(const struct observable *o, const struct linear *written, struct linear *system)
-{
-	int n = written->n, column;
-	mpq_t *inverse = rationals((size_t)n * (size_t)n);
-	leading_inverse(written, inverse, &column);
-	system->segments = written->segments;
-	system->change = written->change;
-	system->loads = written->loads;
-	system->load = ARRAY(struct load, written->loads);
-	for (int l = 0; l < written->loads; l++) {
-		const struct load *load = &written->load[l];
-		system->load[l] = *load;
-		system->load[l].force = ARRAY(mpq_t *, load->columns);
-		for (int k = 0; k < load->columns; k++) {
-			system->load[l].force[k] = rationals((size_t)written->segments * (size_t)o->rank);
-			for (int s = 0; s < written->segments; s++)
-				project_force(o, written, inverse, load->force[k] + s * n,
-					      system->load[l].force[k] + s * o->rank);
-		}
-	}
-	system->inputs = written->inputs;
-	system->input = ARRAY(struct input, written->inputs);
-	for (int i = 0; i < written->inputs; i++) {
-		system->input[i] = written->input[i];
-		for (int k = 0; k < 2; k++) {
-			system->input[i].force[k] = rationals(o->rank);
-			project_force(o, written, inverse, written->input[i].force[k], system->input[i].force[k]);
-		}
-	}
+	const struct projecting *p = context;
+	RATIONALS *slopes = slopes_by_force(p->written, p->inverse, force);
+	rational_product(p->o->rank, p->o->states, 1, p->o->row, slopes, reduced);
 }
 
 static struct linear project_system(const struct observable *o, const struct linear *written)
@@ -203,7 +164,8 @@ static struct linear project_system(const struct observable *o, const struct lin
 	for (int i = 0; i < r * r; i++)
 		mpq_set(A[i], derivative[i / r * o->states + o->pivot[i % r]]);
 	struct linear system = first_order_system(r, A);
-	project_loads(o, written, &system);
+	const struct projecting projecting = { o, written, inverse_of_leading(written) };
+	take_forces(&system, written, r, project_force, &projecting);
 	return system;
 }
 

@@ -11,7 +11,7 @@ static void rows_of_highest(const struct layout *x, const struct linear *system,
 	const int size = x->size;
 	RATIONALS *A = augmented_matrix(x, system, 0);
 	for (int i = 0; i < system->n; i++) {
-		mpq_t *from = A + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
+		mpq_t *from = A + highest_state(system, i) * size;
 		for (int j = 0; j < size; j++)
 			mpq_swap(row[i * size + j], from[j]);
 	}

@@ -70,18 +70,6 @@ static void fill_block(const struct selection *s, int index, struct linear *syst
 
 /* ---- what drives them ---- */
 
-/* W^-1 force, at the states that are highest derivatives */
-static mpq_t *force_column(const struct modes *modes, const mpq_t *inverse, const mpq_t *force)
-{
-	const struct linear *system = &modes->model->system;
-	RATIONALS *highest = rationals(system->n);
-	mpq_t *column = rationals(system->states);
-	rational_product(system->n, system->n, 1, inverse, force, highest);
-	for (int i = 0; i < system->n; i++)
-		mpq_swap(column[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
-	return column;
-}
-
 /* left column: what drives z */
 static void drive(const struct modes *modes, const struct mode *mode, const mpq_t *column, mpq_t *b)
 {
@@ -89,49 +77,23 @@ static void drive(const struct modes *modes, const struct mode *mode, const mpq_
 	rational_product(mode->states, states, 1, mode->left, column, b);
 }
 
-static void project_force(const struct selection *s, const mpq_t *inverse, const mpq_t *force, mpq_t *to)
+struct projecting { const struct selection *s; const mpq_t *inverse; };
+
+static void project_force(const void *context, const mpq_t *force, mpq_t *to)
 {
+	const struct projecting *p = context;
+	const struct selection *s = p->s;
 	const struct modes *modes = s->modes;
-	RATIONALS *column = force_column(modes, inverse, force);
+	RATIONALS *slopes = slopes_by_force(&modes->model->system, p->inverse, force);
 	for (int i = 0; i < modes->count; i++) {
 		const struct mode *mode = &modes->mode[i];
 		if (!s->of[i])
 			continue;
 		RATIONALS *b = rationals(mode->states);
-		drive(modes, mode, column, b);
+		drive(modes, mode, slopes, b);
 		const int from = mode->moves ? mode->columns : 0;
 		for (int j = from; j < mode->states; j++)
 			mpq_set(to[s->first[i] + j - from], b[j]);
-	}
-}
-
-static void project_loads(const struct selection *s, const mpq_t *inverse, struct linear *system)
-{
-	const struct linear *whole = &s->modes->model->system;
-	const int n = whole->n;
-	system->segments = whole->segments;
-	system->change = whole->change;
-	system->loads = whole->loads;
-	system->load = ARRAY(struct load, whole->loads);
-	for (int l = 0; l < whole->loads; l++) {
-		struct load *load = &system->load[l];
-		*load = whole->load[l];
-		load->force = ARRAY(mpq_t *, load->columns);
-		for (int k = 0; k < load->columns; k++) {
-			load->force[k] = rationals((size_t)whole->segments * (size_t)s->coords);
-			for (int part = 0; part < whole->segments; part++)
-				project_force(s, inverse, whole->load[l].force[k] + part * n,
-					      load->force[k] + part * s->coords);
-		}
-	}
-	system->inputs = whole->inputs;
-	system->input = ARRAY(struct input, whole->inputs);
-	for (int i = 0; i < whole->inputs; i++) {
-		system->input[i] = whole->input[i];
-		for (int k = 0; k < 2; k++) {
-			system->input[i].force[k] = rationals(s->coords);
-			project_force(s, inverse, whole->input[i].force[k], system->input[i].force[k]);
-		}
 	}
 }
 
@@ -153,76 +115,42 @@ static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_
 	(f->minus ? mpq_sub : mpq_add)(to, to, sum[0]);
 }
 
-/* [a - T, w; -w, a - T] of a load, its inverse; false: singular */
-static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int trig, mpq_t *inverse)
+static mpq_srcptr frequency_of(const struct load *load)
 {
-	const int k = mode->states, size = trig * k;
-	int column;
-	RATIONALS *F = rationals((size_t)size * (size_t)size);
-	for (int r = 0; r < size; r++)
-		for (int c = 0; c < size; c++) {
-			mpq_ptr cell = F[r * size + c];
-			if (r / k == c / k)
-				mpq_neg(cell, mode->block[r % k * k + c % k]);
-			if (r == c)
-				mpq_add(cell, cell, a);
-			if (r / k != c / k && r % k == c % k)
-				(r < c ? mpq_set : mpq_neg)(cell, w);
-		}
-	const bool regular = rational_inverse(size, F, inverse, &column);
-	return regular;
-}
-
-/* x = inverse (b - (power + 1) above), of one power of t of a load; above NULL: 0 */
-static void forced_power(int size, const mpq_t *inverse, mpq_t *b, const mpq_t *above, int power, mpq_t *x)
-{
-	RATIONAL factor = ZERO;
-	mpq_set_si(factor, power + 1, 1);
-	for (int i = 0; i < size && above; i++)
-		rational_submul(b[i], factor, above[i]);
-	rational_product(size, size, 1, inverse, b, x);
+	return oscillates(load->wave) ? load->wave->w : NULL;
 }
 
 static void follow_load(const struct following *f, int l, int segment)
 {
 	const struct linear *system = &f->modes->model->system;
 	const struct load *load = &system->load[l];
-	const int trig = oscillates(load->wave) ? 2 : 1, k = f->mode->states, size = trig * k;
-	const size_t cells = (size_t)size * (size_t)size;
-	RATIONALS *inverse = rationals(cells), *b = rationals(size);
-	mpq_t *x = NULL;
-	const bool regular = inverse_of(f->mode, load->wave->a, load->wave->w, trig, inverse);
-	for (int power = load->powers - 1; power >= 0 && regular; power--) {
-		mpq_t *above = x;
-		x = rationals(size);
-		for (int t = 0; t < trig; t++) {
-			const mpq_t *force = load->force[power * trig + t] + segment * system->n;
-			RATIONALS *column = force_column(f->modes, f->inverse, force);
-			drive(f->modes, f->mode, column, b + t * k);
-		}
-		forced_power(size, inverse, b, above, power, x);
-		for (int o = 0; o < f->modes->model->outputs; o++)
-			for (int t = 0; t < trig; t++)
-				add_rows(f, o, x + t * k,
-					 f->output[o].load[l][(power * trig + t) * system->segments + segment]);
-		if (above)
-			rationals_free(above, (size_t)size);
+	const int k = f->mode->states;
+	const size_t cells = (size_t)load->columns * (size_t)k;
+	RATIONALS *x = rationals(cells);
+	const mpq_t *inverse = shifted_inverse(k, f->mode->block, load->wave->a, frequency_of(load));
+	for (int c = 0; c < load->columns && inverse; c++) {
+		RATIONALS *slopes = slopes_by_force(system, f->inverse, load->force[c] + segment * system->n);
+		drive(f->modes, f->mode, slopes, x + c * k);
 	}
-	if (x)
-		rationals_free(x, (size_t)size);
+	if (!inverse)
+		return;
+	solve_forced(k, inverse, load, x);
+	for (int o = 0; o < f->modes->model->outputs; o++)
+		for (int c = 0; c < load->columns; c++)
+			add_rows(f, o, x + c * k, f->output[o].load[l][c * system->segments + segment]);
 }
 
 /* -T^-1 B */
 static void follow_input(const struct following *f, int input)
 {
+	const struct linear *system = &f->modes->model->system;
 	const int k = f->mode->states;
-	RATIONALS *inverse = rationals((size_t)k * (size_t)k), *b = rationals(k), *x = rationals(k);
-	mpq_srcptr zero = rationals(1)[0];
-	const bool regular = inverse_of(f->mode, zero, zero, 1, inverse);
-	for (int order = 0; order < 2 && regular; order++) {
-		const mpq_t *force = f->modes->model->system.input[input].force[order];
-		RATIONALS *column = force_column(f->modes, f->inverse, force);
-		drive(f->modes, f->mode, column, b);
+	RATIONALS *b = rationals(k), *x = rationals(k);
+	RATIONAL zero = ZERO;
+	const mpq_t *inverse = shifted_inverse(k, f->mode->block, zero, NULL);
+	for (int order = 0; order < 2 && inverse; order++) {
+		RATIONALS *slopes = slopes_by_force(system, f->inverse, system->input[input].force[order]);
+		drive(f->modes, f->mode, slopes, b);
 		rational_product(k, k, 1, inverse, b, x);
 		for (int o = 0; o < f->modes->model->outputs; o++)
 			add_rows(f, o, x, f->output[o].input[order][input]);
@@ -344,9 +272,6 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 {
 	const struct model *model = s->modes->model;
 	struct model *shorter = NEW(struct model);
-	int column;
-	mpq_t *inverse = rationals((size_t)model->n * (size_t)model->n);
-	leading_inverse(&model->system, inverse, &column);
 	*shorter = *model;
 	shorter->n = s->coords;
 	shorter->system = shape_of(s);
@@ -359,7 +284,8 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 			fill_block(s, i, &shorter->system);
 	}
 	shorter->coord_name = shorter->state_name;
-	project_loads(s, inverse, &shorter->system);
+	take_forces(&shorter->system, &model->system, s->coords, project_force,
+		    &(struct projecting){ s, inverse_of_leading(&model->system) });
 	project_start(s, shorter->initial);
 	shorter->highest = ARRAY(struct output *, s->coords);
 	shorter->output = rows_over(s, direct);
@@ -372,11 +298,8 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 
 static bool follow_dropped(struct modes *modes, const bool *kept, struct output *output, bool minus)
 {
-	const struct model *model = modes->model;
-	int column;
-	RATIONALS *inverse = rationals((size_t)model->n * (size_t)model->n);
+	RATIONALS *inverse = inverse_of_leading(&modes->model->system);
 	bool good = true;
-	leading_inverse(&model->system, inverse, &column);
 	for (int i = 0; i < modes->count && good; i++)
 		good = kept[i] || follow(modes, i, inverse, output, minus);
 	return good;

@@ -177,7 +177,7 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 	for (int r = 0; r < p->k; r++) {
 		double sum = 0, size = 0;
 		for (int i = 0; i < n; i++) {
-			const int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
+			const int state = highest_state(system, i);
 			sum += p->left[r * system->states + state] * column[i];
 			size += fabs(p->left[r * system->states + state] * column[i]);
 		}

@@ -26,13 +26,6 @@ static void matrix_product(int n, const double *a, const double *b, double *to)
 
 /* ---- the matrices ---- */
 
-static int column_of(const struct linear *system, int load, int column)
-{
-	for (int l = 0; l < load; l++)
-		column += system->load[l].columns;
-	return column;
-}
-
 /* What acts on equation i: over a cos, over u' = -w a sin, and all the time */
 static void forces_on(const struct linear *system, const struct drive *drive, int input, int i, mpq_t *over)
 {
@@ -45,7 +38,7 @@ static void forces_on(const struct linear *system, const struct drive *drive, in
 			mpq_srcptr force = system->load[l].force[c][drive->segment * system->n + i];
 			if (drive->input < 0 && drive->load == l && drive->column == c)
 				mpq_add(over[0], over[0], force);
-			else if (is_constant_column(system, column_of(system, l, c)))
+			else if (is_constant_column(system, column_of_load(system, l) + c))
 				mpq_add(over[2], over[2], force);
 		}
 }
@@ -53,18 +46,17 @@ static void forces_on(const struct linear *system, const struct drive *drive, in
 /* z' = A z; columns of a sin are those of u', to be multiplied by -w */
 static double *matrix_of(const struct linear *system, const struct drive *drive, int input)
 {
-	int n = system->n, states = system->states, size = states + OVER, column;
+	int n = system->n, states = system->states, size = states + OVER;
 	double *A = ARRAY(double, (size_t)size * (size_t)size);
-	RATIONALS *free = state_matrix(system, false), *inverse = rationals((size_t)n * (size_t)n);
+	RATIONALS *free = state_matrix(system, false), *inverse = inverse_of_leading(system);
 	RATIONALS *over = rationals((size_t)(OVER * n)), *row = rationals(OVER);
-	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++)
 		forces_on(system, drive, input, i, over + OVER * i);
 	for (int i = 0; i < states; i++)
 		for (int j = 0; j < states; j++)
 			A[i * size + j] = mpq_get_d(free[i * states + j]);
 	for (int i = 0; i < n; i++) {
-		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
+		int state = highest_state(system, i);
 		for (int k = 0; k < OVER; k++) {
 			mpq_set_ui(row[k], 0, 1);
 			for (int j = 0; j < n; j++)
@@ -88,7 +80,7 @@ static double *row_of(const struct linear *system, const struct output *row, con
 			double factor = mpq_get_d(row->load[l][c * system->segments + drive->segment]);
 			if (drive->input < 0 && drive->load == l && drive->column == c)
 				rest[0] += factor;
-			else if (is_constant_column(system, column_of(system, l, c)))
+			else if (is_constant_column(system, column_of_load(system, l) + c))
 				rest[2] += factor;
 		}
 	return over;

@@ -27,27 +27,21 @@ static const mpq_t *force_of(const struct space *s, int drive, bool slope)
 	return slope ? NULL : system->load[d->load].force[d->column] + d->segment * system->n;
 }
 
-/* Column `drive` of B: W^-1 force, where the highest derivatives are */
+/* Column `drive` of B */
 static void fill_column(const struct space *s, const mpq_t *inverse, const mpq_t *force, int drive, mpq_t *B)
 {
-	const struct linear *system = &s->model->system;
-	int n = system->n;
-	RATIONALS *highest = rationals(n);
-	rational_product(n, n, 1, inverse, force, highest);
-	for (int i = 0; i < n; i++)
-		mpq_set(B[(system->velocity[i] >= 0 ? system->velocity[i] : i) * s->drives + drive], highest[i]);
+	RATIONALS *slopes = slopes_by_force(&s->model->system, inverse, force);
+	for (int i = 0; i < s->states; i++)
+		mpq_swap(B[i * s->drives + drive], slopes[i]);
 }
 
 static void fill_inputs(struct space *s)
 {
-	int n = s->model->system.n, column;
-	mpq_t *inverse = rationals((size_t)(n * n));
-	leading_inverse(&s->model->system, inverse, &column);
+	RATIONALS *inverse = inverse_of_leading(&s->model->system);
 	for (int d = 0; d < s->drives; d++) {
 		fill_column(s, inverse, force_of(s, d, false), d, s->B);
 		const mpq_t *slope = force_of(s, d, true);
-		for (int i = 0; slope && i < n; i++)
-			s->slopes = s->slopes || mpq_sgn(slope[i]) != 0;
+		s->slopes = s->slopes || (slope && !rationals_zero((size_t)s->model->n, slope));
 		if (slope)
 			fill_column(s, inverse, slope, d, s->B1);
 	}

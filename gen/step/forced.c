@@ -39,62 +39,29 @@ static int moved_states(const struct linear *system, int load, int *state)
 	return count;
 }
 
-/* [[A - a, -w], [w, A - a]]^-1 over the states given, without waves (A - a)^-1; NULL: a + iw is a pole */
-static const mpq_t *shifted_inverse(const struct linear *system, const struct wave *wave, int m, const int *state)
+/* [a - A, w; -w, a - A]^-1 over the states given; NULL: a + iw is a pole */
+static const mpq_t *inverse_over(const struct linear *system, const struct wave *wave, int m, const int *state)
 {
-	int trig = oscillates(wave) ? 2 : 1, size = trig * m, column;
-	const mpq_t *A = state_matrix(system, false);
-	mpq_t *W = rationals((size_t)(size * size)), *inverse = rationals((size_t)(size * size));
-	for (int part = 0; part < trig; part++)
-		for (int i = 0; i < m; i++) {
-			mpq_t *row = W + (part * m + i) * size;
-			for (int j = 0; j < m; j++)
-				mpq_set(row[part * m + j], A[state[i] * system->states + state[j]]);
-			mpq_sub(row[part * m + i], row[part * m + i], wave->a);
-			if (trig == 2)
-				(part ? mpq_set : mpq_neg)(row[(1 - part) * m + i], wave->w);
-		}
-	return rational_inverse(size, W, inverse, &column) ? inverse : NULL;
+	RATIONALS *A = state_matrix(system, false), *part = rationals((size_t)(m * m));
+	for (int i = 0; i < m * m; i++)
+		mpq_set(part[i], A[state[i / m] * system->states + state[i % m]]);
+	return shifted_inverse(m, part, wave->a, oscillates(wave) ? wave->w : NULL);
 }
 
-/* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1)
- * P_{k+1} - B_k */
-static void solve_forced(const struct linear *system, int l, int segment, int m, const int *state, const mpq_t *inverse,
-			 mpq_t *P)
+/* P, states x columns of the load, in one segment of time */
+static void force_states(const struct linear *system, const struct load *load, int segment, int m, const int *state,
+			 const mpq_t *inverse, mpq_t *P)
 {
-	const struct load *load = &system->load[l];
-	int n = system->n, columns = load->columns, trig = oscillates(load->wave) ? 2 : 1, size = trig * m, column;
-	mpq_t *right = rationals(size), *part = rationals(size), *W = rationals((size_t)(n * n)), *a = rationals(n);
-	leading_inverse(system, W, &column);
-	for (int k = load->powers - 1; k >= 0; k--) {
-		for (int p = 0; p < trig; p++) {
-			column = trig * k + p;
-			rational_product(n, n, 1, W, load->force[column] + segment * n, a);
-			for (int i = 0; i < m; i++) {
-				mpq_ptr r = right[p * m + i];
-				mpq_set_si(r, k + 1, 1);
-				if (k + 1 < load->powers)
-					mpq_mul(r, r, P[state[i] * columns + column + trig]);
-				else
-					mpq_set_ui(r, 0, 1);
-				for (int q = 0; q < n; q++)
-					if (state[i] == (system->velocity[q] >= 0 ? system->velocity[q] : q))
-						mpq_sub(r, r, a[q]);
-			}
-		}
-		rational_product(size, size, 1, inverse, right, part);
-		for (int p = 0; p < trig; p++)
-			for (int i = 0; i < m; i++)
-				mpq_set(P[state[i] * columns + trig * k + p], part[p * m + i]);
+	RATIONALS *W = inverse_of_leading(system), *part = rationals((size_t)(m * load->columns));
+	for (int k = 0; k < load->columns; k++) {
+		RATIONALS *slopes = slopes_by_force(system, W, load->force[k] + segment * system->n);
+		for (int i = 0; i < m; i++)
+			mpq_swap(part[k * m + i], slopes[state[i]]);
 	}
-}
-
-static int first_column(const struct linear *system, int load)
-{
-	int column = 0;
-	for (int l = 0; l < load; l++)
-		column += system->load[l].columns;
-	return column;
+	solve_forced(m, inverse, load, part);
+	for (int k = 0; k < load->columns; k++)
+		for (int i = 0; i < m; i++)
+			mpq_swap(P[state[i] * load->columns + k], part[k * m + i]);
 }
 
 static struct coefficient rounded(mpq_srcptr q)
@@ -122,16 +89,16 @@ static void add_written(int states, int columns, const mpq_t *row, mpq_t *P)
 static bool fill_forced(const struct linear *system, int l, const mpq_t *written, struct forced *forced)
 {
 	const struct load *load = &system->load[l];
-	int states = system->states, all = load_columns(system), first = first_column(system, l),
+	int states = system->states, all = load_columns(system), first = column_of_load(system, l),
 	    *state = ARRAY(int, states), rows = forced->rows;
 	int m = moved_states(system, l, state);
 	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
-	const mpq_t *inverse = shifted_inverse(system, load->wave, m, state);
+	const mpq_t *inverse = inverse_over(system, load->wave, m, state);
 	mpq_t *before = NULL;
 	for (int s = 0; s < system->segments && inverse; s++) {
 		mpq_t *P = rationals((size_t)(rows * load->columns));
-		solve_forced(system, l, s, m, state, inverse, P);
+		force_states(system, load, s, m, state, inverse, P);
 		add_written(states, load->columns, written, P);
 		for (int i = 0; i < rows * load->columns; i++) {
 			int row = i / load->columns, column = first + i % load->columns;
@@ -169,7 +136,7 @@ struct reckoning {
 /* Roundings of a load state relative to itself: of cos and sin, of a growth, of t and its products */
 static double load_roundings(const struct reckoning *r, int column)
 {
-	int l = r->load_of[column], at = column - first_column(&r->step->branch->system, l);
+	int l = r->load_of[column], at = column - column_of_load(&r->step->branch->system, l);
 	const struct load *load = &r->step->branch->system.load[l];
 	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
 }
@@ -186,7 +153,7 @@ static double size_of(const struct reckoning *r, int column, double value, doubl
 /* The other one of cos and sin */
 static int partner_of(const struct reckoning *r, int column)
 {
-	int first = first_column(&r->step->branch->system, r->load_of[column]);
+	int first = column_of_load(&r->step->branch->system, r->load_of[column]);
 	return oscillates(r->step->branch->system.load[r->load_of[column]].wave) ? first + ((column - first) ^ 1)
 										 : column;
 }

@@ -2,43 +2,21 @@
 /* What scheme pl solves exactly and what it holds over a step, and how that errs. */
 #include "step/step.h"
 
-static mpq_t *normalized(int n, int segments, const mpq_t *inverse, const mpq_t *force)
-{
-	mpq_t *acceleration = rationals((size_t)segments * (size_t)n);
-	for (int s = 0; s < segments; s++)
-		rational_product(n, n, 1, inverse, force + s * n, acceleration + s * n);
-	return acceleration;
-}
+struct normalizing { int n; const mpq_t *inverse; };
 
-static void normalize_loads(const struct linear *written, const mpq_t *inverse, struct linear *split)
+static void normalize(const void *context, const mpq_t *force, mpq_t *acceleration)
 {
-	int n = written->n;
-	split->loads = written->loads;
-	split->load = ARRAY(struct load, written->loads);
-	for (int l = 0; l < written->loads; l++) {
-		const struct load *load = &written->load[l];
-		split->load[l] = *load;
-		split->load[l].force = ARRAY(mpq_t *, load->columns);
-		for (int k = 0; k < load->columns; k++)
-			split->load[l].force[k] = normalized(n, written->segments, inverse, load->force[k]);
-	}
-	split->inputs = written->inputs;
-	split->input = ARRAY(struct input, written->inputs);
-	for (int i = 0; i < written->inputs; i++) {
-		split->input[i] = written->input[i];
-		for (int k = 0; k < 2; k++)
-			split->input[i].force[k] = normalized(n, 1, inverse, written->input[i].force[k]);
-	}
+	const struct normalizing *w = context;
+	rational_product(w->n, w->n, 1, w->inverse, force, acceleration);
 }
 
 /* Fang, Wang, Dai, Zhang 2020: after division by the mass matrix the other coordinates and their velocities are held
  * at their value at the step's start; a coordinate's own terms, loads and inputs stay exact. */
 struct linear piecewise_laplace(const struct linear *written)
 {
-	int n = written->n, states = written->states, column;
+	int n = written->n, states = written->states;
 	struct linear split = linear_like(written);
-	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)(n * states));
-	leading_inverse(written, inverse, &column);
+	mpq_t *inverse = inverse_of_leading(written), *highest = rationals((size_t)(n * states));
 	highest_derivatives(written, inverse, false, highest);
 	split.heldC = rationals((size_t)(n * n));
 	split.heldK = rationals((size_t)(n * n));
@@ -50,11 +28,7 @@ struct linear piecewise_laplace(const struct linear *written)
 			mpq_neg(matrix[i * n + written->coord[j]], highest[i * states + j]);
 		}
 	}
-	normalize_loads(written, inverse, &split);
-	split.channels = written->channels;
-	split.channel = ARRAY(mpq_t *, written->channels);
-	for (int e = 0; e < written->channels; e++)
-		split.channel[e] = normalized(n, 1, inverse, written->channel[e]);
+	take_forces(&split, written, n, normalize, &(struct normalizing){ n, inverse });
 	return split;
 }
 

@@ -41,29 +41,20 @@ bool group_acts(const struct step *step, const struct group *g, int row, const s
 
 /* ---- independent blocks ---- */
 
-static int first_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
 /* Per state: the first state of its block */
 static int *blocks_of_step(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
 	const int n = table->states, *tuned = tuned_components(step);
-	int *parent = ARRAY(int, n);
-	for (int i = 0; i < n; i++)
-		parent[i] = i;
+	int *parent = numbers_up_to(n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
-			const int a = first_of(parent, i), b = first_of(parent, j);
+			const int a = root_of_node(parent, i), b = root_of_node(parent, j);
 			if ((!table->Phi[i * n + j].zero || (tuned && tuned[i] == tuned[j])) && a != b)
 				parent[a > b ? a : b] = a < b ? a : b;
 		}
 	for (int i = 0; i < n; i++)
-		parent[i] = first_of(parent, i);
+		parent[i] = root_of_node(parent, i);
 	return parent;
 }
 

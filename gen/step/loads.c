@@ -83,9 +83,7 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 				  int column)
 {
 	const struct load *load = &system->load[l];
-	int place = system->states + segment * load_columns(system) + column;
-	for (int before = 0; before < l; before++)
-		place += system->load[before].columns;
+	int place = system->states + segment * load_columns(system) + column_of_load(system, l) + column;
 	struct response **kept = response_kept(r, system, place * system->states + i);
 	if (*kept)
 		return *kept;
@@ -131,13 +129,8 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 
 mpq_t *impulse_of_channel(const struct linear *system, int channel)
 {
-	int n = system->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals(n), *B = rationals(system->states);
-	leading_inverse(system, inverse, &column);
-	rational_product(n, n, 1, inverse, system->channel[channel], highest);
-	for (int i = 0; i < n; i++)
-		mpq_set(B[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
-	return B;
+	RATIONALS *inverse = inverse_of_leading(system);
+	return slopes_by_force(system, inverse, system->channel[channel]);
 }
 
 /* sum power[m] (s/h)^m as a force, and an impulse at the start */

@@ -8,11 +8,6 @@ static struct basis basis_of_state(const struct linear *system, int state)
 	return (struct basis){ .kind = BASIS_COORD, .index = system->coord[state], .order = state >= system->n };
 }
 
-int highest_state(const struct linear *system, int coord)
-{
-	return system->velocity[coord] >= 0 ? system->velocity[coord] : coord;
-}
-
 /* Row of A and the leftovers; what depends on time alone is apart */
 static const struct form *force_of(const struct step *step, const struct layout *layout, const mpq_t *row)
 {

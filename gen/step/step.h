@@ -1223,7 +1223,6 @@ mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
 mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
 /* of a state, whose force changes from segment to segment: in a table */
 void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
-int  column_of_load(const struct linear *system, int load); /* its first */
 
 /* ---- sequences.c: forms to sums, atoms to recurrences ---- */
 
@@ -1349,7 +1348,6 @@ struct motion {
 	struct motion_entry *entry;
 };
 struct motion *motion_of(const struct step *step);
-int  highest_state(const struct linear *system, int coord);  /* the state whose derivative that is */
 
 /* ---- batch.c: many instances in one call ---- */
 

@@ -75,11 +75,10 @@ static const mpq_t *relative_masses(const struct linear *system, const mpq_t *a)
 /* Accelerations over the coordinates, n x n; false: velocities act too, or a coordinate has none */
 static bool accelerations(const struct linear *system, mpq_t *a)
 {
-	int n = system->n, states = system->states, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *row = rationals((size_t)(n * states));
+	int n = system->n, states = system->states;
+	mpq_t *inverse = inverse_of_leading(system), *row = rationals((size_t)(n * states));
 	if (states != 2 * n)
 		return false;
-	leading_inverse(system, inverse, &column);
 	highest_derivatives(system, inverse, false, row);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {

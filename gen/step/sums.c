@@ -17,14 +17,6 @@ void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr fact
 	mpq_set(key->factor, factor);
 }
 
-int column_of_load(const struct linear *system, int load)
-{
-	int column = 0;
-	for (int l = 0; l < load; l++)
-		column += system->load[l].columns;
-	return column;
-}
-
 /* ---- numbers of sums ---- */
 
 static double rounded(const struct sequencing *w, mpq_srcptr q)

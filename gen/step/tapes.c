@@ -269,9 +269,7 @@ const mpq_t *direct_factors(const struct step *step, const struct output *output
 {
 	const struct linear *system = system_of_outputs(step);
 	const mpq_t *own = output->load[load] + column * system->segments;
-	int at = column, columns = load_columns(system);
-	for (int l = 0; l < load; l++)
-		at += system->load[l].columns;
+	int at = column_of_load(system, load) + column, columns = load_columns(system);
 	if (!rows_sustained(step) || !is_forced(step, at))
 		return own;
 	mpq_t *sum = rationals_copied(system->segments, own);

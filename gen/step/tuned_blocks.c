@@ -45,27 +45,20 @@ int fixed_slopes(const struct step *step, struct fixed_slope **list)
 
 /* ---- what hangs together ---- */
 
-static void join(int *parent, int a, int b)
-{
-	parent[root_of_node(parent, a)] = root_of_node(parent, b);
-}
-
 /* Equations 0 .. n-1 and coordinates n .. 2n-1, as parent pointers. Solved, an equation is that of a coordinate. */
 static int *components(const struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
 	const struct linear *system = &step->branch->system;
 	const int n = system->n;
-	int *parent = ARRAY(int, 2 * (size_t)n);
-	for (int i = 0; i < 2 * n; i++)
-		parent[i] = i;
+	int *parent = numbers_up_to(2 * n);
 	for (int i = 0; i < n && !t->all.solves; i++)
-		join(parent, i, n + i);
+		join_nodes(parent, i, n + i);
 	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
 		if (term->row < n && term->column < system->states)
-			join(parent, term->row, n + system->coord[term->column]);
+			join_nodes(parent, term->row, n + system->coord[term->column]);
 		else if (term->row < n && term->column >= t->x.size)
-			join(parent, term->row, n + term->column - t->x.size);
+			join_nodes(parent, term->row, n + term->column - t->x.size);
 	return parent;
 }
 
@@ -267,7 +260,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	b.place = ARRAY(int, (size_t)b.derivatives);
 	for (int i = 0; i < b.derivatives; i++) {
 		const int coord = b.part.unknown[i];
-		b.place[i] = place[system->velocity[coord] >= 0 ? system->velocity[coord] : coord];
+		b.place[i] = place[highest_state(system, coord)];
 	}
 	take_slopes(&b, place, count, fixed);
 	take_turns(&b, step, place);
@@ -355,20 +348,12 @@ static int numbers_of(const struct step *step, const struct group *g)
 	return g->tuned ? g->blocks * g->states * columns : 0;
 }
 
-static int *counted(int count)
-{
-	int *list = ARRAY(int, (size_t)count);
-	for (int i = 0; i < count; i++)
-		list[i] = i;
-	return list;
-}
-
 static struct group *group_of_whole(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
 	struct group *g = NEW(struct group);
-	*g = (struct group){ GROUP_ROWS, table->states, 1, counted(table->states), table->columns,
-			     counted(table->columns), table->inputs, counted(table->inputs), true };
+	*g = (struct group){ GROUP_ROWS, table->states, 1, numbers_up_to(table->states), table->columns,
+			     numbers_up_to(table->columns), table->inputs, numbers_up_to(table->inputs), true };
 	return g;
 }
 

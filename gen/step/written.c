@@ -14,10 +14,9 @@ const struct form *without_highest(const struct model *model, const struct form 
 struct coefficient *derivatives_of_residuals(const struct model *model)
 {
 	const struct linear *written = &model->written->system;
-	int n = written->n, column;
-	RATIONALS *inverse = rationals((size_t)(n * n));
+	int n = written->n;
+	RATIONALS *inverse = inverse_of_leading(written);
 	struct coefficient *factor = ARRAY(struct coefficient, (size_t)(n * n));
-	leading_inverse(written, inverse, &column);
 	for (int i = 0; i < n * n; i++) {
 		mpq_neg(inverse[i], inverse[i]);
 		factor[i] = equation_number(model, inverse[i]);
