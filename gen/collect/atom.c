@@ -246,7 +246,12 @@ static void multiply_form(struct collector *c, const struct node *node, struct m
 		multiply_base(node, m, share(c, form_scale(form, unit)), exponent);
 }
 
-static bool is_of_time(const struct form *form)
+bool is_friction(const struct atom *atom)
+{
+	return atom && atom->kind == ATOM_CALL && atom->function == FN_FRICTION;
+}
+
+bool is_of_time(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
 		if (!depends_on_time_only(&form->term[i].basis))

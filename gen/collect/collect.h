@@ -189,6 +189,8 @@ bool is_stepwise(const struct form *form);                  /* constant but for 
 /* of which two moves more readily: see struct atom */
 const struct basis *moved_basis(const struct basis *known, const struct basis *basis);
 bool depends_on_time_only(const struct basis *basis);       /* or on nothing */
+bool is_of_time(const struct form *form);                   /* all of it depends on time only */
+bool is_friction(const struct atom *atom);                  /* NULL: none */
 struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
 
 /* ---- calculus.c: derivatives of forms, and forms at a point ---- */

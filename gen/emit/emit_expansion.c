@@ -5,20 +5,10 @@
 
 #include <string.h>
 
-static const struct expansion *expansion(const struct emitter *e)
-{
-	return e->step->expansion;
-}
-
-static const struct truncation *truncation(const struct emitter *e)
-{
-	return &e->model->truncation;
-}
-
 /* Of fixed order, the coefficients locals of the step */
 static bool is_straight(const struct emitter *e)
 {
-	return !truncation(e)->adaptive && !spans_steps(e) && !watches(e) && expands_in_step(e);
+	return !truncation_of(e)->adaptive && !spans_steps(e) && !watches(e) && expands_in_step(e);
 }
 
 /* ---- its sum ---- */
@@ -37,12 +27,12 @@ static void emit_horner(const struct emitter *e, const char *c, int degree)
 
 void emit_series_ahead(const struct emitter *e)
 {
-	const char *unit = spans_steps(e) ? format("%d ", truncation(e)->over) : "";
+	const char *unit = spans_steps(e) ? format("%d ", truncation_of(e)->over) : "";
 	open_function(e, format("What the series gains from its start, theta %sh later", unit),
 		      "static void $n_ahead(const double c[%d][$c], double theta, double gain[$N_STATES])",
-		      expansion(e)->order + 1);
-	if (is_written_out(e, expansion(e)->order)) {
-		emit_horner(e, "c", expansion(e)->order);
+		      own_expansion(e)->order + 1);
+	if (is_written_out(e, own_expansion(e)->order)) {
+		emit_horner(e, "c", own_expansion(e)->order);
 		for (int i = 0; i < e->system->states; i++)
 			say(e, "    gain[%d] = g%d * theta;\n", i, i);
 	} else {                        /* beside a collocation: taylor.h has it */
@@ -51,7 +41,7 @@ void emit_series_ahead(const struct emitter *e)
 		       "        gain[i] = c[%d][i];\n"
 		       "        for (k = %d; k > 0; k--) { gain[i] = gain[i] * theta + c[k][i]; }\n"
 		       "        gain[i] *= theta;\n"
-		       "    }\n", expansion(e)->order, expansion(e)->order - 1);
+		       "    }\n", own_expansion(e)->order, own_expansion(e)->order - 1);
 	}
 	close_function(e, "");
 }
@@ -112,7 +102,7 @@ static void emit_total(const struct emitter *e)
 {
 	open_function(e, "Where the series ends that begins at y, and what rounding takes from it",
 		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
-		      "double end[$N_STATES], double rest[$N_STATES])", expansion(e)->order + 1);
+		      "double end[$N_STATES], double rest[$N_STATES])", own_expansion(e)->order + 1);
 	for (int i = 0; i < e->system->states; i++)
 		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &rest[%d]);\n", i, i,
 				      whole_gain(e, i, term_of_series), i));
@@ -136,7 +126,7 @@ static const char *term_of_end(int state, int k)
 static void emit_end(const struct emitter *e)
 {
 	enum { LATE = 2 };              /* of at least 4 */
-	int order = expansion(e)->order, states = e->system->states;
+	int order = own_expansion(e)->order, states = e->system->states;
 	open_function(e, "The state m steps after the start of the series, and what rounding takes from it",
 		      "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
 		      "double rest[$N_STATES])", order + 1);
@@ -155,7 +145,7 @@ static void emit_end(const struct emitter *e)
 
 bool serves_rows(const struct emitter *e)
 {
-	return expansion(e) && !e->step->collocation && truncation(e)->adaptive && !e->system->inputs;
+	return own_expansion(e) && !e->step->collocation && truncation_of(e)->adaptive && !e->system->inputs;
 }
 
 /* The k-th coefficient as the instance has it; NULL: it is 0 */
@@ -169,14 +159,14 @@ static void emit_within(const struct emitter *e)
 {
 	open_function(e, "The state theta after the start of the series",
 		      "static inline void $n_within($n *s, double theta)");
-	emit_value(e, "theta", kept_term, truncation(e)->adaptive ? "s->base[%d]" : "s->rest[%d]", "    ");
+	emit_value(e, "theta", kept_term, truncation_of(e)->adaptive ? "s->base[%d]" : "s->rest[%d]", "    ");
 	close_function(e, "");
 }
 
 static void emit_sums(const struct emitter *e)
 {
-	bool adaptive = truncation(e)->adaptive, several = serves_rows(e) || spans_steps(e);
-	if (is_written_out(e, expansion(e)->order)) {
+	bool adaptive = truncation_of(e)->adaptive, several = serves_rows(e) || spans_steps(e);
+	if (is_written_out(e, own_expansion(e)->order)) {
 		emit_series_ahead(e);
 		if (adaptive)
 			emit_end(e);
@@ -189,13 +179,13 @@ static void emit_sums(const struct emitter *e)
 
 void emit_expansion_members(const struct emitter *e)
 {
-	if (truncation(e)->adaptive)
+	if (truncation_of(e)->adaptive)
 		say(e, "    double series[%d][$c];  /* the last expansion, in powers of time over h */\n"
 		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
 		       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
 		       "    int served, valid;    /* steps since then; steps that it serves */\n"
 		       "    int most;             /* that the next one may serve; 0: nothing is known of it */\n",
-		    expansion(e)->order + 1);
+		    own_expansion(e)->order + 1);
 	if (spans_steps(e))
 		emit_over_members(e);
 	if (looks_at_tolerance(e))
@@ -235,8 +225,8 @@ static void emit_model_functions(const struct emitter *e)
 
 static void emit_algorithm(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
-	const struct truncation *t = truncation(e);
+	const struct expansion *x = own_expansion(e);
+	const struct truncation *t = truncation_of(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
 		   { "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
@@ -265,7 +255,7 @@ void emit_expansion_step(const struct emitter *e)
 {
 	emit_model_functions(e);
 	emit_reach_tables(e);
-	if (truncation(e)->adaptive && has_unseen(e))
+	if (truncation_of(e)->adaptive && has_unseen(e))
 		emit_hidden_table(e);
 	if (spans_steps(e))
 		emit_over_table(e);

@@ -141,17 +141,11 @@ static bool varies(const void *context, const struct tape_node *n)
 	return n->op == TAPE_STATE || n->op == TAPE_TABLE;
 }
 
-static const char *number(const void *context, mpq_srcptr value)
-{
-	(void)context;
-	return shortest(round_rational(value));
-}
-
 static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
 {
 	static const struct tape_lanes lanes = { "pl_lanes", "pl_lanes_all", varies };
 	const struct over_lanes over = { b, from };
-	const struct tape_target to = { .real = "double", .number = number, .operand = operand_over_lanes,
+	const struct tape_target to = { .real = "double", .operand = operand_over_lanes,
 					.accumulate = "pl_lanes_accumulate", .context = &over, .indent = 4,
 					.lanes = &lanes };
 	const char *broken = tape_check(t);

@@ -3,11 +3,6 @@
  * of them, so that the last one's end is their sum, those before it values inside. */
 #include "emit/emit.h"
 
-static const struct truncation *truncation(const struct emitter *e)
-{
-	return &e->model->truncation;
-}
-
 static int order_of(const struct emitter *e)
 {
 	return e->step->expansion->order;
@@ -55,14 +50,14 @@ void emit_over_members(const struct emitter *e)
 	say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over %d h */\n"
 	       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
 	       "    int served;           /* steps since it began, up to %d; 0: the next step makes another */\n",
-	    order_of(e) + 1, truncation(e)->over, truncation(e)->over - 1);
+	    order_of(e) + 1, truncation_of(e)->over, truncation_of(e)->over - 1);
 }
 
 static double part_of(const struct emitter *e, int step)
 {
 	mpq_t part;
 	mpq_init(part);
-	mpq_set_si(part, step, (unsigned long)truncation(e)->over);
+	mpq_set_si(part, step, (unsigned long)truncation_of(e)->over);
 	mpq_canonicalize(part);
 	const double value = round_rational(part);
 	mpq_clear(part);
@@ -71,7 +66,7 @@ static double part_of(const struct emitter *e, int step)
 
 void emit_over_table(const struct emitter *e)
 {
-	const int count = truncation(e)->over - 1;
+	const int count = truncation_of(e)->over - 1;
 	double *part = ARRAY(double, (size_t)count);
 	for (int m = 0; m < count; m++)
 		part[m] = part_of(e, m + 1);
@@ -82,7 +77,7 @@ void emit_over_table(const struct emitter *e)
 
 static void emit_rows_of_block(const struct emitter *e)
 {
-	int over = truncation(e)->over, states = e->system->states;
+	int over = truncation_of(e)->over, states = e->system->states;
 	for (int m = 1; m <= over; m++) {
 		if (m < over) {
 			say(e, "    if (out) {\n");
@@ -109,7 +104,7 @@ void emit_over_block(const struct emitter *e)
 	       "as it was */\n"
 	       "static int $n_block($n *s, double *out)\n"
 	       "{\n"
-	       "    const double *const y = s->y;\n", truncation(e)->over);
+	       "    const double *const y = s->y;\n", truncation_of(e)->over);
 	emit_coefficients(e);
 	for (int i = 0; i < states; i++)
 		say(e, "    const double base%d = s->rest[%d];\n"

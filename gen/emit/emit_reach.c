@@ -5,14 +5,9 @@
 
 #include <math.h>
 
-static const struct truncation *truncation(const struct emitter *e)
-{
-	return &e->model->truncation;
-}
-
 bool looks_at_tolerance(const struct emitter *e)
 {
-	return mpq_sgn(truncation(e)->tolerance) != 0;
+	return mpq_sgn(truncation_of(e)->tolerance) != 0;
 }
 
 void emit_floors(const struct emitter *e)
@@ -24,7 +19,7 @@ void emit_floors(const struct emitter *e)
 	mpq_t floor;
 	mpq_init(floor);
 	for (int i = 0; i < e->system->states; i++) {
-		mpq_div(floor, truncation(e)->absolute[i], truncation(e)->tolerance);
+		mpq_div(floor, truncation_of(e)->absolute[i], truncation_of(e)->tolerance);
 		value[i] = round_rational(floor);
 	}
 	mpq_clear(floor);
@@ -34,7 +29,7 @@ void emit_floors(const struct emitter *e)
 
 bool watches(const struct emitter *e)
 {
-	return looks_at_tolerance(e) && !truncation(e)->adaptive;
+	return looks_at_tolerance(e) && !truncation_of(e)->adaptive;
 }
 
 int most_served(const struct emitter *e)
@@ -50,21 +45,21 @@ bool shares_kinds(const struct emitter *e)
 		bool moved = i < e->system->n && e->system->velocity[i] >= 0;
 		count[moved ? 0 : i < e->system->n ? 2 : 1]++;
 	}
-	return truncation(e)->adaptive && (count[0] > 1 || count[1] > 1 || count[2] > 1);
+	return truncation_of(e)->adaptive && (count[0] > 1 || count[1] > 1 || count[2] > 1);
 }
 
 /* ---- the last terms ---- */
 
 void emit_reach_tables(const struct emitter *e)
 {
-	if (!truncation(e)->adaptive || e->system->inputs)
+	if (!truncation_of(e)->adaptive || e->system->inputs)
 		return;
 	int order = e->step->expansion->order, most = most_served(e);
 	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
 	mpq_t bound, steps;
 	mpq_inits(bound, steps, NULL);
 	for (int m = 1; m <= most; m++) {
-		mpq_set(bound, truncation(e)->tolerance);
+		mpq_set(bound, truncation_of(e)->tolerance);
 		mpq_set_ui(steps, (unsigned long)m, 1);
 		for (int k = 1; k < order; k++)
 			mpq_div(bound, bound, steps);
@@ -83,10 +78,10 @@ void emit_reach_tables(const struct emitter *e)
 void emit_reach_sizes(const struct emitter *e)
 {
 	say(e, "#define PL_TOLERANCE %s\n"
-	       "#define PL_NOW y\n", shortest(round_rational(truncation(e)->tolerance)));
+	       "#define PL_NOW y\n", shortest(round_rational(truncation_of(e)->tolerance)));
 	if (shares_kinds(e))
 		say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
-	if (truncation(e)->adaptive && has_unseen(e))
+	if (truncation_of(e)->adaptive && has_unseen(e))
 		emit_unseen_sizes(e);
 }
 

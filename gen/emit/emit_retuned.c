@@ -219,14 +219,6 @@ static void emit_gathering(const struct emitter *e)
 
 /* ---- retune ---- */
 
-static int breaks_of(const struct switching *s)
-{
-	int breaks = 0;
-	for (int i = 0; i < s->expressions; i++)
-		breaks += s->expression[i].breaks;
-	return breaks;
-}
-
 void emit_retuned(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
@@ -239,7 +231,7 @@ void emit_retuned(const struct emitter *e)
 	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
 	emit_sizes(e, { "PARAMS", e->model->held->params }, { "DERIVED", e->model->spec->derived },
 		   { "SIZE", e->step->layout.size },
-		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of(s) },
+		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
 		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
 		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },

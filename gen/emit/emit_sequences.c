@@ -4,9 +4,14 @@
 
 #include <string.h>
 
-static const struct expansion *expansion(const struct emitter *e)
+const struct expansion *own_expansion(const struct emitter *e)
 {
 	return e->step->expansion;
+}
+
+const struct truncation *truncation_of(const struct emitter *e)
+{
+	return &e->model->truncation;
 }
 
 /* ---- one of several series ---- */
@@ -67,9 +72,9 @@ bool spans_steps(const struct emitter *e)
 
 bool has_choices(const struct emitter *e)
 {
-	for (int i = 0; i < expansion(e)->count; i++)
-		if (expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
-		    expansion(e)->sequence[i].choice == CHOICE_BY_TIME && expansion(e)->sequence[i].top >= 0)
+	for (int i = 0; i < own_expansion(e)->count; i++)
+		if (own_expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
+		    own_expansion(e)->sequence[i].choice == CHOICE_BY_TIME && own_expansion(e)->sequence[i].top >= 0)
 			return true;
 	return false;
 }
@@ -99,7 +104,7 @@ void emit_inputs_now(const struct emitter *e)
 
 static void emit_expansion_locals(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	bool offset = has_offset(e);
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (x->input[i])
@@ -122,7 +127,7 @@ static void emit_expansion_locals(const struct emitter *e)
 
 void emit_force_table(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	int segments = e->system->segments, stride = x->order + 1;
 	if (!x->slots)
 		return;
@@ -147,13 +152,13 @@ void emit_coefficients(const struct emitter *e)
 bool expands_in_step(const struct emitter *e)
 {
 	enum { MOST = 1000 };           /* multiplications, which then stand twice: NAME_at makes the series too */
-	return !has_offset(e) && !has_choices(e) && !e->ramps && expansion(e)->multiplications <= MOST;
+	return !has_offset(e) && !has_choices(e) && !e->ramps && own_expansion(e)->multiplications <= MOST;
 }
 
 /* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
 static void set_kept_coefficients(const struct emitter *e, struct recurrences *r)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	struct tape *t = tape_of_recurrences(r);
 	int states = e->system->states;
 	for (int k = 0; k <= x->order; k++)
@@ -195,7 +200,7 @@ void emit_expand_from(const struct emitter *e)
 	begin_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y",
 				 has_offset(e) ? "tau after now" : "now",
 				 spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
-		       "expand_from", spell(e, "double c[%d][$c], double terms[]", expansion(e)->order + 1));
+		       "expand_from", spell(e, "double c[%d][$c], double terms[]", own_expansion(e)->order + 1));
 	set_kept_coefficients(e, r);
 	emit_series_tape(e, r);
 	close_function(e, "s u slope tau when segment interval terms");
@@ -212,7 +217,7 @@ void emit_slopes_function(const struct emitter *e)
 
 void emit_frozen_function(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
 	begin_function(e, "What is left over: a force on each equation that has some", "forces_at",
 		       format("double left[%d]", x->columns));
@@ -223,7 +228,7 @@ void emit_frozen_function(const struct emitter *e)
 
 void emit_ends_function(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
 	begin_function(e, "Of each expression its value and h times its slope; the sizes of the terms of the value",
 		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
@@ -253,7 +258,7 @@ const char *plus(const char *sum, const char *term)
 const char *whole_gain(const struct emitter *e, int state, gain_term *term)
 {
 	enum { LATE = 3 };
-	int order = expansion(e)->order;
+	int order = own_expansion(e)->order;
 	const char *text = "", *late = "";
 	for (int k = order; k > order - LATE; k--)
 		late = plus(late, term(e, state, k));

@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-static const struct expansion *expansion(const struct emitter *e)
-{
-	return e->step->expansion;
-}
-
 /* ---- names ---- */
 
 /* Of the sequences that are no states: a letter that no state's local starts with */
@@ -28,13 +23,13 @@ static const char *prefix(const struct emitter *e)
 static const char *base_name(const void *context, int sequence)
 {
 	const struct emitter *e = context;
-	int state = expansion(e)->sequence[sequence].state;
+	int state = own_expansion(e)->sequence[sequence].state;
 	return state != NONE ? e->local[state] : format("%s%d", prefix(e), sequence - e->system->states + 1);
 }
 
 const char *coefficient(const struct emitter *e, int sequence, int k)
 {
-	return k > expansion(e)->sequence[sequence].degree ? NULL : format("%s_%d", base_name(e, sequence), k);
+	return k > own_expansion(e)->sequence[sequence].degree ? NULL : format("%s_%d", base_name(e, sequence), k);
 }
 
 /* ---- operands ---- */
@@ -54,17 +49,11 @@ static const char *operand(const void *context, const struct tape_node *n)
 	}
 }
 
-static const char *number(const void *context, mpq_srcptr value)
-{
-	(void)context;
-	return shortest(round_rational(value));
-}
-
 /* ---- the whole ---- */
 
 struct recurrences *series_new(const struct emitter *e)
 {
-	return recurrences_new(e->step, expansion(e), (struct series_names){ base_name, e });
+	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e });
 }
 
 void series_set(struct recurrences *r, const char *target, int sequence, int k)
@@ -77,7 +66,7 @@ void series_set(struct recurrences *r, const char *target, int sequence, int k)
 void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 {
 	const struct tape *t = tape_of_recurrences(r);
-	const struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
+	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
 					.context = e, .indent = 4, .locals_first = true };
 	const char *broken = tape_check(t);
 	if (broken)
@@ -87,7 +76,7 @@ void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 
 void emit_series_locals(const struct emitter *e)
 {
-	const struct expansion *x = expansion(e);
+	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
 	struct tape *t = tape_of_recurrences(r);
 	for (int k = 0; k <= x->order; k++) {

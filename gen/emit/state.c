@@ -7,25 +7,18 @@ const struct model *speaker(const struct model *model)
 	return model->relative ? model : model->written;
 }
 
-static bool row_reads(const struct linear *system, const struct output *row, int load)
-{
-	bool reads = false;
-	for (int k = 0; k < system->load[load].columns * system->segments; k++)
-		reads = reads || mpq_sgn(row->load[load][k]) != 0;
-	return reads;
-}
-
 bool outputs_read(const struct emitter *e, int load)
 {
 	const struct model *model = e->model;
+	const size_t columns = (size_t)(e->system->load[load].columns * e->system->segments);
 	bool read = false;
 	for (int o = 0; o < model->outputs; o++) {
 		const struct form *left = model->output[o].left;
 		read = read || (left && reads_of(speaker(model), 1, &left).load[load]);
-		read = read || row_reads(e->system, &model->output[o], load);
+		read = read || !rationals_zero(columns, model->output[o].load[load]);
 	}
 	for (int i = 0; model->highest && i < model->n; i++)
-		read = read || (model->highest[i] && row_reads(e->system, model->highest[i], load));
+		read = read || (model->highest[i] && !rationals_zero(columns, model->highest[i]->load[load]));
 	return read;
 }
 

@@ -3,11 +3,6 @@
  * holds something and what lets it go as forms. */
 #include "model/model.h"
 
-static bool is_friction(const struct atom *a)
-{
-	return a->kind == ATOM_CALL && a->function == FN_FRICTION;
-}
-
 /* Its index; -1: it is none */
 static int drag_of(const struct model *model, const struct atom *atom)
 {

@@ -522,22 +522,14 @@ static int *felt_in_segments(struct building *b, const struct switching *s, cons
 	return index;
 }
 
-static bool reads_channels(const struct model *model, const struct output *row)
-{
-	bool any = false;
-	for (int c = 0; row && c < model->channels; c++)
-		any = any || mpq_sgn(row->channel[c]) != 0;
-	return any;
-}
-
 /* An acceleration follows from its equation, and so reads what is left over; that is computed of all equations. */
 static bool reads_leftover(const struct model *model)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs; i++)
-		any = any || reads_channels(model, &model->output[i]);
+		any = any || !rationals_zero((size_t)model->channels, model->output[i].channel);
 	for (int k = 0; k < model->n; k++)
-		any = any || reads_channels(model, model->highest[k]);
+		any = any || (model->highest[k] && !rationals_zero((size_t)model->channels, model->highest[k]->channel));
 	return any;
 }
 

@@ -631,6 +631,7 @@ int  add_system(struct switching *s, const struct linear *system, int segment, b
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
+int  breaks_of_all(const struct switching *s);               /* breakpoints of all its expressions */
 int  possible_regions(const struct switching *s);
 
 /* ---- impacts.c: state jumps, and what bounces ---- */

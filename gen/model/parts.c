@@ -241,23 +241,14 @@ static int first_region(const struct switching *s)
 	return r;
 }
 
-static bool input_acts(const struct linear *system, int input)
-{
-	bool acts = false;
-	for (int k = 0; k < 2; k++)
-		for (int i = 0; i < system->n; i++)
-			acts = acts || mpq_sgn(system->input[input].force[k][i]) != 0;
-	return acts;
-}
-
 static void find_inputs(struct region_part *part)
 {
 	const struct switching *s = part->model->switching;
 	part->input = ARRAY(int, s->system->inputs);
 	for (int i = 0; i < s->system->inputs; i++) {
 		bool needed = false;
-		for (int k = 0; k < s->systems; k++)
-			needed = needed || input_acts(&s->system[k], i);
+		for (int k = 0; k < 2 * s->systems; k++)
+			needed = needed || !rationals_zero((size_t)s->system->n, s->system[k / 2].input[i].force[k % 2]);
 		for (int e = 0; e < s->expressions; e++)
 			for (int k = 0; k < 2; k++)
 				needed = needed || mpq_sgn(s->expression[e].row->input[k][i]) != 0;

@@ -171,14 +171,6 @@ static struct linear project_system(const struct observable *o, const struct lin
 
 /* ---- what states are called ---- */
 
-static bool is_row(const struct observable *o, int r, const mpq_t *row)
-{
-	bool same = true;
-	for (int j = 0; j < o->states; j++)
-		same = same && mpq_equal(row_of(o, r)[j], row[j]);
-	return same;
-}
-
 static bool is_written(const struct observable *o, int r)
 {
 	int entries = 0;
@@ -192,27 +184,21 @@ static bool is_position(const struct model *model, const struct output *output)
 {
 	if (output->value && (!output->form || first_tuned(output->value)))
 		return false;
-	for (int j = model->n; j < model->system.states; j++)
-		if (mpq_sgn(output->state[j]) != 0)
-			return false;
-	for (int l = 0; l < model->system.loads; l++)
-		for (int k = 0; k < model->system.load[l].columns * model->system.segments; k++)
-			if (mpq_sgn(output->load[l][k]) != 0)
-				return false;
-	for (int i = 0; i < 2 * model->system.inputs; i++)
-		if (mpq_sgn(output->input[i % 2][i / 2]) != 0)
-			return false;
-	return true;
+	const struct linear *system = &model->system;
+	bool position = rationals_zero((size_t)(system->states - model->n), output->state + model->n);
+	for (int l = 0; l < system->loads; l++)
+		position = position && rationals_zero((size_t)(system->load[l].columns * system->segments), output->load[l]);
+	for (int k = 0; k < 2; k++)
+		position = position && rationals_zero((size_t)system->inputs, output->input[k]);
+	return position;
 }
 
 /* Is state r the derivative of state i: all that is on the right of it? */
 static bool is_derivative(const struct linear *system, int i, int r)
 {
 	RATIONALS *to = rationals(system->n);
-	bool is = true;
 	mpq_set_si(to[r], -1, 1);
-	for (int j = 0; j < system->n; j++)
-		is = is && mpq_equal(to[j], system->K[i * system->n + j]);
+	bool is = rationals_equal((size_t)system->n, to, system->K + i * system->n);
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns * system->segments; k++)
 			is = is && mpq_sgn(system->load[l].force[k / system->segments]
@@ -228,7 +214,7 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 	if (is_written(o, r))
 		return model->state_name[o->pivot[r]];
 	for (int i = 0; i < model->outputs; i++)
-		if (is_position(model, &model->output[i]) && is_row(o, r, model->output[i].state))
+		if (is_position(model, &model->output[i]) && rationals_equal((size_t)o->states, row_of(o, r), model->output[i].state))
 			return model->output[i].name;
 	for (int i = 0; i < r; i++)
 		if (is_derivative(&reduced->system, i, r))
@@ -292,8 +278,6 @@ bool same_reduction(const struct model *a, const struct model *b)
 	int written = a->written->system.states;
 	if (!p || !q)
 		return p == q;
-	bool same = a->n == b->n && written == b->written->system.states;
-	for (int i = 0; same && i < a->n * written; i++)
-		same = mpq_equal(p[i], q[i]);
-	return same;
+	return a->n == b->n && written == b->written->system.states &&
+	       rationals_equal((size_t)(a->n * written), p, q);
 }

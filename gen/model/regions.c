@@ -819,7 +819,7 @@ static bool is_struck(const struct switching *s, int expression, int at)
 	return struck;
 }
 
-static int breaks_of_all(const struct switching *s)
+int breaks_of_all(const struct switching *s)
 {
 	int count = 0;
 	for (int e = 0; e < s->expressions; e++)

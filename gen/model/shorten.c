@@ -176,8 +176,7 @@ static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct 
 	f.c = ARRAY(mpq_t *, model->outputs);
 	for (int o = 0; o < model->outputs; o++) {
 		f.c[o] = row_over(modes, f.mode, &model->output[o]);
-		for (int i = 0; i < f.mode->states; i++)
-			any = any || mpq_sgn(f.c[o][i]) != 0;
+		any = any || !rationals_zero((size_t)f.mode->states, f.c[o]);
 	}
 	for (int l = 0; l < model->system.loads && any; l++)
 		for (int s = 0; s < model->system.segments; s++)

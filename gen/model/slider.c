@@ -8,11 +8,6 @@
 
 /* ---- which it is ---- */
 
-static bool is_friction(const struct atom *a)
-{
-	return a && a->kind == ATOM_CALL && a->function == FN_FRICTION;
-}
-
 static bool is_rate(const struct building *b, const struct basis *basis)
 {
 	return basis->kind == BASIS_COORD && basis->order == 1 && b->model->frame.coord[basis->index]->highest == 1;

@@ -54,14 +54,6 @@ static bool is_of_states(const struct form *form)
 	return true;
 }
 
-static bool is_of_time(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++)
-		if (!depends_on_time_only(&form->term[i].basis))
-			return false;
-	return true;
-}
-
 /* The one factor of a product that is linear in the states, all others being of time alone; -1: there is none such */
 static int linear_factor(const struct atom *a)
 {

@@ -21,10 +21,7 @@ static void person_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 
 static void person_force(FILE *to, const char *what, int n, const mpq_t *force)
 {
-	bool any = false;
-	for (int i = 0; i < n; i++)
-		any = any || mpq_sgn(force[i]) != 0;
-	if (!any)
+	if (rationals_zero((size_t)n, force))
 		return;
 	fprintf(to, "    %s on the equations: [", what);
 	for (int i = 0; i < n; i++)

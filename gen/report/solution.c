@@ -6,15 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The rate of what a stop, friction or another piecewise linear term acts on */
-static bool reads_channels(const struct model *model, const struct output *output)
-{
-	bool any = false;
-	for (int c = 0; c < model->channels && model->switching; c++)
-		any = any || mpq_sgn(output->channel[c]) != 0;
-	return any;
-}
-
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
@@ -26,7 +17,8 @@ static void check_outputs(const struct model *model)
 			      "--solution prints outputs that are linear in states and loads",
 			      "output '%s' has no closed form", model->output[j].name);
 	for (int j = 0; j < model->outputs; j++)
-		if (reads_channels(model, &model->output[j]))
+		/* the rate of what a stop, friction or another piecewise linear term acts on */
+		if (model->switching && !rationals_zero((size_t)model->channels, model->output[j].channel))
 			error(model->output[j].value ? model->output[j].value->start : model->asked.end_at,
 			      "positions, velocities and loads have one formula in all of them",
 			      "output '%s' has another formula in each region, which --solution does not print",

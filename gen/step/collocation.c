@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Radau IIA collocation with s stages (Hairer and Wanner 1996, IV.5): its nodes, the integrals of the polynomials that
- * are 1 at one of them, and the modes of those, all enclosed and rounded once. */
+ * are 1 at one of them, and the modes of those, all enclosed and rounded once; nodes of Lobatto. */
 #include "step/step.h"
 
 enum { BITS = 512 };                /* far beyond what rounding needs: entries have no more than 40 bits before it */
@@ -68,15 +68,13 @@ static struct poly polynomial_of_modes(struct poly nodes)
 	return p;
 }
 
-/* Every zero once, of pairs the one above the real axis */
-static int zeros_of(const struct step *step, struct poly p, struct rectangle *zero, int most)
+/* Every zero once, of pairs the one above the real axis; 0: they are not found */
+static int zeros_of(struct poly p, struct rectangle *zero, int most)
 {
 	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
 	int count = 0;
-	if (!spectrum_refine(spectrum, BITS))
-		internal_error(step, "the zeros of a polynomial of the collocation are not found");
-	for (int f = 0; f < spectrum->factors; f++)
+	for (int f = 0; spectrum_refine(spectrum, BITS) && f < spectrum->factors; f++)
 		for (int k = 0; k < spectrum->poles[f] && count < most; k++) {
 			rectangle_init(&zero[count], BITS);
 			rectangle_set(&zero[count++], &spectrum->pole[f][k].at);
@@ -89,6 +87,25 @@ static void sort_real(struct rectangle *zero, int count)
 	for (int i = 1; i < count; i++)
 		for (int k = i; k > 0 && mpfi_cmp(zero[k].re, zero[k - 1].re) < 0; k--)
 			mpfi_swap(zero[k].re, zero[k - 1].re);
+}
+
+/* Ends and zeros of P_n' */
+mpq_t *lobatto_nodes(int stages)
+{
+	struct rectangle *zero = ARRAY(struct rectangle, stages);
+	struct poly legendre = poly_new(stages + 1);
+	mpq_t *node = rationals(stages + 1);
+	REAL x = WITH_BITS(IRRATIONAL_BITS);
+	add_legendre(legendre.c, stages, 1);
+	const int zeros = zeros_of(poly_derivative(legendre), zero, stages);
+	sort_real(zero, zeros);
+	for (int i = 0; i < zeros; i++) {
+		mpfi_mid(x, zero[i].re);
+		mpfr_get_q(node[i + 1], x);
+		rectangle_clear(&zero[i]);
+	}
+	mpq_set_ui(node[stages], 1, 1);
+	return node;
 }
 
 static void put_real_first(struct rectangle *zero, int count)
@@ -240,7 +257,7 @@ struct collocation *collocation_of(const struct step *step)
 	struct rectangle c[MOST], z[MOST];
 	struct poly nodes = polynomial_of_nodes(s);
 	mpfi_t *W = enclosures(cells, BITS), *A = enclosures(cells, BITS), *twice = enclosures(cells, BITS);
-	if (zeros_of(step, nodes, c, MOST) != s)
+	if (zeros_of(nodes, c, MOST) != s)
 		internal_error(step, "a collocation without its nodes");
 	sort_real(c, s);
 	lagrange(nodes, c, s, W);
@@ -253,7 +270,9 @@ struct collocation *collocation_of(const struct step *step)
 	x->once = rounded_all(step, A, s * s);
 	x->twice = rounded_all(step, twice, s * s);
 	x->monomial = rounded_all(step, W, s * s);
-	modes = zeros_of(step, polynomial_of_modes(nodes), z, MOST);
+	modes = zeros_of(polynomial_of_modes(nodes), z, MOST);
+	if (modes == 0)
+		internal_error(step, "a collocation without its modes");
 	put_real_first(z, modes);
 	x->modes = modes;
 	x->mode = ARRAY(struct stage_mode, modes);

@@ -190,14 +190,6 @@ static void reckon_product(struct reckoning *r, int row, const struct product *p
 	r->size += fabs(factor * x->value);
 }
 
-static int levels(int terms)
-{
-	int levels = 0;
-	while (1 << levels < terms)
-		levels++;
-	return levels;
-}
-
 /* Each product is off by its factor's rounding and its own, and by those of the additions above it. */
 static struct rounded reckon(struct reckoning *r, const struct assignment *a)
 {

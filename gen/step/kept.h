@@ -76,6 +76,7 @@ double lasting_input(const struct linear *system, const struct spread *spread, c
 
 /* ---- rounding.c ---- */
 
+int levels(int terms);                                        /* additions above each of so many terms, in pairs */
 const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
 struct errors errors_of(const struct step *step, const struct requirement *r);
 

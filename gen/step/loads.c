@@ -70,13 +70,10 @@ struct response *response_of_state(struct resolvent *r, const struct linear *sys
 	const mpq_t *held = j < system->n ? system->heldK : system->heldC;
 	int n = system->n, c = system->coord[j];
 	struct excitation constant = excitation_new(n, NULL, NULL, 1);
-	bool any = false;
-	for (int k = 0; k < n && held; k++) {
+	for (int k = 0; k < n && held; k++)
 		mpq_neg(constant.force[k], held[k * n + c]);
-		any = any || mpq_sgn(constant.force[k]) != 0;
-	}
-	return *kept = image_of(r, &(struct question){ unit(system->states, j), any, &constant,
-						       unit(system->states, i) });
+	return *kept = image_of(r, &(struct question){ unit(system->states, j), !rationals_zero((size_t)n, constant.force),
+						       &constant, unit(system->states, i) });
 }
 
 struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l,

@@ -70,14 +70,6 @@ static void check_left(const struct step *step)
 
 /* ---- modes ---- */
 
-static bool any_entry(size_t cells, const mpq_t *X)
-{
-	for (size_t i = 0; i < cells; i++)
-		if (mpq_sgn(X[i]) != 0)
-			return true;
-	return false;
-}
-
 
 /* value <- v^T X v of column j */
 static void quadratic(const struct eigenpairs *pairs, const mpq_t *X, int j, mpfr_ptr value)
@@ -103,7 +95,7 @@ static void find_modes(struct normal_work *w, int bank)
 	const struct operator *operator = &w->model->operator[bank];
 	mpq_t *K = by_coordinates(w->model, operator->K);
 	mpq_t *C = by_coordinates(w->model, operator->C), *both = rationals(cells);
-	bool damped = any_entry(cells, C);
+	bool damped = !rationals_zero(cells, C);
 	for (size_t i = 0; i < cells; i++) {
 		mpq_set_ui(both[i], 7, 5);
 		mpq_mul(both[i], both[i], C[i]);

@@ -14,14 +14,6 @@ double round_real(mpfr_srcptr x)
 	return round_rational(q);
 }
 
-static bool any_entry(size_t cells, const mpq_t *X)
-{
-	for (size_t i = 0; i < cells; i++)
-		if (mpq_sgn(X[i]) != 0)
-			return true;
-	return false;
-}
-
 mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix)
 {
 	int n = model->n;
@@ -195,7 +187,7 @@ static void add_matrix(struct normal_work *w, struct pattern_list *list, int fun
 	struct pattern made = { .exact = X };
 	bool any = false;
 	for (int b = 0; b < w->normal->banks; b++) {
-		any = any || any_entry(cells, X[b]);
+		any = any || !rationals_zero(cells, X[b]);
 		for (size_t i = 0; i < cells && !made.own; i++)
 			made.own = !mpq_equal(X[b][i], X[0][i]);
 	}

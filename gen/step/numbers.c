@@ -196,13 +196,7 @@ struct coefficient response_value(struct response *response, mpq_srcptr tau, boo
 {
 	struct started alone = { .response = response };
 	mpq_init(alone.start);
-	struct number number = { .count = 1, .list = &alone, .t = tau };
-	struct coefficient c;
-	bool isolated;
-	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
-		undecided(at, what, isolated);
-	mpq_clear(alone.start);
-	return c;
+	return started_value(1, &alone, tau, two_words, at, what);
 }
 
 void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list,

@@ -40,47 +40,38 @@ bool is_forced(const struct step *step, int column)
 	return step->forced && step->forced->load[load_of_column(&step->branch->system, column, &first)];
 }
 
-static bool reads_columns(const struct output *row, int load, int columns)
-{
-	bool reads = false;
-	for (int k = 0; k < columns; k++)
-		reads = reads || mpq_sgn(row->load[load][k]) != 0;
-	return reads;
-}
-
 /* What is held there, and what releases it */
-static void mark_loads_of_region(const struct region *region, int felts, int load, int columns, bool *needed)
+static void mark_loads_of_region(const struct region *region, int felts, int load, size_t columns, bool *needed)
 {
 	for (int k = 0; k < region->holds && region->possible; k++)
-		*needed = *needed || reads_columns(region->hold[k].row, load, columns);
+		*needed = *needed || !rationals_zero(columns, region->hold[k].row->load[load]);
 	for (int k = 0; k < region->releases && region->possible; k++)
-		*needed = *needed || reads_columns(region->release[k].row, load, columns);
+		*needed = *needed || !rationals_zero(columns, region->release[k].row->load[load]);
 	for (int k = 0; k < felts && region->grip; k++)
-		*needed = *needed || (region->grip[k] && reads_columns(region->grip[k], load, columns));
+		*needed = *needed || (region->grip[k] && !rationals_zero(columns, region->grip[k]->load[load]));
 }
 
 /* Where states jump to, and the speed of what bounces */
-static void mark_loads_of_impacts(const struct switching *s, int load, int columns, bool *needed)
+static void mark_loads_of_impacts(const struct switching *s, int load, size_t columns, bool *needed)
 {
 	for (int i = 0; i < s->impacts; i++)
 		for (int segment = 0; segment < s->segments; segment++) {
 			const struct strike *strike = &s->impact[i].in[segment];
 			for (int k = 0; k < strike->jumps; k++)
-				*needed = *needed || reads_columns(strike->jump[k].row, load, columns);
+				*needed = *needed || !rationals_zero(columns, strike->jump[k].row->load[load]);
 			if (s->impact[i].bounces)
-				*needed = *needed || reads_columns(strike->speed_row, load, columns);
+				*needed = *needed || !rationals_zero(columns, strike->speed_row->load[load]);
 		}
 }
 
 static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 {
 	for (int l = 0; l < s->system->loads; l++) {
+		const size_t columns = (size_t)(s->system->load[l].columns * segments);
 		for (int k = 0; k < s->systems; k++)
 			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
 		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < s->system->load[l].columns * segments; k++)
-				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
-		int columns = s->system->load[l].columns * segments;
+			needed[l] = needed[l] || !rationals_zero(columns, s->expression[e].row->load[l]);
 		for (int k = 0; k < s->regions; k++)
 			mark_loads_of_region(&s->region[k], s->felts, l, columns, &needed[l]);
 		mark_loads_of_impacts(s, l, columns, &needed[l]);

@@ -14,7 +14,7 @@
 
 /* ---- what one step rounds ---- */
 
-static int levels(int terms)
+int levels(int terms)
 {
 	int levels = 0;
 	while (1 << levels < terms)

@@ -34,11 +34,6 @@ static int state_of(const struct sequencing *w, const struct basis *basis)
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom);
 static bool add_product(struct sequencing *w, struct sum *sum, const struct atom *atom, mpq_srcptr factor);
 
-static bool is_friction(const struct atom *atom)
-{
-	return atom->kind == ATOM_CALL && atom->function == FN_FRICTION;
-}
-
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale)
 {
 	RATIONAL factor = ZERO;

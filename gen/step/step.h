@@ -750,7 +750,6 @@ struct lagrange {                   /* polynomials of s/h, each 1 at one of the 
 struct lagrange lagrange_of(int nodes, const mpq_t *node);
 void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value); /* each at s = sigma h */
 mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
-mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
 struct mode_flow {                  /* of one mode over theta h */
 	/* eta = e eta0 + s eta0' + ..., eta' = de eta0 + ds eta0' + ... */
 	mpfr_t e, s, de, ds;
@@ -1327,6 +1326,7 @@ struct collocation {
 	int modes;                  /* of A */
 	struct stage_mode *mode;    /* the real one first */
 };
+mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
 struct collocation *collocation_of(const struct step *step);
 
 /* ---- motion.c: the highest derivatives of the coordinates ---- */

@@ -243,10 +243,8 @@ int place_of_output(const struct model *model, const struct output *output)
 static bool is_seen_of_modes(const struct step *step, const struct output *output)
 {
 	const struct model *model = step->model;
-	bool any = false;
-	for (int i = 0; i < step->branch->system.states; i++)
-		any = any || mpq_sgn(output->state[i]) != 0;
-	return any && step->modal && output >= model->output && output < model->output + model->outputs;
+	return step->modal && output >= model->output && output < model->output + model->outputs &&
+	       !rationals_zero((size_t)step->branch->system.states, output->state);
 }
 
 bool differs_in_time(const mpq_t *factor, int segments)

@@ -50,65 +50,6 @@ void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value)
 	}
 }
 
-/* P_n(2 x - 1) and its first two derivatives in x, by the recurrence of Legendre's polynomials */
-static void legendre(int n, mpfr_srcptr x, mpfr_t *P)
-{
-	mpfr_t before[3], next[3];
-	REAL z = WITH_BITS(WEIGHT_BITS), part = WITH_BITS(WEIGHT_BITS);
-	mpfr_inits2(WEIGHT_BITS, before[0], before[1], before[2], next[0], next[1], next[2], NULL);
-	mpfr_mul_2ui(z, x, 1, MPFR_RNDN);
-	mpfr_sub_ui(z, z, 1, MPFR_RNDN);
-	for (int d = 0; d < 3; d++) {
-		mpfr_set_ui(before[d], d == 0, MPFR_RNDN);
-		mpfr_set_ui(P[d], d == 1 ? 2 : 0, MPFR_RNDN);
-	}
-	mpfr_set(P[0], z, MPFR_RNDN);
-	for (int k = 2; k <= n; k++)            /* k P_k = (2k-1) z P_(k-1) - (k-1) P_(k-2) */
-		for (int d = 2; d >= 0; d--) {
-			mpfr_mul(next[d], z, P[d], MPFR_RNDN);
-			if (d > 0) {
-				mpfr_mul_ui(part, P[d - 1], 2 * (unsigned long)d, MPFR_RNDN);
-				mpfr_add(next[d], next[d], part, MPFR_RNDN);
-			}
-			mpfr_mul_ui(next[d], next[d], 2 * (unsigned long)k - 1, MPFR_RNDN);
-			mpfr_mul_ui(part, before[d], (unsigned long)k - 1, MPFR_RNDN);
-			mpfr_sub(next[d], next[d], part, MPFR_RNDN);
-			mpfr_div_ui(next[d], next[d], (unsigned long)k, MPFR_RNDN);
-			mpfr_set(before[d], P[d], MPFR_RNDN);
-			mpfr_set(P[d], next[d], MPFR_RNDN);
-		}
-	mpfr_clears(before[0], before[1], before[2], next[0], next[1], next[2], NULL);
-}
-
-/* Ends and roots of P_n', by Newton's method from the extremes of Chebyshev's polynomial (Hairer and Wanner 2010,
- * IV.5) */
-mpq_t *lobatto_nodes(int stages)
-{
-	enum { ITERATIONS = 12 };
-	mpq_t *node = rationals(stages + 1);
-	mpfr_t *P = reals(3, WEIGHT_BITS);
-	REAL x = WITH_BITS(WEIGHT_BITS), quotient = WITH_BITS(WEIGHT_BITS);
-	mpq_set_ui(node[stages], 1, 1);
-	for (int i = 1; i < stages; i++) {
-		mpfr_const_pi(x, MPFR_RNDN);
-		mpfr_mul_ui(x, x, (unsigned long)i, MPFR_RNDN);
-		mpfr_div_ui(x, x, (unsigned long)stages, MPFR_RNDN);
-		mpfr_cos(x, x, MPFR_RNDN);
-		mpfr_ui_sub(x, 1, x, MPFR_RNDN);
-		mpfr_div_2ui(x, x, 1, MPFR_RNDN);
-		for (int k = 0; k < ITERATIONS; k++) {
-			legendre(stages, x, P);
-			mpfr_div(quotient, P[1], P[2], MPFR_RNDN);
-			mpfr_sub(x, x, quotient, MPFR_RNDN);
-		}
-		mpfr_prec_round(x, IRRATIONAL_BITS, MPFR_RNDN);
-		mpfr_get_q(node[i], x);
-		mpfr_set_prec(x, WEIGHT_BITS);
-	}
-	reals_free(P, 3);
-	return node;
-}
-
 mpq_t *past_nodes(int count)
 {
 	mpq_t *node = rationals(count);

@@ -123,7 +123,8 @@ static const char *bare_text(struct printing *p, tape_ref ref, int indent)
 	const struct tape_node *n = tape_node(p->t, ref);
 	const char *x;
 	switch (n->op) {
-	case TAPE_CONSTANT: return p->to->number(p->to->context, n->value);
+	case TAPE_CONSTANT:
+		return p->to->number ? p->to->number(p->to->context, n->value) : shortest(round_rational(n->value));
 	case TAPE_TRUE:     return "1";
 	case TAPE_FALSE:    return "0";
 	case TAPE_NEG:

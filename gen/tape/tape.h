@@ -146,7 +146,7 @@ struct tape_lanes {
 };
 struct tape_target {
 	const char *real;           /* the type of a number */
-	const char *(*number)(const void *context, mpq_srcptr value);
+	const char *(*number)(const void *context, mpq_srcptr value); /* NULL: rounded, as short as reads back */
 	const char *(*operand)(const void *context, const struct tape_node *node);
 	const char *size;           /* the function that TAPE_SIZE is, */
 	const char *accumulate;     /* and TAPE_ACCUMULATE: of a, b, c, and the address of the place, an operand */
