@@ -98,6 +98,9 @@ char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 int  *numbers_up_to(int count);                            /* 0, 1, ... */
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 mpq_t *rationals_copied(size_t count, const mpq_t *q);
+mpz_t *integers(size_t count);                             /* 0 */
+mpfr_t *reals(size_t count, mpfr_prec_t bits);             /* 0, of so many bits */
+mpfi_t *enclosures(size_t count, mpfr_prec_t bits);        /* likewise */
 bool  rationals_equal(size_t count, const mpq_t *a, const mpq_t *b);
 bool  rationals_zero(size_t count, const mpq_t *q);       /* all of them are 0 */
 void  rationals_free(mpq_t *q, size_t count);
@@ -117,19 +120,36 @@ void  spend_terms(size_t count);
 #define REAL      __attribute__((cleanup(clear_real))) mpfr_t     /* REAL x = WITH_BITS(64); it is no number yet */
 #define INTERVAL  __attribute__((cleanup(clear_interval))) mpfi_t /* INTERVAL x = OVER_BITS(64); likewise */
 #define RATIONALS __attribute__((cleanup(clear_rationals))) mpq_t /* RATIONALS *x = rationals(n); */
+#define INTEGERS  __attribute__((cleanup(clear_integers))) mpz_t
+#define REALS     __attribute__((cleanup(clear_reals))) mpfr_t    /* REALS *x = reals(n, 64); */
+#define INTERVALS __attribute__((cleanup(clear_intervals))) mpfi_t /* INTERVALS *x = enclosures(n, 64); */
 #define SCRATCH   __attribute__((cleanup(clear_scratch)))         /* SCRATCH double *x = ARRAY(double, n); */
 #define ZERO { new_rational() }
+#define RATIO(p, q) { new_ratio(p, q) }                           /* without a common factor */
 #define INTEGER_ZERO { new_integer() }
 #define WITH_BITS(bits) { new_real(bits) }
 #define OVER_BITS(bits) { new_interval(bits) }
 
+size_t block_size(void *block);                            /* bytes; NULL: 0 */
+/* What is held elsewhere is cleared by its address; NULL: nothing. */
 void clear_rationals(mpq_t **q);
+void clear_integers(mpz_t **z);
+void clear_reals(mpfr_t **x);
+void clear_intervals(mpfi_t **x);
 void clear_scratch(void *block);                           /* the address of what points to it */
 
 static inline __mpq_struct new_rational(void)
 {
 	mpq_t x;
 	mpq_init(x);
+	return *x;
+}
+
+static inline __mpq_struct new_ratio(long p, unsigned long q)
+{
+	mpq_t x;
+	mpq_init(x);
+	mpq_set_si(x, p, q);
 	return *x;
 }
 
@@ -239,6 +259,7 @@ const char *runtime_name(int file);                         /* of all of them, f
 
 void rational_addmul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum + a b */
 void rational_submul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum - a b */
+long rational_bits(mpq_srcptr q);                           /* before its point, or one more */
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
 const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */
 

@@ -283,10 +283,37 @@ void rationals_free(mpq_t *q, size_t count)
 	discard(q);
 }
 
+size_t block_size(void *block)
+{
+	return block ? *size_of(block) : 0;
+}
+
 void clear_rationals(mpq_t **q)
 {
-	if (*q)
-		rationals_free(*q, *size_of(*q) / sizeof **q);
+	for (size_t i = 0; i < block_size(*q) / sizeof **q; i++)
+		mpq_clear((*q)[i]);
+	discard(*q);
+}
+
+void clear_integers(mpz_t **z)
+{
+	for (size_t i = 0; i < block_size(*z) / sizeof **z; i++)
+		mpz_clear((*z)[i]);
+	discard(*z);
+}
+
+void clear_reals(mpfr_t **x)
+{
+	for (size_t i = 0; i < block_size(*x) / sizeof **x; i++)
+		mpfr_clear((*x)[i]);
+	discard(*x);
+}
+
+void clear_intervals(mpfi_t **x)
+{
+	for (size_t i = 0; i < block_size(*x) / sizeof **x; i++)
+		mpfi_clear((*x)[i]);
+	discard(*x);
 }
 
 void clear_scratch(void *block)
@@ -312,6 +339,34 @@ mpq_t *rationals(size_t count)
 	for (size_t i = 0; i < count; i++)
 		mpq_init(q[i]);
 	return q;
+}
+
+mpz_t *integers(size_t count)
+{
+	mpz_t *z = ARRAY(mpz_t, count);
+	for (size_t i = 0; i < count; i++)
+		mpz_init(z[i]);
+	return z;
+}
+
+mpfr_t *reals(size_t count, mpfr_prec_t bits)
+{
+	mpfr_t *x = ARRAY(mpfr_t, count);
+	for (size_t i = 0; i < count; i++) {
+		mpfr_init2(x[i], bits);
+		mpfr_set_zero(x[i], 1);
+	}
+	return x;
+}
+
+mpfi_t *enclosures(size_t count, mpfr_prec_t bits)
+{
+	mpfi_t *x = ARRAY(mpfi_t, count);
+	for (size_t i = 0; i < count; i++) {
+		mpfi_init2(x[i], bits);
+		mpfi_set_ui(x[i], 0);
+	}
+	return x;
 }
 
 mpq_t *rationals_copied(size_t count, const mpq_t *q)

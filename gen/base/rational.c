@@ -31,6 +31,11 @@ static bool decimal_places(mpq_srcptr q, unsigned long *places)
 	return decimal;
 }
 
+long rational_bits(mpq_srcptr q)
+{
+	return (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
+}
+
 const char *exact_text(mpq_srcptr q)
 {
 	enum { LONGEST_DECIMAL = 40 };

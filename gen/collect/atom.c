@@ -203,8 +203,7 @@ static bool flattens(const struct atom *product, unsigned exponent)
 /* m->factor *= factor^exponent */
 static void multiply_factor(const struct node *node, struct monomial *m, mpq_srcptr factor, unsigned exponent)
 {
-	RATIONAL power = ZERO, whole = ZERO;
-	mpq_set_ui(whole, exponent, 1);
+	RATIONAL power = ZERO, whole = RATIO((long)exponent, 1);
 	constant_power(node->at, factor, whole, power);
 	mpq_mul(m->factor, m->factor, power);
 }
@@ -404,8 +403,7 @@ static struct form *load_power(struct collector *c, const struct node *node, con
 
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
 {
-	RATIONAL exponent = ZERO;
-	mpq_set_ui(exponent, n, 1);
+	RATIONAL exponent = RATIO((long)n, 1);
 	bool load = !c->whole_time && n <= LIMIT_LOAD_POWER && is_of_time(x) && time_part(x, true)->terms == 0;
 	return is_constant(x) ? constant_to_power(c, node, x, exponent)
 	       : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })

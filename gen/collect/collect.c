@@ -225,8 +225,7 @@ static struct value *collect_sum(struct collector *c, struct node *node)
 	struct value *sum = NULL;
 	const struct node *outer = c->term;
 	const struct place before = working_at();
-	RATIONAL minus = ZERO;
-	mpq_set_si(minus, -1, 1);
+	RATIONAL minus = RATIO(-1, 1);
 	for (int i = 0; i < node->children; i++) {
 		if (node->children > 1) {
 			c->term = node->child[i];

@@ -74,14 +74,16 @@ void wide_value(enum function function, mpfr_ptr x)
 }
 
 /* A rational at enough bits that the function's value keeps 256 good ones. */
-static void set_wide(mpfr_ptr wide, struct place at, mpq_srcptr x)
+static __mpfr_struct new_wide(struct place at, mpq_srcptr x)
 {
-	long bits = (long)mpz_sizeinbase(mpq_numref(x), 2) - (long)mpz_sizeinbase(mpq_denref(x), 2);
+	long bits = rational_bits(x);
 	if (bits > LIMIT_ARGUMENT)
 		error(at, NULL, "the argument has more than %d bits before its point", LIMIT_ARGUMENT);
 	long size = bits < 0 ? -bits : bits;
+	mpfr_t wide;
 	mpfr_init2(wide, IRRATIONAL_BITS + GUARD_BITS + (size < 4096 ? size : LIMIT_ARGUMENT));
 	mpfr_set_q(wide, x, MPFR_RNDN);
+	return *wide;
 }
 
 bool constant_function(struct place at, enum function function, mpq_srcptr x, mpq_ptr value)
@@ -89,11 +91,9 @@ bool constant_function(struct place at, enum function function, mpq_srcptr x, mp
 	RATIONAL result = ZERO;
 	bool exact = exact_value(at, function, x, result);
 	if (!exact) {
-		mpfr_t wide;
-		set_wide(wide, at, x);
+		REAL wide = { new_wide(at, x) };
 		wide_value(function, wide);
 		set_irrational(result, at, wide);
-		mpfr_clear(wide);
 	}
 	mpq_set(value, result);
 	return exact;
@@ -105,12 +105,9 @@ bool constant_atan2(struct place at, mpq_srcptr y, mpq_srcptr x, mpq_ptr value)
 		mpq_set_ui(value, 0, 1);
 		return true;
 	}
-	mpfr_t wide, other;
-	set_wide(wide, at, y);
-	set_wide(other, at, x);
+	REAL wide = { new_wide(at, y) }, other = { new_wide(at, x) };
 	mpfr_atan2(wide, wide, other, MPFR_RNDN);
 	set_irrational(value, at, wide);
-	mpfr_clears(wide, other, NULL);
 	return false;
 }
 
@@ -147,12 +144,9 @@ bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_p
 	if (exact) {
 		integer_power(at, root, mpq_numref(exponent), value);
 	} else {
-		mpfr_t wide, power;
-		set_wide(wide, at, base);
-		set_wide(power, at, exponent);
+		REAL wide = { new_wide(at, base) }, power = { new_wide(at, exponent) };
 		mpfr_pow(wide, wide, power, MPFR_RNDN);
 		set_irrational(value, at, wide);
-		mpfr_clears(wide, power, NULL);
 	}
 	return exact;
 }

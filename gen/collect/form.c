@@ -65,15 +65,13 @@ struct form *form_constant(mpq_srcptr value)
 
 struct form *form_number(long value)
 {
-	RATIONAL q = ZERO;
-	mpq_set_si(q, value, 1);
+	RATIONAL q = RATIO(value, 1);
 	return form_constant(q);
 }
 
 struct form *form_unit(struct basis basis)
 {
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	return form_single(basis, one);
 }
 

@@ -53,8 +53,7 @@ bool holds_now(const struct collector *c, struct span span)
 /* A time inside interval `index` of those that the breakpoints leave. */
 static void sample_time(const struct collector *c, int index, mpq_ptr t)
 {
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	if (c->changes == 0) {
 		mpq_set_ui(t, 0, 1);
 	} else if (index == 0) {

@@ -96,8 +96,7 @@ static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, 
 /* cos or sin of w t + phase; whole quarter turns leave no phase behind. */
 struct form *collect_wave(struct collector *c, bool sine, mpq_srcptr frequency, const struct form *phase)
 {
-	RATIONAL zero = ZERO, p = ZERO, sign = ZERO;
-	mpq_set_si(sign, 1, 1);
+	RATIONAL zero = ZERO, p = ZERO, sign = RATIO(1, 1);
 	int quarters;
 	/* cos(x + q pi/2): cos, -sin, -cos, sin; sin(x + ...) is one quarter behind */
 	if (quarter_turns(phase, &quarters)) {

@@ -55,13 +55,10 @@ void emit_over_members(const struct emitter *e)
 
 static double part_of(const struct emitter *e, int step)
 {
-	mpq_t part;
-	mpq_init(part);
+	RATIONAL part = ZERO;
 	mpq_set_si(part, step, (unsigned long)truncation_of(e)->over);
 	mpq_canonicalize(part);
-	const double value = round_rational(part);
-	mpq_clear(part);
-	return value;
+	return round_rational(part);
 }
 
 void emit_over_table(const struct emitter *e)

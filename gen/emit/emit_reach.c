@@ -16,13 +16,11 @@ void emit_floors(const struct emitter *e)
 		return;
 	const int size = e->system->states + (e->step->expansion ? e->step->expansion->columns : 0);
 	double *value = ARRAY(double, (size_t)size);
-	mpq_t floor;
-	mpq_init(floor);
+	RATIONAL floor = ZERO;
 	for (int i = 0; i < e->system->states; i++) {
 		mpq_div(floor, truncation_of(e)->absolute[i], truncation_of(e)->tolerance);
 		value[i] = round_rational(floor);
 	}
-	mpq_clear(floor);
 	emit_array(e, "Of each state its absolute tolerance over the relative one: it counts beside its size; 0: none",
 		   "floor", 1, &size, value, NULL);
 }
@@ -56,8 +54,7 @@ void emit_reach_tables(const struct emitter *e)
 		return;
 	int order = e->step->expansion->order, most = most_served(e);
 	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
-	mpq_t bound, steps;
-	mpq_inits(bound, steps, NULL);
+	RATIONAL bound = ZERO, steps = ZERO;
 	for (int m = 1; m <= most; m++) {
 		mpq_set(bound, truncation_of(e)->tolerance);
 		mpq_set_ui(steps, (unsigned long)m, 1);
@@ -67,7 +64,6 @@ void emit_reach_tables(const struct emitter *e)
 		mpq_div(bound, bound, steps);
 		last[m - 1] = round_rational(bound);
 	}
-	mpq_clears(bound, steps, NULL);
 	emit_array(e, format("The tolerance over m^%d and m^%d: what the last coefficients may be for m steps", order,
 			     order - 1), "last", 1, &most, last, NULL);
 	emit_array(e, NULL, "before_last", 1, &most, before, NULL);

@@ -77,8 +77,7 @@ static struct tape *written_tape(const struct emitter *e)
 static void emit_read_params(const struct emitter *e, const struct tape *t)
 {
 	bool *read = ARRAY(bool, (size_t)e->model->spec->symbols + 1);
-	mpq_t value;
-	mpq_init(value);
+	RATIONAL value = ZERO;
 	tape_mark(t, TAPE_PARAM, 0, read);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
 		if (!read[s->number])
@@ -86,7 +85,6 @@ static void emit_read_params(const struct emitter *e, const struct tape *t)
 		param_value(s, value);
 		say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), finite_text(s->at, value));
 	}
-	mpq_clear(value);
 }
 
 static void emit_read_states(const struct emitter *e, const struct tape *t)

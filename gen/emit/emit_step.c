@@ -16,16 +16,14 @@ static void emit_tap_slope(const struct emitter *e, int input)
 {
 	int hold = e->system->input[input].hold, terms = 0;
 	const char **term = ARRAY(const char *, (size_t)hold + 1);
-	mpq_t slope;
+	RATIONAL slope = ZERO;
 	if (!reads_input_slope(e->model, input))
 		return;
-	mpq_init(slope);
 	for (int c = 0; c <= hold; c++) {
 		tap_slope(hold, c, slope);
 		if (mpq_sgn(slope) != 0)
 			term[terms++] = scaled(round_rational(slope), tap_text(e, input, c));
 	}
-	mpq_clear(slope);
 	say(e, "    s->slope[%d] = (%s) / %s;\n", input, tree(terms, term, 18), step_length(e));
 }
 

@@ -56,9 +56,7 @@ static void store_derivatives(const struct emitter *e, int input, int at)
 {
 	int hold = e->system->input[input].hold, before = 0;
 	const char **term = ARRAY(const char *, (size_t)hold + 1), *power = "";
-	mpq_t weight, one;
-	mpq_inits(weight, one, NULL);
-	mpq_set_ui(one, 1, 1);
+	RATIONAL weight = ZERO, one = RATIO(1, 1);
 	for (int i = 0; i < input; i++)
 		before += e->system->input[i].hold + 1;
 	for (int m = 0; m <= hold; m++) {
@@ -72,7 +70,6 @@ static void store_derivatives(const struct emitter *e, int input, int at)
 		    m > 1 ? format(" / (%s)", power) : m ? format(" / %s", power) : "");
 		power = m ? format("%s * %s", power, step_length(e)) : step_length(e);
 	}
-	mpq_clears(weight, one, NULL);
 }
 
 static void store_inputs(const struct emitter *e, const int *index)

@@ -268,15 +268,12 @@ static void emit_blocks(const struct emitter *e, const char *const *text)
 /* What each of its samples gets of an input's derivatives, in units of the step */
 static void add_taps(struct listed *l, int hold)
 {
-	mpq_t weight, one;
-	mpq_inits(weight, one, NULL);
-	mpq_set_ui(one, 1, 1);
+	RATIONAL weight = ZERO, one = RATIO(1, 1);
 	for (int i = 0; i < (hold + 1) * (hold + 1); i++) {
 		tap_derivative(hold, i % (hold + 1), i / (hold + 1), one, weight);
 		l->tap = format("%s%s%s", l->taps ? l->tap : "", l->taps ? ", " : "", shortest(round_rational(weight)));
 		l->taps++;
 	}
-	mpq_clears(weight, one, NULL);
 }
 
 /* Inputs with further samples: places in x, derivatives; how many there are */

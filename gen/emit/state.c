@@ -237,14 +237,11 @@ const char *step_length(const struct emitter *e)
 const char *slope_of_samples(const struct emitter *e, const char *to, const char *from)
 {
 	const char *gain = format("(%s - %s)", to, from);
-	mpq_t rate;
-	mpq_init(rate);
+	RATIONAL rate = ZERO;
 	mpq_inv(rate, e->model->h);
 	bool quotient = e->kind->own_factors || beyond_range(rate);
-	const char *text = quotient ? format("%s / %s", gain, step_length(e))
-				    : format("%s * %s", gain, shortest(round_rational(rate)));
-	mpq_clear(rate);
-	return text;
+	return quotient ? format("%s / %s", gain, step_length(e))
+			: format("%s * %s", gain, shortest(round_rational(rate)));
 }
 
 const char *ramp_slope(const struct emitter *e, int input)

@@ -67,7 +67,7 @@ struct magnitude magnitude_of_rational(mpq_srcptr q)
 	if (mpq_sgn(q) == 0)
 		return (struct magnitude){ 0, 0 };
 	INTEGER quotient = INTEGER_ZERO;
-	long shift = (long)mpz_sizeinbase(mpq_denref(q), 2) - (long)mpz_sizeinbase(mpq_numref(q), 2) + 40;
+	long shift = 40 - rational_bits(q);
 	if (shift >= 0) {
 		mpz_mul_2exp(quotient, mpq_numref(q), (mp_bitcnt_t)shift);
 		mpz_tdiv_q(quotient, quotient, mpq_denref(q));
@@ -148,7 +148,7 @@ void ball_set_rational(struct balls *x, size_t at, mpq_srcptr q, long halvings)
 	}
 	INTEGER middle = INTEGER_ZERO, scaled = INTEGER_ZERO;
 	/* |x| < 2^bits */
-	long bits = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1 - halvings;
+	long bits = rational_bits(q) + 1 - halvings;
 	long exponent = bits >= 0 ? (bits + LIMB - 1) / LIMB : -(-bits / LIMB);
 	bool exact;
 	for (;;) {

@@ -40,40 +40,24 @@ static void product(mpfi_ptr z, mpfi_srcptr a, mpfi_srcptr b)
 		mpfi_mul(z, a, b);
 }
 
-struct scratch { mpfi_t re, im, other; };
-
-static void scratch_init(struct scratch *s, int precision)
+static void multiply(struct rectangle *z, const struct rectangle *a, const struct rectangle *b, mpfi_ptr re,
+		     mpfi_ptr im, mpfi_ptr other)
 {
-	mpfi_init2(s->re, precision);
-	mpfi_init2(s->im, precision);
-	mpfi_init2(s->other, precision);
-}
-
-static void scratch_clear(struct scratch *s)
-{
-	mpfi_clear(s->re);
-	mpfi_clear(s->im);
-	mpfi_clear(s->other);
-}
-
-static void multiply(struct rectangle *z, const struct rectangle *a, const struct rectangle *b, struct scratch *s)
-{
-	product(s->re, a->re, b->re);
-	product(s->other, a->im, b->im);
-	mpfi_sub(s->re, s->re, s->other);
-	product(s->im, a->re, b->im);
-	product(s->other, a->im, b->re);
-	mpfi_add(s->im, s->im, s->other);
-	mpfi_swap(z->re, s->re);
-	mpfi_swap(z->im, s->im);
+	product(re, a->re, b->re);
+	product(other, a->im, b->im);
+	mpfi_sub(re, re, other);
+	product(im, a->re, b->im);
+	product(other, a->im, b->re);
+	mpfi_add(im, im, other);
+	mpfi_swap(z->re, re);
+	mpfi_swap(z->im, im);
 }
 
 void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
 {
-	struct scratch s;
-	scratch_init(&s, (int)mpfi_get_prec(z->re));
-	multiply(z, a, b, &s);
-	scratch_clear(&s);
+	const mpfr_prec_t bits = mpfi_get_prec(z->re);
+	INTERVAL re = OVER_BITS(bits), im = OVER_BITS(bits), other = OVER_BITS(bits);
+	multiply(z, a, b, re, im, other);
 }
 
 /* Re a b; may be a part of a */
@@ -123,13 +107,12 @@ void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr ta
 /* p(a) by Horner's rule */
 void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a)
 {
-	struct scratch s;
-	scratch_init(&s, (int)mpfi_get_prec(z->re));
+	const mpfr_prec_t bits = mpfi_get_prec(z->re);
+	INTERVAL re = OVER_BITS(bits), im = OVER_BITS(bits), other = OVER_BITS(bits);
 	mpfi_set_ui(z->re, 0);
 	mpfi_set_ui(z->im, 0);
 	for (int k = p.length - 1; k >= 0; k--) {
-		multiply(z, z, a, &s);
+		multiply(z, z, a, re, im, other);
 		mpfi_add_z(z->re, z->re, p.c[k]);
 	}
-	scratch_clear(&s);
 }

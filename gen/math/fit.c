@@ -57,8 +57,7 @@ static mpq_t *scattered(const struct fit *f, int number)
 static mpq_t *near_base(const struct fit *f, int k, int up, int j, int other)
 {
 	mpq_t *values = scattered_values(f->params, 0);
-	RATIONAL shift = ZERO;
-	mpq_set_si(shift, up, 1);
+	RATIONAL shift = RATIO(up, 1);
 	mpq_add(values[k], values[k], shift);
 	mpq_set_si(shift, other, 1);
 	mpq_add(values[j], values[j], shift);

@@ -13,8 +13,6 @@ int  matrix_blocks(int n, const bool *filled, int *block);
 /* Components of a graph by parent pointers, at first numbers_up_to */
 int  root_of_node(int *parent, int node);                   /* of its component: paths to it become shorter */
 void join_nodes(int *parent, int a, int b);                 /* their components become one */
-mpz_t *integers(size_t count);                              /* initialised to 0 */
-void integers_free(mpz_t *z, size_t count);
 /* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the
  * place of I. False at a singular matrix: *column depends on those before it. */
 bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column);
@@ -51,8 +49,6 @@ bool solve_complex(int n, double _Complex *A, double _Complex *b);
 
 /* ---- symmetric.c: K v = lambda M v of symmetric K and positive definite M, in multiprecision ---- */
 
-mpfr_t *reals(size_t count, int precision);                 /* 0, of so many bits */
-void reals_free(mpfr_t *x, size_t count);
 struct eigenpairs {
 	int n, blocks;
 	mpfr_t *value;              /* those of a block after each other, rising */
@@ -148,7 +144,8 @@ void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectang
 
 #define NO_SIZE (-(1L << 60))                               /* of what is exactly 0 */
 struct rectangle *rectangles(int count, int precision);     /* 0 */
-void rectangles_free(struct rectangle *z, int count);
+#define RECTANGLES __attribute__((cleanup(clear_rectangles))) struct rectangle /* RECTANGLES *z = rectangles(n, 64); */
+void clear_rectangles(struct rectangle **z);
 long interval_size(mpfi_srcptr x);                          /* about log2 of it */
 long rectangle_size(const struct rectangle *z);
 void rectangle_add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b); /* z + a b */
@@ -217,7 +214,6 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* ---- stream.c: x' = A x, x enclosed ---- */
 
-mpfi_t *enclosures(size_t count, int precision);            /* 0, of so many bits */
 enum { STREAM_HALVINGS = 40 };
 struct stream {                       /* of one rational A (n x n) */
 	int n, precision;
@@ -243,7 +239,7 @@ void stream_sum(const struct stream *f, const struct series_room *room, int degr
  * as it is then. False: that is too long to be known */
 bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x);
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
-void series_room_free(int n, struct series_room *room);
+void series_room_free(struct series_room *room);
 
 /* ---- positive.c: where a sum of waves of time stays at 0 or above ---- */
 

@@ -35,21 +35,6 @@ int matrix_blocks(int n, const bool *filled, int *block)
 
 /* ---- integers over a common denominator: sums of products need no gcds ---- */
 
-mpz_t *integers(size_t count)
-{
-	mpz_t *z = ARRAY(mpz_t, count);
-	for (size_t i = 0; i < count; i++)
-		mpz_init(z[i]);
-	return z;
-}
-
-void integers_free(mpz_t *z, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		mpz_clear(z[i]);
-	discard(z);
-}
-
 /* z <- scale q, `stride` apart in q */
 static void to_integers(int count, const mpq_t *q, int stride, mpz_ptr scale, mpz_t *z)
 {
@@ -131,7 +116,7 @@ static struct members members_of(int n, const int *block, int which)
 static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t *inverse, int *free)
 {
 	int size = m->columns, width = 2 * size, dependent;
-	mpz_t *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size);
+	INTEGERS *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size);
 	RATIONALS *row = rationals(size);
 	INTEGER det = INTEGER_ZERO;
 	for (int i = 0; i < size; i++) {
@@ -150,8 +135,6 @@ static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t 
 			mpz_set(mpq_denref(cell), det);
 			mpq_canonicalize(cell);
 		}
-	integers_free(W, (size_t)size * (size_t)width);
-	integers_free(scale, (size_t)size);
 }
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
@@ -214,8 +197,7 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 /* Rows of A and columns of B as integers */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
-	size_t wide = (size_t)inner * (size_t)columns;
-	mpz_t *row = integers((size_t)inner), *column = integers(wide), *scale = integers((size_t)columns);
+	INTEGERS *row = integers((size_t)inner), *column = integers((size_t)(inner * columns)), *scale = integers((size_t)columns);
 	INTEGER common = INTEGER_ZERO;
 	for (int j = 0; j < columns; j++)
 		to_integers(inner, B + j, columns, scale[j], column + j * inner);
@@ -230,9 +212,6 @@ void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const m
 			mpz_mul(mpq_denref(sum), common, scale[j]);
 		}
 	}
-	integers_free(row, (size_t)inner);
-	integers_free(column, wide);
-	integers_free(scale, (size_t)columns);
 }
 
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)

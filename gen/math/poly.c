@@ -144,12 +144,6 @@ bool poly_equal(struct poly a, struct poly b)
 	return true;
 }
 
-/* Its room was for so many coefficients, of which some may be trimmed. */
-static void release(struct poly p, int room)
-{
-	integers_free(p.c, (size_t)room);
-}
-
 /* Pseudo-remainder of a by b (Knuth, algorithm R): lead(b)^(deg a - deg b + 1) a = q b + r */
 static struct poly pseudo_remainder(struct poly a, struct poly b)
 {
@@ -179,7 +173,7 @@ struct poly poly_divide(struct poly a, struct poly b)
 		for (int i = 0; i < b.length; i++)
 			mpz_submul(r.c[k + i], q.c[k], b.c[i]);
 	}
-	release(r, a.length);
+	clear_integers(&r.c);
 	poly_trim(&q);
 	return q;
 }
@@ -189,7 +183,7 @@ bool poly_divides(struct poly d, struct poly a)
 	if (a.length == 0 || d.length > a.length)
 		return a.length == 0;
 	struct poly r = pseudo_remainder(a, d);
-	release(r, a.length);
+	clear_integers(&r.c);
 	return r.length == 0;
 }
 
@@ -264,8 +258,8 @@ struct poly poly_gcd(struct poly a, struct poly b)
 			b = swap;
 		}
 		struct poly r = pseudo_remainder(a, b), part = primitive_part(r);
-		release(r, a.length);
-		release(a, a.length);
+		clear_integers(&r.c);
+		clear_integers(&a.c);
 		a = b;
 		b = part;
 	}

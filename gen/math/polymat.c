@@ -28,29 +28,25 @@ static void evaluate(struct poly p, long point, mpz_ptr value)
 static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 {
 	int n = P.n, width = adj ? 2 * n : n;
-	mpz_t *W = ARRAY(mpz_t, (size_t)(n * width));
+	INTEGERS *W = integers((size_t)(n * width));
 	for (int i = 0; i < n; i++)
-		for (int j = 0; j < width; j++) {
-			mpz_init(W[i * width + j]);
+		for (int j = 0; j < width; j++)
 			if (j < n)
 				evaluate(P.cell[i * n + j], point, W[i * width + j]);
 			else
 				mpz_set_ui(W[i * width + j], j - n == i);
-		}
 	int column;
 	bool regular = bareiss(n, width, W, det, &column);
 	for (int i = 0; i < n && regular && adj; i++)
 		for (int j = 0; j < n; j++)
 			mpz_init_set(adj[i * n + j], W[i * width + n + j]);
-	for (int i = 0; i < n * width; i++)
-		mpz_clear(W[i]);
 	return regular;
 }
 
 /* Newton's divided differences, over Q, then the powers of s; the result is integral. */
 static struct poly interpolate(int count, const long *point, const mpz_t *value)
 {
-	mpq_t *difference = rationals(count), *c = rationals(count);
+	RATIONALS *difference = rationals(count), *c = rationals(count);
 	RATIONAL factor = ZERO;
 	for (int i = 0; i < count; i++)
 		mpq_set_z(difference[i], value[i]);
@@ -70,10 +66,8 @@ static struct poly interpolate(int count, const long *point, const mpz_t *value)
 		mpq_add(c[0], c[0], difference[k]);
 	}
 	struct poly p = poly_new(count);
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < count; i++)
 		mpz_set(p.c[i], mpq_numref(c[i]));
-		mpq_clears(c[i], difference[i], NULL);
-	}
 	poly_trim(&p);
 	return p;
 }

@@ -217,11 +217,10 @@ static int keep_zeros(struct exact_row *found, mpz_t *row)
 static void find_row(const struct taylor *t, struct exact_row *found)
 {
 	int N = found->N, left = 1;
-	mpz_t *block, *row = integers((size_t)N), *next = integers((size_t)N);
 	INTEGER denominator = INTEGER_ZERO;
-	RATIONAL weight = ZERO;
-	mpq_set_ui(weight, 1, 1);
-	block = integer_block(t, N, found->state, denominator);
+	INTEGERS *block = integer_block(t, N, found->state, denominator), *row = integers((size_t)N),
+		 *next = integers((size_t)N);
+	RATIONAL weight = RATIO(1, 1);
 	for (int a = 0; a < N; a++)
 		mpz_set_ui(row[a], found->state[a] == found->i);
 	for (int k = 0; k < 2 * N && left; k++) {
@@ -235,9 +234,6 @@ static void find_row(const struct taylor *t, struct exact_row *found)
 			next_weight(weight, t->tau, k, denominator);
 		add_power(found, row, weight);
 	}
-	integers_free(block, (size_t)N * (size_t)N);
-	integers_free(row, (size_t)N);
-	integers_free(next, (size_t)N);
 }
 
 static struct exact_row *exact_row_of(const struct taylor *t, int i, int N, const int *state, bool cycle)
@@ -254,9 +250,7 @@ static struct exact_row *exact_row_of(const struct taylor *t, int i, int N, cons
 
 static void exact_row_clear(struct exact_row *found)
 {
-	for (int a = 0; a < found->N; a++)
-		mpq_clear(found->value[a]);
-	discard(found->value);
+	clear_rationals(&found->value);
 	discard(found->polynomial);
 	discard(found->state);
 	discard(found);

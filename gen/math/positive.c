@@ -14,16 +14,12 @@ struct bounding {
 	int summands;
 	const struct summand *summand;
 	int nodes;
-	mpfi_t value, slope, at, power, lower, wave, turn, part;
-	mpfr_t tiny;                /* below 0 */
+	mpfi_ptr value, slope, at, power, lower, wave, turn, part;
+	mpfr_ptr tiny;              /* below 0 */
 };
 
-static void begin(struct bounding *b)
+static void find_tiny(struct bounding *b)
 {
-	mpfi_ptr all[] = { b->value, b->slope, b->at, b->power, b->lower, b->wave, b->turn, b->part };
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-		mpfi_init2(all[i], BITS);
-	mpfr_init2(b->tiny, BITS);
 	REAL size = WITH_BITS(BITS);
 	mpfr_set_zero(b->tiny, 1);
 	for (int i = 0; i < b->summands; i++) {
@@ -33,14 +29,6 @@ static void begin(struct bounding *b)
 	}
 	mpfr_div_2ui(b->tiny, b->tiny, SMALL, MPFR_RNDU);
 	mpfr_neg(b->tiny, b->tiny, MPFR_RNDU);
-}
-
-static void end(struct bounding *b)
-{
-	mpfi_ptr all[] = { b->value, b->slope, b->at, b->power, b->lower, b->wave, b->turn, b->part };
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-		mpfi_clear(all[i]);
-	mpfr_clear(b->tiny);
 }
 
 /* One summand over b->at, into value and slope: t^n e^{a t} times cos or sin */
@@ -204,12 +192,12 @@ static bool above_from(struct bounding *b, mpq_srcptr time)
 
 bool sum_stays_positive(int summands, const struct summand *summand, mpq_srcptr from, mpq_srcptr to)
 {
-	struct bounding b = { .summands = summands, .summand = summand };
-	begin(&b);
-	RATIONAL time = ZERO, step = ZERO;
-	REAL low = WITH_BITS(BITS), high = WITH_BITS(BITS);
+	INTERVALS *x = enclosures(8, BITS);
+	REAL low = WITH_BITS(BITS), high = WITH_BITS(BITS), tiny = WITH_BITS(BITS);
+	struct bounding b = { summands, summand, 0, x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], tiny };
+	find_tiny(&b);
+	RATIONAL time = ZERO, step = RATIO(1, 1);
 	mpq_set(time, to ? to : from);
-	mpq_set_ui(step, 1, 1);
 	bool known = to || above_from(&b, time);
 	for (int i = 0; i < MOST_DOUBLINGS && !known; i++) {
 		mpq_add(time, time, step);
@@ -218,7 +206,5 @@ bool sum_stays_positive(int summands, const struct summand *summand, mpq_srcptr 
 	}
 	mpfr_set_q(low, from, MPFR_RNDD);
 	mpfr_set_q(high, time, MPFR_RNDU);
-	bool is = known && above_between(&b, low, high);
-	end(&b);
-	return is;
+	return known && above_between(&b, low, high);
 }

@@ -10,11 +10,11 @@ struct rectangle *rectangles(int count, int precision)
 	return z;
 }
 
-void rectangles_free(struct rectangle *z, int count)
+void clear_rectangles(struct rectangle **z)
 {
-	for (int i = 0; i < count; i++)
-		rectangle_clear(&z[i]);
-	discard(z);
+	for (size_t i = 0; i < block_size(*z) / sizeof **z; i++)
+		rectangle_clear(&(*z)[i]);
+	discard(*z);
 }
 
 static bool rectangle_is_zero(const struct rectangle *z)

@@ -63,8 +63,7 @@ static void residue_at_zero(struct response *response)
 /* sum_k at_zero_k tau^k/k! */
 static void value_at_zero(const struct response *response, mpq_srcptr tau, mpq_ptr sum)
 {
-	RATIONAL power = ZERO, term = ZERO;
-	mpq_set_ui(power, 1, 1);
+	RATIONAL power = RATIO(1, 1), term = ZERO;
 	mpq_set_ui(sum, 0, 1);
 	for (int k = 0; k < response->spectrum->zero; k++) {
 		mpq_mul(term, response->at_zero[k], power);

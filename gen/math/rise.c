@@ -7,8 +7,8 @@ struct rising {
 	int degree;
 	const mpfi_t *value, *slope;        /* coefficients in s */
 	int deepest;
-	mpfi_t s, g, d;
-	mpfr_t middle;
+	mpfi_ptr s, g, d;
+	mpfr_ptr middle;
 };
 
 static void horner(int degree, const mpfi_t *c, mpfi_srcptr s, mpfi_ptr sum)
@@ -103,17 +103,9 @@ static enum rise look(struct rising *r, mpfr_srcptr a, mpfr_srcptr b, int depth,
 enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_srcptr end, mpfi_ptr at)
 {
 	int precision = (int)mpfi_get_prec(value[0]);
-	struct rising r = { .degree = degree, .value = value, .slope = slope, .deepest = precision / 2 };
-	REAL start = WITH_BITS(precision);
+	REAL start = WITH_BITS(precision), middle = WITH_BITS(precision);
+	INTERVAL s = OVER_BITS(precision), g = OVER_BITS(precision), d = OVER_BITS(precision);
+	struct rising r = { degree, value, slope, precision / 2, s, g, d, middle };
 	mpfr_set_zero(start, 1);
-	mpfi_init2(r.s, precision);
-	mpfi_init2(r.g, precision);
-	mpfi_init2(r.d, precision);
-	mpfr_init2(r.middle, precision);
-	enum rise found = look(&r, start, end, 0, at);
-	mpfi_clear(r.s);
-	mpfi_clear(r.g);
-	mpfi_clear(r.d);
-	mpfr_clear(r.middle);
-	return found;
+	return look(&r, start, end, 0, at);
 }

@@ -50,16 +50,6 @@ static double largest_row(const struct stream *f, const double *A)
 
 /* ---- the matrix ---- */
 
-mpfi_t *enclosures(size_t count, int precision)
-{
-	mpfi_t *x = ARRAY(mpfi_t, count);
-	for (size_t i = 0; i < count; i++) {
-		mpfi_init2(x[i], precision);
-		mpfi_set_ui(x[i], 0);
-	}
-	return x;
-}
-
 static void take_entries(struct stream *f, const mpq_t *A)
 {
 	int count = 0;
@@ -103,11 +93,9 @@ struct stream *stream_of(int n, const mpq_t *A, mpq_srcptr h, int precision)
 
 void stream_free(struct stream *f)
 {
-	for (int k = 0; k < f->first[f->n]; k++)
-		mpfi_clear(f->entry[k]);
+	clear_intervals(&f->entry);
 	for (int p = 0; p < f->powers; p++)
-		for (int i = 0; i < f->n * f->n; i++)
-			mpfi_clear(f->power[p][i]);
+		clear_intervals(&f->power[p]);
 	mpq_clear(f->piece);
 }
 
@@ -223,11 +211,9 @@ void stream_sum(const struct stream *f, const struct series_room *room, int degr
  * both give x the same derivative but for its own width, nothing of first order is lost. */
 bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x)
 {
-	mpfr_t size;
-	SCRATCH mpfi_t *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision);
+	INTERVALS *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision);
 	const double rates = (before->rate + (after ? largest_row(before, after->size) : 0)) * (1 + 1e-9);
-	REAL angle = WITH_BITS(64);
-	mpfr_init2(size, 64);
+	REAL angle = WITH_BITS(64), size = WITH_BITS(64);
 	INTERVAL time = OVER_BITS(64);
 	mpfr_neg(&time->left, delta, MPFR_RNDD);
 	mpfr_set(&time->right, delta, MPFR_RNDU);
@@ -246,11 +232,6 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 	}
 	widen_all(before, x, size);
 	bool short_enough = mpfr_cmp_d(angle, 0.5) <= 0;
-	for (int i = 0; i < before->n; i++) {
-		mpfi_clear(old[i]);
-		mpfi_clear(new[i]);
-	}
-	mpfr_clear(size);
 	return short_enough;
 }
 
@@ -260,7 +241,7 @@ static void first_power(struct stream *f, mpfi_t *E)
 {
 	int n = f->n;
 	struct series_room room = { 0 };
-	mpfi_t *x = enclosures(n, f->precision);
+	INTERVALS *x = enclosures(n, f->precision);
 	REAL one = WITH_BITS(2);
 	mpfr_set_ui(one, 1, MPFR_RNDN);
 	for (int j = 0; j < n; j++) {
@@ -271,9 +252,7 @@ static void first_power(struct stream *f, mpfi_t *E)
 		for (int i = 0; i < n; i++)
 			mpfi_set(E[i * n + j], x[i]);
 	}
-	series_room_free(f->n, &room);
-	for (int i = 0; i < n; i++)
-		mpfi_clear(x[i]);
+	series_room_free(&room);
 }
 
 static void times(int n, const mpfi_t *E, const mpfi_t *x, int stride, mpfi_t *y)
@@ -304,10 +283,9 @@ void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y)
 	times(n, f->power[power], x, 1, y);
 }
 
-void series_room_free(int n, struct series_room *room)
+void series_room_free(struct series_room *room)
 {
 	for (int m = 0; m < room->terms; m++)
-		for (int i = 0; i < n; i++)
-			mpfi_clear(room->term[m][i]);
+		clear_intervals(&room->term[m]);
 	*room = (struct series_room){ 0 };
 }

@@ -31,8 +31,7 @@ static void prepare_cells(struct invariants *of, int precision)
 {
 	if (of->precision >= precision)
 		return;
-	if (of->value)
-		reals_free(of->value, (size_t)of->cells);
+	clear_reals(&of->value);
 	of->value = reals((size_t)of->cells, precision);
 	of->precision = precision;
 	for (int c = 0; c < of->cells; c++)
@@ -292,7 +291,8 @@ static void turn_row(const struct correcting *w, mpfr_t *row, int a, int b, int 
  * [a, b; -b, a]. G = (Re g_0, Im g_0; Re g_1, Im g_1) / c, and Y^T <- G^-1 Y^T. */
 static bool scale_pair(const struct correcting *w)
 {
-	mpfr_t *T = w->T, *G = w->G, *R = reals(6, (int)mpfr_get_prec(w->T[0]));
+	mpfr_t *T = w->T, *G = w->G;
+	REALS *R = reals(6, mpfr_get_prec(w->T[0]));
 	const int at = largest_entry(w);
 	mpfr_add(R[0], T[0], T[3], MPFR_RNDN);          /* a */
 	mpfr_div_2ui(R[0], R[0], 1, MPFR_RNDN);
@@ -324,7 +324,6 @@ static bool scale_pair(const struct correcting *w)
 	mpfr_set(T[3], R[0], MPFR_RNDN);
 	mpfr_neg(T[2], R[2], MPFR_RNDN);
 	mpfr_set(T[1], R[2], MPFR_RNDN);
-	reals_free(R, 6);
 	return good;
 }
 
@@ -379,11 +378,9 @@ bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, m
 	SCRATCH double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
 	prepare_cells(of, precision);
 	mpfr_init2(w.x, precision);
-	mpfr_t **all[] = { &w.X, &w.Y, &w.R, &w.S };
-	for (int i = 0; i < 4; i++)
-		*all[i] = reals(cells, precision);
-	w.T = reals(square, precision);
-	w.G = reals(square, precision);
+	mpfr_t **all[] = { &w.X, &w.Y, &w.R, &w.S, &w.T, &w.G };
+	for (int i = 0; i < 6; i++)
+		*all[i] = reals(i < 4 ? cells : square, precision);
 	invariant_start(of, part, X, Y);
 	for (size_t i = 0; i < cells; i++) {
 		mpfr_set_d(w.X[i], X[i], MPFR_RNDN);
@@ -395,10 +392,8 @@ bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, m
 		round_all(&w, w.X, false, bits, right);
 		round_all(&w, w.Y, true, bits, left);
 	}
-	for (int i = 0; i < 4; i++)
-		reals_free(*all[i], cells);
-	reals_free(w.T, square);
-	reals_free(w.G, square);
+	for (int i = 0; i < 6; i++)
+		clear_reals(all[i]);
 	mpfr_clear(w.x);
 	return good;
 }

@@ -14,23 +14,6 @@ enum {
 	MOST_DOUBLINGS = 5
 };
 
-mpfr_t *reals(size_t count, int precision)
-{
-	mpfr_t *x = ARRAY(mpfr_t, count + 1);
-	for (size_t i = 0; i < count; i++) {
-		mpfr_init2(x[i], precision);
-		mpfr_set_zero(x[i], 1);
-	}
-	return x;
-}
-
-void reals_free(mpfr_t *x, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		mpfr_clear(x[i]);
-	discard(x);
-}
-
 struct rotating {                   /* one block of coordinates */
 	int n, precision;
 	int *coord;                 /* of the whole */
@@ -223,7 +206,7 @@ static bool is_residual_small(const struct eigenpairs *pairs, const mpq_t *M, co
 {
 	int n = pairs->n, precision = (int)mpfr_get_prec(pairs->value[0]);
 	bool small = true;
-	mpfr_t *w = reals(5, precision), *Mv = reals((size_t)n, precision);
+	REALS *w = reals(5, precision), *Mv = reals((size_t)n, precision);
 	mpfr_ptr sum = w[0], size = w[1], part = w[2], entry = w[3], product = w[4];
 	for (int j = 0; j < n && small; j++) {
 		for (int i = 0; i < n; i++) {
@@ -255,8 +238,6 @@ static bool is_residual_small(const struct eigenpairs *pairs, const mpq_t *M, co
 			small = small && (mpfr_zero_p(sum) || mpfr_get_exp(sum) < -bits);
 		}
 	}
-	reals_free(w, 5);
-	reals_free(Mv, (size_t)n);
 	return small;
 }
 
@@ -284,9 +265,9 @@ static bool solve(int n, const mpq_t *M, const mpq_t *K, const int *block, int b
 		if (good)
 			place_block(&r, first, pairs);
 	}
-	reals_free(r.L, cells);
-	reals_free(r.A, cells);
-	reals_free(r.V, cells);
+	clear_reals(&r.L);
+	clear_reals(&r.A);
+	clear_reals(&r.V);
 	mpfr_clears(r.x, r.y, r.c, r.s, r.t, NULL);
 	return good;
 }

@@ -451,8 +451,7 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 {
 	const struct balls *U = &t->value;
 	size_t at = (size_t)(i * t->n + j);
-	mpz_t radius;
-	INTEGER left = INTEGER_ZERO, right = INTEGER_ZERO;
+	INTEGER left = INTEGER_ZERO, right = INTEGER_ZERO, radius = INTEGER_ZERO;
 	mpfi_set_prec(value, LIMB * (U->limbs + 1));
 	struct magnitude bound = U->radius[at];
 	long last = LIMB * (U->exponent[at] - U->limbs);        /* of the middle's last digit */
@@ -464,7 +463,7 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 		if (U->sign[at] < 0)
 			mpz_neg(left, left);
 	}
-	mpz_init_set_ui(radius, (unsigned long)bound.m);
+	mpz_set_ui(radius, (unsigned long)bound.m);
 	if (bound.e >= last)
 		mpz_mul_2exp(radius, radius, (mp_bitcnt_t)(bound.e - last));
 	else
@@ -472,5 +471,4 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 	mpz_add(right, left, radius);
 	mpz_sub(left, left, radius);
 	set_interval(value, left, right, last);
-	mpz_clear(radius);
 }

@@ -338,7 +338,7 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 {
 	bool taken = true;
 	int pivot = -1;
-	RATIONAL factor = ZERO, one = ZERO;
+	RATIONAL factor = ZERO, one = RATIO(1, 1);
 	while (taken && ++pivot < s->rows) {
 		taken = mpq_sgn(stuck[k].direction[pivot]) == 0;
 		for (int i = 0; i < k; i++)
@@ -348,7 +348,6 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 		error(place_of_stuck(&stuck[k]), NULL, "the forces of what sticks and rests are not determined");
 	mpq_inv(factor, stuck[k].direction[pivot]);     /* less 1 - 1/d times itself: divided by d */
 	mpq_neg(factor, factor);
-	mpq_set_ui(one, 1, 1);
 	mpq_add(factor, factor, one);
 	subtract_row(s, region, stuck, count, pivot, pivot, factor);
 	for (int i = 0; i < s->rows; i++) {
@@ -529,7 +528,8 @@ static bool reads_leftover(const struct model *model)
 	for (int i = 0; i < model->outputs; i++)
 		any = any || !rationals_zero((size_t)model->channels, model->output[i].channel);
 	for (int k = 0; k < model->n; k++)
-		any = any || (model->highest[k] && !rationals_zero((size_t)model->channels, model->highest[k]->channel));
+		any = any || (model->highest[k] &&
+			      !rationals_zero((size_t)model->channels, model->highest[k]->channel));
 	return any;
 }
 

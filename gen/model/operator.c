@@ -118,21 +118,18 @@ static int size_of_bank(struct building *b, const struct fixed *bank)
 {
 	enum { MOST_OPERATORS = 256 };
 	const struct node *count = b->spec->operator_count;
-	mpq_t number;
+	RATIONAL number = ZERO;
 	if (!count)
 		return bank ? bank->values : 1;
 	if (!bank || bank->values != 2)
 		error(count->start, "operator 16 at w = 0, 15",
 		      "a number of operators goes with two values of one name");
-	mpq_init(number);
 	collect_constant(&b->collector, b->spec->operator_count, number);
 	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_cmp_ui(number, 1, 1) < 0 ||
 	    mpq_cmp_ui(number, MOST_OPERATORS, 1) > 0)
 		error(count->start, NULL, "a number of operators is a whole number from 1 to %d, found %s",
 		      MOST_OPERATORS, readable_text(number));
-	int operators = (int)mpz_get_si(mpq_numref(number));
-	mpq_clear(number);
-	return operators;
+	return (int)mpz_get_si(mpq_numref(number));
 }
 
 struct bank_work {
@@ -160,9 +157,8 @@ static void divide_range(void *context)
 	if (!w->b->spec->operator_count)
 		return;
 	size_t count = (size_t)w->operators;
-	mpq_t limit[2];
+	RATIONALS *limit = rationals(2);
 	RATIONAL length = ZERO, part = ZERO;
-	mpq_inits(limit[0], limit[1], NULL);
 	for (int k = 0; k < 2; k++)
 		collect_constant(&w->b->collector, w->bank->value[k], limit[k]);
 	if (mpq_sgn(limit[0]) < 0 || mpq_cmp(limit[0], limit[1]) >= 0)
@@ -179,7 +175,6 @@ static void divide_range(void *context)
 		mpq_add(w->value[k], limit[0], part);
 		nearest_root(w->value[k]);
 	}
-	mpq_clears(limit[0], limit[1], NULL);
 }
 
 static void check_rising(const struct building *b, const struct fixed *bank)

@@ -318,8 +318,7 @@ static void place_output_waves(struct building *b, bool *seen, const struct form
 static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
 {
 	struct model *model = b->model;
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	model->highest = ARRAY(struct output *, model->n);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;

@@ -248,7 +248,8 @@ static void find_inputs(struct region_part *part)
 	for (int i = 0; i < s->system->inputs; i++) {
 		bool needed = false;
 		for (int k = 0; k < 2 * s->systems; k++)
-			needed = needed || !rationals_zero((size_t)s->system->n, s->system[k / 2].input[i].force[k % 2]);
+			needed = needed ||
+				 !rationals_zero((size_t)s->system->n, s->system[k / 2].input[i].force[k % 2]);
 		for (int e = 0; e < s->expressions; e++)
 			for (int k = 0; k < 2; k++)
 				needed = needed || mpq_sgn(s->expression[e].row->input[k][i]) != 0;

@@ -187,7 +187,8 @@ static bool is_position(const struct model *model, const struct output *output)
 	const struct linear *system = &model->system;
 	bool position = rationals_zero((size_t)(system->states - model->n), output->state + model->n);
 	for (int l = 0; l < system->loads; l++)
-		position = position && rationals_zero((size_t)(system->load[l].columns * system->segments), output->load[l]);
+		position = position &&
+			   rationals_zero((size_t)(system->load[l].columns * system->segments), output->load[l]);
 	for (int k = 0; k < 2; k++)
 		position = position && rationals_zero((size_t)system->inputs, output->input[k]);
 	return position;
@@ -214,7 +215,8 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 	if (is_written(o, r))
 		return model->state_name[o->pivot[r]];
 	for (int i = 0; i < model->outputs; i++)
-		if (is_position(model, &model->output[i]) && rationals_equal((size_t)o->states, row_of(o, r), model->output[i].state))
+		if (is_position(model, &model->output[i]) &&
+		    rationals_equal((size_t)o->states, row_of(o, r), model->output[i].state))
 			return model->output[i].name;
 	for (int i = 0; i < r; i++)
 		if (is_derivative(&reduced->system, i, r))

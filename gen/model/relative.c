@@ -433,8 +433,8 @@ static void place_root(struct relative *r, const struct group *g, int first)
 {
 	int n = g->n;
 	struct link *root = &r->link[g->root];
-	mpq_t *d = rationals((size_t)(n * n)), product; /* d_j over what is kept */
-	mpq_init(product);
+	mpq_t *d = rationals((size_t)(n * n));  /* d_j over what is kept */
+	RATIONAL product = ZERO;
 	root->kind = LINK_CENTRE;
 	root->weight = g->weight;
 	root->shift = rationals(n);
@@ -452,7 +452,6 @@ static void place_root(struct relative *r, const struct group *g, int first)
 			mpq_mul(product, g->weight[j], d[j * n + k]);
 			mpq_sub(root->shift[k], root->shift[k], product);
 		}
-	mpq_clear(product);
 }
 
 /* ---- what is kept ---- */
@@ -654,8 +653,7 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 		return equation[coord];
 	if (link->kind == LINK_PARENT && !same_order(r->written, coord, link->from))
 		return equation[coord];
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	if (link->kind == LINK_PARENT) {
 		struct form *own = divided(r, coord, equation, one),
 			    *from = divided(r, link->from, equation, link->ratio);

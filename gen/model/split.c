@@ -260,8 +260,7 @@ void split_leftover(struct building *b)
 	struct model *model = b->model;
 	struct splitting *s = NEW(struct splitting);
 	struct split_work w = { .b = b, .split = s };
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	number_of_function(s, form_unit((struct basis){ .kind = BASIS_ONE }), one);
 	for (int c = 0; c < model->channels; c++) {
 		const struct form *left = model->operator[0].left[c];

@@ -98,8 +98,7 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 {
 	const struct model *model = p->model;
 	SCRATCH double *value = ARRAY(double, model->outputs);
-	mpfi_t x;
-	mpfi_init(x);
+	INTERVAL x = OVER_BITS(53);
 	for (int j = 0; j < model->outputs; j++) {
 		through_value(t, &model->output[j], x);
 		if (!round_value(x, &p->largest[j], &value[j])) {
@@ -115,7 +114,6 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 	for (int j = 0; j < model->outputs; j++)
 		fprintf(p->to, ",%.17g", value[j]);
 	fputc('\n', p->to);
-	mpfi_clear(x);
 	return true;
 }
 

@@ -75,8 +75,7 @@ static struct transfer transfer_of(struct resolvent *r, const struct model *mode
 {
 	const struct output *read = &model->output[output];
 	struct transfer t = { .output = read->name, .drive = drive->name };
-	RATIONAL zero = ZERO, one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL zero = ZERO, one = RATIO(1, 1);
 	if (drive->input >= 0)
 		multiply_by_s(&t, output_of_input(r, &model->system, read, drive->input, zero, one), 2);
 	else

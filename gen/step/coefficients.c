@@ -140,8 +140,7 @@ static void state_by_taylor(struct filling *f, int state, int unused)
 	(void)unused;
 	const struct linear *system = f->system;
 	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
-	RATIONAL weight = ZERO;
-	mpq_set_ui(weight, 1, 1);
+	RATIONAL weight = RATIO(1, 1);
 	add_entry(f, f->tau, state, weight);
 	for (int i = 0; i < system->n && held; i++) {
 		mpq_neg(weight, held[i * system->n + system->coord[state]]);
@@ -155,8 +154,7 @@ static void state_by_taylor(struct filling *f, int state, int unused)
 /* Phi - I, rounded as it is and not as Phi */
 static struct coefficient increment_entry(struct filling *f, int j, bool two_words)
 {
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	f->less = f->row == j ? one : NULL;
 	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	f->less = NULL;
@@ -225,12 +223,10 @@ static bool round_kicks(struct filling *f, struct table *table, int precision)
 {
 	const struct linear *system = f->system;
 	int n = system->n;
-	mpfi_t *S = ARRAY(mpfi_t, (size_t)(n * n)), *R = ARRAY(mpfi_t, (size_t)(n * n));
+	INTERVALS *S = enclosures((size_t)(n * n), precision), *R = enclosures((size_t)(n * n), precision);
 	bool decided = true;
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
-			mpfi_init2(S[i * n + j], precision);
-			mpfi_init2(R[i * n + j], precision);
 			decided = decided && enclose_state(f, i, system->velocity[j], precision, S[i * n + j]);
 			decided = decided && enclose_state(f, i, j, precision, R[i * n + j]);
 			mpfi_div_q(S[i * n + j], S[i * n + j], mass_of(f, j));
@@ -242,10 +238,6 @@ static bool round_kicks(struct filling *f, struct table *table, int precision)
 			decided = round_words(R[i * n + j], &table->kick[i * n + j]);
 			table->kick[j * n + i] = table->kick[i * n + j];
 		}
-	for (int i = 0; i < n * n; i++) {
-		mpfi_clear(S[i]);
-		mpfi_clear(R[i]);
-	}
 	return decided;
 }
 
@@ -293,8 +285,7 @@ static void load_by_residues(struct filling *f, int load, int column)
 
 static void load_by_taylor(struct filling *f, int load, int column)
 {
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	if (f->layout.load[load] >= 0)
 		add_entry(f, f->tau,
 			  f->layout.load[load] + column + (f->layout.segments > 1 ? f->segment * f->layout.loads : 0),
@@ -304,8 +295,7 @@ static void load_by_taylor(struct filling *f, int load, int column)
 /* (s/h)^m from u_m of a chain u_0' = u_1, u_1' = u_2 ..., u_0 the force: s^m/m! */
 static void add_powers(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
 {
-	RATIONAL weight = ZERO, scale = ZERO;
-	mpq_set_ui(scale, 1, 1);
+	RATIONAL weight = ZERO, scale = RATIO(1, 1);
 	for (int m = 0; m < part->powers; m++) {
 		if (m > 0) {
 			mpq_set_ui(weight, (unsigned long)m, 1);
@@ -463,11 +453,9 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 /* A series of a wave that turns so often in a step would not end, and residues are slow beyond a few states. */
 static void check_waves(const struct filling *f)
 {
-	long step = (long)mpz_sizeinbase(mpq_numref(f->model->h), 2) - (long)mpz_sizeinbase(mpq_denref(f->model->h), 2);
 	for (int l = 0; l < f->system->loads; l++) {
-		mpq_srcptr w = f->system->load[l].wave->w;
-		long bits = (long)mpz_sizeinbase(mpq_numref(w), 2) - (long)mpz_sizeinbase(mpq_denref(w), 2);
-		if (bits + step > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
+		const long bits = rational_bits(f->system->load[l].wave->w) + rational_bits(f->model->h);
+		if (bits > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
 			error(f->model->asked.step_at, NULL,
 			      "the frequency of %s times the step is beyond the limit of 2^%d for models of more than "
 			      "%d states",

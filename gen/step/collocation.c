@@ -5,13 +5,6 @@
 
 enum { BITS = 512 };                /* far beyond what rounding needs: entries have no more than 40 bits before it */
 
-static void intervals_free(mpfi_t *x, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		mpfi_clear(x[i]);
-	discard(x);
-}
-
 static bool is_tiny(mpfr_srcptr x)
 {
 	return mpfr_zero_p(x) || mpfr_get_exp(x) < -BITS / 2;
@@ -75,10 +68,8 @@ static int zeros_of(struct poly p, struct rectangle *zero, int most)
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
 	int count = 0;
 	for (int f = 0; spectrum_refine(spectrum, BITS) && f < spectrum->factors; f++)
-		for (int k = 0; k < spectrum->poles[f] && count < most; k++) {
-			rectangle_init(&zero[count], BITS);
+		for (int k = 0; k < spectrum->poles[f] && count < most; k++)
 			rectangle_set(&zero[count++], &spectrum->pole[f][k].at);
-		}
 	return count;
 }
 
@@ -92,7 +83,7 @@ static void sort_real(struct rectangle *zero, int count)
 /* Ends and zeros of P_n' */
 mpq_t *lobatto_nodes(int stages)
 {
-	struct rectangle *zero = ARRAY(struct rectangle, stages);
+	RECTANGLES *zero = rectangles(stages, BITS);
 	struct poly legendre = poly_new(stages + 1);
 	mpq_t *node = rationals(stages + 1);
 	REAL x = WITH_BITS(IRRATIONAL_BITS);
@@ -102,7 +93,6 @@ mpq_t *lobatto_nodes(int stages)
 	for (int i = 0; i < zeros; i++) {
 		mpfi_mid(x, zero[i].re);
 		mpfr_get_q(node[i + 1], x);
-		rectangle_clear(&zero[i]);
 	}
 	mpq_set_ui(node[stages], 1, 1);
 	return node;
@@ -122,7 +112,7 @@ static void put_real_first(struct rectangle *zero, int count)
 /* W: [power][node], from N over x - c, synthetic division, over its value at c */
 static void lagrange(struct poly nodes, const struct rectangle *c, int stages, mpfi_t *W)
 {
-	mpfi_t *quotient = enclosures(stages, BITS);
+	INTERVALS *quotient = enclosures(stages, BITS);
 	INTERVAL value = OVER_BITS(BITS);
 	for (int j = 0; j < stages; j++) {
 		mpfi_set_z(quotient[stages - 1], nodes.c[stages]);
@@ -138,7 +128,6 @@ static void lagrange(struct poly nodes, const struct rectangle *c, int stages, m
 		for (int m = 0; m < stages; m++)
 			mpfi_div(W[m * stages + j], quotient[m], value);
 	}
-	intervals_free(quotient, (size_t)stages);
 }
 
 /* A: [node][node], integrals from 0 to a node */
@@ -176,7 +165,6 @@ static void right_of_mode(struct poly nodes, const struct rectangle *z, const st
 			  struct rectangle *value)
 {
 	RECTANGLE power = new_rectangle(BITS), part = new_rectangle(BITS);
-	rectangle_init(value, BITS);
 	mpfi_set_ui(power.re, 1);
 	for (struct poly p = poly_derivative(nodes); p.length; p = poly_derivative(p)) {
 		rectangle_evaluate(&part, p, c);
@@ -191,7 +179,6 @@ static void right_of_mode(struct poly nodes, const struct rectangle *z, const st
 static void left_of_mode(int stages, mpfi_t *W, const struct rectangle *z, int j, struct rectangle *value)
 {
 	RECTANGLE power = new_rectangle(BITS);
-	rectangle_init(value, BITS);
 	INTERVAL part = OVER_BITS(BITS);
 	mpfi_set_ui(power.re, 1);
 	for (int m = 0; m < stages; m++) {
@@ -211,8 +198,7 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 {
 	int stages = nodes.length - 1;
 	bool pair = !mpfi_is_zero(z->im);
-	struct rectangle *left = ARRAY(struct rectangle, stages), *right = ARRAY(struct rectangle,
-											 (size_t)stages);
+	RECTANGLES *left = rectangles(stages, BITS), *right = rectangles(stages, BITS);
 	struct stage_mode mode = { .pair = pair, .re = rounded(step, z->re), .im = pair ? rounded(step, z->im) : 0 };
 	mode.left = ARRAY(double, 2 * (size_t)stages);
 	mode.right = ARRAY(double, 2 * (size_t)stages);
@@ -232,8 +218,6 @@ static struct stage_mode mode_of(const struct step *step, struct poly nodes, mpf
 		mode.left[2 * i + 1] = pair ? rounded(step, left[i].im) : 0;
 		mode.right[2 * i] = rounded(step, right[i].re);
 		mode.right[2 * i + 1] = pair ? rounded(step, right[i].im) : 0;
-		rectangle_clear(&left[i]);
-		rectangle_clear(&right[i]);
 	}
 	return mode;
 }
@@ -254,9 +238,9 @@ struct collocation *collocation_of(const struct step *step)
 	int s = step->model->truncation.stages, modes;
 	size_t cells = (size_t)(s * s);
 	struct collocation *x = NEW(struct collocation);
-	struct rectangle c[MOST], z[MOST];
+	RECTANGLES *c = rectangles(MOST, BITS), *z = rectangles(MOST, BITS);
 	struct poly nodes = polynomial_of_nodes(s);
-	mpfi_t *W = enclosures(cells, BITS), *A = enclosures(cells, BITS), *twice = enclosures(cells, BITS);
+	INTERVALS *W = enclosures(cells, BITS), *A = enclosures(cells, BITS), *twice = enclosures(cells, BITS);
 	if (zeros_of(nodes, c, MOST) != s)
 		internal_error(step, "a collocation without its nodes");
 	sort_real(c, s);
@@ -276,14 +260,7 @@ struct collocation *collocation_of(const struct step *step)
 	put_real_first(z, modes);
 	x->modes = modes;
 	x->mode = ARRAY(struct stage_mode, modes);
-	for (int k = 0; k < modes; k++) {
+	for (int k = 0; k < modes; k++)
 		x->mode[k] = mode_of(step, nodes, W, c, &z[k]);
-		rectangle_clear(&z[k]);
-	}
-	for (int i = 0; i < s; i++)
-		rectangle_clear(&c[i]);
-	intervals_free(W, cells);
-	intervals_free(A, cells);
-	intervals_free(twice, cells);
 	return x;
 }

@@ -133,8 +133,8 @@ static void map_of_frozen(const struct frozen *z, bool twice, const double *from
 
 static double radius_by_eigenvalues(const struct frozen *z, bool twice, int size)
 {
-	double *matrix = ARRAY(double, (size_t)size * (size_t)size), *from = ARRAY(double, (size_t)size);
-	double *to = ARRAY(double, (size_t)size);
+	SCRATCH double *matrix = ARRAY(double, (size_t)size * (size_t)size), *from = ARRAY(double, (size_t)size),
+		       *to = ARRAY(double, (size_t)size);
 	for (int j = 0; j < size; j++) {
 		from[j] = 1;
 		map_of_frozen(z, twice, from, to);
@@ -142,11 +142,7 @@ static double radius_by_eigenvalues(const struct frozen *z, bool twice, int size
 		for (int i = 0; i < size; i++)
 			matrix[i * size + j] = to[i];
 	}
-	double radius = spectral_radius(size, matrix);
-	discard(matrix);
-	discard(from);
-	discard(to);
-	return radius;
+	return spectral_radius(size, matrix);
 }
 
 /* Amplitudes times frequencies, rates, and forces over a step, so that each counts alike */
@@ -225,8 +221,7 @@ static double *functions_at(const struct step *step, double span)
 	const struct splitting *split = step->model->split;
 	struct sample *sample = sample_new(SAMPLE_BITS, no_state, NULL);
 	double *f = ARRAY(double, (size_t)(TIMES * split->functions));
-	mpfr_t t, value;
-	mpfr_inits2(SAMPLE_BITS, t, value, NULL);
+	REAL t = WITH_BITS(SAMPLE_BITS), value = WITH_BITS(SAMPLE_BITS);
 	for (int i = 0; i < TIMES; i++) {
 		mpfr_set_d(t, span * i / (TIMES - 1), MPFR_RNDN);
 		sample_at(sample, t);
@@ -235,7 +230,6 @@ static double *functions_at(const struct step *step, double span)
 			f[i * split->functions + k] = mpfr_get_d(value, MPFR_RNDN);
 		}
 	}
-	mpfr_clears(t, value, NULL);
 	return f;
 }
 

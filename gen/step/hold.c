@@ -41,8 +41,7 @@ void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivati
 /* What |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
 double tap_reach(int hold, int power)
 {
-	RATIONAL one = ZERO, derivative = ZERO, sum = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1), derivative = ZERO, sum = ZERO;
 	for (int c = 0; c <= hold; c++) {
 		tap_derivative(hold, power, c, one, derivative);
 		mpq_abs(derivative, derivative);

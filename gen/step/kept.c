@@ -345,10 +345,9 @@ static bool make_flow(const struct step *step, const struct layout *place, int s
 		taylor_of(size, augmented_matrix(place, &step->branch->system, segment), step->model->h);
 	if (!taylor_enclose(taylor, BITS))
 		return false;
-	flow->E = ARRAY(mpfr_t, (size_t)(size * size));
+	flow->E = reals((size_t)(size * size), BITS);
 	INTERVAL value = OVER_BITS(BITS);
 	for (int i = 0; i < size * size; i++) {
-		mpfr_init2(flow->E[i], BITS);
 		taylor_entry(taylor, i / size, i % size, value);
 		mpfi_mid(flow->E[i], value);
 	}
@@ -392,8 +391,7 @@ static bool note_course(const struct step *step, const struct layout *place, con
 {
 	int states = step->branch->system.states, columns = step->branch->whole->columns;
 	bool finite = true;
-	mpfr_t sum;
-	mpfr_init2(sum, BITS);
+	REAL sum = WITH_BITS(BITS);
 	for (int i = 0; i < c->rows; i++) {
 		const mpfr_t *row = i < states ? NULL : c->written + (i - states) * (states + 1);
 		if (row) {
@@ -405,7 +403,6 @@ static bool note_course(const struct step *step, const struct layout *place, con
 		c->largest[i] = fmax(c->largest[i], fabs(y));
 		finite = finite && isfinite(y);
 	}
-	mpfr_clear(sum);
 	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
 		for (int j = 0; j < step->branch->system.load[l].columns; j++, column++) {
 			double z = place->load[l] < 0 ? 0 : mpfr_get_d(x[place->load[l] + j], MPFR_RNDN);
@@ -420,15 +417,11 @@ static bool note_course(const struct step *step, const struct layout *place, con
 static bool follow(const struct step *step, const struct layout *place, struct course *c)
 {
 	int size = place->size;
-	mpfr_t *x = ARRAY(mpfr_t, size), *next = ARRAY(mpfr_t, size);
+	REALS *x = reals(size, BITS), *next = reals(size, BITS);
 	struct flow *flow = ARRAY(struct flow, step->branch->system.segments);
 	RATIONAL t = ZERO, value = ZERO;
-	for (int i = 0; i < size; i++) {
-		mpfr_inits2(BITS, x[i], next[i], NULL);
-		mpfr_set_zero(x[i], 1);
-		if (i < step->branch->system.states)
-			mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
-	}
+	for (int i = 0; i < step->branch->system.states; i++)
+		mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		for (int j = 0; j < step->branch->system.load[l].columns && place->load[l] >= 0; j++) {
 			load_state(&step->branch->system.load[l], j, t, value);
@@ -445,11 +438,8 @@ static bool follow(const struct step *step, const struct layout *place, struct c
 		if (good)
 			advance(size, (const mpfr_t *)now->E, x, next);
 	}
-	for (int i = 0; i < size; i++)
-		mpfr_clears(x[i], next[i], NULL);
 	for (int s = 0; s < step->branch->system.segments; s++)
-		for (int i = 0; flow[s].E && i < size * size; i++)
-			mpfr_clear(flow[s].E[i]);
+		clear_reals(&flow[s].E);
 	return good;
 }
 
@@ -513,11 +503,9 @@ static const mpfr_t *rounded_rows(const struct model *model)
 {
 	const int cells = model->system.states * (model->system.states + 1);
 	const mpq_t *exact = relative_rows(model);
-	mpfr_t *row = ARRAY(mpfr_t, (size_t)cells);
-	for (int i = 0; i < cells; i++) {
-		mpfr_init2(row[i], BITS);
+	mpfr_t *row = reals((size_t)cells, BITS);
+	for (int i = 0; i < cells; i++)
 		mpfr_set_q(row[i], exact[i], MPFR_RNDN);
-	}
 	return (const mpfr_t *)row;
 }
 

@@ -24,9 +24,7 @@ static struct transition transition_of(const struct load *load, int to, int from
 
 static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, unsigned long binomial)
 {
-	RATIONAL scaled = ZERO, multiple = ZERO;
-	mpq_set_ui(multiple, binomial, 1);
-	mpq_set_si(scaled, factor, 1);
+	RATIONAL scaled = RATIO(factor, 1), multiple = RATIO((long)binomial, 1);
 	mpq_mul(scaled, scaled, multiple);
 	mpq_mul(scaled, scaled, q);
 	mpq_add(sum, sum, scaled);
@@ -72,8 +70,9 @@ struct response *response_of_state(struct resolvent *r, const struct linear *sys
 	struct excitation constant = excitation_new(n, NULL, NULL, 1);
 	for (int k = 0; k < n && held; k++)
 		mpq_neg(constant.force[k], held[k * n + c]);
-	return *kept = image_of(r, &(struct question){ unit(system->states, j), !rationals_zero((size_t)n, constant.force),
-						       &constant, unit(system->states, i) });
+	const bool any = !rationals_zero((size_t)n, constant.force);
+	return *kept = image_of(r, &(struct question){ unit(system->states, j), any, &constant,
+						       unit(system->states, i) });
 }
 
 struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l,
@@ -85,8 +84,7 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	if (*kept)
 		return *kept;
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	add_load(&e, system, segment, load, NULL, column, one);
 	return *kept = image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
@@ -159,8 +157,7 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 	struct linear scalar = first_order_system(1, rationals(1));
 	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
 	struct transition t = transition_of(load, to, from);
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	if (t.m >= 0) {
 		add_scaled(e.direct[2 * t.m], one, t.cosine, t.binomial);
 		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
@@ -218,8 +215,7 @@ struct response *output_of_load(struct resolvent *r, const struct linear *system
 {
 	const struct load *load = &system->load[l];
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	add_load(&e, system, 0, load, output->load[l], column, one);
 	return image_of(r, &(struct question){ initial, 1, &e, output->state });
 }

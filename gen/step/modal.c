@@ -110,10 +110,8 @@ struct mode_vectors {
 static bool null_vectors(const struct linear *system, const struct mode_vectors *m)
 {
 	const int n = system->n;
-	struct rectangle *P = stiffness_at(system, &m->p, false);
-	bool good = null_rectangles(n, P, m->v);
-	rectangles_free(P, n * n);
-	if (!good)
+	RECTANGLES *P = stiffness_at(system, &m->p, false), *transposed = NULL;
+	if (!null_rectangles(n, P, m->v))
 		return false;
 	scale_rectangles(n, m->v);
 	if (is_symmetric(system)) {
@@ -121,10 +119,8 @@ static bool null_vectors(const struct linear *system, const struct mode_vectors 
 			rectangle_set(&m->u[i], &m->v[i]);
 		return true;
 	}
-	P = stiffness_at(system, &m->p, true);
-	good = null_rectangles(n, P, m->u);
-	rectangles_free(P, n * n);
-	return good;
+	transposed = stiffness_at(system, &m->p, true);
+	return null_rectangles(n, transposed, m->u);
 }
 
 /* row j of factor M p + C, times u: u^T (factor M p + C) */
@@ -140,7 +136,7 @@ static void weigh(const struct linear *system, const struct mode_vectors *m, con
 static bool complete_vectors(const struct linear *system, const struct mode_vectors *m)
 {
 	const int n = system->n, precision = m->precision;
-	struct rectangle *mass = rectangles(n, precision), *damping = rectangles(n, precision);
+	RECTANGLES *mass = rectangles(n, precision), *damping = rectangles(n, precision);
 	RECTANGLE d = new_rectangle(precision);
 	weigh(system, m, system->M, mass);
 	weigh(system, m, system->C, damping);
@@ -166,14 +162,7 @@ static bool complete_vectors(const struct linear *system, const struct mode_vect
 		rectangle_div(&m->w[system->velocity[j]], &mass[j], &d);
 		rectangle_mul(&m->v[system->velocity[j]], &m->v[j], &m->p);
 	}
-	rectangles_free(mass, n);
-	rectangles_free(damping, n);
 	return good;
-}
-
-static long rational_size(mpq_srcptr q)
-{
-	return (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
 }
 
 /* z + sum of factor times part; the size of the largest term, beside which a sum may be nothing */
@@ -183,7 +172,7 @@ static long add_terms(int count, const struct rectangle *part, const mpq_t *fact
 	long largest = NO_SIZE;
 	for (int i = 0; i < count; i++) {
 		mpq_srcptr q = factor[place ? place[i] : i];
-		const long size = mpq_sgn(q) ? rectangle_size(&part[i]) + rational_size(q) : NO_SIZE;
+		const long size = mpq_sgn(q) ? rectangle_size(&part[i]) + rational_bits(q) : NO_SIZE;
 		rectangle_add_scaled(z, &part[i], q);
 		largest = size > largest ? size : largest;
 	}
@@ -305,17 +294,14 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct linear *system = &f->block->system;
 	mpq_srcptr h = f->step->model->h;
-	struct rectangle held, ramp, force, slope, z;
-	struct rectangle *all[] = { &held, &ramp, &force, &slope, &z };
+	RECTANGLE held = new_rectangle(m->precision), ramp = new_rectangle(m->precision);
 	bool good = true;
 	RATIONAL rate = ZERO;
 	mpq_inv(rate, h);
-	for (int i = 0; i < 5; i++)
-		rectangle_init(all[i], m->precision);
 	convolve_ramp(m, h, &held, &ramp);
 	for (int k = 0, column = 0; k < system->inputs && good; column += system->input[k++].hold ? 2 : 1) {
-		for (int i = 2; i < 5; i++)
-			mpfi_set_ui(all[i]->re, 0), mpfi_set_ui(all[i]->im, 0);
+		RECTANGLE force = new_rectangle(m->precision), slope = new_rectangle(m->precision),
+			  z = new_rectangle(m->precision);
 		long largest = driven(system, m, system->input[k].force[0], &force);
 		const long other = driven(system, m, system->input[k].force[1], &slope);
 		largest = (other > largest ? other : largest) + rectangle_size(&held);
@@ -335,19 +321,23 @@ static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 		rectangle_add_product(&z, &force, &held);
 		good = good && put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
 	}
-	for (int i = 0; i < 5; i++)
-		rectangle_clear(all[i]);
 	return good;
+}
+
+static void halve(struct rectangle *z)
+{
+	mpfi_div_ui(z->re, z->re, 2);
+	mpfi_div_ui(z->im, z->im, 2);
 }
 
 /* e^{(a + iw) s} and its conjugate, turned: the load's cosine and sine, in the mode */
 static bool put_oscillation(const struct filling *f, const struct mode_vectors *m, const struct load *load, int column)
 {
 	const struct linear *system = &f->block->system;
-	struct rectangle q, plus, minus, cosine, sine, force[2], z;
-	struct rectangle *all[] = { &q, &plus, &minus, &cosine, &sine, &force[0], &force[1], &z };
-	for (int i = 0; i < 8; i++)
-		rectangle_init(all[i], m->precision);
+	const int bits = m->precision;
+	RECTANGLE q = new_rectangle(bits), plus = new_rectangle(bits), minus = new_rectangle(bits),
+		  cosine = new_rectangle(bits), sine = new_rectangle(bits), z = new_rectangle(bits);
+	RECTANGLES *force = rectangles(2, bits);
 	mpfi_set_q(q.re, load->wave->a);
 	mpfi_set_q(q.im, load->wave->w);
 	bool good = convolve(m, f->step->model->h, &q, &plus);
@@ -363,10 +353,8 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 		mpfi_add(cosine.im, plus.im, minus.im);
 		mpfi_sub(sine.re, plus.im, minus.im);
 		mpfi_sub(sine.im, minus.re, plus.re);
-		for (int i = 3; i < 5; i++) {
-			mpfi_div_ui(all[i]->re, all[i]->re, 2);
-			mpfi_div_ui(all[i]->im, all[i]->im, 2);
-		}
+		halve(&cosine);
+		halve(&sine);
 		rectangle_mul(&z, &force[0], &cosine);
 		rectangle_add_product(&z, &force[1], &sine);
 		good = put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
@@ -376,19 +364,16 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 		rectangle_add_product(&z, &force[0], &sine);
 		good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column + 1);
 	}
-	for (int i = 0; i < 8; i++)
-		rectangle_clear(all[i]);
 	return good;
 }
 
 /* e^{a s}, a constant where a is 0 */
 static bool put_growth(const struct filling *f, const struct mode_vectors *m, const struct load *load, int column)
 {
-	struct rectangle q, z, ramp, force;
-	struct rectangle *all[] = { &q, &z, &ramp, &force };
+	const int bits = m->precision;
+	RECTANGLE q = new_rectangle(bits), z = new_rectangle(bits), ramp = new_rectangle(bits),
+		  force = new_rectangle(bits);
 	bool good = true;
-	for (int i = 0; i < 4; i++)
-		rectangle_init(all[i], m->precision);
 	mpfi_set_q(q.re, load->wave->a);
 	if (mpq_sgn(load->wave->a) == 0)
 		convolve_ramp(m, f->step->model->h, &z, &ramp);
@@ -396,10 +381,7 @@ static bool put_growth(const struct filling *f, const struct mode_vectors *m, co
 		good = convolve(m, f->step->model->h, &q, &z);
 	const long largest = driven(&f->block->system, m, load->force[0], &force) + rectangle_size(&z);
 	rectangle_mul(&z, &z, &force);
-	good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
-	for (int i = 0; i < 4; i++)
-		rectangle_clear(all[i]);
-	return good;
+	return good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
 }
 
 static bool put_loads(const struct filling *f, const struct mode_vectors *m)
@@ -443,22 +425,18 @@ static bool put_power(const struct filling *f, const struct mode_vectors *m)
 static bool put_mode(const struct filling *f, const struct pole *pole, int precision)
 {
 	const struct linear *system = &f->block->system;
-	struct mode_vectors m = { .states = system->states, .precision = precision };
+	RECTANGLES *u = rectangles(system->n, precision), *v = rectangles(system->states, precision),
+		   *w = rectangles(system->states, precision);
+	struct mode_vectors m = { .states = system->states, .precision = precision, .u = u, .v = v, .w = w };
 	rectangle_init(&m.p, precision);
 	rectangle_init(&m.power, precision);
 	if (pole)
 		rectangle_set(&m.p, &pole->at);
 	rectangle_exp(&m.power, &m.p, f->step->model->h);
-	m.u = rectangles(system->n, precision);
-	m.v = rectangles(m.states, precision);
-	m.w = rectangles(m.states, precision);
 	const bool good = null_vectors(system, &m) && complete_vectors(system, &m) && put_power(f, &m) &&
 			  put_vectors(f, &m) && put_outputs(f, &m) && put_inputs(f, &m) && put_loads(f, &m);
 	if (good)
 		measure_drift(f, &m);
-	rectangles_free(m.u, system->n);
-	rectangles_free(m.v, m.states);
-	rectangles_free(m.w, m.states);
 	rectangle_clear(&m.p);
 	rectangle_clear(&m.power);
 	return good;

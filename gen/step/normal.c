@@ -181,7 +181,7 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 				weight[0] = round_real(flow.position[k]);
 				weight[width] = round_real(flow.rate[k]);
 			}
-			mode_flow_free(&flow, l);
+			mode_flow_free(&flow);
 		}
 	return stage;
 }
@@ -193,10 +193,9 @@ static void find_multistep(struct normal_work *w)
 	struct normal *normal = w->normal;
 	int width = normal->width, points = normal->points;
 	mpq_t *node = past_nodes(points + 1);
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	struct lagrange past = lagrange_of(points, node);
-	mpfr_t *value = reals((size_t)points, NORMAL_BITS);
+	REALS *value = reals((size_t)points, NORMAL_BITS);
 	normal->step = stage_of(w, one, &past);
 	lagrange_at(&past, one, value);
 	normal->extrapolate = ARRAY(double, points);
@@ -220,7 +219,7 @@ static void find_stages(struct normal_work *w)
 	normal->stage = ARRAY(struct normal_stage, normal->stages);
 	for (int i = 0; i < normal->stages; i++)
 		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
-	mpfr_t *value = reals((size_t)l.nodes, NORMAL_BITS);
+	REALS *value = reals((size_t)l.nodes, NORMAL_BITS);
 	RATIONAL later = ZERO;
 	normal->ahead = ARRAY(double, (size_t)(normal->stages * l.nodes));
 	for (int i = 0; i < normal->stages; i++) {
@@ -230,7 +229,6 @@ static void find_stages(struct normal_work *w)
 		for (int k = 0; k < l.nodes; k++)
 			normal->ahead[i * l.nodes + k] = round_real(value[k]);
 	}
-	reals_free(value, (size_t)l.nodes);
 }
 
 /* ---- the end: all functions of time are constant ---- */

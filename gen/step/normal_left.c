@@ -33,7 +33,7 @@ static void project(const struct normal_work *w, int bank, const mpq_t *X, doubl
 	size_t cells = (size_t)n * (size_t)n;
 	const struct eigenpairs *pairs = &w->pairs[bank];
 	int precision = (int)mpfr_get_prec(pairs->value[0]);
-	mpfr_t *XV = reals(cells, precision), *made = reals(cells, precision);
+	REALS *XV = reals(cells, precision), *made = reals(cells, precision);
 	REAL part = WITH_BITS(precision), largest = WITH_BITS(precision);
 	mpfr_set_zero(largest, 1);
 	for (int i = 0; i < n; i++)
@@ -54,8 +54,6 @@ static void project(const struct normal_work *w, int bank, const mpq_t *X, doubl
 	mpfr_div_2ui(largest, largest, NOTHING, MPFR_RNDN);
 	for (size_t i = 0; i < cells; i++)
 		value[i] = mpfr_cmpabs(made[i], largest) <= 0 ? 0 : round_real(made[i]);
-	reals_free(XV, cells);
-	reals_free(made, cells);
 }
 
 void find_transforms(struct normal_work *w)
@@ -96,7 +94,7 @@ void find_turns(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	int n = normal->modes, width = normal->width;
-	mpfr_t *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
+	REALS *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
 	REAL sum = WITH_BITS(NORMAL_BITS), part = WITH_BITS(NORMAL_BITS);
 	normal->turn = ARRAY(double, (size_t)(normal->banks * width * width));
 	for (int b = 0; b + 1 < normal->banks; b++) {
@@ -118,7 +116,6 @@ void find_turns(struct normal_work *w)
 					round_real(sum);
 		}
 	}
-	reals_free(MV, (size_t)n * (size_t)n);
 }
 
 /* ---- what is left over ---- */

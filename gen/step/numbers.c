@@ -18,7 +18,7 @@ void check_pole_size(const struct model *model, const struct resolvent *resolven
 		if (mpz_sgn(B.c[i]) != 0 && bits / (B.length - 1 - i) > largest)
 			largest = bits / (B.length - 1 - i);
 	}
-	long step = (long)mpz_sizeinbase(mpq_numref(model->h), 2) - (long)mpz_sizeinbase(mpq_denref(model->h), 2);
+	long step = rational_bits(model->h);
 	if (largest + step > LIMIT_PRECISION)
 		error(model->asked.step_at, NULL,
 		      "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest,

@@ -116,9 +116,8 @@ static int zeros_of(const struct through *t, int degree)
  * power of s. */
 static int divide_by_power(struct through *t, int degree, int order, bool fresh, mpq_srcptr tau)
 {
-	mpfi_t wide;
+	INTERVAL wide = OVER_BITS(t->precision);
 	int rest = degree - order;
-	mpfi_init2(wide, t->precision);
 	for (int m = 0; m <= degree; m++) {
 		if (m < degree && fresh) {
 			mpfi_set_fr(wide, t->fresh_off);
@@ -135,7 +134,6 @@ static int divide_by_power(struct through *t, int degree, int order, bool fresh,
 		mpfi_set_ui(t->slope[m], 0);
 	for (int m = 1; m <= rest; m++)
 		mpfi_mul_ui(t->slope[m - 1], t->value[m], (unsigned long)m);
-	mpfi_clear(wide);
 	return rest;
 }
 
@@ -161,11 +159,9 @@ static bool bounces(const struct through *t, const struct gate *gate)
 /* 1: found; -1: not known; 0: none */
 int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
 {
-	mpfr_t end;
-	mpfi_t root;
+	REAL end = WITH_BITS(t->precision);
+	INTERVAL root = OVER_BITS(t->precision);
 	int result = 0;
-	mpfr_init2(end, t->precision);
-	mpfi_init2(root, t->precision);
 	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
 	for (int k = 0; k < t->at->gates && result >= 0; k++) {
 		const struct gate *gate = &t->at->gate[k];
@@ -196,8 +192,6 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 			mpfr_min(end, end, &root->right, MPFR_RNDU);
 		}
 	}
-	mpfr_clear(end);
-	mpfi_clear(root);
 	return result;
 }
 
@@ -206,13 +200,11 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 /* How far from base + s tau the event may be [s], rounded up */
 static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off)
 {
-	mpfr_t other;
-	mpfr_init2(other, 64);
+	REAL other = WITH_BITS(64);
 	mpfr_sub(off, &at->right, s, MPFR_RNDU);
 	mpfr_sub(other, s, &at->left, MPFR_RNDU);
 	mpfr_max(off, off, other, MPFR_RNDU);
 	mpfr_mul_q(off, off, tau, MPFR_RNDU);
-	mpfr_clear(other);
 }
 
 /* What sticks and slips behind it */
@@ -229,12 +221,9 @@ static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 
 bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at)
 {
-	mpfr_t s, off;
-	mpq_t part;
+	REAL s = WITH_BITS(t->precision), off = WITH_BITS(64);
+	RATIONAL part = ZERO;
 	const struct stream *before = t->at->flow;
-	mpfr_init2(s, t->precision);
-	mpfr_init2(off, 64);
-	mpq_init(part);
 	mpfi_mid(s, at);
 	if (mpfi_cmp_ui(at, 1) == 0)
 		mpfr_set_ui(s, 1, MPFR_RNDN);
@@ -259,8 +248,6 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	}
 	through_hold(t);
 	through_loads(t);
-	mpq_clear(part);
-	mpfr_clears(s, off, NULL);
 	if (!known)
 		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
 	if (t->most_passed > 0 && t->passed >= t->most_passed)

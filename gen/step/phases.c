@@ -7,12 +7,6 @@
 enum { GUARD_BITS = 64, GROWTH_INTEGER_BITS = 16 };  /* of a growth, its sign among them */
 enum unit { TURN, OCTAVE };         /* 2 pi, ln 2: what an angle is divided by, and the logarithm of a growth */
 
-/* Bits in front of the point, at most; below 0: none */
-static long bits_above(mpq_srcptr q)
-{
-	return (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1;
-}
-
 /* q / unit, enclosed with x's precision */
 static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
 {
@@ -36,7 +30,7 @@ static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum unit
 /* The integer nearest to 2^fraction q / unit */
 static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit unit, int fraction, mpz_ptr nearest)
 {
-	long above = bits_above(q), precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
+	long above = rational_bits(q) + 1, precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
 	long limit = 2 * precision + LIMIT_PRECISION;
 	bool decided = false;
 	INTERVAL x = OVER_BITS(precision);

@@ -64,9 +64,7 @@ static struct values evaluate(const struct step *step)
 			ref[i * (order + 1) + k] = recurrence(r, i, k);
 	struct tape_values from = { operand_at_start, NULL, &v };
 	int length = tape_length(tape_of_recurrences(r));
-	mpfr_t *value = ARRAY(mpfr_t, length + 1);
-	for (int i = 0; i < length; i++)
-		mpfr_init2(value[i], LDBL_MANT_DIG);
+	REALS *value = reals(length, LDBL_MANT_DIG);
 	tape_run_mpfr(tape_of_recurrences(r), &from, value);
 	v.c = ARRAY(long double *, states);
 	for (int i = 0; i < states; i++) {
@@ -75,8 +73,6 @@ static struct values evaluate(const struct step *step)
 			if (ref[i * (order + 1) + k] != TAPE_NONE)
 				v.c[i][k] = mpfr_get_ld(value[ref[i * (order + 1) + k]], MPFR_RNDN);
 	}
-	for (int i = 0; i < length; i++)
-		mpfr_clear(value[i]);
 	return v;
 }
 

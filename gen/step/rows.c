@@ -45,9 +45,7 @@ static void add_input(struct share *share, const struct step *step, const struct
 		      long value, long slope)
 {
 	mpq_srcptr h = step->model->h;
-	RATIONAL u = ZERO, rate = ZERO;
-	mpq_set_si(u, value, 1);
-	mpq_set_si(rate, slope, 1);
+	RATIONAL u = RATIO(value, 1), rate = RATIO(slope, 1);
 	mpq_div(rate, rate, h);
 	add_started(share, output_of_input(step->branch->resolvent, &step->branch->system, output, input, u, rate),
 		    start, h);
@@ -108,8 +106,7 @@ static struct coefficient value_of(const struct step *step, const struct share *
 	struct place at = step->model->asked.step_at;
 	struct coefficient c;
 	int count = share->count < steps ? share->count : steps;
-	RATIONAL t = ZERO;
-	mpq_set_si(t, steps, 1);
+	RATIONAL t = RATIO(steps, 1);
 	mpq_mul(t, t, step->model->h);
 	c = started_value(count, share->list, t, two_words, at, "a number of a row");
 	if (!isfinite(c.value))

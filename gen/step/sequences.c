@@ -91,8 +91,7 @@ int sequence_of_form(struct sequencing *w, const struct form *form)
 	for (int i = 0; i < w->operands; i++)
 		if (w->operand[i].form == form)
 			return w->operand[i].sequence;
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	sum_add_form(w, &sum, form, one);
 	int only = only_sequence(&sum), made = only != NONE ? only : sum_sequence(w, &sum);
 	ENLARGE(w->operand, (size_t)w->operands + 1);
@@ -110,8 +109,7 @@ int sequence_of_sum(struct sequencing *w, const struct sum *sum)
 static struct sum single_key(enum term_kind kind, int a, int b)
 {
 	struct sum sum = { 0 };
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	sum_add(&sum, kind, a, b, one);
 	return sum;
 }
@@ -278,8 +276,7 @@ static void set_product_integrand(struct sequencing *w, int sequence, int rate, 
 static int one_and_square(struct sequencing *w, int a, long sign)
 {
 	struct sum sum = { 0 };
-	RATIONAL factor = ZERO;
-	mpq_set_ui(factor, 1, 1);
+	RATIONAL factor = RATIO(1, 1);
 	sum_add(&sum, TERM_TIME, 0, 0, factor);
 	mpq_set_si(factor, sign, 1);
 	sum_add(&sum, TERM_PRODUCT, a, a, factor);
@@ -337,8 +334,7 @@ static int arc_sequence(struct sequencing *w, enum function function, int a, int
 /* atan2(y, x)' = (x y' - y x') / (x^2 + y^2) */
 static int angle_sequence(struct sequencing *w, int y, int x)
 {
-	RATIONAL scale = ZERO, one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL scale = ZERO, one = RATIO(1, 1);
 	struct sum above = { 0 }, below = { 0 }, sum = { 0 };
 	int rate = derivative_of(w, y, scale);
 	sum_add(&above, TERM_PRODUCT, rate < x ? rate : x, rate < x ? x : rate, scale);
@@ -508,7 +504,6 @@ static int sequence_of_power(struct sequencing *w, const struct atom *atom)
 		int log = arc_sequence(w, FN_LOG, base, base, 1);
 		return self_sequence(w, FN_EXP, product_sequence(w, sequence_of_form(w, exponent), log), 0);
 	}
-	mpq_set_ui(value, 0, 1);
 	for (int i = 0; i < exponent->terms; i++) {
 		RATIONAL part = ZERO;
 		mpq_set(part, exponent->term[i].factor);

@@ -37,11 +37,11 @@ static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 }
 
 /* max|p| h over the poles of the operators and of the loads */
-static void largest_angle(const struct step *step, mpfr_ptr angle)
+/* Of the operators from `from` to before `to`, and of loads */
+static void largest_angle(const struct step *step, int from, int to, mpfr_ptr angle)
 {
-	mpfr_init2(angle, BITS);
 	mpfr_set_zero(angle, 1);
-	for (int k = 0; k < step->branches; k++)
+	for (int k = from; k < to; k++)
 		larger_poles(angle, step->branch[k].resolvent);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		if (step->layout.load[l] >= 0)
@@ -113,8 +113,8 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 int series_degree(const struct step *step, int from, int to, int halvings)
 {
 	int size = step->layout.size, cells = size * size, quiet = 0, k = 0;
-	mpfr_t *A = reals(cells, BITS), *term = reals(cells, BITS), *next = reals(cells, BITS),
-	       *first = reals(cells, BITS);
+	REALS *A = reals(cells, BITS), *term = reals(cells, BITS), *next = reals(cells, BITS),
+	      *first = reals(cells, BITS);
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
 			RATIONALS *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);
@@ -133,12 +133,6 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 		term = next;
 		next = swap;
 	}
-	mpfr_t *used[] = { A, term, next, first };
-	for (int u = 0; u < 4; u++) {
-		for (int i = 0; i < cells; i++)
-			mpfr_clear(used[u][i]);
-		discard(used[u]);
-	}
 	return k - quiet > 0 ? k - quiet : 1;
 }
 
@@ -146,12 +140,7 @@ int series_halvings(const struct step *step, int operator)
 {
 	int halvings = 0;
 	REAL angle = WITH_BITS(BITS);
-	mpfr_set_zero(angle, 1);
-	larger_poles(angle, step->branch[operator].resolvent);
-	for (int l = 0; l < step->branch->system.loads; l++)
-		if (step->layout.load[l] >= 0)
-			larger_wave(angle, step->branch->system.load[l].wave);
-	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
+	largest_angle(step, operator, operator + 1, angle);
 	for (; mpfr_cmp_ui(angle, 1) > 0 && halvings <= 30; halvings++)
 		mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
 	return halvings;
@@ -160,8 +149,8 @@ int series_halvings(const struct step *step, int operator)
 void series_plan(struct step *step)
 {
 	struct series *series = &step->series;
-	mpfr_t angle;
-	largest_angle(step, angle);
+	REAL angle = WITH_BITS(BITS);
+	largest_angle(step, 0, step->branches, angle);
 	/* what is left over is held over the step, or there is none */
 	bool held = !has_leftover(step) || step->layout.powers > 0;
 	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
@@ -170,5 +159,4 @@ void series_plan(struct step *step)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
 		series->degree = series_degree(step, 0, step->branches, series->halvings);
 	}
-	mpfr_clear(angle);
 }

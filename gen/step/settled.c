@@ -46,8 +46,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 	const struct splitting *split = model->split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals(n) };
 	mpq_t *A = rationals((size_t)size * (size_t)size);
-	RATIONAL minus = ZERO;
-	mpq_set_si(minus, -1, 1);
+	RATIONAL minus = RATIO(-1, 1);
 	add_multiple(cells, of[0], minus, K);
 	add_multiple(cells, of[1], minus, C);
 	for (int f = 0; f < split->functions; f++) {

@@ -756,7 +756,7 @@ struct mode_flow {                  /* of one mode over theta h */
 	mpfr_t *position, *rate;    /* ... + what a force of each polynomial adds to eta, to eta' */
 };
 struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_srcptr theta, const struct lagrange *l);
-void mode_flow_free(struct mode_flow *flow, const struct lagrange *l);
+void mode_flow_free(struct mode_flow *flow);
 
 /* ---- normal.c: normal modes of the operators of a bank, and what is left over in them ---- */
 

@@ -240,7 +240,7 @@ void through_free(struct through *t)
 		mpfi_clear(t->list[k].at);
 	free_room(t->n, t->x);
 	free_room(t->n, t->y);
-	series_room_free(t->n, &t->room);
+	series_room_free(&t->room);
 	mpfr_clears(t->one, t->fresh_off, t->most_off, NULL);
 	mpq_clears(t->base, t->struck, NULL);
 	discard(t);

@@ -7,10 +7,9 @@ static void add_couplings(const struct step *step, const struct linear *system, 
 {
 	const int size = step->layout.size;
 	for (int s = 0; s < system->segments; s++) {
-		mpq_t *A = augmented_matrix(&step->layout, system, s);
+		RATIONALS *A = augmented_matrix(&step->layout, system, s);
 		for (int i = 0; i < size * size; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
-		rationals_free(A, (size_t)(size * size));
 	}
 }
 

@@ -49,7 +49,6 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 		     mpfr_t *response)
 {
 	struct waving z;
-	mpfr_t part[3];
 	REAL time = WITH_BITS(WAVE_BITS);
 	mpfr_inits2(WAVE_BITS, z.a, z.w, z.lambda, z.twice, NULL);
 	mpfr_set_q(z.a, wave->a, MPFR_RNDN);
@@ -60,17 +59,13 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 	mpfr_mul_q(time, time, theta, MPFR_RNDN);
 	int terms = terms_of_waves(&z, time), bits = WAVE_BITS + terms;
 	REAL by = WITH_BITS(bits);
-	mpfr_inits2(bits, part[0], part[1], part[2], NULL);
+	REALS *part = reals(3, bits), *sum = reals(4, bits);
 	for (int d = 0; d < 2; d++) {
 		mpfr_inits2(bits, z.eta[d], z.rate[d], z.wave[d], NULL);
 		mpfr_set_zero(z.eta[d], 1);
 		mpfr_set_zero(z.rate[d], 1);
 		mpfr_set_ui(z.wave[d], d == 0, MPFR_RNDN);
 	}
-	mpfr_t sum[4];
-	mpfr_inits2(bits, sum[0], sum[1], sum[2], sum[3], NULL);
-	for (int d = 0; d < 4; d++)
-		mpfr_set_zero(sum[d], 1);
 	for (int k = 0; k < terms; k++) {
 		mpfr_div_ui(by, time, (unsigned long)k + 1, MPFR_RNDN);
 		next_terms(&z, by, part);
@@ -81,7 +76,6 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 	}
 	for (int d = 0; d < 4; d++)
 		mpfr_set(response[d], sum[d], MPFR_RNDN);
-	mpfr_clears(sum[0], sum[1], sum[2], sum[3], part[0], part[1], part[2], NULL);
 	mpfr_clears(z.eta[0], z.eta[1], z.rate[0], z.rate[1], z.wave[0], z.wave[1], z.a, z.w, z.lambda, z.twice, NULL);
 }
 
@@ -134,7 +128,7 @@ void find_waves(struct normal_work *w)
 static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_srcptr theta, double *weight)
 {
 	const struct wave_force *own = &w->model->split->wave[k];
-	mpfr_t *R = reals(4, WAVE_BITS);
+	REALS *R = reals(4, WAVE_BITS);
 	REAL of_cos = WITH_BITS(WAVE_BITS), of_sin = WITH_BITS(WAVE_BITS), sum = WITH_BITS(WAVE_BITS),
 	     part = WITH_BITS(WAVE_BITS);
 	swing_of(&w->mode[bank * w->normal->modes + j], own->wave, w->model->h, theta, R);
@@ -150,7 +144,6 @@ static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_
 		mpfr_sub(sum, sum, part, MPFR_RNDN);
 		weight[(2 + d) * w->normal->width] = round_real(sum);
 	}
-	reals_free(R, 4);
 }
 
 double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta)

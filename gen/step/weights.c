@@ -158,8 +158,8 @@ struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_
 {
 	size_t powers = (size_t)l->nodes;
 	struct mode_flow flow = { .position = reals(powers, WEIGHT_BITS), .rate = reals(powers, WEIGHT_BITS) };
-	struct moments w = { reals(powers, WEIGHT_BITS), reals(powers, WEIGHT_BITS), l->nodes, WEIGHT_BITS,
-			     { { 0 } }, { { 0 } }, { { 0 } }, { { 0 } } };
+	REALS *Q = reals(powers, WEIGHT_BITS), *V = reals(powers, WEIGHT_BITS);
+	struct moments w = { Q, V, l->nodes, WEIGHT_BITS, { { 0 } }, { { 0 } }, { { 0 } }, { { 0 } } };
 	mpfr_inits2(WEIGHT_BITS, flow.e, flow.s, flow.de, flow.ds, w.h, w.theta, w.square, w.twice, NULL);
 	mpfr_set_q(w.h, h, MPFR_RNDN);
 	mpfr_set_q(w.theta, theta, MPFR_RNDN);
@@ -177,15 +177,13 @@ struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_
 	mpfr_mul(flow.de, mode->lambda, w.V[0], MPFR_RNDN);
 	mpfr_neg(flow.de, flow.de, MPFR_RNDN);
 	acceleration(&w, mode, 0, flow.ds);
-	reals_free(w.Q, powers);
-	reals_free(w.V, powers);
 	mpfr_clears(w.h, w.theta, w.square, w.twice, NULL);
 	return flow;
 }
 
-void mode_flow_free(struct mode_flow *flow, const struct lagrange *l)
+void mode_flow_free(struct mode_flow *flow)
 {
-	reals_free(flow->position, (size_t)l->nodes);
-	reals_free(flow->rate, (size_t)l->nodes);
+	clear_reals(&flow->position);
+	clear_reals(&flow->rate);
 	mpfr_clears(flow->e, flow->s, flow->de, flow->ds, NULL);
 }

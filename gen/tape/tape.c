@@ -96,8 +96,7 @@ tape_ref tape_constant(struct tape *t, mpq_srcptr value)
 
 tape_ref tape_number(struct tape *t, long value)
 {
-	RATIONAL exact = ZERO;
-	mpq_set_si(exact, value, 1);
+	RATIONAL exact = RATIO(value, 1);
 	return tape_constant(t, exact);
 }
 
