@@ -105,6 +105,8 @@ const char *written_local(const struct identifiers *c, const struct model *writt
 
 /* ---- state.c: the state in emitted code ---- */
 
+const struct expansion *own_expansion(const struct emitter *e);   /* of the step */
+const struct truncation *truncation_of(const struct emitter *e);  /* of the model */
 bool has_jump(const struct emitter *e);
 bool has_ranges(const struct emitter *e);       /* the spec says in which some states stay */
 bool keeps_status(const struct emitter *e);

@@ -4,16 +4,6 @@
 
 #include <string.h>
 
-const struct expansion *own_expansion(const struct emitter *e)
-{
-	return e->step->expansion;
-}
-
-const struct truncation *truncation_of(const struct emitter *e)
-{
-	return &e->model->truncation;
-}
-
 /* ---- one of several series ---- */
 
 struct view {

@@ -5,8 +5,6 @@
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
-const struct expansion *own_expansion(const struct emitter *e);
-const struct truncation *truncation_of(const struct emitter *e);
 /* Of a scheme with a leftover from crossing to crossing, */
 const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
 const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */

@@ -334,3 +334,13 @@ void emit_nominal_params_read(const struct emitter *e, const struct reads *reads
 		if (reads->param[k])
 			say(e, "    const double %s = 0.0;\n", param_local(e, k));
 }
+
+const struct expansion *own_expansion(const struct emitter *e)
+{
+	return e->step->expansion;
+}
+
+const struct truncation *truncation_of(const struct emitter *e)
+{
+	return &e->model->truncation;
+}

@@ -165,7 +165,7 @@ bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x)
 {
 	const int width = n + 1;
 	int unused;
-	mpz_t *W = integers((size_t)n * (size_t)width), *scale = integers(1);
+	INTEGERS *W = integers((size_t)n * (size_t)width), *scale = integers(1);
 	RATIONALS *row = rationals(width);
 	INTEGER det = INTEGER_ZERO;
 	for (int i = 0; i < n; i++) {
@@ -180,8 +180,6 @@ bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x)
 		mpz_set(mpq_denref(x[i]), det);
 		mpq_canonicalize(x[i]);
 	}
-	integers_free(W, (size_t)n * (size_t)width);
-	integers_free(scale, 1);
 	return regular;
 }
 

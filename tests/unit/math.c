@@ -680,9 +680,9 @@ static void null_rectangles_of_sums(void **state)
                 fail_msg("case %d: row %d of P v has size 2^%ld, and may not be 0", n, i, rectangle_size(&sum));
         }
         rectangle_clear(&sum);
-        rectangles_free(P, cells);
-        rectangles_free(kept, cells);
-        rectangles_free(v, order);
+        clear_rectangles(&P);
+        clear_rectangles(&kept);
+        clear_rectangles(&v);
     }
     mpq_clear(re);
 }

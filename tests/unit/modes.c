@@ -237,7 +237,7 @@ static void weights_by_quadrature(void **state)
                 integrate(&f, sum);
                 assert_true(agree(slope ? flow.rate[f.basis] : flow.position[f.basis], sum, 120));
             }
-        mode_flow_free(&flow, &l);
+        mode_flow_free(&flow);
         mpfr_clears(f.omega, f.delta, f.h, f.end, mode.lambda, mode.delta, sum, NULL);
     }
 }
