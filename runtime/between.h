@@ -52,30 +52,12 @@ static void PL(again)(const void *from, const int *interval, const real *y, real
 
 static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
 {
-    static const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
-    pl_instant *at = &p->at;
     p->contact = contact;
     p->tau = 0;
     p->when = PL_CHOICES ? PL(time)(p->s) + PL_H / 2 : 0;
-    at->expand = PL(again);
-    at->from = p;
-    at->y = p->y;
-    at->rest = p->rest;
-    at->c = p->c[0];
-    at->terms = p->terms;
-    at->work = p->work;
-    at->interval = contact->interval;
-    at->total = &contact->total;
-    at->crossings = &contact->crossings;
-    at->rested = &contact->rested;
-    at->crossing = contact->crossing;
-    at->last = &contact->last;
-    at->time = 0;
-    at->next = contact->last;
-    at->strike = at->freed = -1;
-    at->unlisted = 0;
-    at->status = 0;
-    at->chain = none;
+    PL(open)(&p->at, contact, p->y, p->rest, p->c[0], p->terms, p->work);
+    p->at.expand = PL(again);
+    p->at.from = p;
 }
 
 /* The series from there, behind what happens there: 0; 1: it begins anew; below 0: there is too much of that */
@@ -263,7 +245,7 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
     if (meets < 0) {
         p->contact->last.expression = -1;
 #if PL_CONTACTS
-        p->at.status |= pl_events_places(&PL(events), &p->at, size);
+        p->at.status |= pl_events_places(&PL(events), &p->at, size, 0);
 #endif
     } else if (!PL(pass_event)(p)) {
         return PL(gave_up)(p);

@@ -185,6 +185,39 @@ static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *cont
 }
 #endif
 
+#if PL_CONTACTS
+/* Before the first impact of a step */
+static inline pl_chain PL(no_impact)(void)
+{
+    const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
+    return none;
+}
+
+/* An instant at which something is met, but for how the series is made anew there */
+static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], real rest[], real c[], real terms[],
+                              real work[])
+{
+    at->y = y;
+    at->rest = rest;
+    at->c = c;
+    at->terms = terms;
+    at->work = work;
+    at->interval = contact->interval;
+    at->total = &contact->total;
+    at->crossings = &contact->crossings;
+    at->rested = &contact->rested;
+    at->crossing = contact->crossing;
+    at->last = &contact->last;
+    at->unit = 1;
+    at->time = 0;
+    at->next = contact->last;
+    at->strike = at->freed = -1;
+    at->unlisted = 0;
+    at->status = 0;
+    at->chain = PL(no_impact)();
+}
+#endif
+
 /* ---- what is asked about it ---- */
 
 #if PL_EXPRESSIONS > 0

@@ -18,6 +18,8 @@
 #undef pl_events
 #undef pl_events_begin
 #undef pl_events_end
+#undef pl_events_left
+#undef pl_events_meet
 #undef pl_events_next
 #undef pl_events_pass
 #undef pl_events_place

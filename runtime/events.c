@@ -66,9 +66,9 @@ static real terms_behind(const pl_events *m, const pl_instant *at, const pl_stri
 
 /* What has just been let go at this breakpoint may be driven back by what the time of that is off: no sticking if it
  * turns by itself within a part of h, no impact of a speed that is but rounding */
-static void pass_brief(beyond *f, real behind, real end)
+static void pass_brief(beyond *f, real behind, real along)
 {
-    const int turns = f->coefficient[2] < 0 && f->coefficient[1] * end <= -NEAR * f->coefficient[2];
+    const int turns = f->coefficient[2] < 0 && f->coefficient[1] * along <= -NEAR * f->coefficient[2];
     if (f->coefficient[0] <= f->noise && f->coefficient[1] > 0 &&
         (turns || (behind >= 0 && f->coefficient[1] <= noise_of(behind)))) {
         f->coefficient[1] = 0;
@@ -76,9 +76,10 @@ static void pass_brief(beyond *f, real behind, real end)
 }
 
 /* Where a column first rises beyond b, or with sign -1 falls below it, before *first; last: that was the last event;
- * behind: where it has just left it the sizes of what its first two derivatives are summed from; else below 0 */
-static int look(const column *e, real b, int sign, int last, real behind, real end, real *first, int *splits,
-                real *work)
+ * behind: where it has just left it the sizes of what its first two derivatives are summed from; else below 0; end,
+ * along: how far, in the unit of time of c and in h */
+static int look(const column *e, real b, int sign, int last, real behind, real end, real along, real *first,
+                int *splits, real *work)
 {
     beyond f;
     real s;
@@ -100,7 +101,7 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
         return 0;
     }
     if (last) {
-        pass_brief(&f, behind, end);
+        pass_brief(&f, behind, along);
     }
     s = first_root(&f, *first, splits);
     if (s < 0) {
@@ -113,7 +114,7 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
 static real first_event(const pl_events *m, pl_instant *at, real end, int *splits)
 {
     const pl_divided *d = m->divided;
-    const real *b = d->at;
+    const real *b = d->at, along = end * at->unit;
     real first = 1;
     int i, up, any = 0;
     for (i = 0; i < d->expressions && *splits >= 0; b += d->breaks[i++]) {
@@ -126,7 +127,7 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
             real behind;
             if (watch >= 0) {
                 const column w = watched(m, at, watch);
-                if (look(&w, 0, 1, 0, -1, end, &first, splits, at->work)) {
+                if (look(&w, 0, 1, 0, -1, end, along, &first, splits, at->work)) {
                     any = 1;
                     set_freed(m, at, hold, up);
                 }
@@ -139,7 +140,7 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
                          ? m->impact[strike].per * terms_behind(m, at, &m->impact[strike], end)
                          : -1;
             last = at->last->expression == i && at->last->breakpoint == k;
-            if (look(&e, b[k], up ? 1 : -1, last, behind, end, &first, splits, at->work)) {
+            if (look(&e, b[k], up ? 1 : -1, last, behind, end, along, &first, splits, at->work)) {
                 any = 1;
                 set_event(m, at, i, k, up);
             }
@@ -204,17 +205,32 @@ int pl_events_begin(const pl_events *m, pl_instant *at)
     return pl_events_pass(m, at) ? 1 : -1;
 }
 
-real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
+int pl_events_left(const pl_events *m, pl_instant *at)
 {
-    real next;
     int i;
     at->freed = -1;
     for (i = 0; i < m->holds; i++) {
         if (holds_now(m, at, i) && is_slack(m, at, i)) {
-            return 0;
+            return 1;
         }
     }
-    if (has_left(m, at)) {
+    return has_left(m, at);
+}
+
+void pl_events_meet(const pl_events *m, pl_instant *at, const pl_crossing *event)
+{
+    const int hold = hold_of(m, event->expression, at->interval[event->expression]);
+    if (hold >= 0) {
+        set_freed(m, at, hold, event->upward);
+    } else {
+        set_event(m, at, event->expression, event->breakpoint, event->upward);
+    }
+}
+
+real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
+{
+    real next;
+    if (pl_events_left(m, at)) {
         return 0;
     }
     next = first_event(m, at, end, splits);
@@ -231,8 +247,8 @@ static real breakpoint_of(const pl_events *m, const pl_strike *p)
     return b[p->breakpoint];
 }
 
-/* Whether an expression is beyond the guard of this bounce, s on, by more than rounding */
-static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *p, real s)
+/* Whether an expression is beyond the guard of this bounce, s on, by more than rounding and `least` */
+static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *p, real s, real least)
 {
     const column e = column_of(m->divided, at->c, at->terms, p->expression);
     const real b = breakpoint_of(m, p);
@@ -243,14 +259,14 @@ static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *
         terms = terms * s + magnitude(column_at(&e, k));
     }
     terms += e.terms + magnitude(b) + p->per * terms_behind(m, at, p, s);
-    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms) + TINY;
+    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms) + p->per * least + TINY;
 }
 
-int pl_events_places(const pl_events *m, const pl_instant *at, real s)
+int pl_events_places(const pl_events *m, const pl_instant *at, real s, real least)
 {
     int k, status = 0;
     for (k = 0; k < m->impacts; k++) {
-        status |= is_before(m, at, k) && is_beyond(m, at, &m->impact[k], s) ? PL_PENETRATED : 0;
+        status |= is_before(m, at, k) && is_beyond(m, at, &m->impact[k], s, least) ? PL_PENETRATED : 0;
     }
     return status;
 }

@@ -18,6 +18,8 @@
 #define pl_events pl_eventsf
 #define pl_events_begin pl_eventsf_begin
 #define pl_events_end pl_eventsf_end
+#define pl_events_left pl_eventsf_left
+#define pl_events_meet pl_eventsf_meet
 #define pl_events_next pl_eventsf_next
 #define pl_events_pass pl_eventsf_pass
 #define pl_events_place pl_eventsf_place

@@ -258,7 +258,8 @@ static real PL(iterate)(const real y[PL_STATES], const real known[PL_STAGES][PL_
 
 #endif
 
-/* 1 over the size of each state; where that was 0 so far, of what the step makes of it, or one of h */
+/* 1 over the size of each state; where that was 0 so far, of what the step makes of it, or one of h.  Beside contacts
+ * it is a millionth of that at least: what is let go starts at a rounding of 0. */
 static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real unit[PL_STATES])
 {
     int i, j;
@@ -267,7 +268,7 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
         const int c = PL(coord)(i);
         real most = 0;
         unit[i] = s->unit[i];
-        if (unit[i] != 0) {
+        if (unit[i] != 0 && !PL_CONTACTS) {
             continue;
         }
         for (j = 0; j < PL_STAGES; j++) {
@@ -276,6 +277,11 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
             }
         }
         most *= PL(is_moved)(i) ? dt * dt : dt;
+        if (unit[i] != 0) {
+            most *= (real)1e-6;
+            unit[i] = most * unit[i] > 1 ? 1 / most : unit[i];
+            continue;
+        }
         unit[i] = most > 1 / PL_UNIT ? 1 / most : most > 0 ? PL_UNIT : 1;
     }
 }
@@ -287,6 +293,7 @@ static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], c
 {
     const real dt = size * PL_H;
     const int *const interval = PL(intervals)(s);
+    const int fresh = PL_CONTACTS && !s->ready; /* units are not known yet */
     real previous = 0, known[PL_STAGES][PL_ROOM(PL_KNOWN)];
     int i;
 #if PL_MODES > 0
@@ -304,16 +311,16 @@ static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], c
         PL(sizes)(s, dt, k, unit);
 #if PL_MODES > 0
         change = PL(iterate)(s->start, (const real (*)[PL_ROOM(PL_KNOWN)])known, interval, dt, unit, &factors, k);
-        if (i > 0 && change >= previous) {
+        if (i > fresh && change >= previous) {
             return 0;
         }
 #else
         change = PL(iterate)(s->start, (const real (*)[PL_ROOM(PL_KNOWN)])known, interval, dt, unit, k);
 #endif
-        if (!(change < (real)1e10)) {
+        if (!(change < (fresh && i == 0 ? (real)1e29 : (real)1e10))) {
             return 0;
         }
-        if (i > 0 &&
+        if (i > fresh &&
             (change <= PL_SOLVED || (change < previous && change * change <= PL_SOLVED * (previous - change)))) {
             return 1;
         }

@@ -275,6 +275,7 @@ typedef struct pl_instant {
     PL_REAL *y, *rest;  /* the states, what rounding took from them; one that is set has no rest */
     PL_REAL *c, *terms;
     PL_REAL *work;      /* PL_DIVIDED_WORK */
+    PL_REAL unit;       /* of time of c, in h */
     int *interval;      /* of each expression */
     uint64_t *total;    /* crossings */
     int *crossings;     /* in this step */
@@ -304,11 +305,17 @@ PL_REAL pl_events_next(const pl_events *m, pl_instant *at, PL_REAL *size, int *s
 /* That event: at->y is the state there.  0: there were too many.  Several at one instant as pl_guards_advance says. */
 int pl_events_pass(const pl_events *m, pl_instant *at);
 
+/* Whether an expression or what is held has left its interval where c begins, which is made, as pl_events_begin says */
+int pl_events_left(const pl_events *m, pl_instant *at);
+
+/* at->next is this event, met by a search like that of pl_events_next; of what is held it lets go. */
+void pl_events_meet(const pl_events *m, pl_instant *at, const pl_crossing *event);
+
 /* How far the series at->c, which is made, serves without an event, at most until `end`; 0: not even from here */
 PL_REAL pl_events_end(const pl_events *m, pl_instant *at, PL_REAL end, int *splits);
 
-/* PL_PENETRATED where the series is beyond the guard of a bounce by more than rounding, s [h] on; else 0 */
-int pl_events_places(const pl_events *m, const pl_instant *at, PL_REAL s);
+/* PL_PENETRATED where the series is beyond the guard of a bounce by more than rounding and `least`, s on; else 0 */
+int pl_events_places(const pl_events *m, const pl_instant *at, PL_REAL s, PL_REAL least);
 
 /* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
 

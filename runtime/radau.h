@@ -12,6 +12,8 @@
  *     PL_SEGMENTS                of time, in each of which the loads have a formula: member leg; 1: just one
  *     PL_EXPRESSIONS             that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
  *                                PL_WATCH_READS: known numbers
+ *     PL_CONTACTS                1: impacts, contacts at rest, friction, as passage.h says
+ *     PL_CHOICES                 of formulas by t, of a series
  *     PL_ORDER                   of a series that takes turns with the collocation, with switches.h; 0: none
  *     PL_COLUMNS                 of poly and scale: states, then what stands beside them in a series
  *     PL_ARGUMENTS               of functions that a polynomial may not show, with PL_TRACE_READS, PL_RISE
@@ -152,6 +154,9 @@ static void PL(place)(PL_TYPE *s)
 #if PL_EXPRESSIONS > 0
     PL(forget)(&s->contact);
 #endif
+#if PL_CONTACTS
+    s->contact.rested = 0;
+#endif
 }
 
 /* How far after now it starts, in h */
@@ -192,6 +197,19 @@ static inline void PL(known_at)(const PL_TYPE *s, int wanted, const real start[]
     PL(known)(s, (PL(since)(s) + ahead) * PL_H, (PL(since)(s) + inside) * PL_H, PL(leg_of)(s), start, slope,
               known);
 }
+
+#if PL_ORDER > 0 || PL_CONTACTS
+/* A time at which conditions on it hold as they do just behind the start of the internal step */
+static inline real PL(when)(const PL_TYPE *s)
+{
+#if PL_CHOICES
+    return PL(time)(s) + (PL(since)(s) + (real)1e-9) * PL_H;
+#else
+    (void)s;
+    return 0; /* there are none */
+#endif
+}
+#endif
 
 /* The highest derivatives and their Jacobian where it starts */
 static inline void PL(here)(const PL_TYPE *s, const real start[], const real slope[], real left[], real jacobian[])
@@ -435,6 +453,9 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
 #if PL_EXPRESSIONS > 0
         wrong = PL(pass)(s, start, slope, jacobian, limit, unit, poly);
 #endif
+#if PL_CONTACTS
+        *tried -= s->stop == PL_AT_CROSSING; /* events have a limit of their own */
+#endif
         for (i = 1; i <= PL_STAGES; i++) {
             for (j = 0; j < PL_STATES; j++) {
                 s->poly[i][j] = poly[i][j];
@@ -455,7 +476,12 @@ static inline int PL(next)(PL_TYPE *s, const real u[], const real start[], const
     const real *const rates = NULL;
 #endif
     (void)u;
-#if PL_EXPRESSIONS > 0
+#if PL_CONTACTS
+    const int changed = PL(begin)(s, start, slope);
+    if (changed) {
+        return changed;
+    }
+#elif PL_EXPRESSIONS > 0
     if (!s->contact.placed) {
 #if PL_ORDER == 0
         PL(locate)(s, start, slope);
@@ -464,7 +490,7 @@ static inline int PL(next)(PL_TYPE *s, const real u[], const real start[], const
 #endif
     }
     if (PL(left)(s, start, slope)) {
-        if (!PL(pass_here)(s)) {
+        if (!PL(pass_here)(s, start, slope)) {
             return PL_TOO_MANY_EVENTS;
         }
         return PL_ANOTHER;
@@ -490,7 +516,7 @@ static int PL(advance)(PL_TYPE *s, const real u[], int *tried)
     PL(inputs_now)(s, u, start, slope);
     PL(commit)(s);
     do {
-        if (passes && !PL(pass_here)(s)) {
+        if (passes && !PL(pass_here)(s, start, slope)) {
             return PL_TOO_MANY_EVENTS;
         }
         wrong = PL(next)(s, u, start, slope, tried);
@@ -530,6 +556,9 @@ static int PL(collocated)(PL_TYPE *s, const real u[])
     int wrong;
 #if PL_EXPRESSIONS > 0
     s->contact.crossings = 0;
+#endif
+#if PL_CONTACTS
+    s->contact.chain = PL(no_impact)();
 #endif
     wrong = PL(reach)(s, u, 1, s->y);
     s->back++;

@@ -3,7 +3,7 @@
  * stability bounds it, and which of the two is next.  The model's file defines beside what radau.h asks
  *
  *     PL_WORTH                   so many series a step of the collocation costs
- *     PL_CHOICES, PL(expand_from), PL(ahead)   as taylor.h; and what reach.h asks
+ *     PL(expand_from), PL(ahead)   as taylor.h; and what reach.h asks
  *     PL(bound_rates)(jacobian, rates)      Gershgorin's, on how fast the motion may decay [1/s], and on the square of
  *                                           how fast it may turn
  *
@@ -36,17 +36,6 @@ static inline real PL(length_of)(real last, int n)
 static inline real PL(shorter)(real a, real b)
 {
     return b < a ? b : a;
-}
-
-/* A time at which conditions on it hold as they do just behind the start of the internal step */
-static inline real PL(when)(const PL_TYPE *s)
-{
-#if PL_CHOICES
-    return PL(time)(s) + (PL(since)(s) + (real)1e-9) * PL_H;
-#else
-    (void)s;
-    return 0; /* there are none */
-#endif
 }
 
 #if PL_UNSEEN

@@ -55,6 +55,8 @@
 #undef PL_ENDED
 #undef PL_ENTRIES
 #undef PL_EQUATIONS
+#undef PL_EVENT_COLUMNS
+#undef PL_EVENT_ORDER
 #undef PL_EXPRESSIONS
 #undef PL_FACTORS
 #undef PL_FASTEST

@@ -31,6 +31,7 @@ struct emitter {
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
+	bool at_state;              /* of a series: what is known beside the state stands in locals */
 	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
@@ -172,6 +173,7 @@ tape_ref formula(struct formulas *f, const struct form *form);
 tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum of the sizes of its terms */
 void formulas_finish(struct formulas *f);                         /* once all is set */
 struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
+void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */
 void emit_formulas(struct formulas *f, int indent);
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */

@@ -235,8 +235,14 @@ static void emit_switching_limits(const struct emitter *e)
 static void emit_passage_limits(const struct emitter *e)
 {
 	emit_divided_macros(e);
-	say_macro(e, "MAX_SPLITS", whole_text(MAX_SPLITS));
+	say_macro(e, "MAX_SPLITS", whole_text(meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS));
+	say_macro(e, "TERMS", whole_text(terms_of_events(e)));
 	say_macro(e, "WATCH_READS", whole_text(watch_reads_known(e)));
+	if (!meets_contacts(e))
+		return;
+	say_macro(e, "EVENT_ORDER", whole_text(e->step->divided->order));
+	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->divided->columns));
+	say_macro(e, "CHOICES", whole_text(has_choices(meeting(e))));
 }
 
 static void emit_include(const struct emitter *e)
@@ -247,6 +253,7 @@ static void emit_include(const struct emitter *e)
 		   { "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
+		   { "CONTACTS", meets_contacts(e) },
 		   { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
@@ -274,9 +281,15 @@ void emit_collocation_step(const struct emitter *e)
 	emit_stage_tables(e);
 	emit_motion(e);
 	emit_inputs_now(e);
+	if (meets_contacts(e))
+		emit_series_functions(meeting(e));
 	if (is_divided(e)) {
-		emit_divided_tables(e);
+		emit_divided_tables(meets_contacts(e) ? meeting(e) : e);
 		emit_passing_table(e, stages(e));
+	}
+	if (meets_contacts(e)) {
+		emit_event_tables(e);
+		emit_events_along(e);
 	}
 	if (switches(e))
 		emit_series_beside(e);

@@ -17,15 +17,18 @@ void emit_divided_types(const struct emitter *e)
 	       "    uint64_t total;       /* crossings since init or set */\n"
 	       "    int crossings;        /* in the last step */\n"
 	       "    int placed;           /* 0: a state was set, its intervals are not known%s */\n"
-	       "%s"
+	       "%s%s"
 	       "    int interval[%d];      /* of each expression */\n"
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
 	       "} $n_contact;\n\n",
-	    e->step->expansion || !e->step->collocation ? ""
+	    meets_contacts(e) && e->step->collocation ? "; 2: they may be others"
+	    : e->step->expansion || !e->step->collocation ? ""
 		: "; below 0: nor where that goes which is on a breakpoint",
 	    meets_contacts(e) ? "    int rested;           /* contacts by infinitely many bounces, since then */\n"
 	    : "",
+	    !meets_contacts(e) || !e->step->collocation
+		? "" : "    pl_chain chain;       /* impacts that follow each other */\n",
 	    expansion(e)->expressions);
 }
 
@@ -101,6 +104,6 @@ void emit_passing_table(const struct emitter *e, int order)
 	const int count = expansion(e)->expressions;
 	say(e, "\n/* Of polynomials of each */\n");
 	emit_int_list(e, "each", count, numbers_up_to(count));
-	say(e, "static const pl_divided $n_passing = {%d, %d, %d, $n_each, $n_breaks, $n_breakpoint};\n", count, count,
-	    order);
+	say(e, "static const pl_divided $n_passing = {%d, %d, %d, $n_each, $n_breaks, $n_breakpoint};\n", count,
+	    terms_of_events(e), order);
 }

@@ -7,12 +7,12 @@
 
 static const struct contacts *contacts(const struct emitter *e)
 {
-	return e->step->expansion->contacts;
+	return e->step->divided->contacts;
 }
 
 bool meets_contacts(const struct emitter *e)
 {
-	return e->step->expansion && contacts(e);
+	return e->step->divided && contacts(e);
 }
 
 /* ---- tables ---- */
@@ -24,17 +24,18 @@ static int watch_or_none(int watch)
 
 static int rank_in(const struct emitter *e, int expression, int breakpoint)
 {
-	return e->step->expansion->expression[expression].rank[breakpoint];
+	return e->step->divided->expression[expression].rank[breakpoint];
 }
 
-static void emit_watches(const struct emitter *e)
+/* Their columns in the series, or one behind the other */
+static void emit_watches(const struct emitter *e, const char *name, int first)
 {
 	const struct contacts *c = contacts(e);
 	int *column = ARRAY(int, (size_t)c->watches);
 	for (int i = 0; i < c->watches; i++)
-		column[i] = c->watch[i].column;
+		column[i] = first == NONE ? c->watch[i].column : first + i;
 	say(e, "\n/* What the search of events watches beside expressions: the column of each */\n");
-	emit_int_list(e, "event_watch", c->watches, column);
+	emit_int_list(e, name, c->watches, column);
 }
 
 static void emit_rows(const struct emitter *e, const char *name, const char *note, int rows, int kind)
@@ -88,20 +89,33 @@ static void emit_strikes(const struct emitter *e)
 	emit_int_list(e, "event_after", c->assignments, value);
 }
 
+static void emit_events(const struct emitter *e, const char *name, const char *divided, const char *watch)
+{
+	const struct contacts *c = contacts(e);
+	say(e, "static const pl_events $n_%s = {\n"
+	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
+	       "    $n_event_place[0],\n"
+	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
+	       "};\n", name, divided, watch, c->holds, c->strikes, c->conflicts);
+}
+
 void emit_event_tables(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
 	const char *conflict = "";
-	emit_watches(e);
+	emit_watches(e, "event_watch", NONE);
 	emit_holds(e);
 	emit_strikes(e);
 	for (int i = 0; i < c->conflicts; i++)
 		conflict = format("%s%s{%luu, %d, %d}", conflict, i ? ", " : "", c->conflict[i].set,
 				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);
-	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n"
-	       "static const pl_events $n_events = {\n"
-	       "    &$n_divided, $N_STATES, $n_event_watch, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
-	       "    $n_event_place[0],\n"
-	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
-	       "};\n", *conflict ? conflict : "{0u, -1, 0}", c->holds, c->strikes, c->conflicts);
+	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n",
+	    *conflict ? conflict : "{0u, -1, 0}");
+	emit_events(e, "events", "divided", "event_watch");
+}
+
+void emit_events_along(const struct emitter *e)
+{
+	emit_watches(e, "along_watch", e->step->divided->expressions);
+	emit_events(e, "along", "passing", "along_watch");
 }

@@ -20,13 +20,14 @@ bool splits(const struct emitter *e)
 enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 
 /* The forces and their slopes, what chooses formulas (without its constants), or the arguments of what polynomials may
- * not show */
+ * not show; beside contacts there are only the latter */
 static const struct form **forms_of(const struct emitter *e, enum motion_part part, int *count)
 {
 	const struct motion *m = motion(e);
 	const struct expansion *d = e->step->divided, *u = e->step->unseen;
 	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
-	*count = part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
+	const bool by_series = meets_contacts(e) && part != THE_ARGUMENTS;
+	*count = by_series ? 0 : part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
 		 : part == THE_ARGUMENTS ? (u ? u->unseens : 0) : m->coords + entries;
 	const struct form **form = ARRAY(const struct form *, (size_t)*count + 1);
 	for (int i = 0; i < *count; i++)
@@ -50,11 +51,34 @@ static const struct form **all_forms(const struct emitter *e, int *count)
 	return form;
 }
 
+/* Beside contacts what a part sets, from what the series of events has */
+static const struct tape *set_part(const struct emitter *e, struct recurrences *r, enum motion_part part)
+{
+	const struct expansion *x = e->step->divided;
+	if (part != THE_EXPRESSIONS) {
+		set_motion(e->step, r, part == THE_SLOPES_TOO);
+		return tape_of_recurrences(r);
+	}
+	for (int i = 0; i < terms_of_events(e); i++)
+		series_set(r, format("left[%d]", i), i < x->expressions ? x->expression[i].sequence
+					: x->contacts->watch[i - x->expressions].sequence, 0);
+	series_set_sizes(r, x, "excess");
+	return tape_of_recurrences(r);
+}
+
+static const struct tape *tape_of_part(const struct emitter *e, enum motion_part part)
+{
+	return set_part(e, motion_recurrences(e->step), part);
+}
+
 static struct reads reads_of_motion(const struct emitter *e)
 {
 	int count;
 	const struct form **form = all_forms(e, &count);
-	return reads_of(e->model, count, form);
+	struct reads r = reads_of(e->model, count, form);
+	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_EXPRESSIONS && meets_contacts(e); part++)
+		note_reads(&r, e, tape_of_part(e, part));
+	return r;
 }
 
 /* Is a column of the loads in the linear part of some coordinate? */
@@ -156,6 +180,8 @@ static bool decides(const struct emitter *e)
 	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
+	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_EXPRESSIONS && meets_contacts(e); part++)
+		any = any || tape_reads(tape_of_part(e, part), TAPE_TIME, -1, 1);
 	return any;
 }
 
@@ -310,6 +336,8 @@ static void emit_motion_locals(const struct emitter *e, const struct reads *r, c
 			say(e, "    const double *const load%d = node + %d;\n", k->index + 1, i);
 		if (k->kind == KNOWN_TIME && read->time)
 			name = "t";
+		else if (k->kind == KNOWN_WHEN && e->at_state)
+			name = "when";
 		else if (k->kind == KNOWN_INPUT && read->input[k->index + k->part * e->system->inputs])
 			name = input_name(e, k->index, k->part);
 		else if (k->kind == KNOWN_PARAM && read->param[k->index])
@@ -330,10 +358,13 @@ static bool reads_known(const struct emitter *e, enum motion_part part)
 	int count;
 	const struct form **form = forms_of(e, part, &count);
 	struct reads read = reads_of(e->model, count, form);
+	if (meets_contacts(e) && part == THE_EXPRESSIONS)
+		note_reads(&read, e, tape_of_part(e, part));
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
-	return any;
+	return any || (meets_contacts(e) && part == THE_EXPRESSIONS &&
+		       tape_reads(tape_of_part(e, part), TAPE_TIME, -1, 1));
 }
 
 bool watch_reads_known(const struct emitter *e)
@@ -381,6 +412,32 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 
 /* ---- functions of them: what an interval decides is not read ---- */
 
+static void close_motion(const struct emitter *e, const struct tape *t, const struct reads *read, bool moves)
+{
+	close_function(e, spell(e, "%s%s%s",
+				any_known(e, read) || tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) ||
+					tape_reads(t, TAPE_TIME, -1, 1) ? "" : "node ",
+				tape_reads(t, TAPE_ABOVE, -1, -1) || tape_reads(t, TAPE_HELD, -1, -1)
+					? "" : "interval ",
+				moves ? "" : "y"));
+}
+
+/* Beside contacts */
+static void emit_series_body(const struct emitter *e, const struct reads *r, enum motion_part part)
+{
+	struct emitter here = *meeting(e);
+	here.at_state = true;
+	struct recurrences *made = series_new(&here);
+	const struct tape *t = set_part(e, made, part);
+	struct reads read = reads_of(e->model, 0, NULL);
+	note_reads(&read, e, t);
+	here.at_state = tape_reads(t, TAPE_TIME, -1, 1);
+	emit_motion_locals(&here, r, &read);
+	here.at_state = true;
+	emit_series_tape(&here, made);
+	close_motion(e, t, &read, tape_reads(t, TAPE_STATE, -1, -1));
+}
+
 static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
 	struct formulas *f = formulas_of_part(e, r, part);
@@ -391,11 +448,7 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	emit_formulas(f, 4);
 	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
 		say(e, "    slope[0] = 0.0;\n");
-	close_function(e, spell(e, "%s%s%s",
-				any_known(e, &read) || tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) ||
-					tape_reads(t, TAPE_TIME, -1, 1) ? "" : "node ",
-				tape_reads(t, TAPE_ABOVE, -1, -1) ? "" : "interval ",
-				any_of(read.state, e->system->states) ? "" : "y"));
+	close_motion(e, t, &read, any_of(read.state, e->system->states));
 }
 
 static void emit_part(const struct emitter *e, const struct reads *r, enum motion_part part)
@@ -415,7 +468,10 @@ static void emit_part(const struct emitter *e, const struct reads *r, enum motio
 	open_function(e, of[part].note,
 		      "static %svoid $n_%s(const double node[], const int interval[], const double y[$N_STATES],\n"
 		      "    double left[]%s)", within ? "inline " : "", of[part].name, of[part].more);
-	emit_motion_body(e, r, part);
+	if (meets_contacts(e) && part != THE_ARGUMENTS)
+		emit_series_body(e, r, part);
+	else
+		emit_motion_body(e, r, part);
 }
 
 void emit_motion(const struct emitter *e)

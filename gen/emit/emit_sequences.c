@@ -43,6 +43,11 @@ const struct emitter *sloping(const struct emitter *e)
 	return look_by(e, e->step->slopes);
 }
 
+const struct emitter *meeting(const struct emitter *e)
+{
+	return look_by(e, e->step->divided);
+}
+
 /* ---- what is asked of it ---- */
 
 bool is_divided(const struct emitter *e)
@@ -145,6 +150,16 @@ bool expands_in_step(const struct emitter *e)
 	return !has_offset(e) && !has_choices(e) && !e->ramps && own_expansion(e)->multiplications <= MOST;
 }
 
+void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target)
+{
+	struct tape *t = tape_of_recurrences(r);
+	for (int i = 0; i < x->expressions; i++)
+		tape_set(t, format("%s[%d]", target, i), recurrence_size(r, x->expression[i].sequence), 10, NULL);
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++)
+		tape_set(t, format("%s[%d]", target, x->expressions + i),
+			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
+}
+
 /* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
 static void set_kept_coefficients(const struct emitter *e, struct recurrences *r)
 {
@@ -159,11 +174,7 @@ static void set_kept_coefficients(const struct emitter *e, struct recurrences *r
 			else
 				tape_set(t, target, tape_number(t, 0), 10, NULL);
 		}
-	for (int i = 0; i < x->expressions; i++)
-		tape_set(t, format("terms[%d]", i), recurrence_size(r, x->expression[i].sequence), 10, NULL);
-	for (int i = 0; x->contacts && i < x->contacts->watches; i++)
-		tape_set(t, format("terms[%d]", x->expressions + i),
-			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
+	series_set_sizes(r, x, "terms");
 }
 
 /* ---- functions of them: the series of the solution, or some sequences alone ---- */
@@ -275,6 +286,6 @@ const char *is_not_finite(const struct emitter *e, const char *before, const cha
 
 int terms_of_events(const struct emitter *e)
 {
-	const struct expansion *x = e->step->expansion;
+	const struct expansion *x = e->step->divided;
 	return x->expressions + (x->contacts ? x->contacts->watches : 0);
 }

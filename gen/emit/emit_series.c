@@ -41,7 +41,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 	case TAPE_STATE: return format("y[%d]", n->index);
 	case TAPE_LOAD:  return load_operand(e, n->index, n->part);
 	case TAPE_INPUT: return input_name(e, n->index, n->part);
-	case TAPE_PARAM: return param_text(e, n->index);
+	case TAPE_PARAM: return e->at_state ? param_local(e, n->index) : param_text(e, n->index);
 	case TAPE_TIME:  return n->part ? "when" : "t";
 	case TAPE_ABOVE: return format("interval[%d] > %d", n->index, n->part);
 	case TAPE_HELD:  return format("interval[%d] == %d", n->index, n->part);

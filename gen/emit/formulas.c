@@ -190,13 +190,18 @@ static void note_read(struct reads *r, const struct emitter *e, const struct tap
 	r->time = r->time || (n->op == TAPE_TIME && n->part == 0);
 }
 
+void note_reads(struct reads *r, const struct emitter *e, const struct tape *t)
+{
+	const int *uses = tape_uses(t);
+	for (int i = 0; i < tape_length(t); i++)
+		if (uses[i])
+			note_read(r, e, tape_node(t, i));
+}
+
 struct reads reads_of_formulas(const struct formulas *f)
 {
 	struct reads r = reads_of(speaker(f->e->model), 0, NULL);
-	int *uses = tape_uses(f->tape);
-	for (int i = 0; i < tape_length(f->tape); i++)
-		if (uses[i])
-			note_read(&r, f->e, tape_node(f->tape, i));
+	note_reads(&r, f->e, f->tape);
 	return r;
 }
 

@@ -10,6 +10,7 @@ const struct emitter *looking(const struct emitter *e);           /* these print
 const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
 const struct emitter *forcing(const struct emitter *e);           /* what is left over */
 const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
+const struct emitter *meeting(const struct emitter *e);           /* beside a collocation, at events */
 void emit_expand_from(const struct emitter *e);                   /* all that is kept */
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at: sloping(e) prints it */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
@@ -19,6 +20,8 @@ void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
 void series_set(struct recurrences *r, const char *target, int sequence, int k);
+/* What the values are summed from of what the search of events looks at, into target[] */
+void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target);
 void emit_series_tape(const struct emitter *e, const struct recurrences *r);
 void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
@@ -86,7 +89,7 @@ void emit_divided_members(const struct emitter *e);
 void emit_divided_declarations(const struct emitter *e);
 void emit_crossing_declarations(const struct emitter *e);         /* NAME_region, NAME_crossed, NAME_crossings */
 void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
-void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each */
+void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each and of watches */
 void emit_divided_macros(const struct emitter *e);               /* what chosen.h asks of them */
 
 /* ---- emit_events.c: impacts and friction beside a series ---- */
@@ -94,6 +97,7 @@ void emit_divided_macros(const struct emitter *e);               /* what chosen.
 bool meets_contacts(const struct emitter *e);
 int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
 void emit_event_tables(const struct emitter *e);
+void emit_events_along(const struct emitter *e);                 /* the same, of polynomials of each */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 

@@ -269,12 +269,12 @@ static enum scheme scheme_of_choice(const struct building *b)
 	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
-/* By a Taylor series, from event to event: where it was asked for, or scheme exact cannot */
+/* By a Taylor series or a collocation, from event to event: where it was asked for, or scheme exact cannot */
 static bool goes_by_series(const struct building *b)
 {
 	const struct model *model = b->model;
 	bool chosen = !model->asked.scheme_at.source && !is_piecewise_linear(b);
-	return (model->scheme == SCHEME_TAYLOR || chosen) && model->system.segments == 1 && !b->request->solution &&
+	return (scheme_row(model->scheme)->expands || chosen) && model->system.segments == 1 && !b->request->solution &&
 	       !b->request->loads_left;
 }
 

@@ -125,8 +125,7 @@ void person_divided(FILE *to, const struct step *step)
 	for (int i = 0; i < x->expressions; i++)
 		fprintf(to, "    expression %d: %s, breakpoints %s\n", i, divided_text(step, i),
 			rising_text(&x->expression[i]));
-	if (step->expansion)
-		person_contacts(to, step);
+	person_contacts(to, step);
 }
 
 const char *frictions_text(const struct switching *s, const char *indent)
@@ -381,6 +380,5 @@ void json_divided(FILE *to, const struct step *step)
 		json_expression(to, i, json_text(divided_text(step, i)), x->expression[i].breaks,
 				rising_breakpoints(&x->expression[i]));
 	fputs("],\n", to);
-	if (step->expansion)
-		json_contacts(to, step);
+	json_contacts(to, step);
 }

@@ -423,18 +423,32 @@ static int elimination(int n)
 	return n * (n * n - 1) / 3 + n * n;
 }
 
+static struct cost cost_of_motion(const struct step *step)
+{
+	const struct motion *m = step->motion;
+	const int n = m->coords;
+	const struct form **form = ARRAY(const struct form *, (size_t)(n + m->entries) + 1);
+	for (int i = 0; i < n; i++)
+		form[i] = m->force[i];
+	for (int k = 0; k < m->entries; k++)
+		form[n + k] = m->entry[k].slope;
+	return cost_of_forms(step, m->apart ? n : n + m->entries, form);
+}
+
+static struct cost cost_beside_contacts(const struct step *step)
+{
+	struct recurrences *r = motion_recurrences(step);
+	set_motion(step, r, !step->motion->apart);
+	return cost_of_tape(tape_of_recurrences(r));
+}
+
 void count_collocation(struct step *step)
 {
 	enum { OF_COMPLEX = 4 };
 	const struct motion *m = step->motion;
 	int s = step->collocation->stages, n = m->coords, sums = 2 * s * s * n, solved;
 	bool apart = m->apart;
-	const struct form **form = ARRAY(const struct form *, (size_t)(n + m->entries) + 1);
-	for (int i = 0; i < n; i++)
-		form[i] = m->force[i];
-	for (int k = 0; k < m->entries; k++)
-		form[n + k] = m->entry[k].slope;
-	struct cost cost = cost_of_forms(step, apart ? n : n + m->entries, form);
+	struct cost cost = has_contacts(step->model) ? cost_beside_contacts(step) : cost_of_motion(step);
 	solved = apart ? n * n * (1 + OF_COMPLEX * (s - 1) / 2) + 2 * s * s * n
 		       : elimination(s * n) + m->entries * s * s;
 	struct cost all = { sums + solved, sums + solved, 0 };

@@ -79,6 +79,72 @@ static void find_drive(struct motion *m, const struct step *step, const struct l
 	}
 }
 
+/* ---- beside contacts: as the series has them, with what holds ---- */
+
+static const char *any_name(const void *context, int sequence)
+{
+	(void)context;
+	return format("q%d", sequence);
+}
+
+struct recurrences *motion_recurrences(const struct step *step)
+{
+	return recurrences_new(step, step->divided, (struct series_names){ any_name, NULL });
+}
+
+/* The highest derivative of a coordinate, of which the series has h times */
+static tape_ref highest_node(const struct step *step, struct recurrences *r, int coord)
+{
+	RATIONAL per = ZERO;
+	mpq_inv(per, step->model->h);
+	tape_ref ref = recurrence(r, highest_state(&step->branch->system, coord), 1);
+	struct tape *t = tape_of_recurrences(r);
+	return ref == TAPE_NONE ? tape_number(t, 0) : tape_scaled(t, round_rational(per), ref);
+}
+
+static int state_of_entry(const struct linear *system, const struct motion_entry *entry)
+{
+	return entry->twice ? entry->of : highest_state(system, entry->of);
+}
+
+void set_motion(const struct step *step, struct recurrences *r, bool slopes)
+{
+	const struct linear *system = &step->branch->system;
+	const struct motion *m = step->motion;
+	struct tape *t = tape_of_recurrences(r);
+	tape_ref *by = ARRAY(tape_ref, system->states);
+	for (int i = 0; i < m->coords; i++) {
+		tape_ref left = highest_node(step, r, i);
+		tape_set(t, format("left[%d]", i), left, 15, step->model->coord_name[i]);
+		if (!slopes)
+			continue;
+		if (m->entries == 0)
+			tape_set(t, "slope[0]", tape_number(t, 0), 15, NULL);
+		tape_reverse(t, left, TAPE_STATE, system->states, by);
+		for (int k = 0; k < m->entries; k++)
+			if (m->entry[k].coord == i)
+				tape_set(t, format("slope[%d]", k), by[state_of_entry(system, &m->entry[k])], 15, NULL);
+	}
+}
+
+static void find_entries(struct motion *m, const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct recurrences *r = motion_recurrences(step);
+	tape_ref *by = ARRAY(tape_ref, system->states), zero = tape_number(tape_of_recurrences(r), 0);
+	for (int i = 0; i < m->coords; i++) {
+		tape_reverse(tape_of_recurrences(r), highest_node(step, r, i), TAPE_STATE, system->states, by);
+		for (int state = 0; state < system->states; state++)
+			if (by[state] != zero)
+				*MORE(m->entry, m->entries) = (struct motion_entry){
+					.coord = i, .of = system->coord[state],
+					.twice = state < system->n && system->velocity[state] >= 0
+				};
+	}
+}
+
+/* ---- the whole ---- */
+
 struct motion *motion_of(const struct step *step)
 {
 	enum { TOGETHER = 4 };          /* beyond, what all stages together cost grows past what exact slopes save */
@@ -92,6 +158,13 @@ struct motion *motion_of(const struct step *step)
 	m->apart = system->n > TOGETHER;
 	m->force = ARRAY(const struct form *, system->n);
 	m->driven = ARRAY(bool, system->n);
+	if (has_contacts(step->model)) {
+		m->columns = load_columns(system);
+		m->load = ARRAY(double, (size_t)(system->segments * system->n * m->columns) + 1);
+		m->input = ARRAY(double, 2 * (size_t)(system->n * system->inputs) + 1);
+		find_entries(m, step);
+		return m;
+	}
 	for (int i = 0; i < system->n; i++) {
 		const mpq_t *row = slopes[0] + highest_state(system, i) * layout.size;
 		m->force[i] = force_of(step, &layout, row);

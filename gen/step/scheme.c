@@ -170,11 +170,12 @@ static void write_no_list(struct step *step)
 	}
 }
 
-static void build_series(struct step *step)
+/* Of this order; 0: of the cheapest */
+static void build_series(struct step *step, int order)
 {
 	write_no_list(step);
 	step->program->compensated = true;
-	step->expansion = expansion_of(step, economical_order(step));
+	step->expansion = expansion_of(step, order ? order : economical_order(step));
 	step->series.emitted = true;
 }
 
@@ -257,7 +258,7 @@ static void build_expanded_step(struct step *step)
 	need_direct(step);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
-	build_series(step);
+	build_series(step, 0);
 	divide_step(step);
 	need_all_known(step);
 	find_slopes(step);
@@ -267,6 +268,7 @@ static void build_expanded_step(struct step *step)
 /* What has no series, a step of this kind cannot do either: beside a series it is that, else one to find it out. */
 static void build_collocated_step(struct step *step)
 {
+	enum { AT_EVENTS = 4 };         /* derivatives that say what holds, slips or flies there */
 	bool switches = scheme_row(step->model->scheme)->switches;
 	int coords = step->model->n;
 	need_direct(step);
@@ -277,7 +279,7 @@ static void build_collocated_step(struct step *step)
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
-	build_series(step);
+	build_series(step, has_contacts(step->model) ? AT_EVENTS : 0);
 	divide_step(step);
 	step->collocation = collocation_of(step);
 	step->motion = motion_of(step);

@@ -310,7 +310,7 @@ struct step {                       /* everything that is emitted for one model 
 	const char *searches;       /* why it does not look whether it is clear */
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
-	const struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
+	struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
 	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
 	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
@@ -1340,14 +1340,19 @@ struct motion {
 	int coords;
 	/* so many that stages are solved by their modes, and the Jacobian is that of the step's start */
 	bool apart;
-	const struct form **force;  /* per coordinate: without what depends on time alone in the linear part, */
-	bool *driven;               /* which there is */
+	/* per coordinate: without what depends on time alone in the linear part, which there is where it is driven;
+	 * beside contacts there are no forms, of slopes neither: set_motion says them */
+	const struct form **force;
+	bool *driven;
 	int columns;                /* of the loads */
 	double *load, *input;       /* [segment][coordinate][column]; [coordinate][input][value, slope] */
 	int entries;
 	struct motion_entry *entry;
 };
 struct motion *motion_of(const struct step *step);
+/* left[] of the coordinates, slope[] of the entries: beside contacts, from what the series of their events has */
+struct recurrences *motion_recurrences(const struct step *step);
+void set_motion(const struct step *step, struct recurrences *r, bool slopes);
 
 /* ---- batch.c: many instances in one call ---- */
 

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT [tuned | compensated]
+# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT [tuned | compensated | radau]
 #
 # COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the
 # emitted code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
 # thousandth of its shortest period to ten of it, and in float; 2: with forces that are not piecewise linear, 3: as they
 # are, by a Taylor series. tuned: from a model with other values of up to 16 params, retuned to those of the scene;
-# compensated: with --accuracy compensated. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# compensated: with --accuracy compensated; radau: by collocation in place of the series. $CC compiles, $PLRT is the
+# runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
@@ -21,7 +22,9 @@ tuned=${3:-}
 seconds=10
 [ $wild -ne 2 ] || seconds=4
 options=
-[ $wild -lt 2 ] || options="--scheme taylor --tolerance 1e-13"
+series="taylor --tolerance 1e-13"
+[ "$tuned" != radau ] || series="radau --tolerance 1e-14"
+[ $wild -lt 2 ] || options="--scheme $series"
 [ "$tuned" != compensated ] || options="$options --accuracy compensated"
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"

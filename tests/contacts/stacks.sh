@@ -5,7 +5,8 @@
 # COUNT random scenes from seed FIRST on, or from each of several, the VARIANTs in turn: stacks, walls, wedges. What is
 # emitted keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants:
 # exact, float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring),
-# float_curved; solution: --solution beside the step, to 1e-8; solved: the same, where it is not refused.
+# float_curved; radau, float_radau (likewise by collocation); solution: --solution beside the step, to 1e-8; solved: the
+# same, where it is not refused.
 # $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 stacks=$(realpath "$2")
@@ -46,6 +47,7 @@ stands_up() {
 		tunable) form=tunable ;;
 		*taylor) scheme=taylor ;;
 		*curved) scheme=curved ;;
+		*radau) scheme=curved; options="--scheme radau" ;;
 	esac
 	$stacks $seed $scheme $form $real scene.spec drawn.h || return 1
 	if ! "$plgen" --real $real $options scene.spec -o scene.c >log 2>&1; then

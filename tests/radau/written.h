@@ -24,6 +24,7 @@
 #define PL_KNOWN 1
 #define PL_SEGMENTS 1
 #define PL_EXPRESSIONS 0
+#define PL_CONTACTS 0
 #define PL_ARGUMENTS 0
 #define PL_ORDER 0
 #define PL_TRIES MODEL_TRIES
