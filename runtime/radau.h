@@ -127,6 +127,7 @@ static void PL(anew)(PL_TYPE *s)
     int i;
     for (i = 0; i < PL_STATES; i++) {
         s->start[i] = s->y[i];
+        s->gain[i] = 0; /* what NAME_at reads before there is one */
     }
     s->at = s->at_low = s->size = 0;
     s->per = 1;
