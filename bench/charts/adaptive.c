@@ -300,9 +300,7 @@ static struct adaptive *adaptive_new(const struct method *method, const struct p
 	                      .advance = adaptive_advance,
 	                      .between = adaptive_between, .get = adaptive_get, .evaluations = adaptive_evaluations,
 	                      .close = adaptive_close};
-	a->rhs = problem->rhs_of ? NULL : problem->rhs;
-	a->rhs_of = problem->rhs_of;
-	a->of = problem->of;
+	a->rhs = asked_of(problem);
 	a->n = problem->n;
 	a->size = 2 * problem->n;
 	a->scale = calloc((size_t)a->size, sizeof *a->scale);
@@ -330,10 +328,8 @@ struct run *adaptive_open(const struct method *method, const struct problem *pro
 
 static struct run *fixed_open(const struct method *method, const struct problem *problem, double setting)
 {
-	const double steps = round(problem->unit / setting);
-	if (!(steps >= 1.0 && steps <= 1e9) || setting > problem->unit * (1.0 + 1e-9))
-		return NULL;
-	return adaptive_open(method, problem, problem->unit / steps);
+	const int steps = steps_of(problem, setting);
+	return steps > 0 ? adaptive_open(method, problem, problem->unit / steps) : NULL;
 }
 
 /* ---- the list ---- */

@@ -23,9 +23,7 @@ enum { MOST_STEPS = 200000 };       /* of its own, in a unit: then it has failed
 
 struct adaptive {
 	struct run run;
-	void (*rhs)(double t, const double y[], double dydt[]);
-	void (*rhs_of)(const void *of, double t, const double y[], double dydt[]);
-	const void *of;
+	struct asked rhs;
 	int n, size;
 	double *scale;              /* size: largest coordinate, or velocity, of the history */
 	long units;                 /* gone since the start */
@@ -64,10 +62,7 @@ static inline const struct kind *kind_of(const struct adaptive *a)
 static inline void slope(struct adaptive *a, double t, const double *y, double *dydt)
 {
 	a->evaluations++;
-	if (a->rhs)
-		a->rhs(t, y, dydt);
-	else
-		a->rhs_of(a->of, t, y, dydt);
+	right_side(&a->rhs, t, y, dydt);
 }
 
 /* Without a call, as fmax and fmin are at -O2; of what is not a number b is taken, and from larger(1, nan) comes nan */
@@ -79,14 +74,6 @@ static inline double larger(double a, double b)
 static inline double smaller(double a, double b)
 {
 	return a < b ? a : b;
-}
-
-static inline bool all_finite(int size, const double *y)
-{
-	double zero = 0.0;
-	for (int i = 0; i < size; i++)
-		zero += 0.0 * y[i];
-	return zero == 0.0;
 }
 
 struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting);

@@ -307,16 +307,10 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 const struct method *charted_method(int i)
 {
 	static const char *const names[] = {"explicit Euler", "explicit trapezoid", "RK4", "central difference",
-	                                    "implicit trapezoid", "Newmark",
-	                                    "generalized-alpha"};
+	                                    "implicit trapezoid", "Newmark", "generalized-alpha"};
 	enum { NAMES = sizeof names / sizeof *names };
-	if (i >= NAMES)
-		return i == NAMES ? &dormand_prince_fixed : i == NAMES + 1 ? &rk8pd_fixed : NULL;
-	for (int k = 0; fixed_methods[k]; k++)
-		if (strcmp(fixed_methods[k]->name, names[i]) == 0)
-			return fixed_methods[k];
-	fprintf(stderr, "no method %s\n", names[i]);
-	exit(1);
+	return i == NAMES ? dormand_prince_fixed
+	       : i <= NAMES + 1 ? method_find(i < NAMES ? names[i] : "GSL rk8pd (fixed step)") : NULL;
 }
 
 /* ---- tables and checks ---- */

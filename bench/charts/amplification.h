@@ -48,8 +48,7 @@ double largest(int count, const double complex *eigenvalue);            /* modul
 typedef double growth_function(const void *of, double setting);         /* per step */
 double boundary_between(growth_function *growth, const void *of, double from, double to, double limit);
 
-extern const struct method dormand_prince_fixed, rk8pd_fixed;           /* fixed_pairs.c */
-/* what is charted, from i = 0: those of classic.c and these two; NULL at the end */
+/* what is charted, from i = 0: fixed_methods, dormand_prince_fixed and rk8pd at a fixed step; NULL at the end */
 const struct method *charted_method(int i);
 
 /* ---- checks: what is known beside what is measured ---- */

@@ -13,12 +13,15 @@
 #ifndef CHARTS_H
 #define CHARTS_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
 #include "plrt.h"
+
+#define INLINE static inline __attribute__((always_inline))
 
 /* ---- problem.c: what is solved ---- */
 
@@ -43,6 +46,36 @@ struct problem {
  * frequency: of its load, 0 where it has none. Leaves the program with a message where it cannot. */
 struct problem *problem_load(const char *file, const char *name, double unit, int units, bool linear, double frequency);
 void problem_slope(const struct problem *p, double t, const double *y, double *dydt);
+/* Its right-hand side, as a run keeps it */
+struct asked {
+	void (*rhs)(double t, const double y[], double dydt[]);
+	void (*rhs_of)(const void *of, double t, const double y[], double dydt[]);
+	const void *of;
+};
+static inline struct asked asked_of(const struct problem *p)
+{
+	return (struct asked){p->rhs_of ? NULL : p->rhs, p->rhs_of, p->of};
+}
+INLINE void right_side(const struct asked *a, double t, const double *y, double *dydt)
+{
+	if (a->rhs)
+		a->rhs(t, y, dydt);
+	else
+		a->rhs_of(a->of, t, y, dydt);
+}
+/* Of that length in a unit; 0: it does not divide it */
+static inline int steps_of(const struct problem *p, double step)
+{
+	const double steps = round(p->unit / step);
+	return step > 0.0 && steps >= 1.0 && steps <= 1e9 && step <= p->unit * (1.0 + 1e-9) ? (int)steps : 0;
+}
+static inline bool all_finite(int size, const double *y)
+{
+	double zero = 0.0;
+	for (int i = 0; i < size; i++)
+		zero += 0.0 * y[i];
+	return zero == 0.0;
+}
 /* fills A, b0, b1, b2 by asking the right-hand side at rest, at unit states and in time */
 void problem_linear(struct problem *p);
 void problem_free(struct problem *p);
@@ -78,8 +111,9 @@ struct run {
 	/* NULL; or of a float run: advance with rows of floats, as its user has them; what is timed then */
 	bool (*timed)(struct run *run, int units);
 };
-extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
-/* structural.c, linear problems: one of each kind, and the same with other parameters */
+extern const struct method *const fixed_methods[];      /* fixed.c; NULL at the end */
+extern const struct method *const dormand_prince_fixed; /* not among them: its formula of order 5 at a fixed step */
+/* of structural dynamics, linear problems: one of each kind, and the same with other parameters */
 extern const struct method *const structural_methods[], *const structural_others[];
 extern const struct method *const inlined_methods[];    /* inlined.c: of fixed step, smooth models */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */

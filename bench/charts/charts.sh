@@ -23,45 +23,20 @@ say() {
 	printf '[%4d s] %s\n' $(($(date +%s) - begin)) "$*" >&2
 }
 
-precision() {
-	say 'work and precision'
-	sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick
-}
-
-headline() {
-	say 'the two comparisons that lead the page'
-	sh $charts/headline.sh "$plgen" "$programs/headline" "$folder" $quick
-}
-
-papers() {
-	say 'times of what the papers compare'
-	"$programs/papers" $quick --times "$variants" "$folder"
-}
-
-friction() {
-	say 'times of a mass that sticks and slips'
-	sh $charts/friction.sh "$plgen" "$variants"
-	"$programs/friction" --times "$variants" "$folder"
-}
-
-generation() {
-	say 'what generating costs'
-	sh $charts/generation.sh $quick "$build" "$folder"
-}
-
-limits() {
-	say 'how near to the machine'
-	sh bench/limits/limits.sh $quick "$build" "$folder" >&2
-}
-
 say 'what measures no time: untimed.sh'
 sh $charts/untimed.sh "$build" "$folder" $quick
-precision
-generation
-headline
-papers
-friction
-limits
+say 'work and precision'
+sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick
+say 'what generating costs'
+sh $charts/generation.sh $quick "$build" "$folder"
+say 'the two comparisons that lead the page'
+"$programs/headline" $quick "$variants/headline" "$folder"
+say 'times of what the papers compare'
+"$programs/papers" $quick --times "$variants" "$folder"
+say 'times of a mass that sticks and slips'
+"$programs/friction" --times "$variants" "$folder"
+say 'how near to the machine'
+sh bench/limits/limits.sh $quick "$build" "$folder" >&2
 say 'pictures and pages'
 sh $charts/machine.sh "$build" "make charts${quick:+-quick}" >"$folder/machine.csv"
 sh $charts/draw.sh "$folder" --png

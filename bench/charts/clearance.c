@@ -109,14 +109,6 @@ static struct clearance *clearance_new(const struct method *method, const struct
 	return r;
 }
 
-static bool all_finite(const struct clearance *r, const double *y)
-{
-	double zero = 0.0;
-	for (int i = 0; i < 2 * r->n; i++)
-		zero += 0.0 * y[i];
-	return zero == 0.0;
-}
-
 static long clearance_evaluations(const struct run *run)
 {
 	return ((const struct clearance *)run)->evaluations;
@@ -180,7 +172,7 @@ static bool exact_advance(struct run *run, int units, double *rows)
 			memcpy(rows + (ptrdiff_t)u * own, r->z, (size_t)own * sizeof *rows);
 	}
 	r->units += units;
-	return all_finite(r, r->z);
+	return all_finite(2 * r->n, r->z);
 }
 
 /* Whole steps, then the binary digits of what is left */
@@ -221,11 +213,11 @@ static long no_evaluations(const struct run *run)
 
 static struct run *exact_open(const struct method *method, const struct problem *problem, double setting)
 {
-	const double steps = round(problem->unit / setting);
-	struct clearance *r = steps >= 1.0 && steps <= 1e9 ? clearance_new(method, problem, setting) : NULL;
+	const int steps = steps_of(problem, setting);
+	struct clearance *r = steps > 0 ? clearance_new(method, problem, setting) : NULL;
 	if (!r)
 		return NULL;
-	r->steps = (int)steps;
+	r->steps = steps;
 	r->run.setting = r->h = problem->unit / steps;
 	r->run.restart = exact_restart;
 	r->run.advance = exact_advance;
@@ -313,7 +305,7 @@ static bool roots_advance(struct run *run, int units, double *rows)
 		if (rows)
 			memcpy(rows + (ptrdiff_t)u * own, NV_DATA_S(r->y), (size_t)own * sizeof *rows);
 	}
-	r->failed = r->failed || !all_finite(r, NV_DATA_S(r->y));
+	r->failed = r->failed || !all_finite(2 * r->n, NV_DATA_S(r->y));
 	return !r->failed;
 }
 

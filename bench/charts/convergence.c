@@ -5,7 +5,7 @@
  * range in FOLDER/convergence_orders.csv.
  *
  * The error is the largest of any displacement, over the initial displacement, at the ends of the 1000 intervals of
- * 0.03 s that every N has in common, until 30 s and until 0.6 s. VARIANTS holds what convergence.sh made. */
+ * 0.03 s that every N has in common, until 30 s and until 0.6 s. VARIANTS holds what variants.sh made. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -26,7 +26,7 @@ static const double sample_time = RECORD_STEP;
 
 /* ---- the building ---- */
 
-typedef void right_side(double t, const double y[], const double u[], double dydt[]);
+typedef void rhs_function(double t, const double y[], const double u[], double dydt[]);
 struct building {
 	double A[SIZE * SIZE], b[SIZE];                 /* y' = A y + b ground */
 	double sample[SAMPLES];
@@ -66,7 +66,7 @@ static void *open_variant(const char *folder, int parts)
 /* The equations as plgen's user wrote them, asked at unit states and a unit input */
 static void ask(struct building *b, void *handle)
 {
-	right_side *rhs;
+	rhs_function *rhs;
 	void *symbol = dlsym(handle, "subject_rhs");
 	memcpy(&rhs, &symbol, sizeof rhs);
 	for (int j = 0; j <= SIZE; j++) {

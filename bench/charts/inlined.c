@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Methods of fixed step compiled together with the right-hand sides of the smooth models (equations.h), as plgen's step
- * is; classic.c's go through NAME_rhs, a pointer. Symplectic Runge-Kutta-Nystrom methods of high order too, for models
+ * is; fixed.c's go through NAME_rhs, a pointer. Symplectic Runge-Kutta-Nystrom methods of high order too, for models
  * whose forces depend on coordinates alone. Any other problem: they cannot.
  *
  * A step is a part of a unit, or several units: then rows inside it are read from the polynomial of degree 5 through
@@ -101,25 +101,17 @@ static void inlined_restart(struct run *run)
 	r->units = r->inside = 0;
 }
 
-static bool is_finite(const struct run *run, const double *y)
-{
-	double zero = 0.0;
-	for (int i = 0; i < 2 * run->problem->n; i++)
-		zero += 0.0 * y[i];
-	return zero == 0.0;
-}
-
 static bool inlined_advance(struct run *run, int units, double *rows)
 {
 	struct inlined *r = (struct inlined *)run;
 	const double unit = run->problem->unit;
 	if (r->stride) {
 		r->stride(r, units, 0.0, rows);
-		return is_finite(run, r->state);
+		return all_finite(2 * run->problem->n, r->state);
 	}
 	r->march((double)r->units * unit, unit, units, r->steps, r->h, r->state, rows);
 	r->units += units;
-	return is_finite(run, r->state);
+	return all_finite(2 * run->problem->n, r->state);
 }
 
 /* Whole steps, then one of what is left of `fraction` */

@@ -41,7 +41,7 @@ INLINE void INSTANCE(heun_step)(double t, double h, double *state)
 		state[m] += 0.5 * h * (k1[m] + k2[m]);
 }
 
-/* Velocity Verlet; forces of velocity see v + h a, as in classic.c */
+/* Velocity Verlet; forces of velocity see v + h a, as in fixed.c */
 INLINE void INSTANCE(verlet_step)(double t, double h, double *state)
 {
 	double *q = state, *v = state + COORDINATES, *a = state + SIZE, x[SIZE], f[SIZE];

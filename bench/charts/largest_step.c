@@ -183,7 +183,7 @@ struct history {
 	const char *scheme;
 };
 
-static int steps_of(const struct history *s, double h)
+static int steps_in(const struct history *s, double h)
 {
 	const double steps = ceil(s->model->seconds / h), most = s->model->most_steps * effort.shorter;
 	return (int)fmin(steps, most);
@@ -197,7 +197,7 @@ static bool run_is_bounded(const struct history *s, double h)
 	s->problem->unit = h;
 	struct run *run = s->method->open(s->method, s->problem, h);
 	bool good = run && size <= MOST;
-	for (int left = steps_of(s, h); left > 0 && good; left -= CHUNK) {
+	for (int left = steps_in(s, h); left > 0 && good; left -= CHUNK) {
 		const int now = left < CHUNK ? left : CHUNK;
 		good = run->advance(run, now, rows);
 		for (int k = 0; k < now && good; k++)
@@ -210,7 +210,7 @@ static bool run_is_bounded(const struct history *s, double h)
 
 static bool scheme_is_bounded(const struct history *s, double h)
 {
-	const int size = 2 * s->problem->n, steps = steps_of(s, h);
+	const int size = 2 * s->problem->n, steps = steps_in(s, h);
 	struct hand *hand = hand_new(s->system, s->scheme, (real)h);
 	real y[HAND_MOST] = {0};
 	double seen[HAND_MOST];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* papers [--quick] [--times] VARIANTS FOLDER: the findings of the four sources beside what is measured:
  * FOLDER/papers_000.csv (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances) and
- * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS holds what papers.sh made. The
+ * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS holds what variants.sh made. The
  * sources' parameter values did not survive: those of the models are chosen. */
 #include <math.h>
 #include <stdarg.h>

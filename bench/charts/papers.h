@@ -11,7 +11,7 @@
 #include "charts.h"
 
 struct papers {
-	const char *variants, *folder; /* what papers.sh made; where the tables go */
+	const char *variants, *folder; /* what variants.sh made; where the tables go */
 	FILE *times;                /* of all sources: the only figures that change from run to run */
 	bool quick;
 };

@@ -4,7 +4,7 @@
  * their largest displacement errors over w h and k2/k1, w = sqrt(k1/m), until 6 and 60 periods 2 pi/w, for equal walls
  * (k3 = k1) and for unequal ones (k3 = k1/2), in FOLDER/plmap_raw.csv. Errors are over the initial displacement, at the
  * ends of steps, in long double. Below 1: pl is the more accurate. FOLDER/plmap_check.csv: this step of pl beside the
- * generated code, on what plmap.sh made in VARIANTS. */
+ * generated code, on what variants.sh made in VARIANTS. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -156,7 +156,7 @@ static void check_growth(struct checks *c)
 {
 	const struct subject euler = {named("explicit Euler"), 0}, heun = {named("explicit trapezoid"), 0},
 		rk4 = {named("RK4"), 0};
-	const struct subject rk8pd = {&rk8pd_fixed, 0}, alpha = {named("generalized-alpha"), 0};
+	const struct subject rk8pd = {named("GSL rk8pd (fixed step)"), 0}, alpha = {named("generalized-alpha"), 0};
 	check(c, sqrt(1.01), growth(&euler, 0.1), 1e-14, "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
 	check(c, sqrt(1 + 1e-4 / 4), growth(&heun, 0.1), 1e-14,
 	      "explicit trapezoid zeta 0 w h 0.1: rho = sqrt(1 + (w h)^4/4)");

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # untimed.sh BUILD FOLDER [--quick] [JOB...]: what measures no time, two jobs side by side: tables FOLDER/*.csv, the
 # generated code and the errors of the models in FOLDER/variants. They are the same bytes whenever they are made
-# (twice.sh). A JOB is one of the functions below, or errors_MODEL; by default all of them. Run at the top of the source
-# tree; progress on standard error.
+# (twice.sh). A JOB is one of those below, or errors_MODEL; by default all of them. Run at the top of the source tree;
+# progress on standard error.
 set -e
 build=$1 folder=$2
 shift 2
@@ -14,78 +14,48 @@ programs=$build/bench/charts
 plgen=$build/plgen
 variants=$folder/variants
 
-convergence() {
-	sh $charts/convergence.sh $quick "$plgen" "$variants"
-	"$programs/convergence" $quick "$variants" "$folder"
+# made TOPIC [FOLDER [PROGRAM]]: its variants
+made() {
+	sh $charts/variants.sh "$1" "$plgen" "${2:-$variants}" $quick ${3:+"$3"}
 }
 
-# pl against RK4 over step and coupling
-plmap() {
-	sh $charts/plmap.sh $quick "$plgen" "$variants"
-	"$programs/plmap" $quick "$variants" "$folder"
-}
-
-# and momentum, in long runs
-energy() {
-	sh $charts/energy.sh "$plgen" "$variants"
-	"$programs/energy" $quick "$variants" "$folder"
-}
-
-hard() {
-	sh $charts/hard.sh "$plgen" "$variants"
-	"$programs/hard" $quick "$variants" "$folder"
-}
-
-# quality and largest steps too
-stability() {
-	sh $charts/stability.sh $quick "$plgen" "$programs" "$folder"
-}
-
-# time integrators of structural dynamics, a frame under a record
-structural() {
-	sh $charts/frame.sh "$plgen" "$variants"
-	"$programs/integrators" $quick "$folder"
-	"$programs/frame" "$variants" "$folder"
-}
-
-# what modelling less saves
-less() {
-	sh $charts/less.sh "$plgen" "$programs/less" "$variants"
-	"$programs/less" "$variants" "$folder"
-}
-
-# a mass that sticks and slips
-friction() {
-	sh $charts/friction.sh "$plgen" "$variants"
-	"$programs/friction" "$variants" "$folder"
-}
-
-# what was tried for needs
-needs() {
-	sh $charts/needs.sh "$plgen" "$variants" "$folder"
-}
-
-# what the papers found
-papers() {
-	sh $charts/papers.sh $quick "$plgen" "$variants"
-	"$programs/papers" $quick "$variants" "$folder"
-}
-
-# settings of the comparisons that lead the page
-headline() {
-	sh $charts/headline.sh "$plgen" "$programs/headline" "$folder" --find $quick
+job() {
+	case $1 in
+		errors_*) sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick --errors "${1#*_}" ;;
+		convergence | plmap | energy | hard | papers)
+			made "$1"
+			"$programs/$1" $quick "$variants" "$folder" ;;
+		friction | less)
+			made "$1" "$variants" "$programs/$1"
+			"$programs/$1" "$variants" "$folder" ;;
+		# settings of the comparisons that lead the page
+		headline)
+			made headline "$variants/headline" "$programs/headline"
+			"$programs/headline" --find $quick "$variants/headline" "$folder" ;;
+		# what was tried for needs
+		needs) sh $charts/needs.sh "$plgen" "$variants" "$folder" ;;
+		# time integrators of structural dynamics, a frame under a record
+		structural)
+			made frame
+			"$programs/integrators" $quick "$folder"
+			"$programs/frame" "$variants" "$folder" ;;
+		# quality and largest steps too; the status is 1 where a boundary is not the known one
+		stability)
+			made stability "$variants/stability"
+			bad=0
+			"$programs/quality" $quick "$folder" || bad=1
+			for program in stability operator_map largest_step; do
+				"$programs/$program" $quick "$folder" "$variants/stability" || bad=1
+			done
+			return $bad ;;
+	esac
 }
 
 mkdir -p "$variants"
 if [ "${1:-}" = --job ]; then
-	job=$2
 	begin=$(date +%s)
-	case $job in
-		errors_*) sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick \
-			--errors "${job#*_}" ;;
-		*) $job ;;
-	esac
-	echo "[$job: $(($(date +%s) - begin)) s]" >&2
+	job "$2"
+	echo "[$2: $(($(date +%s) - begin)) s]" >&2
 	exit 0
 fi
 if [ $# -eq 0 ]; then

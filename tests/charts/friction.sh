@@ -11,7 +11,7 @@ cd "$root" || exit 99
 LC_ALL=C
 export LC_ALL
 {
-    sh bench/charts/friction.sh "$build/plgen" "$work" &&
+    sh bench/charts/variants.sh friction "$build/plgen" "$work" &&
         "$build/bench/charts/friction" "$work" "$work"
 } >"$work/log" 2>&1 || {
     sed 's/^/# /' "$work/log"

@@ -11,7 +11,7 @@ cd "$root" || exit 99
 LC_ALL=C
 export LC_ALL
 {
-    sh bench/charts/less.sh "$build/plgen" "$build/bench/charts/less" "$work" &&
+    sh bench/charts/variants.sh less "$build/plgen" "$work" "$build/bench/charts/less" &&
         "$build/bench/charts/less" "$work" "$work"
 } >"$work/log" 2>&1 || {
     sed 's/^/# /' "$work/log"

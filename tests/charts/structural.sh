@@ -12,7 +12,7 @@ LC_ALL=C
 export LC_ALL
 "$build/bench/charts/integrators" --quick "$work" >"$work/log" 2>&1       # its status: what stands in the table
 {
-    sh bench/charts/frame.sh "$build/plgen" "$work/variants" &&
+    sh bench/charts/variants.sh frame "$build/plgen" "$work/variants" &&
         "$build/bench/charts/frame" "$work/variants" "$work"
 } >>"$work/log" 2>&1
 status=$?

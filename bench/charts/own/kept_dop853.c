@@ -17,6 +17,6 @@ bool own_dop853(double setting, double *rows)
 {
 	static struct dop853 d;
 	memset(&d, 0, sizeof d);
-	d.adaptive = (struct adaptive){.rhs = model_slope, .n = N / 2, .size = N, .scale = history.scale};
+	d.adaptive = (struct adaptive){.rhs = {.rhs = model_slope}, .n = N / 2, .size = N, .scale = history.scale};
 	return kept_history(&d.adaptive, &dop853, setting, &d.h, as_it_is, 0, rows);
 }
