@@ -4,7 +4,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -311,54 +310,4 @@ const struct method *charted_method(int i)
 	enum { NAMES = sizeof names / sizeof *names };
 	return i == NAMES ? dormand_prince_fixed
 	       : i <= NAMES + 1 ? method_find(i < NAMES ? names[i] : "GSL rk8pd (fixed step)") : NULL;
-}
-
-/* ---- tables and checks ---- */
-
-FILE *table_open(const char *folder, const char *name, const char *header)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *csv = fopen(path, "w");
-	if (!csv) {
-		perror(path);
-		exit(1);
-	}
-	fprintf(csv, "%s\n", header);
-	return csv;
-}
-
-void table_close(FILE *csv, const char *name)
-{
-	const bool bad = ferror(csv);
-	if (fclose(csv) != 0 || bad) {
-		perror(name);
-		exit(1);
-	}
-}
-
-void checks_open(struct checks *c, const char *folder, const char *name)
-{
-	c->csv = table_open(folder, name, "what,known,measured,tolerance,result");
-	c->off = 0;
-}
-
-void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
-{
-	char what[200];
-	va_list arguments;
-	va_start(arguments, format);
-	vsnprintf(what, sizeof what, format, arguments);
-	va_end(arguments);
-	const bool good = known == measured || fabs(measured - known) <= tolerance * (known == 0 ? 1 : fabs(known));
-	c->off += !good;
-	fprintf(c->csv, "\"%s\",%.9g,%.9g,%.2g,%s\n", what, known, measured, tolerance, good ? "ok" : "off");
-	if (!good)
-		say_progress("off: %s: known %.17g, measured %.17g, tolerance %.2g", what, known, measured, tolerance);
-}
-
-int checks_close(struct checks *c)
-{
-	table_close(c->csv, "checks");
-	return c->off > 0;
 }

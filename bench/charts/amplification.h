@@ -51,15 +51,4 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 /* what is charted, from i = 0: fixed_methods, dormand_prince_fixed and rk8pd at a fixed step; NULL at the end */
 const struct method *charted_method(int i);
 
-/* ---- checks: what is known beside what is measured ---- */
-
-struct checks { FILE *csv; int off; };
-/* folder/name: what,known,measured,tolerance,result */
-void checks_open(struct checks *c, const char *folder, const char *name);
-void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
-	__attribute__((format(printf, 5, 6)));
-int checks_close(struct checks *c);     /* an exit status; the tolerance is relative, absolute where 0 is known */
-FILE *table_open(const char *folder, const char *name, const char *header);
-void table_close(FILE *csv, const char *name);
-
 #endif

@@ -162,14 +162,38 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
 /* The road beside quadruple precision for models by hand: extrapolation in long double; no agreement, no roads */
 struct truth *truth_by_extrapolation(struct problem *problem);
-/* The largest difference at the ends of units, relative to the scales of the first */
-double truth_difference(const struct truth *truth, const struct truth *other);
+/* The largest difference at the ends of units, relative to its scales; rows: 2n for each */
+double truth_error(const struct truth *truth, const double *rows);
 void truth_free(struct truth *truth);
 /* relative to the scales; failed: not finite or it gave up */
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; };
 /* Restarts the run and goes through the whole history. Between the ends of units it looks in each of them; of more than
  * 1000 units and 12 states in every eighth. */
 struct error error_of(struct run *run, const struct truth *truth);
+
+/* ---- table.c: what programs do with files; they leave the program with a message where they cannot ---- */
+
+extern const char *const family_names[];
+/* Which of `flags` ("--quick --list") come first, a bit each in that order; argv becomes what follows, `least` to `most`
+ * arguments, else the program is left with its usage */
+unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most, const char *usage);
+FILE *file_in(const char *folder, const char *name, const char *mode);
+FILE *table_open(const char *folder, const char *name, const char *head);
+void table_close(FILE *csv, const char *name);
+void put_quoted(FILE *out, const char *text);           /* NULL: nothing, within quotes */
+void *variant_symbol(const char *folder, const char *file, const char *name);  /* of FOLDER/FILE.so, never closed */
+const pl_model *variant_model(const char *folder, const char *file);
+/* The states at the ends of units, 2n each, not numbers where a run has given up; the caller frees them */
+double *history_rows(struct run *run, int units);
+/* The largest difference in the first `judged` coordinates of n; INFINITY where one is not a number */
+double largest_off(int n, int judged, const double *rows, const double *than, int units);
+
+/* What is known beside what is measured: folder/name has what,known,measured,tolerance,result */
+struct checks { FILE *csv; int off; };
+void checks_open(struct checks *c, const char *folder, const char *name);
+void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
+	__attribute__((format(printf, 5, 6)));
+int checks_close(struct checks *c);     /* an exit status; the tolerance is relative, absolute where 0 is known */
 
 /* ---- samples.c: time ---- */
 

@@ -12,22 +12,18 @@
 
 #include "charts.h"
 
-enum { COMMON = 1000, HORIZONS = 2, MOST_N = 10 };
+enum { COMMON = 1000, HORIZONS = 2, MOST_N = 10, METHODS = 5 };
 static const double whole = 30;                 /* [s] */
 static const int horizons[HORIZONS] = { COMMON, COMMON / 50 }; /* 30 s and 0.6 s, in units of 0.03 s */
-
 static const int all_intervals[] = { 1000, 2000, 3000, 5000, 7000, 10000, 14000, 20000, 50000, 100000, 0 };
 static const int quick_intervals[] = { 1000, 2000, 5000, 20000, 0 };
-
 static const struct { const char *name; double frequency; } systems[] = { { "scs", 0 }, { "sdcs", 0 }, { "sdcsf", 5 } };
-
 static const struct method readings[] = {
 	{ .name = "pl", .family = OURS, .linear_only = true, .order = 1,
 	  .settings = "plgen --scheme pl: coupling held over each interval" },
 	{ .name = "exact", .family = OURS, .linear_only = true, .order = 0,
 	  .settings = "plgen --scheme exact: nothing held" },
 };
-static const char *const peers[] = { "explicit Euler", "explicit trapezoid", "RK4" };
 
 /* Errors of one method on one system; infinite where the state left the finite numbers */
 struct curve {
@@ -39,70 +35,38 @@ struct curve {
 /* Below this an error is the rounding of a double's steps, and its slope says nothing. */
 static const double rounding = 1e-12;
 
-static struct run *open_run(const struct method *method, const struct problem *p, const char *variants, int n)
-{
-	char file[4096];
-	if (method->family != OURS)
-		return method->open(method, p, whole / n);
-	snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name, n);
-	return generated_open(method, p, file);
-}
-
-static char *refusal(const struct method *method, const struct problem *p, const char *variants, int n)
-{
-	char file[4096];
-	snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name, n);
-	return method->family == OURS ? variant_refused(file) : NULL;
-}
-
-static double largest_error(const struct problem *p, const struct truth *truth, const double *rows, int units)
-{
-	double worst = 0;
-	for (int u = 0; u < units; u++)
-		for (int i = 0; i < p->n; i++) {
-			const double off = fabs(rows[u * 2 * p->n + i] - truth->at_end[u * 2 * p->n + i]);
-			worst = off <= worst ? worst : isfinite(off) ? off : INFINITY;
-		}
-	return worst / fabs(p->start[0]);
-}
-
 static void follow(struct curve *curve, const struct problem *p, const struct truth *truth, const char *variants,
                    const int *intervals)
 {
-	double *rows = calloc((size_t)COMMON * 2 * (size_t)p->n, sizeof *rows);
+	const struct method *method = curve->method;
+	const bool ours = method->family == OURS;
+	char file[4096];
 	for (int k = 0; intervals[k]; k++) {
-		struct run *run = open_run(curve->method, p, variants, intervals[k]);
+		snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name, intervals[k]);
+		struct run *run = ours ? generated_open(method, p, file) : method->open(method, p, whole / intervals[k]);
 		if (!run) {
-			curve->refused = refusal(curve->method, p, variants, intervals[k]);
-			fprintf(stderr, "convergence: %s, %s, N = %d: %s\n", p->name, curve->method->name, intervals[k],
+			curve->refused = ours ? variant_refused(file) : NULL;
+			fprintf(stderr, "convergence: %s, %s, N = %d: %s\n", p->name, method->name, intervals[k],
 				curve->refused ? curve->refused : "cannot");
 			curve->error[0][k] = curve->error[1][k] = NAN;
 			continue;
 		}
-		for (int i = 0; i < COMMON * 2 * p->n; i++)
-			rows[i] = NAN;          /* what a run that gives up leaves */
-		run->advance(run, COMMON, rows);
+		double *rows = history_rows(run, COMMON);
 		for (int i = 0; i < HORIZONS; i++)
-			curve->error[i][k] = largest_error(p, truth, rows, horizons[i]);
+			curve->error[i][k] = largest_off(p->n, p->n, rows, truth->at_end, horizons[i]) / fabs(p->start[0]);
 		run->close(run);
+		free(rows);
 	}
-	free(rows);
 }
 
-/* The order that errors at two numbers of intervals show; NAN where either is no error of the method. */
-static double slope(const double *error, const int *intervals, int from, int to)
+/* The order that errors at two numbers of intervals show */
+static void print_order(FILE *csv, const struct curve *curve, int horizon, const int *intervals, int from, int to)
 {
-	if (!(error[from] > rounding && error[to] > rounding && isfinite(error[from]) && isfinite(error[to])))
-		return NAN;
-	return log(error[from] / error[to]) / log((double)intervals[to] / intervals[from]);
-}
-
-static void print_order(FILE *csv, const struct method *method, double order)
-{
-	if (isfinite(order))
-		fprintf(csv, "%.3f", order);
-	else
-		fputs(method->order == 0 ? "rounding" : "none", csv);
+	const double *e = curve->error[horizon];
+	if (e[from] > rounding && e[to] > rounding && isfinite(e[from]) && isfinite(e[to]))
+		fprintf(csv, "%.3f", log(e[from] / e[to]) / log((double)intervals[to] / intervals[from]));
+	else    /* either is no error of the method */
+		fputs(curve->method->order == 0 ? "rounding" : "none", csv);
 }
 
 static void write_curve(FILE *csv, const struct curve *curve, const char *system, const int *intervals)
@@ -112,14 +76,12 @@ static void write_curve(FILE *csv, const struct curve *curve, const char *system
 			const double error = curve->error[i][k];
 			fprintf(csv, "%s,%g,%d,%.6g,%s,", system, whole * horizons[i] / COMMON, intervals[k],
 				whole / intervals[k], curve->method->name);
-			if (isnan(error))
-				fputs("refused,none", csv);
-			else if (isinf(error))
-				fputs("diverged,none", csv);
-			else
+			if (isfinite(error))
 				fprintf(csv, "%.6g,", error);
+			else
+				fputs(isnan(error) ? "refused,none" : "diverged,none", csv);
 			if (isfinite(error) && k > 0)
-				print_order(csv, curve->method, slope(curve->error[i], intervals, k - 1, k));
+				print_order(csv, curve, i, intervals, k - 1, k);
 			fprintf(csv, ",\"%s\"\n", curve->refused ? curve->refused : curve->method->settings);
 		}
 }
@@ -136,9 +98,9 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 			fprintf(csv, "%d,", curve->method->order);
 		else
 			fputs("exact,", csv);
-		print_order(csv, curve->method, slope(curve->error[i], intervals, 0, count - 1));
+		print_order(csv, curve, i, intervals, 0, count - 1);
 		fputc(',', csv);
-		print_order(csv, curve->method, slope(curve->error[i], intervals, count - 2, count - 1));
+		print_order(csv, curve, i, intervals, count - 2, count - 1);
 		fputc('\n', csv);
 	}
 }
@@ -150,10 +112,9 @@ static void converge(const char *system, double frequency, const char *variants,
 	snprintf(file, sizeof file, "%s/convergence_%s_exact_%d.so", variants, system, intervals[0]);
 	struct problem *p = problem_load(file, system, whole / COMMON, COMMON, true, frequency);
 	struct truth *truth = truth_of(p);
-	const struct method *methods[5] = { &readings[0], &readings[1] };
-	for (int i = 0; i < 3; i++)
-		methods[2 + i] = method_find(peers[i]);
-	for (int i = 0; i < 5; i++) {
+	const struct method *methods[METHODS] = { &readings[0], &readings[1], method_find("explicit Euler"),
+	                                          method_find("explicit trapezoid"), method_find("RK4") };
+	for (int i = 0; i < METHODS; i++) {
 		struct curve curve = { .method = methods[i] };
 		say_progress("convergence: %s, %s", system, methods[i]->name);
 		follow(&curve, p, truth, variants, intervals);
@@ -164,42 +125,17 @@ static void converge(const char *system, double frequency, const char *variants,
 	problem_free(p);
 }
 
-static FILE *create(const char *folder, const char *name)
-{
-	char file[4096];
-	snprintf(file, sizeof file, "%s/%s", folder, name);
-	FILE *f = fopen(file, "w");
-	if (!f) {
-		perror(file);
-		exit(1);
-	}
-	return f;
-}
-
-static void finish(FILE *f)
-{
-	if (ferror(f) || fclose(f) != 0) {
-		perror("convergence");
-		exit(1);
-	}
-}
-
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
-	if (argc != 3 + quick) {
-		fputs("usage: convergence [--quick] VARIANTS FOLDER\n", stderr);
-		return 2;
-	}
-	const char *variants = argv[1 + quick], *folder = argv[2 + quick];
-	FILE *csv = create(folder, "convergence.csv"), *orders = create(folder, "convergence_orders.csv");
-	fputs("system,horizon_s,intervals_in_30_s,h_s,method,error_over_initial_displacement,order_since_last,"
-	      "settings\n", csv);
-	fputs("system,horizon_s,method,order_expected,order_over_range,order_at_last\n", orders);
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "convergence [--quick] VARIANTS FOLDER");
+	FILE *csv = table_open(argv[1], "convergence.csv", "system,horizon_s,intervals_in_30_s,h_s,method,"
+	                       "error_over_initial_displacement,order_since_last,settings");
+	FILE *orders = table_open(argv[1], "convergence_orders.csv",
+	                          "system,horizon_s,method,order_expected,order_over_range,order_at_last");
 	for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
-		converge(systems[i].name, systems[i].frequency, variants, quick ? quick_intervals : all_intervals, csv,
+		converge(systems[i].name, systems[i].frequency, argv[0], quick ? quick_intervals : all_intervals, csv,
 		         orders);
-	finish(csv);
-	finish(orders);
+	table_close(csv, "convergence.csv");
+	table_close(orders, "convergence_orders.csv");
 	return 0;
 }

@@ -55,22 +55,10 @@ static double change_since(const char *test, const double *start, const double *
 
 /* ---- the list ---- */
 
-static FILE *open_in(const char *folder, const char *name, const char *mode)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *f = fopen(path, mode);
-	if (!f) {
-		perror(path);
-		exit(1);
-	}
-	return f;
-}
-
 static struct code *codes_read(const char *folder, int *count)
 {
 	char line[2048];
-	FILE *in = open_in(folder, "energy.list", "r");
+	FILE *in = file_in(folder, "energy.list", "r");
 	struct code *all = NULL;
 	for (*count = 0; fgets(line, sizeof line, in); ++*count) {
 		all = realloc(all, ((size_t)*count + 1) * sizeof *all);
@@ -83,17 +71,6 @@ static struct code *codes_read(const char *folder, int *count)
 	}
 	fclose(in);
 	return all;
-}
-
-static const char *const family_names[] = { "ours", "fixed", "adaptive", "propagator" };
-
-/* A quoted field; what plgen says may have quotes of its own. */
-static void print_quoted(FILE *out, const char *text)
-{
-	putc('"', out);
-	for (; *text; text++)
-		putc(*text == '"' ? '\'' : *text, out);
-	putc('"', out);
 }
 
 /* ---- one method over all steps ---- */
@@ -161,7 +138,7 @@ static void enter_refusal(const struct code *v, const char *why, FILE *changes, 
 	else
 		fprintf(changes, "%s,\"%s\",ours,%s,%g,0,refused,refused,", v->test, v->method, v->real, v->h);
 	FILE *out = strcmp(v->test, "damped") == 0 ? decays : changes;
-	print_quoted(out, why);
+	put_quoted(out, why);
 	putc('\n', out);
 }
 
@@ -183,10 +160,6 @@ static void measure_peers(const struct problem *p, const struct code *v, double 
 	static const char *const float_peers[] = { "exp(A h), loop, float", NULL };
 	for (const char *const *name = strcmp(v->real, "float") == 0 ? float_peers : peers; *name; name++) {
 		const struct method *m = method_find(*name);
-		if (!m) {
-			fprintf(stderr, "energy: no method is called %s\n", *name);
-			exit(1);
-		}
 		measure(m->open(m, p, v->h), v, steps, changes, decays);
 	}
 }
@@ -204,18 +177,13 @@ static void measure_ours(const struct problem *p, const struct code *v, double s
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
-	if (argc - quick != 3) {
-		fputs("usage: energy [--quick] VARIANTS FOLDER\n", stderr);
-		return 2;
-	}
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "energy [--quick] VARIANTS FOLDER");
 	const double steps = quick ? 1e6 : 1e8;
 	int count;
-	const struct code *all = codes_read(argv[1 + quick], &count);
-	FILE *changes = open_in(argv[2 + quick], "energy_raw.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv",
-		"w");
-	fputs("case,method,family,real,step_s,steps,change,largest,word\n", changes);
-	fputs("method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,measured_per_s,error_percent,word\n", decays);
+	const struct code *all = codes_read(argv[0], &count);
+	FILE *changes = table_open(argv[1], "energy_raw.csv", "case,method,family,real,step_s,steps,change,largest,word");
+	FILE *decays = table_open(argv[1], "decay.csv", "method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,"
+	                          "measured_per_s,error_percent,word");
 	struct problem *p = NULL;               /* the latest given */
 	for (const struct code *v = all; v < all + count; v++) {
 		char *refusal = variant_refused(v->file);
@@ -229,9 +197,7 @@ int main(int argc, char **argv)
 		}
 		free(refusal);
 	}
-	if (ferror(changes) | ferror(decays) | fclose(changes) | fclose(decays)) {
-		perror("energy");
-		return 1;
-	}
+	table_close(changes, "energy_raw.csv");
+	table_close(decays, "decay.csv");
 	return 0;
 }

@@ -12,9 +12,9 @@
  * the record's step.
  */
 #include "amplification.h"
+#include "quad_taylor.h"
 #include "record.h"
 
-#include <dlfcn.h>
 #include <math.h>
 #include <quadmath.h>
 #include <stdlib.h>
@@ -51,23 +51,11 @@ static void slope(const void *of, double t, const double y[], double dydt[])
 	}
 }
 
-static void *open_variant(const char *folder, int parts)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s%s/frame-%d.so", strchr(folder, '/') ? "" : "./", folder, parts);
-	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-	if (!handle) {
-		fprintf(stderr, "frame: %s\n", dlerror());
-		exit(1);
-	}
-	return handle;
-}
-
 /* The equations as plgen's user wrote them, asked at unit states and a unit input */
-static void ask(struct building *b, void *handle)
+static void ask(struct building *b, const char *folder)
 {
 	rhs_function *rhs;
-	void *symbol = dlsym(handle, "subject_rhs");
+	void *symbol = variant_symbol(folder, "frame-1", "subject_rhs");
 	memcpy(&rhs, &symbol, sizeof rhs);
 	for (int j = 0; j <= SIZE; j++) {
 		double y[SIZE] = {0}, u[2] = {j == SIZE, 0}, column[SIZE];
@@ -83,39 +71,17 @@ static void ask(struct building *b, void *handle)
 
 enum { MOST = SIZE + 2 };
 
-static void product(const quad *a, const quad *b, quad *c)
-{
-	for (int i = 0; i < MOST; i++)
-		for (int j = 0; j < MOST; j++) {
-			quad sum = 0;
-			for (int k = 0; k < MOST; k++)
-				sum += a[i * MOST + k] * b[k * MOST + j];
-			c[i * MOST + j] = sum;
-		}
-}
-
-/* Of states, the ground and its slope: e^{B h} by its series, h cut into 64 parts */
+/* Of states, the ground and its slope */
 static void flow(const struct building *b, quad h, quad *E)
 {
-	enum { HALVINGS = 6, TERMS = 40 };
-	quad B[MOST * MOST] = {0}, term[MOST * MOST], next[MOST * MOST];
+	quad B[MOST * MOST] = {0};
 	for (int i = 0; i < SIZE; i++) {
 		for (int j = 0; j < SIZE; j++)
-			B[i * MOST + j] = ldexpq(b->A[i * SIZE + j] * h, -HALVINGS);
-		B[i * MOST + SIZE] = ldexpq(b->b[i] * h, -HALVINGS);
+			B[i * MOST + j] = b->A[i * SIZE + j];
+		B[i * MOST + SIZE] = b->b[i];
 	}
-	B[SIZE * MOST + SIZE + 1] = ldexpq(h, -HALVINGS);
-	for (int i = 0; i < MOST * MOST; i++)
-		E[i] = term[i] = i % (MOST + 1) == 0;
-	for (int k = 1; k <= TERMS; k++) {
-		product(term, B, next);
-		for (int i = 0; i < MOST * MOST; i++)
-			E[i] += term[i] = next[i] / k;
-	}
-	for (int k = 0; k < HALVINGS; k++) {
-		product(E, E, next);
-		memcpy(E, next, sizeof next);
-	}
+	B[SIZE * MOST + SIZE + 1] = 1;
+	quad_exponential(MOST, B, h, E);
 }
 
 /* roof: `parts` a sample, from t = 0 on */
@@ -143,29 +109,28 @@ static void truth_of_roof(const struct building *b, int parts, double *roof)
 /* ---- the runs ---- */
 
 /* An output at each step of `parts` a sample; inner: steps of the method in each of these */
-static bool peer(const struct method *m, const struct building *b, int parts, int inner, double *roof)
+static void peer(const struct method *m, const struct building *b, int parts, int inner, double *roof)
 {
-	double A[SIZE * SIZE], none[SIZE] = {0}, *rows = calloc((SAMPLES - 1) * (size_t)parts, SIZE * sizeof *rows);
+	double A[SIZE * SIZE], none[SIZE] = {0};
 	const double start[SIZE] = {0};
 	memcpy(A, b->A, sizeof A);
 	const struct problem p = {.name = "frame", .n = STOREYS, .rhs_of = slope, .of = b, .start = start,
 	                          .unit = sample_time / parts, .units = (SAMPLES - 1) * parts, .linear = true, .w = 1,
 	                          .A = A, .b0 = none, .b1 = none, .b2 = none};      /* w: its load changes */
-	struct run *run = rows ? m->open(m, &p, p.unit / inner) : NULL;
-	const bool good = run && run->advance(run, p.units, rows);
+	struct run *run = m->open(m, &p, p.unit / inner);
+	double *rows = history_rows(run, p.units);
 	roof[0] = 0;
-	for (int k = 0; k < p.units && good; k++)
+	for (int k = 0; k < p.units; k++)
 		roof[k + 1] = rows[k * SIZE + ROOF];
-	if (run)
-		run->close(run);
+	run->close(run);
 	free(rows);
-	return good;
 }
 
 static void ours(const char *folder, const struct building *b, int parts, double *roof)
 {
-	void *handle = open_variant(folder, parts);
-	const pl_model *model = dlsym(handle, "subject_model");
+	char file[40];
+	snprintf(file, sizeof file, "frame-%d", parts);
+	const pl_model *model = variant_model(folder, file);
 	void *state = calloc(1, model->size);
 	double y[SIZE];
 	model->init(state);
@@ -179,7 +144,6 @@ static void ours(const char *folder, const struct building *b, int parts, double
 		roof[k + 1] = y[ROOF];
 	}
 	free(state);
-	dlclose(handle);
 }
 
 static double largest_of(int count, const double *x, const double *than)
@@ -252,19 +216,14 @@ static void chart(const char *variants, const char *folder, const struct buildin
 int main(int argc, char **argv)
 {
 	static struct building b;
-	if (argc != 3) {
-		fprintf(stderr, "usage: frame VARIANTS OUTDIR\n");
-		return 2;
-	}
-	void *handle = open_variant(argv[1], 1);
-	ask(&b, handle);
-	dlclose(handle);
+	(void)flags_of(argc, &argv, "", 2, 2, "frame VARIANTS OUTDIR");
+	ask(&b, argv[0]);
 	record_of_quake(b.sample);
-	FILE *csv = table_open(argv[2], "frame_record.csv", "t_s,quake_m_per_s2");
+	FILE *csv = table_open(argv[1], "frame_record.csv", "t_s,quake_m_per_s2");
 	for (int k = 0; k < SAMPLES; k++)
 		fprintf(csv, "%.2f,%g\n", k * sample_time, b.sample[k]);
 	table_close(csv, "frame_record.csv");
 	say_progress("frame: three storeys under a record");
-	chart(argv[1], argv[2], &b);
+	chart(argv[0], argv[1], &b);
 	return 0;
 }

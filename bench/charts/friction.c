@@ -14,7 +14,6 @@
  * A method sticks at an output where |x'| is at most 3 eps, or rounding where nothing is smoothed, for two outputs or
  * more one after the other. Missed: none of the outputs in a true phase, two or more, sticks. False: a phase of a
  * method that meets no true one. */
-#include <dlfcn.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -127,7 +126,7 @@ struct way {
 	const struct truth_of_friction *truth;
 	long evaluations;
 	/* generated */
-	void *handle, *state;
+	void *state;
 	const pl_model *model;
 	/* equations; sign 0: it sticks */
 	double eps, sign;
@@ -301,8 +300,7 @@ static bool pass(struct way *way, double *rows)
 
 static void way_open(struct way *way, const char *variants)
 {
-	char file[4096];
-	void *symbol;
+	char file[40];
 	if (way->kind == ROOTS || way->kind == SMOOTH) {
 		if (!cvode_make(way))
 			exit(1);
@@ -310,14 +308,8 @@ static void way_open(struct way *way, const char *variants)
 	}
 	if (way->kind == STEPS)
 		return;
-	snprintf(file, sizeof file, "%s/friction-%ld.so", variants, lround(unit / way->setting));
-	way->handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-	symbol = way->handle ? dlsym(way->handle, "subject_model") : NULL;
-	if (!symbol) {
-		fprintf(stderr, "friction: %s\n", dlerror());
-		exit(1);
-	}
-	way->model = symbol;
+	snprintf(file, sizeof file, "friction-%ld", lround(unit / way->setting));
+	way->model = variant_model(variants, file);
 	way->state = calloc(1, way->model->size);
 }
 
@@ -338,8 +330,6 @@ static void way_close(struct way *way)
 	if (way->context)
 		SUNContext_Free(&way->context);
 	free(way->state);
-	if (way->handle)
-		dlclose(way->handle);
 }
 
 /* ---- what they get wrong ---- */
@@ -407,19 +397,6 @@ static void list(struct ways *ways, const struct truth_of_friction *truth)
 
 static const char *const setting_is[] = { "step_s", "rtol", "eps_m_per_s", "eps_m_per_s" };
 
-static FILE *table_open(const char *folder, const char *name, const char *head)
-{
-	char file[4096];
-	snprintf(file, sizeof file, "%s/%s", folder, name);
-	FILE *csv = fopen(file, "w");
-	if (!csv) {
-		perror(file);
-		exit(1);
-	}
-	fprintf(csv, "%s\n", head);
-	return csv;
-}
-
 static void errors(struct ways *ways, const char *folder)
 {
 	FILE *csv = table_open(folder, "friction.csv", "method,setting_kind,setting,largest,at_end,phases,missed,"
@@ -482,17 +459,13 @@ int main(int argc, char **argv)
 {
 	static struct ways ways;
 	static struct truth_of_friction truth;
-	const bool timed = argc == 4 && strcmp(argv[1], "--times") == 0;
-	if (!timed && argc != 3) {
-		fprintf(stderr, "usage: friction [--times] VARIANTS OUTDIR\n");
-		return 2;
-	}
+	const bool timed = flags_of(argc, &argv, "--times", 2, 2, "friction [--times] VARIANTS OUTDIR");
 	say_progress("friction: %s", timed ? "times" : "errors");
 	find_truth(&truth);
 	list(&ways, &truth);
 	for (int i = 0; i < ways.count; i++)
-		way_open(&ways.way[i], argv[argc - 2]);
-	(timed ? times : errors)(&ways, argv[argc - 1]);
+		way_open(&ways.way[i], argv[0]);
+	(timed ? times : errors)(&ways, argv[1]);
 	for (int i = 0; i < ways.count; i++)
 		way_close(&ways.way[i]);
 	return 0;

@@ -310,25 +310,16 @@ static struct cell try_method(const struct method *m, const struct problem *p, c
 
 /* ---- the table ---- */
 
-static void print_quoted(FILE *out, const char *text)
-{
-	putc('"', out);
-	for (; *text; text++)
-		putc(*text == '"' ? '\'' : *text, out);
-	putc('"', out);
-}
-
 static void print_cell(FILE *out, const struct hard_case *c, const struct method *m, double setting, struct cell cell,
                        const char *settings)
 {
-	static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
-	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, families[m->family], m->tolerance ? "tolerance"
+	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, family_names[m->family], m->tolerance ? "tolerance"
 		: "step", setting);
 	if (isfinite(cell.error) && strcmp(cell.word, "diverged") != 0)
 		fprintf(out, "%.3g,%s,", cell.error, cell.word);
 	else
 		fprintf(out, "failed,%s,", cell.word);
-	print_quoted(out, settings ? settings : "");
+	put_quoted(out, settings);
 	putc('\n', out);
 	say_progress("hard: %s: %s %g: %s", c->name, m->name, setting, cell.word);
 }
@@ -383,33 +374,16 @@ static void say_scales(FILE *out, const struct problem *p, const char *name, con
 	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", name, file, p->unit, p->units, scale_q, scale_v);
 }
 
-static FILE *open_in(const char *folder, const char *name, const char *mode)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *f = fopen(path, mode);
-	if (!f) {
-		perror(path);
-		exit(1);
-	}
-	return f;
-}
-
 int main(int argc, char **argv)
 {
-	const bool scales = argc > 1 && strcmp(argv[1], "--scales") == 0;
-	const bool quick = argc > 1 + scales && strcmp(argv[1 + scales], "--quick") == 0;
+	const unsigned flags = flags_of(argc, &argv, "--quick --scales", 1, 2, "hard [--quick] VARIANTS FOLDER\n"
+	                                "       hard --scales [--quick] VARIANTS");
+	const bool quick = flags & 1, scales = flags & 2;
 	char name[64], method[64], file[1024], line[2048];
 	double step;
-	if (argc - quick != 3) {
-		fputs("usage: hard [--quick] VARIANTS FOLDER\n       hard --scales [--quick] VARIANTS\n", stderr);
-		return 2;
-	}
 	gsl_set_error_handler_off();            /* its statuses say it too */
-	FILE *list = open_in(argv[1 + scales + quick], "hard.list", "r"), *out = scales ? stdout
-	             : open_in(argv[2 + quick], "hard_raw.csv", "w");
-	if (!scales)
-		fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
+	FILE *list = file_in(argv[0], "hard.list", "r"), *out = scales ? stdout : table_open(argv[1], "hard_raw.csv",
+		"case,method,family,setting_kind,setting,error,word,settings");
 	struct problem *p = NULL;
 	struct history h = { 0 };
 	while (fgets(line, sizeof line, list)) {
@@ -430,9 +404,6 @@ int main(int argc, char **argv)
 		}
 	}
 	fclose(list);
-	if (ferror(out) | fclose(out)) {
-		perror("hard_raw.csv");
-		return 1;
-	}
+	table_close(out, "hard_raw.csv");
 	return 0;
 }

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 1000, MOST_STATES = 4 };         /* units from one call; states of the models here */
+enum { MOST_STATES = 4, MOST_ROWS = 80 };
 
 struct ours { const char *name, *file, *options; };
 static const struct ours ours[] = {
@@ -66,26 +66,13 @@ static void list(void)
 
 /* ---- errors at outputs ---- */
 
-/* The largest error at the outputs; INFINITY where the run fails */
+/* The largest; INFINITY where the run fails */
 static double error_at_outputs(struct run *run, const struct truth *t)
 {
-	static double rows[CHUNK * MOST_STATES];
-	const int size = 2 * t->n;
-	double most = 0;
-	run->restart(run);
-	for (int k = 0; k < t->units; k += CHUNK) {
-		const int units = t->units - k < CHUNK ? t->units - k : CHUNK;
-		if (!run->advance(run, units, rows))
-			return INFINITY;
-		for (int i = 0; i < units * size; i++) {
-			const double off = fabs(rows[i] - t->at_end[k * size + i]) / (i % size < t->n ? t->scale_q
-				: t->scale_v);
-			if (!isfinite(off))
-				return INFINITY;
-			most = fmax(most, off);
-		}
-	}
-	return most;
+	double *rows = history_rows(run, t->units);
+	const double error = truth_error(t, rows);
+	free(rows);
+	return isfinite(error) ? error : INFINITY;
 }
 
 static double error_with(const struct method *method, const struct problem *p, const struct truth *t, double setting)
@@ -174,19 +161,86 @@ static struct found find_step(const struct method *method, const struct problem 
 	return best;
 }
 
-/* ---- the first table ---- */
+/* ---- rows of all three tables ---- */
 
 struct row {
 	const struct method *method;
 	double target;
 	struct found found;
+	char *refused;
 	struct run *run;
+	double drift, long_drift;
 	struct samples samples;
 };
+struct rows { int count; struct row row[MOST_ROWS]; struct method ours[OURS_COUNT]; };
 
-struct rows { struct row row[80]; int count; };
+static struct row *add_row(struct rows *rows, const struct method *method, struct run *run)
+{
+	struct row *row = &rows->row[rows->count++];
+	*row = (struct row){ .method = method, .run = run };
+	return row;
+}
 
-static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
+static bool is_float(const struct method *method)
+{
+	return strstr(method->name, "float") != NULL;
+}
+
+/* What is exact at any step, a step an output: matrices of a step, then ours, of which `first` is that of "exact" */
+static struct row *add_exact(struct rows *rows, const struct problem *p, const char *folder, const char *base)
+{
+	char file[4096];
+	struct row *first = NULL;
+	for (const struct method *const *m = propagator_methods; *m; m++)
+		add_row(rows, *m, (*m)->open(*m, p, p->unit));
+	for (int i = 0; i < OURS_COUNT; i++) {
+		rows->ours[i] = (struct method){ .name = ours[i].name, .family = OURS, .settings = ours[i].options };
+		snprintf(file, sizeof file, "%s/%s%s%s.so", folder, base, i ? "-" : "", i ? ours[i].file : "");
+		struct row *row = add_row(rows, &rows->ours[i], NULL);
+		row->refused = variant_refused(file);
+		row->run = row->refused ? NULL : generated_open(row->method, p, file);
+		first = i == 0 ? row : first;
+	}
+	return first;
+}
+
+static void close_rows(struct rows *rows)
+{
+	for (struct row *row = rows->row; row < rows->row + rows->count; row++) {
+		if (row->run)
+			row->run->close(row->run);
+		free(row->refused);
+	}
+}
+
+static void sample_rows(struct rows *rows, double seconds)
+{
+	struct run *run[MOST_ROWS];
+	struct samples samples[MOST_ROWS];
+	int count = 0;
+	for (int i = 0; i < rows->count; i++)
+		if (rows->row[i].run)
+			run[count++] = rows->row[i].run;
+	say_progress("scs: time");
+	sample_runs(count, run, seconds, samples);
+	for (int i = 0, k = 0; i < rows->count; i++)
+		if (rows->row[i].run)
+			rows->row[i].samples = samples[k++];
+}
+
+static void put_times(FILE *out, const struct row *row, double of_exact)
+{
+	const struct samples *s = &row->samples;
+	if (s->count == 0)
+		fputs("none,none,none,none,none,", out);
+	else
+		fprintf(out, "%.4g,%.4g,%.4g,%d,%.4g,", s->min, s->median, s->max, s->count, s->median / of_exact);
+	put_quoted(out, row->refused ? row->refused : row->method->settings);
+}
+
+/* ---- the first table ---- */
+
+static const double targets[] = { 1e-9, 1e-12 };
 
 /* What no tolerance has reached, none reaches: of the same method with another target */
 static const struct found *found_before(const struct rows *rows, const struct method *method)
@@ -197,63 +251,13 @@ static const struct found *found_before(const struct rows *rows, const struct me
 	return NULL;
 }
 
-/* VARIANTS/settings: target, method, setting, error, whether it is reached, estimate; the same bytes whenever it is
- * written */
-static FILE *open_settings(const char *variants, const char *mode)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/settings", variants);
-	FILE *file = fopen(path, mode);
-	if (!file) {
-		fprintf(stderr, "headline: %s: headline --find makes it\n", path);
-		exit(1);
-	}
-	return file;
-}
-
-static void keep_settings(const struct rows *rows, const char *variants)
-{
-	FILE *out = open_settings(variants, "w");
-	for (const struct row *row = rows->row; row < rows->row + rows->count; row++)
-		fprintf(out, "%g %.17g %.17g %d %.17g %s\n", row->target, row->found.setting, row->found.error,
-		        row->found.reached, row->found.estimate, row->method->name);
-	if (ferror(out) || fclose(out) != 0) {
-		fputs("headline: cannot write settings\n", stderr);
-		exit(1);
-	}
-}
-
-static void read_settings(struct rows *rows, const struct problem *p, const char *variants)
-{
-	FILE *in = open_settings(variants, "r");
-	char name[100];
-	int reached;
-	for (;;) {
-		struct row *row = &rows->row[rows->count];
-		*row = (struct row){ 0 };
-		if (fscanf(in, "%lf %lf %lf %d %lf %99[^\n]", &row->target, &row->found.setting, &row->found.error,
-		           &reached, &row->found.estimate, name) != 6)
-			break;
-		row->method = method_find(name);
-		row->found.reached = reached;
-		if (reached && row->method)
-			row->run = row->method->open(row->method, p, row->found.setting);
-		if (!row->method || (reached && !row->run)) {
-			fprintf(stderr, "headline: settings of %s, which is not there\n", name);
-			exit(1);
-		}
-		rows->count++;
-	}
-	fclose(in);
-}
-
 static void look_for(struct rows *rows, const struct method *const *methods, const struct problem *p,
                      const struct truth *t, double target, int most)
 {
 	for (; *methods; methods++) {
-		struct row *row = &rows->row[rows->count++];
-		*row = (struct row){ .method = *methods, .target = target };
+		struct row *row = add_row(rows, *methods, NULL);
 		const struct found *looser = found_before(rows, *methods);
+		row->target = target;
 		if (!(*methods)->tolerance)
 			row->found = find_step(*methods, p, t, target, most);
 		else
@@ -261,55 +265,42 @@ static void look_for(struct rows *rows, const struct method *const *methods, con
 	}
 }
 
-static void sample_rows(struct rows *rows, double seconds)
+/* VARIANTS/settings: target, setting, error, whether it is reached, estimate, method; the same bytes whenever it is
+ * written */
+static void find_settings(const struct problem *p, const struct truth *t, const char *variants, bool quick)
 {
-	struct run *run[80];
-	struct samples samples[80];
-	int count = 0;
-	for (int i = 0; i < rows->count; i++)
-		if (rows->row[i].run)
-			run[count++] = rows->row[i].run;
-	sample_runs(count, run, seconds, samples);
-	for (int i = 0, k = 0; i < rows->count; i++)
-		if (rows->row[i].run)
-			rows->row[i].samples = samples[k++];
-}
-
-static FILE *create(const char *folder, const char *name, const char *head)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *out = fopen(path, "w");
-	if (!out) {
-		perror(path);
-		exit(1);
+	static struct rows rows;
+	for (int k = 0; k < 2; k++) {
+		look_for(&rows, fixed_methods, p, t, targets[k], quick ? 64 : 1024);
+		look_for(&rows, adaptive_methods, p, t, targets[k], quick ? 64 : 1024);
 	}
-	fputs(head, out);
-	return out;
+	FILE *out = file_in(variants, "settings", "w");
+	for (const struct row *row = rows.row; row < rows.row + rows.count; row++)
+		fprintf(out, "%g %.17g %.17g %d %.17g %s\n", row->target, row->found.setting, row->found.error,
+		        row->found.reached, row->found.estimate, row->method->name);
+	table_close(out, "settings");
 }
 
-static void finish(FILE *out)
+static void read_settings(struct rows *rows, const struct problem *p, const char *variants)
 {
-	if (ferror(out) || fclose(out) != 0) {
-		fputs("headline: cannot write a table\n", stderr);
-		exit(1);
+	FILE *in = file_in(variants, "settings", "r");
+	char name[100];
+	int reached;
+	double target;
+	struct found f = { 0 };
+	while (fscanf(in, "%lf %lf %lf %d %lf %99[^\n]", &target, &f.setting, &f.error, &reached, &f.estimate, name) == 6) {
+		struct row *row = add_row(rows, method_find(name), NULL);
+		row->target = target;
+		row->found = f;
+		row->found.reached = reached;
+		if (reached && row->method)
+			row->run = row->method->open(row->method, p, row->found.setting);
+		if (!row->method || (reached && !row->run)) {
+			fprintf(stderr, "headline: settings of %s, which is not there\n", name);
+			exit(1);
+		}
 	}
-}
-
-static void put_quoted(FILE *out, const char *text)
-{
-	putc('"', out);
-	for (; text && *text; text++)
-		putc(*text == '"' ? '\'' : *text, out);
-	putc('"', out);
-}
-
-static void put_times(FILE *out, const struct samples *s, double of_exact)
-{
-	if (s->count == 0)
-		fputs("none,none,none,none,none", out);
-	else
-		fprintf(out, "%.4g,%.4g,%.4g,%d,%.4g", s->min, s->median, s->max, s->count, s->median / of_exact);
+	fclose(in);
 }
 
 static void put_row(FILE *out, const struct row *row, double of_exact)
@@ -317,7 +308,7 @@ static void put_row(FILE *out, const struct row *row, double of_exact)
 	const struct found *f = &row->found;
 	fprintf(out, "%.0e,", row->target);
 	put_quoted(out, row->method->name);
-	fprintf(out, ",%s,%s,%.6g,", families[row->method->family], row->method->tolerance ? "tolerance" : "step",
+	fprintf(out, ",%s,%s,%.6g,", family_names[row->method->family], row->method->tolerance ? "tolerance" : "step",
 		f->setting);
 	if (isfinite(f->error))
 		fprintf(out, "%.4g,", f->error);
@@ -328,103 +319,44 @@ static void put_row(FILE *out, const struct row *row, double of_exact)
 		fprintf(out, "%.2g,", f->estimate);
 	else
 		fputs("none,", out);
-	put_times(out, &row->samples, of_exact);
-	putc(',', out);
-	put_quoted(out, row->method->settings);
+	put_times(out, row, of_exact);
 	putc('\n', out);
-}
-
-/* ---- ours ---- */
-
-struct mine {
-	struct method method;
-	char *refused;
-	struct run *run;
-};
-
-static void open_mine(struct mine *m, const struct ours *o, const struct problem *p, const char *folder,
-                      const char *base)
-{
-	char file[4096];
-	if (o == ours)
-		snprintf(file, sizeof file, "%s/%s.so", folder, base);
-	else
-		snprintf(file, sizeof file, "%s/%s-%s.so", folder, base, o->file);
-	*m = (struct mine){ .method = { .name = o->name, .family = OURS, .settings = o->options } };
-	m->refused = variant_refused(file);
-	m->run = m->refused ? NULL : generated_open(&m->method, p, file);
-}
-
-/* At one step per output: what it reaches, a row for each target; its time stands in both */
-static void add_exact(struct rows *rows, const struct method *method, struct run *run, const struct truth *t,
-                      const double targets[2])
-{
-	const double error = error_at_outputs(run, t);
-	for (int k = 0; k < 2; k++)
-		rows->row[rows->count++] = (struct row){ .method = method, .target = targets[k],
-		                                         .run = k == 0 ? run : NULL,
-		                                         .found = { run->problem->unit, error, error <= targets[k],
-		                                                    0 } };
-}
-
-static bool is_float(const char *name)
-{
-	return strstr(name, "float") != NULL;
-}
-
-static const double targets[] = { 1e-9, 1e-12 };
-
-static void find_settings(const struct problem *p, const struct truth *t, const char *variants, bool quick)
-{
-	static struct rows rows;
-	for (int k = 0; k < 2; k++) {
-		look_for(&rows, fixed_methods, p, t, targets[k], quick ? 64 : 1024);
-		look_for(&rows, adaptive_methods, p, t, targets[k], quick ? 64 : 1024);
-	}
-	keep_settings(&rows, variants);
 }
 
 static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
                         bool quick)
 {
-	static struct rows rows;
-	struct mine mine[OURS_COUNT];
+	static struct rows rows, exact;
 	read_settings(&rows, p, variants);
-	/* In float none comes near these errors; the next table has them */
-	for (const struct method *const *m = propagator_methods; *m; m++) {
-		struct run *run = is_float((*m)->name) ? NULL : (*m)->open(*m, p, p->unit);
-		if (run)
-			add_exact(&rows, *m, run, t, targets);
-	}
-	for (int i = 0; i < OURS_COUNT; i++) {
-		open_mine(&mine[i], &ours[i], p, variants, "scs");
-		if (mine[i].run && !is_float(ours[i].name))
-			add_exact(&rows, &mine[i].method, mine[i].run, t, targets);
-		else if (mine[i].run)
-			mine[i].run->close(mine[i].run);
-	}
-	say_progress("scs: time");
-	sample_rows(&rows, quick ? 1 : 20);
+	const struct method *chosen = add_exact(&exact, p, variants, "scs")->method;
 	double of_exact = NAN;
-	for (int i = 0; i < rows.count; i++)
-		if (rows.row[i].method->family == OURS || rows.row[i].method->family == PROPAGATOR) {
-			struct row *row = &rows.row[i];
-			if (row->method == &mine[0].method && row->samples.count > 0)
-				of_exact = row->samples.median;
-			if (row->samples.count == 0)
-				row->samples = rows.row[i - 1].samples; /* the same run, once for each target */
+	/* At one step per output: what it reaches, a row for each target; its time stands in both. In float none comes
+	 * near these errors; the next table has them */
+	for (struct row *row = exact.row; row < exact.row + exact.count; row++) {
+		if (!row->run || is_float(row->method))
+			continue;
+		const double error = error_at_outputs(row->run, t);
+		for (int k = 0; k < 2; k++) {
+			struct row *to = add_row(&rows, row->method, k == 0 ? row->run : NULL);
+			to->target = targets[k];
+			to->found = (struct found){ p->unit, error, error <= targets[k], 0 };
 		}
-	FILE *out = create(folder, "headline_integrators.csv",
-		"target,method,family,setting_kind,setting,error,reached,parts_estimated,ns_min,ns_median,ns_max,"
-		"ns_samples,ns_over_exact,settings\n");
-	for (int i = 0; i < rows.count; i++) {
-		put_row(out, &rows.row[i], of_exact);
-		if (rows.row[i].run)
-			rows.row[i].run->close(rows.row[i].run);
 	}
-	finish(out);
-	for (int i = 0; i < OURS_COUNT; i++)
-		free(mine[i].refused);
+	sample_rows(&rows, quick ? 1 : 20);
+	for (int i = 0; i < rows.count; i++) {
+		struct row *row = &rows.row[i];
+		if (!row->run && i > 0 && row->method == row[-1].method && row->found.setting == p->unit)
+			row->samples = row[-1].samples;
+		if (row->method == chosen && row->run)
+			of_exact = row->samples.median;
+	}
+	FILE *out = table_open(folder, "headline_integrators.csv",
+		"target,method,family,setting_kind,setting,error,reached,parts_estimated,ns_min,ns_median,ns_max,"
+		"ns_samples,ns_over_exact,settings");
+	for (int i = 0; i < rows.count; i++)
+		put_row(out, &rows.row[i], of_exact);
+	table_close(out, "headline_integrators.csv");
+	close_rows(&exact);
 }
 
 /* ---- the second table ---- */
@@ -448,167 +380,100 @@ static double drift(struct run *run, int units)
 	return (energy(y) - start) / start;
 }
 
-struct entry {
-	const struct method *method;
-	const char *refused;
-	struct run *run;
-	double error, drift, long_drift;
-	struct samples samples;
-};
-
-static int entries_of(struct entry *entry, struct mine *mine, const struct problem *p, const char *variants,
-                      const char *base)
+static void put_number(FILE *out, const struct row *row, double value)
 {
-	int count = 0;
-	for (const struct method *const *m = propagator_methods; *m; m++)
-		entry[count++] = (struct entry){ .method = *m, .run = (*m)->open(*m, p, p->unit) };
-	for (int i = 0; i < OURS_COUNT; i++) {
-		open_mine(&mine[i], &ours[i], p, variants, base);
-		entry[count++] = (struct entry){ .method = &mine[i].method, .refused = mine[i].refused,
-		                                 .run = mine[i].run };
-	}
-	return count;
-}
-
-static void close_entries(struct entry *entry, int count, struct mine *mine)
-{
-	for (int i = 0; i < count; i++)
-		if (entry[i].run)
-			entry[i].run->close(entry[i].run);
-	for (int i = 0; i < OURS_COUNT; i++)
-		free(mine[i].refused);
-}
-
-static void put_number(FILE *out, const struct entry *e, double value)
-{
-	if (e->refused)
-		fputs("refused,", out);
-	else if (!e->run)
-		fputs("cannot,", out);
-	else if (!isfinite(value))
-		fputs("failed,", out);
-	else
+	if (row->run && isfinite(value))
 		fprintf(out, "%.4g,", value);
-}
-
-static void sample_entries(struct entry *entry, int count, double seconds)
-{
-	struct run *run[40];
-	struct samples samples[40];
-	int runs = 0;
-	for (int i = 0; i < count; i++)
-		if (entry[i].run)
-			run[runs++] = entry[i].run;
-	sample_runs(runs, run, seconds, samples);
-	for (int i = 0, k = 0; i < count; i++)
-		if (entry[i].run)
-			entry[i].samples = samples[k++];
+	else
+		fputs(row->refused ? "refused," : row->run ? "failed," : "cannot,", out);
 }
 
 static void equal_step(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
                        bool quick)
 {
-	struct entry entry[40];
-	struct mine mine[OURS_COUNT];
-	const int count = entries_of(entry, mine, p, variants, "scs");
-	double of_exact = NAN;
-	for (int i = 0; i < count; i++) {
-		if (!entry[i].run)
+	static struct rows rows;
+	const int long_steps = quick ? 1000000 : 10000000;
+	const struct row *exact = add_exact(&rows, p, variants, "scs");
+	for (struct row *row = rows.row; row < rows.row + rows.count; row++) {
+		if (!row->run)
 			continue;
-		say_progress("scs: drift of %s", entry[i].method->name);
-		entry[i].error = error_at_outputs(entry[i].run, t);
-		entry[i].drift = drift(entry[i].run, t->units);
-		entry[i].long_drift = drift(entry[i].run, quick ? 1000000 : 10000000);
+		say_progress("scs: drift of %s", row->method->name);
+		row->found.error = error_at_outputs(row->run, t);
+		row->drift = drift(row->run, t->units);
+		row->long_drift = drift(row->run, long_steps);
 	}
-	say_progress("scs: time");
-	sample_entries(entry, count, quick ? 0.5 : 5);
-	for (int i = 0; i < count; i++)
-		if (entry[i].method == &mine[0].method && entry[i].run)
-			of_exact = entry[i].samples.median;
-	FILE *out = create(folder, "headline_equal_step.csv",
+	sample_rows(&rows, quick ? 0.5 : 5);
+	FILE *out = table_open(folder, "headline_equal_step.csv",
 		"method,family,step,error,energy_drift,energy_drift_long,long_steps,ns_min,ns_median,ns_max,"
-		"ns_samples,ns_over_exact,settings\n");
-	for (int i = 0; i < count; i++) {
-		const struct entry *e = &entry[i];
-		put_quoted(out, e->method->name);
-		fprintf(out, ",%s,%g,", families[e->method->family], p->unit);
-		put_number(out, e, e->error);
-		put_number(out, e, e->drift);
-		put_number(out, e, e->long_drift);
-		fprintf(out, "%d,", quick ? 1000000 : 10000000);
-		put_times(out, &e->samples, of_exact);
-		putc(',', out);
-		put_quoted(out, e->refused ? e->refused : e->method->settings);
+		"ns_samples,ns_over_exact,settings");
+	for (const struct row *row = rows.row; row < rows.row + rows.count; row++) {
+		put_quoted(out, row->method->name);
+		fprintf(out, ",%s,%g,", family_names[row->method->family], p->unit);
+		put_number(out, row, row->found.error);
+		put_number(out, row, row->drift);
+		put_number(out, row, row->long_drift);
+		fprintf(out, "%d,", long_steps);
+		put_times(out, row, exact->run ? exact->samples.median : NAN);
 		putc('\n', out);
 	}
-	finish(out);
-	close_entries(entry, count, mine);
+	table_close(out, "headline_equal_step.csv");
+	close_rows(&rows);
 }
 
 /* ---- the third ---- */
 
 static void meet(FILE *out, const char *kind, const char *gap, const char *variants)
 {
-	struct entry entry[40];
-	struct mine mine[OURS_COUNT];
+	static struct rows rows;
 	char base[100], path[4096];
 	snprintf(base, sizeof base, "%s-%s", kind, gap);
 	snprintf(path, sizeof path, "%s/%s.so", variants, base);
 	struct problem *p = problem_load(path, base, 0.01, 10000, true, 0);
 	struct truth *t = truth_of(p);
-	const int count = entries_of(entry, mine, p, variants, base);
-	for (int i = 0; i < count; i++) {
+	rows.count = 0;
+	add_exact(&rows, p, variants, base);
+	for (const struct row *row = rows.row; row < rows.row + rows.count; row++) {
 		fprintf(out, "%s,%s,", kind, gap);
-		put_quoted(out, entry[i].method->name);
-		fprintf(out, ",%s,", families[entry[i].method->family]);
-		put_number(out, &entry[i], entry[i].run ? error_at_outputs(entry[i].run, t) : NAN);
-		put_quoted(out, entry[i].refused ? entry[i].refused : entry[i].method->settings);
+		put_quoted(out, row->method->name);
+		fprintf(out, ",%s,", family_names[row->method->family]);
+		put_number(out, row, row->run ? error_at_outputs(row->run, t) : NAN);
+		put_quoted(out, row->refused ? row->refused : row->method->settings);
 		fprintf(out, ",%.2g\n", t->agreement);
 	}
-	close_entries(entry, count, mine);
+	close_rows(&rows);
 	truth_free(t);
 	problem_free(p);
 }
 
 static void confluence(const char *variants, const char *folder)
 {
-	FILE *out = create(folder, "headline_confluence.csv",
-	                   "case,gap,method,family,error,settings,truth_agreement\n");
-	for (int i = 0; i < MEETINGS; i++)
-		meet(out, "twins", meetings[i].gap, variants);
-	for (int i = 0; i < MEETINGS; i++)
-		meet(out, "one-way", meetings[i].gap, variants);
-	finish(out);
+	FILE *out = table_open(folder, "headline_confluence.csv",
+	                       "case,gap,method,family,error,settings,truth_agreement");
+	for (int i = 0; i < 2 * MEETINGS; i++)
+		meet(out, i < MEETINGS ? "twins" : "one-way", meetings[i % MEETINGS].gap, variants);
+	table_close(out, "headline_confluence.csv");
 }
 
 int main(int argc, char **argv)
 {
-	bool quick = false, listed = false, find = false;
-	int at = 1;
-	for (; at < argc && argv[at][0] == '-'; at++) {
-		listed = listed || strcmp(argv[at], "--list") == 0;
-		find = find || strcmp(argv[at], "--find") == 0;
-		quick = quick || strcmp(argv[at], "--quick") == 0;
-	}
-	if (listed) {
+	const unsigned flags = flags_of(argc, &argv, "--quick --find --list", 0, 2,
+	                                "headline --list\n       headline [--find] [--quick] VARIANTS OUTDIR");
+	const bool quick = flags & 1;
+	char path[4096];
+	if (flags & 4) {
 		list();
 		return 0;
 	}
-	if (argc - at != 2) {
-		fputs("usage: headline --list\n       headline [--find] [--quick] VARIANTS OUTDIR\n", stderr);
-		return 2;
-	}
-	char path[4096];
-	snprintf(path, sizeof path, "%s/scs.so", argv[at]);
+	snprintf(path, sizeof path, "%s/scs.so", argv[0]);
 	struct problem *p = problem_load(path, "scs", 0.01, quick ? 10000 : 100000, true, 0);
 	struct truth *t = truth_of(p);
 	fprintf(stderr, "\ntwo roads to the truth agree to %.2g\n", t->agreement);
-	if (find) {
-		find_settings(p, t, argv[at], quick);
-		confluence(argv[at], argv[at + 1]);
+	if (flags & 2) {
+		find_settings(p, t, argv[0], quick);
+		confluence(argv[0], argv[1]);
 	} else {
-		integrators(p, t, argv[at], argv[at + 1], quick);
-		equal_step(p, t, argv[at], argv[at + 1], quick);
+		integrators(p, t, argv[0], argv[1], quick);
+		equal_step(p, t, argv[0], argv[1], quick);
 	}
 	truth_free(t);
 	problem_free(p);

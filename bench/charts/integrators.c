@@ -275,13 +275,9 @@ static void check_roads(struct checks *c, const char *name)
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	const bool quick = flags_of(argc, &argv, "--quick", 1, 1, "integrators [--quick] OUTDIR");
+	const char *folder = argv[0];
 	struct checks c;
-	if (argc != 2 + quick) {
-		fprintf(stderr, "usage: integrators [--quick] OUTDIR\n");
-		return 2;
-	}
-	const char *folder = argv[1 + quick];
 	chart(folder, quick ? 41 : 161);
 	checks_open(&c, folder, "integrators_check.csv");
 	orders(folder, &c);

@@ -16,7 +16,6 @@
 #include "cantilever.h"
 #include "systems.h"
 
-#include <dlfcn.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -324,15 +323,12 @@ static void exact_entry(FILE *csv, const struct history *s, const char *variants
 	static const char *const steps[] = {"0.1", "1", "10"};
 	bool good = true;
 	for (int k = 0; k < 3; k++) {
-		char path[4096];
+		char file[100];
 		double y[HAND_MOST];
-		snprintf(path, sizeof path, "%s/%s_step%s.so", variants, s->model->name, steps[k]);
-		void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-		const pl_model *model = handle ? dlsym(handle, "subject_model") : NULL;
-		void *state = model ? calloc(1, model->size) : NULL;
-		if (state)
-			model->init(state);
-		good = good && state;
+		snprintf(file, sizeof file, "%s_step%s", s->model->name, steps[k]);
+		const pl_model *model = variant_model(variants, file);
+		void *state = calloc(1, model->size);
+		model->init(state);
 		for (double t = 0; t < s->model->seconds && good; t += model->h) {
 			model->step(state, NULL);
 			model->get(state, y);
@@ -373,25 +369,21 @@ static void other_model(FILE *csv, const struct model *m, struct problem *p, con
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
-	if (argc != 3 + quick) {
-		fprintf(stderr, "usage: largest_step [--quick] OUTDIR VARIANTS\n");
-		return 2;
-	}
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "largest_step [--quick] OUTDIR VARIANTS");
 	effort = quick ? (struct effort){4, 0.02, 0.1} : (struct effort){10, 0.001, 1};
-	FILE *csv = table_open(argv[1 + quick], "largest_step.csv",
+	FILE *csv = table_open(argv[0], "largest_step.csv",
 	                       "model,method,largest_step_s,growth_per_s_at_step_0.01,criterion");
 	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
 		const struct model *m = &models[i];
 		char path[4096];
-		snprintf(path, sizeof path, "%s/%s.so", argv[2 + quick], m->name);
+		snprintf(path, sizeof path, "%s/%s.so", argv[1], m->name);
 		struct problem *p = problem_load(path, m->name, 0.01, 1, m->linear, strcmp(m->name, "sdcsf") == 0 ? 5
 		                                 : 0);
 		say_progress("largest_step: %s", m->name);
 		if (m->linear)
 			linear_model(csv, p);
 		else
-			other_model(csv, m, p, argv[2 + quick]);
+			other_model(csv, m, p, argv[1]);
 		problem_free(p);
 	}
 	table_close(csv, "largest_step.csv");

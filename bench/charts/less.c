@@ -16,7 +16,6 @@
 #include "less.h"
 #include "record.h"
 
-#include <dlfcn.h>
 #include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stdlib.h>
@@ -225,15 +224,11 @@ struct list { FILE *file; const char *folder; int count; };
 static FILE *spec_open(struct list *list, const struct scene *s, const char *model, const char *options, int kept,
                        int states, char *name, size_t room)
 {
-	char path[4096];
+	char file[60];
 	snprintf(name, room, "less_%d", ++list->count);
 	fprintf(list->file, "%s\t%s\t%s\t%d\t%d\t%s --step %s\n", name, s->name, model, kept, states, options, s->step);
-	snprintf(path, sizeof path, "%s/%s.spec", list->folder, name);
-	FILE *f = fopen(path, "w");
-	if (!f) {
-		perror(path);
-		exit(1);
-	}
+	snprintf(file, sizeof file, "%s.spec", name);
+	FILE *f = file_in(list->folder, file, "w");
 	fprintf(f, "# %s: %s, %d kept\nmodel less\ninput u hold first\n", s->name, model, kept);
 	return f;
 }
@@ -311,13 +306,7 @@ static void put_scene(struct list *list, const struct scene *s)
 static int write_specs(const char *folder)
 {
 	static struct scene s;
-	char path[4096];
-	snprintf(path, sizeof path, "%s/less.list", folder);
-	struct list list = {fopen(path, "w"), folder, 0};
-	if (!list.file) {
-		perror(path);
-		return 1;
-	}
+	struct list list = {file_in(folder, "less.list", "w"), folder, 0};
 	for (int i = 0; i < SCENES; i++) {
 		scenes[i](&s);
 		put_scene(&list, &s);
@@ -327,12 +316,9 @@ static int write_specs(const char *folder)
 
 /* ---- their runs ---- */
 
-static bool run_generated(const char *file, const struct scene *s, double *y)
+static void run_generated(const char *folder, const char *name, const struct scene *s, double *y)
 {
-	void *handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
-	const void *symbol = handle ? dlsym(handle, "subject_model") : NULL;
-	if (!symbol)
-		return false;
+	const void *symbol = variant_symbol(folder, name, "subject_model");
 	const pl_model *model = symbol;
 	const bool single = model->real_size == (int)sizeof(float);
 	const pl_modelf *modelf = symbol;
@@ -353,21 +339,18 @@ static bool run_generated(const char *file, const struct scene *s, double *y)
 		model->run(state, (size_t)s->samples - 1, s->u + 1, y + 1);
 	}
 	free(state);
-	dlclose(handle);
-	return true;
 }
 
 /* The file NAME.cost has plgen's own count */
 static int multiplications(const char *folder, const char *name)
 {
-	char path[4096];
+	char file[60];
 	int count = -1;
-	snprintf(path, sizeof path, "%s/%s.cost", folder, name);
-	FILE *f = fopen(path, "r");
-	if (f && fscanf(f, "%d", &count) != 1)
+	snprintf(file, sizeof file, "%s.cost", name);
+	FILE *f = file_in(folder, file, "r");
+	if (fscanf(f, "%d", &count) != 1)
 		count = -1;
-	if (f)
-		fclose(f);
+	fclose(f);
 	return count;
 }
 
@@ -375,8 +358,8 @@ static int write_table(const char *variants, const char *folder)
 {
 	static struct scene s[SCENES];
 	static double truth[SCENES][MOST_SAMPLES], y[MOST_SAMPLES];
-	char line[400], name[40], scene[40], model[80], path[4096];
-	int kept, states, bad = 0;
+	char line[400], name[40], scene[40], model[80];
+	int kept, states;
 	FILE *csv = table_open(folder, "less.csv",
 	                       "scene,model,kept,states,multiplications,error_over_peak,anyway,error_anyway");
 	double anyway[SCENES];
@@ -386,38 +369,25 @@ static int write_table(const char *variants, const char *folder)
 		solve(&s[i].anyway, &s[i], y);
 		anyway[i] = error_over_peak(s[i].samples, y, truth[i]);
 	}
-	snprintf(path, sizeof path, "%s/less.list", variants);
-	FILE *list = fopen(path, "r");
-	if (!list) {
-		perror(path);
-		return 1;
-	}
+	FILE *list = file_in(variants, "less.list", "r");
 	while (fgets(line, sizeof line, list)) {
 		if (sscanf(line, "%39[^\t]\t%39[^\t]\t%79[^\t]\t%d\t%d", name, scene, model, &kept, &states) != 5)
 			return 1;
 		int i = 0;
 		while (strcmp(s[i].name, scene) != 0)
 			i++;
-		snprintf(path, sizeof path, "%s%s/%s.so", strchr(variants, '/') ? "" : "./", variants, name);
-		if (!run_generated(path, &s[i], y)) {
-			fprintf(stderr, "less: no model %s\n", path);
-			bad = 1;
-			continue;
-		}
+		run_generated(variants, name, &s[i], y);
 		fprintf(csv, "%s,\"%s\",%d,%d,%d,%.3g,%s,%.3g\n", scene, model, kept, states,
 		        multiplications(variants, name), error_over_peak(s[i].samples, y, truth[i]), s[i].anyway_is,
 		        anyway[i]);
 	}
 	fclose(list);
 	table_close(csv, "less.csv");
-	return bad;
+	return 0;
 }
 
 int main(int argc, char **argv)
 {
-	if (argc != 3) {
-		fputs("usage: less --specs FOLDER\n       less VARIANTS OUTDIR\n", stderr);
-		return 2;
-	}
-	return strcmp(argv[1], "--specs") == 0 ? write_specs(argv[2]) : write_table(argv[1], argv[2]);
+	const bool specs = flags_of(argc, &argv, "--specs", 1, 2, "less --specs FOLDER\n       less VARIANTS OUTDIR");
+	return specs ? write_specs(argv[0]) : write_table(argv[0], argv[1]);
 }

@@ -13,7 +13,6 @@
  */
 #include "amplification.h"
 
-#include <dlfcn.h>
 #include <math.h>
 #include <string.h>
 
@@ -155,39 +154,28 @@ static void check_rates(struct checks *c)
 static void check_generated(struct checks *c, const char *variants)
 {
 	static const struct { const char *file, *scheme; double across, wh; } points[] = {
-		{"operator_etd1.so", "etd1", 0.5, 0.1}, {"operator_etdrk2.so", "etdrk2", 2, 0.5},
-		{"operator_etdrk4.so", "etdrk4", 0.5, 1},
-		{"operator_nc2.so", "nc2", 2, 1}, {"operator_nc3.so", "nc3", 2, 1}, {"operator_dq4.so", "dq4", 2, 1},
-		{"operator_bm3.so", "bm3", 0.5, 2},
-		{"pl_weak.so", "pl", 0.01, 0.5}, {"pl_equal.so", "pl", 1, 1}, {"pl_strong.so", "pl", 4, 3}};
+		{"operator_etd1", "etd1", 0.5, 0.1}, {"operator_etdrk2", "etdrk2", 2, 0.5},
+		{"operator_etdrk4", "etdrk4", 0.5, 1},
+		{"operator_nc2", "nc2", 2, 1}, {"operator_nc3", "nc3", 2, 1}, {"operator_dq4", "dq4", 2, 1},
+		{"operator_bm3", "bm3", 0.5, 2},
+		{"pl_weak", "pl", 0.01, 0.5}, {"pl_equal", "pl", 1, 1}, {"pl_strong", "pl", 4, 3}};
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
 		const struct subject s = {points[i].scheme, points[i].across};
-		char path[4096];
-		snprintf(path, sizeof path, "%s/%s", variants, points[i].file);
-		void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-		const pl_model *model = handle ? dlsym(handle, "subject_model") : NULL;
-		const double *Phi = handle ? dlsym(handle, "subject_Phi") : NULL;
+		const bool pl = strcmp(points[i].scheme, "pl") == 0;
 		double complex eigenvalue[MOST_EIGENVALUES];
-		double measured = NAN;
-		if (model && Phi && strcmp(points[i].scheme, "pl") == 0)
-			measured = largest(eigenvalues_of(4, Phi, eigenvalue), eigenvalue);
-		else if (model)
-			measured = largest(amplification_of_model(model, 1e-12, eigenvalue), eigenvalue);
-		check(c, growth(&s, points[i].wh), measured, 1e-13, "%s %s %g w h %g: rho of generated code",
-		      points[i].scheme, strcmp(points[i].scheme, "pl") == 0 ? "k2/k1" : "wA/w", points[i].across,
+		const int count = pl ? eigenvalues_of(4, variant_symbol(variants, points[i].file, "subject_Phi"), eigenvalue)
+		                  : amplification_of_model(variant_model(variants, points[i].file), 1e-12, eigenvalue);
+		check(c, growth(&s, points[i].wh), largest(count, eigenvalue), 1e-13,
+		      "%s %s %g w h %g: rho of generated code", points[i].scheme, pl ? "k2/k1" : "wA/w", points[i].across,
 		      points[i].wh);
 	}
 }
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "operator_map [--quick] OUTDIR VARIANTS");
 	struct checks c;
-	if (argc != 3 + quick) {
-		fprintf(stderr, "usage: operator_map [--quick] OUTDIR VARIANTS\n");
-		return 2;
-	}
-	const char *folder = argv[1 + quick], *variants = argv[2 + quick];
+	const char *folder = argv[0], *variants = argv[1];
 	charts(folder, quick);
 	checks_open(&c, folder, "operator_check.csv");
 	check_rates(&c);

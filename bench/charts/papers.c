@@ -30,19 +30,6 @@ const char *percent(double part)
 	return part < 10 ? text("%.3g %%", 100 * part) : text("%.3g times x1(0)", part);
 }
 
-FILE *file_begin(const struct papers *papers, const char *name, const char *head)
-{
-	char file[4096];
-	snprintf(file, sizeof file, "%s/%s", papers->folder, name);
-	FILE *f = fopen(file, "w");
-	if (!f) {
-		perror(file);
-		exit(1);
-	}
-	fprintf(f, "%s\n", head);
-	return f;
-}
-
 /* Quoted where a comma is */
 static void print_fields(FILE *f, int count, const char *const *field)
 {
@@ -54,33 +41,25 @@ static void print_fields(FILE *f, int count, const char *const *field)
 
 FILE *table_begin(const struct papers *papers, const char *name)
 {
-	return file_begin(papers, name, "source,model,method,quantity,reported,recovered,measured,settings");
+	return table_open(papers->folder, name, "source,model,method,quantity,reported,recovered,measured,settings");
 }
 
-void table_row(FILE *table, const struct row *row)
+void row_of(FILE *table, const char *source, const char *model, const char *method, const char *quantity,
+            const char *reported, const char *recovered, const char *measured, const char *settings)
 {
-	const char *const field[] = { row->source, row->model, row->method, row->quantity,
-	                              row->reported ? row->reported : "not stated", row->recovered, row->measured,
-	                              row->settings };
+	const char *const field[] = { source, model, method, quantity, reported ? reported : "not stated", recovered,
+	                              measured, settings };
 	print_fields(table, sizeof field / sizeof *field, field);
 	fputc('\n', table);
 }
 
-void table_end(FILE *table)
+void time_of(const struct papers *papers, const char *source, const char *model, const char *method, const char *quantity,
+             const char *reported, const char *measured, const char *settings, struct samples ns)
 {
-	if (ferror(table) || fclose(table) != 0) {
-		perror("papers");
-		exit(1);
-	}
-}
-
-void timing_row(const struct papers *papers, const struct timing *t)
-{
-	const char *const field[] = { t->source, t->model, t->method, t->quantity,
-	                              t->reported ? t->reported : "not stated", t->measured };
+	const char *const field[] = { source, model, method, quantity, reported ? reported : "not stated", measured };
 	print_fields(papers->times, sizeof field / sizeof *field, field);
-	fprintf(papers->times, ",%.6g,%.6g,%.6g,", t->ns.min, t->ns.median, t->ns.max);
-	print_fields(papers->times, 1, &t->settings);
+	fprintf(papers->times, ",%.6g,%.6g,%.6g,", ns.min, ns.median, ns.max);
+	print_fields(papers->times, 1, &settings);
 	fputc('\n', papers->times);
 }
 
@@ -128,26 +107,18 @@ const char *ordering(int count, struct placing *placing)
 
 int main(int argc, char **argv)
 {
-	bool quick = false, times = false;
-	int at = 1;
-	for (; at < argc && argv[at][0] == '-'; at++) {
-		quick = quick || strcmp(argv[at], "--quick") == 0;
-		times = times || strcmp(argv[at], "--times") == 0;
-	}
-	if (argc - at != 2) {
-		fputs("usage: papers [--quick] [--times] VARIANTS FOLDER\n", stderr);
-		return 2;
-	}
-	struct papers papers = { .variants = argv[at], .folder = argv[at + 1], .quick = quick };
-	if (times) {
-		papers.times = file_begin(&papers, "papers_times.csv",
+	const unsigned flags = flags_of(argc, &argv, "--quick --times", 2, 2, "papers [--quick] [--times] "
+		"VARIANTS FOLDER");
+	struct papers papers = { .variants = argv[0], .folder = argv[1], .quick = flags & 1 };
+	if (flags & 2) {
+		papers.times = table_open(papers.folder, "papers_times.csv",
 		                          "source,model,method,quantity,reported,measured,"
 		                          "ns_min,ns_median,ns_max,settings");
 		coupled_times(&papers);
 		integration_times(&papers);
 		clearance_times(&papers);
 		beam_times(&papers);
-		table_end(papers.times);
+		table_close(papers.times, "papers_times.csv");
 		return 0;
 	}
 	coupled_systems(&papers);

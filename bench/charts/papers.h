@@ -27,19 +27,14 @@ void beam_times(const struct papers *papers);
 
 /* ---- papers.c ---- */
 
-struct row {
-	/* NULL: of `reported` not stated (in what is left of the source), the others empty */
-	const char *source, *model, *method, *quantity, *reported, *recovered, *measured, *settings;
-};
-FILE *file_begin(const struct papers *papers, const char *name, const char *head);
 FILE *table_begin(const struct papers *papers, const char *name);
-void table_row(FILE *table, const struct row *row);
-void table_end(FILE *table);
-struct timing {
-	const char *source, *model, *method, *quantity, *reported, *measured, *settings;
-	struct samples ns;
-};
-void timing_row(const struct papers *papers, const struct timing *timing);
+/* `reported` NULL: not stated (in what is left of the source); the others NULL: empty. `source`: of the file */
+void row_of(FILE *table, const char *source, const char *model, const char *method, const char *quantity,
+            const char *reported, const char *recovered, const char *measured, const char *settings);
+void time_of(const struct papers *papers, const char *source, const char *model, const char *method, const char *quantity,
+             const char *reported, const char *measured, const char *settings, struct samples ns);
+#define put_row(table, ...) row_of(table, source, __VA_ARGS__)
+#define put_time(papers, ...) time_of(papers, source, __VA_ARGS__)
 const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
 const char *percent(double part);
 /* frequency: of a linear model's load, 0 where it has none; below 0: the model is not linear */

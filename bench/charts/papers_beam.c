@@ -26,10 +26,7 @@ struct reference {
 static void tips_of(struct run *run, double *tip)
 {
 	const int units = run->problem->units;
-	double *rows = calloc((size_t)units * 2 * COORDINATES, sizeof *rows);
-	for (int i = 0; i < units * 2 * COORDINATES; i++)
-		rows[i] = NAN;
-	run->advance(run, units, rows);
+	double *rows = history_rows(run, units);
 	for (int row = 0; row < units; row++)
 		tip[row] = rows[row * 2 * COORDINATES + TIP];
 	run->close(run);
@@ -81,14 +78,13 @@ static void compare_reference(FILE *table, const struct reference *b, const char
 {
 	const char *roads = text("etdrk4 at h = 0.0001 s; RK4 at 0.0001 s on the equations differs by at most %.2g m",
 	                         b->agreement);
-	table_row(table, &(struct row){ source, b->model, "reference", "smallest tip deflection [m]", NULL, least,
-	                                text("%.6g", b->least), roads });
-	table_row(table, &(struct row){ source, b->model, "reference", "its time [s]", NULL, when,
-	                                text("%.5g", b->when), "parabola through rows of 0.01 s" });
+	put_row(table, b->model, "reference", "smallest tip deflection [m]", NULL, least, text("%.6g", b->least),
+		roads);
+	put_row(table, b->model, "reference", "its time [s]", NULL, when, text("%.5g", b->when),
+		"parabola through rows of 0.01 s");
 	if (late)
-		table_row(table, &(struct row){ source, b->model, "reference",
-		                                "largest deflection after the spin-up [m]", NULL, late,
-		                                text("%.2g", b->late), roads });
+		put_row(table, b->model, "reference", "largest deflection after the spin-up [m]", NULL, late,
+			text("%.2g", b->late), roads);
 }
 
 /* ---- what becomes of a run ---- */
@@ -172,10 +168,9 @@ static void compare_operators(const struct papers *papers, FILE *table, FILE *pi
 		for (int speed = 0; speed <= 6; speed++) {
 			const struct fate f = fate_of(papers_run(papers, &etd1, b->p,
 			                                         text("beam4_A%d_etd1_%d", speed, rates[i])), b);
-			table_row(table,
-			          &(struct row){ source, b->model, "etd1", text("operator A(%d), h = %g s, 50 s", speed,
-			          1.0 / rates[i]), NULL, recovered[i][speed], say(&f, b),
-				"Om = 4; operator at w = the number in brackets" });
+			put_row(table, b->model, "etd1",
+				text("operator A(%d), h = %g s, 50 s", speed, 1.0 / rates[i]), NULL,
+				recovered[i][speed], say(&f, b), "Om = 4; operator at w = the number in brackets");
 			if (i < 3)
 				draw(picture, rates[i], speed, f.tip);
 		}
@@ -200,12 +195,12 @@ static void compare_long(const struct papers *papers, FILE *table, const struct 
 				if (t > spin_up + 1 && (t < 116 || t > LONG - 100))
 					*most = off <= *most ? *most : isfinite(off) ? off : INFINITY;
 			}
-			table_row(table, &(struct row){ source, b->model, "etd1",
-			                                text("operator A(%d), h = %g s, %d s", speed, 1.0 / rate, LONG),
-			                                NULL, speed == 4 ? "bounded" : "bounded; decays",
-				text("%s: largest in the last 100 s %.3g m, in the first 100 s after the spin-up "
-				     "%.3g m", !(last <= gone) ? "diverges" : last > 1.001 * early ? "grows"
-				     : last < 0.95 * early ? "decays" : "bounded", last, early), "Om = 4" });
+			put_row(table, b->model, "etd1",
+				text("operator A(%d), h = %g s, %d s", speed, 1.0 / rate, LONG), NULL,
+				speed == 4 ? "bounded" : "bounded; decays",
+				text("%s: largest in the last 100 s %.3g m, in the first 100 s after the "
+					"spin-up %.3g m", !(last <= gone) ? "diverges" : last > 1.001 * early ? "grows" : last < 0.95 * early ? "decays" : "bounded", last, early),
+				"Om = 4");
 			free(tip);
 			problem_free(p);
 		}
@@ -219,32 +214,30 @@ static void compare_schemes(const struct papers *papers, FILE *table, const stru
 	for (int i = 0; i < 3; i++) {
 		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
 		                                         text("beam15_A0_%s_100", schemes[i]->name)), b);
-		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(0), h = 0.01 s, 50 s",
-		                                NULL, at_rest[i], say(&f, b), "Om = 15" });
+		put_row(table, b->model, schemes[i]->name, "operator A(0), h = 0.01 s, 50 s", NULL, at_rest[i],
+			say(&f, b), "Om = 15");
 	}
 	for (int i = 0; i < 3; i++) {
 		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
 		                                         text("beam15_A15_%s_100", schemes[i]->name)), b);
-		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(15), h = 0.01 s, 50 s",
-		                                NULL, "bounded", say(&f, b), "Om = 15" });
+		put_row(table, b->model, schemes[i]->name, "operator A(15), h = 0.01 s, 50 s", NULL, "bounded",
+			say(&f, b), "Om = 15");
 	}
 	for (int fine = 0; fine < (papers->quick ? 1 : 2); fine++) {
 		const int rate = fine ? 1000 : 100;
 		for (int i = 1; i < 3; i++) {
 			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
 			                                         text("beam15_left_%s_%d", schemes[i]->name, rate)), b);
-			table_row(table, &(struct row){ source, b->model, schemes[i]->name,
-			                                text("largest error of the tip [m], A(15), h = %g s",
-			                                     1.0 / rate), NULL, left[i - 1][fine],
-				text("%.2g", f.error), "Om = 15; loads left to the scheme" });
+			put_row(table, b->model, schemes[i]->name,
+				text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL,
+				left[i - 1][fine], text("%.2g", f.error), "Om = 15; loads left to the scheme");
 		}
 		for (int i = 1; i < 3; i++) {
 			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
 			                                         text("beam15_A15_%s_%d", schemes[i]->name, rate)), b);
-			table_row(table, &(struct row){ source, b->model, schemes[i]->name,
-			                                text("largest error of the tip [m], A(15), h = %g s",
-			                                     1.0 / rate), NULL, NULL,
-				text("%.2g", f.error), "Om = 15; loads carried exactly, plgen's default" });
+			put_row(table, b->model, schemes[i]->name,
+				text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL, NULL,
+				text("%.2g", f.error), "Om = 15; loads carried exactly, plgen's default");
 		}
 	}
 }
@@ -260,9 +253,9 @@ void beam_times(const struct papers *papers)
 	say_progress("papers: 004, times");
 	sample_runs(3, run, papers->quick ? 0.3 : 1.5, ns);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers, &(struct timing){ source, "beam15", schemes[i]->name, "time of a step over etd1's",
-		                                     reported[i], text("%.3g", ns[i].median / ns[0].median),
-			"one operator A(15), h = 0.01 s, loads exact; compiled C, -O2", ns[i] });
+		put_time(papers, "beam15", schemes[i]->name, "time of a step over etd1's", reported[i],
+			text("%.3g", ns[i].median / ns[0].median),
+			"one operator A(15), h = 0.01 s, loads exact; compiled C, -O2", ns[i]);
 		run[i]->close(run[i]);
 	}
 	problem_free(p);
@@ -271,7 +264,7 @@ void beam_times(const struct papers *papers)
 void rotating_beam(struct papers *papers)
 {
 	FILE *table = table_begin(papers, "papers_004.csv");
-	FILE *picture = file_begin(papers, "papers_beam_tip.csv", "h_s,operator,t_s,largest_tip_in_last_second_m");
+	FILE *picture = table_open(papers->folder, "papers_beam_tip.csv", "h_s,operator,t_s,largest_tip_in_last_second_m");
 	static struct reference beam4, beam15;
 	beam4.model = "beam4";
 	beam15.model = "beam15";
@@ -284,6 +277,6 @@ void rotating_beam(struct papers *papers)
 	compare_schemes(papers, table, &beam15);
 	problem_free(beam4.p);
 	problem_free(beam15.p);
-	table_end(table);
-	table_end(picture);
+	table_close(table, "papers");
+	table_close(picture, "papers");
 }

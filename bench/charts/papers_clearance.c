@@ -45,13 +45,10 @@ static void compare_states(const struct papers *papers, FILE *table, const struc
 	m->run(state, (size_t)lround(k->seconds / m->h), NULL, NULL);
 	m->get(state, y);
 	for (int i = 0; i < k->states; i++)
-		table_row(table,
-		          &(struct row){ source, k->model, "exact",
-		                         text("%s at t = %g s", m->state_names[i], k->seconds), NULL, k->state[i],
-		                         text("%.13g", y[i]), chosen });
-	table_row(table, &(struct row){ source, k->model, "exact", text("changes of region until t = %g s", k->seconds),
-	                                NULL, k->crossings,
-		text("%ju", (uintmax_t)crossed_of(p)(state)), chosen });
+		put_row(table, k->model, "exact", text("%s at t = %g s", m->state_names[i], k->seconds), NULL,
+			k->state[i], text("%.13g", y[i]), chosen);
+	put_row(table, k->model, "exact", text("changes of region until t = %g s", k->seconds), NULL, k->crossings,
+		text("%ju", (uintmax_t)crossed_of(p)(state)), chosen);
 	free(state);
 	problem_free(p);
 }
@@ -161,14 +158,13 @@ static void compare_motion(const struct papers *papers, FILE *table, int tenths,
 	const char *simulated = "half the range and the average over one period after 600 s";
 	const char *one = count == 1 ? "mean and one harmonic: an approximation; its only solution" :
 		text("mean and one harmonic: an approximation; the nearest of its %d solutions", count);
-	table_row(table, &(struct row){ source, model, "exact", "steady amplitude", NULL, recovered[0],
-	                                text("%.4f", found.amplitude), simulated });
-	table_row(table, &(struct row){ source, model, "harmonic balance", "steady amplitude", NULL, recovered[2],
-	                                text("%.4f", balanced[nearest].amplitude), one });
-	table_row(table, &(struct row){ source, model, "exact", "steady mean", NULL, recovered[1],
-	                                text("%.4f", found.mean), simulated });
-	table_row(table, &(struct row){ source, model, "harmonic balance", "steady mean", NULL, recovered[3],
-	                                text("%.4f", balanced[nearest].mean), one });
+	put_row(table, model, "exact", "steady amplitude", NULL, recovered[0], text("%.4f", found.amplitude),
+		simulated);
+	put_row(table, model, "harmonic balance", "steady amplitude", NULL, recovered[2],
+		text("%.4f", balanced[nearest].amplitude), one);
+	put_row(table, model, "exact", "steady mean", NULL, recovered[1], text("%.4f", found.mean), simulated);
+	put_row(table, model, "harmonic balance", "steady mean", NULL, recovered[3],
+		text("%.4f", balanced[nearest].mean), one);
 	problem_free(p);
 }
 
@@ -245,10 +241,8 @@ static void time_crossings(const struct papers *papers, const char *variant, con
 	for (int i = 0; i < 3; i++)
 		time[i] = sample_summary(found ? SAMPLES : 0, ns[i]);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers,
-		           &(struct timing){ source, model, "exact",
-		                             text("%s, over one without a clearance", quantity[i]), NULL,
-			found ? text("%.3g", time[i].median / time[0].median) : "failed", settings[i], time[i] });
+		put_time(papers, model, "exact", text("%s, over one without a clearance", quantity[i]), NULL,
+			found ? text("%.3g", time[i].median / time[0].median) : "failed", settings[i], time[i]);
 		free(kept[i]);
 	}
 	free(state);
@@ -267,7 +261,7 @@ void clearances(struct papers *papers)
 		compare_states(papers, table, &known[i]);
 	for (int i = 0; i < 3; i++)
 		compare_motion(papers, table, 8 + 2 * i, recovered[i]);
-	table_end(table);
+	table_close(table, "papers");
 }
 
 void clearance_times(const struct papers *papers)

@@ -132,11 +132,7 @@ static int ode45_solve(const struct problem *p, double *rows)
 
 static double *history(struct run *run)
 {
-	const int size = 2 * run->problem->n, units = run->problem->units;
-	double *rows = calloc((size_t)(size * units), sizeof *rows);
-	for (int i = 0; i < size * units; i++)
-		rows[i] = NAN;
-	run->advance(run, units, rows);
+	double *rows = history_rows(run, run->problem->units);
 	run->close(run);
 	return rows;
 }
@@ -144,13 +140,7 @@ static double *history(struct run *run)
 /* Largest of any displacement, over the initial one */
 static double largest(const struct problem *p, const double *rows, const double *reference, int units)
 {
-	double worst = 0;
-	for (int u = 0; u < units; u++)
-		for (int i = 0; i < p->n; i++) {
-			const double off = fabs(rows[u * 2 * p->n + i] - reference[u * 2 * p->n + i]);
-			worst = off <= worst ? worst : isfinite(off) ? off : INFINITY;
-		}
-	return worst / fabs(p->start[0]);
+	return largest_off(p->n, p->n, rows, reference, units) / fabs(p->start[0]);
 }
 
 /* RK4 at a tenth of the unit */
@@ -192,32 +182,24 @@ static void order_errors(const struct papers *papers, FILE *table, const struct 
 			by_truth[i] = (struct placing){ names[i], largest(p, rows[i], truth->at_end, units) };
 			const char *settings = i == 2 ? text("RelTol 1e-3; AbsTol 1e-6; %d steps in 30 s", steps)
 			                       : "h = 0.01 s";
-			table_row(table, &(struct row){ source, system->name, names[i],
-			                                text("largest displacement error over x1(0), %g s, against RK4 "
-			                                     "at 0.001 s", horizon[k]),
-				NULL, NULL, percent(by_fine[i].error), settings });
-			table_row(table, &(struct row){ source, system->name, names[i],
-			                                text("largest displacement error over x1(0), %g s, against the "
-			                                     "closed form", horizon[k]),
-				NULL, NULL, percent(by_truth[i].error), settings });
+			put_row(table, system->name, names[i],
+				text("largest displacement error over x1(0), %g s, against RK4 at 0.001 s", horizon[k]),
+				NULL, NULL, percent(by_fine[i].error), settings);
+			put_row(table, system->name, names[i],
+				text("largest displacement error over x1(0), %g s, against the closed form", horizon[k]),
+				NULL, NULL, percent(by_truth[i].error), settings);
 		}
-		table_row(table,
-		          &(struct row){ source, system->name, "all",
-		                         text("order of these errors, %g s, against RK4 at 0.001 s", horizon[k]),
-		                         "PL < RK4", NULL,
+		put_row(table, system->name, "all",
+			text("order of these errors, %g s, against RK4 at 0.001 s", horizon[k]), "PL < RK4", NULL,
 			ordering(METHODS, by_fine),
-				"smallest first; its printed tables contradict its text: stated largest error 10.18 %, "
-				"a printed row 19.8 %" });
-		table_row(table,
-		          &(struct row){ source, system->name, "all",
-		                         text("order of these errors, %g s, against the closed form", horizon[k]), NULL,
-		                         NULL,
-			ordering(METHODS, by_truth), "smallest first" });
+			"smallest first; its printed tables contradict its text: stated largest error 10.18 %, "
+				"a printed row 19.8 %");
+		put_row(table, system->name, "all",
+			text("order of these errors, %g s, against the closed form", horizon[k]), NULL, NULL,
+			ordering(METHODS, by_truth), "smallest first");
 	}
-	table_row(table,
-	          &(struct row){ source, system->name, "RK4",
-	                         "its reference itself: RK4 at 0.001 s, 30 s, against the closed form", NULL, NULL,
-		percent(largest(p, fine, truth->at_end, p->units)), truth->roads });
+	put_row(table, system->name, "RK4", "its reference itself: RK4 at 0.001 s, 30 s, against the closed form",
+		NULL, NULL, percent(largest(p, fine, truth->at_end, p->units)), truth->roads);
 	for (int i = 0; i < METHODS; i++)
 		free(rows[i]);
 	free(fine);
@@ -249,12 +231,9 @@ static void compare_springs(const struct papers *papers, FILE *table, const stru
 	for (int i = 0; i < 3; i++) {
 		const char *name = run[i]->method->name;
 		double *rows = history(run[i]);
-		table_row(table,
-		          &(struct row){ source, model, name,
-		                         "largest displacement error over x1(0), 0.6 s, against the closed form",
-		                         i < 2 ? s->reported[i] : NULL,
-			i < 2 ? s->recovered[i] : NULL, percent(largest(p, rows, truth->at_end, p->units)),
-				"h = 0.01 s; m = 1; undamped" });
+		put_row(table, model, name, "largest displacement error over x1(0), 0.6 s, against the closed form",
+			i < 2 ? s->reported[i] : NULL, i < 2 ? s->recovered[i] : NULL,
+			percent(largest(p, rows, truth->at_end, p->units)), "h = 0.01 s; m = 1; undamped");
 		free(rows);
 	}
 	problem_free(p);
@@ -275,10 +254,10 @@ static void time_histories(const struct papers *papers, const struct system *sys
 	say_progress("papers: 000, times of %s, h = %g s", system->name, p->unit);
 	sample_runs(3, run, papers->quick ? 0.15 : 0.8, ns);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers, &(struct timing){ source, system->name, run[i]->method->name,
-		                                     text("time of a step over RK4's, 30 s at h = %g s", p->unit),
+		put_time(papers, system->name, run[i]->method->name,
+			text("time of a step over RK4's, 30 s at h = %g s", p->unit),
 			i == 1 ? system->time_ratio[fine] : NULL, text("%.3g", ns[i].median / ns[0].median),
-			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i] });
+			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i]);
 		run[i]->close(run[i]);
 	}
 	problem_free(p);
@@ -293,7 +272,7 @@ void coupled_systems(struct papers *papers)
 	}
 	for (size_t i = 0; i < sizeof springs / sizeof *springs; i++)
 		compare_springs(papers, table, &springs[i]);
-	table_end(table);
+	table_close(table, "papers");
 }
 
 void coupled_times(const struct papers *papers)

@@ -40,15 +40,8 @@ static const struct history {
 /* Largest error of a judged coordinate at the ends of steps, in its own unit */
 static double largest(struct run *run, const struct truth *truth, int judged)
 {
-	const int size = 2 * run->problem->n, units = run->problem->units;
-	double *rows = calloc((size_t)(size * units), sizeof *rows), worst = 0;
-	if (!run->advance(run, units, rows))
-		worst = INFINITY;
-	for (int u = 0; u < units; u++)
-		for (int i = 0; i < judged; i++) {
-			const double off = fabs(rows[u * size + i] - truth->at_end[u * size + i]);
-			worst = off <= worst ? worst : isfinite(off) ? off : INFINITY;
-		}
+	double *rows = history_rows(run, run->problem->units);
+	const double worst = largest_off(run->problem->n, judged, rows, truth->at_end, run->problem->units);
 	free(rows);
 	run->close(run);
 	return worst;
@@ -78,26 +71,26 @@ static void compare(const struct papers *papers, FILE *table, const struct histo
 		                                                  truth, h->first) };
 		snprintf(settings, sizeof settings, "%s; %d evaluations of the leftover a step", h->operator_of,
 		         leftover_evaluations(schemes[i].name));
-		table_row(table, &(struct row){ source, h->model, schemes[i].name, quantity, NULL, h->recovered[i],
-		                                number(placing[i].error), settings });
+		put_row(table, h->model, schemes[i].name, quantity, NULL, h->recovered[i], number(placing[i].error),
+			settings);
 	}
 	placing[SCHEMES] = (struct placing){ "RK4", largest(rk4->open(rk4, p, p->unit), truth, h->first) };
-	table_row(table, &(struct row){ source, h->model, "RK4", quantity, NULL, h->recovered_rk4,
-	                                number(placing[SCHEMES].error), "4 evaluations a step" });
-	table_row(table, &(struct row){ source, h->model, "RK4, h/3", quantity, NULL, NULL,
-	                                number(largest(rk4->open(rk4, p, p->unit / 3), truth, h->first)),
-		"12 evaluations a step of h: about as many as nc3, dq4 and bm3" });
+	put_row(table, h->model, "RK4", quantity, NULL, h->recovered_rk4, number(placing[SCHEMES].error),
+		"4 evaluations a step");
+	put_row(table, h->model, "RK4, h/3", quantity, NULL, NULL,
+		number(largest(rk4->open(rk4, p, p->unit / 3), truth, h->first)),
+		"12 evaluations a step of h: about as many as nc3, dq4 and bm3");
 	if (stiff) {            /* what it is set against there; how it did is not stated */
 		const struct method *trapezoid = method_find("implicit trapezoid");
 		struct run *run = trapezoid->open(trapezoid, p, p->unit);
 		placing[SCHEMES + 1] = (struct placing){ trapezoid->name, largest(run, truth, h->first) };
-		table_row(table, &(struct row){ source, h->model, trapezoid->name, quantity, NULL, NULL,
-		                                number(placing[SCHEMES + 1].error), trapezoid->settings });
+		put_row(table, h->model, trapezoid->name, quantity, NULL, NULL, number(placing[SCHEMES + 1].error),
+			trapezoid->settings);
 	}
-	table_row(table, &(struct row){ source, h->model, "all", text("order of these errors, h = %g s", p->unit),
-	                                stiff ? NULL : "bm3 leads; RK4 last",
+	put_row(table, h->model, "all", text("order of these errors, h = %g s", p->unit),
+		stiff ? NULL : "bm3 leads; RK4 last",
 		stiff ? NULL : "bm3 < nc3 < dq4 < nc2 < RK4 (by error constants)",
-		ordering(SCHEMES + 1 + stiff, placing), text("smallest first; truth: %s", truth->roads) });
+		ordering(SCHEMES + 1 + stiff, placing), text("smallest first; truth: %s", truth->roads));
 	problem_free(p);
 }
 
@@ -106,7 +99,7 @@ void precise_integration(struct papers *papers)
 	FILE *table = table_begin(papers, "papers_001.csv");
 	for (size_t i = 0; i < sizeof histories / sizeof *histories; i++)
 		compare(papers, table, &histories[i]);
-	table_end(table);
+	table_close(table, "papers");
 }
 
 /* Of a step of 0.1 s on the pendulum, as the source has it for all schemes (its figures are lost) */
@@ -122,10 +115,9 @@ void integration_times(const struct papers *papers)
 	say_progress("papers: 001, times");
 	sample_runs(SCHEMES + 1, run, papers->quick ? 0.15 : 0.8, ns);
 	for (int i = 0; i <= SCHEMES; i++) {
-		timing_row(papers, &(struct timing){ source, "pendulum", run[i]->method->name,
-		                                     "time of a step over RK4's, h = 0.1 s", NULL,
+		put_time(papers, "pendulum", run[i]->method->name, "time of a step over RK4's, h = 0.1 s", NULL,
 			text("%.3g", ns[i].median / ns[0].median),
-			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i] });
+			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i]);
 		run[i]->close(run[i]);
 	}
 	problem_free(p);

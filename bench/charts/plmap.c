@@ -164,21 +164,21 @@ static const struct point { const char *name; struct chain c; real h; } points[]
 };
 
 /* Column by column: a step from a unit state */
-static void check(FILE *csv, const struct point *point, const char *variants)
+static void check_point(FILE *csv, const struct point *point, const char *variants)
 {
-	char file[4096];
+	char file[40];
 	double off = 0, largest = 0;
 	matrix P;
-	snprintf(file, sizeof file, "%s/plmap_%s.so", variants, point->name);
-	struct problem *p = problem_load(file, "scs", (double)point->h, 1, false, 0);
-	void *state = calloc(1, p->model->size);
+	snprintf(file, sizeof file, "plmap_%s", point->name);
+	const pl_model *model = variant_model(variants, file);
+	void *state = calloc(1, model->size);
 	pl_step(&point->c, point->h, P);
 	for (int j = 0; j < STATES; j++) {
 		double y[STATES] = { 0 };
 		y[j] = 1;
-		p->model->set(state, 0, y);
-		p->model->step(state, NULL);
-		p->model->get(state, y);
+		model->set(state, 0, y);
+		model->step(state, NULL);
+		model->get(state, y);
 		for (int i = 0; i < STATES; i++) {
 			off = fmax(off, (double)fabsl(y[i] - P[i][j]));
 			largest = fmax(largest, (double)fabsl(P[i][j]));
@@ -186,49 +186,22 @@ static void check(FILE *csv, const struct point *point, const char *variants)
 	}
 	fprintf(csv, "%Lg,%Lg,%Lg,%Lg,%.3g\n", point->c.k1, point->c.k2, point->c.k3, point->h, off / largest);
 	free(state);
-	problem_free(p);
-}
-
-static FILE *create(const char *folder, const char *name, const char *head)
-{
-	char file[4096];
-	snprintf(file, sizeof file, "%s/%s", folder, name);
-	FILE *f = fopen(file, "w");
-	if (!f) {
-		perror(file);
-		exit(1);
-	}
-	fprintf(f, "%s\n", head);
-	return f;
-}
-
-static void finish(FILE *f)
-{
-	if (ferror(f) || fclose(f) != 0) {
-		perror("plmap");
-		exit(1);
-	}
 }
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
-	if (argc != 3 + quick) {
-		fputs("usage: plmap [--quick] VARIANTS FOLDER\n", stderr);
-		return 2;
-	}
-	const char *variants = argv[1 + quick], *folder = argv[2 + quick];
-	FILE *csv = create(folder, "plmap_check.csv",
-	                   "k1,k2,k3,h_s,largest_difference_of_generated_step_over_largest_entry");
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "plmap [--quick] VARIANTS FOLDER");
+	FILE *csv = table_open(argv[1], "plmap_check.csv",
+	                       "k1,k2,k3,h_s,largest_difference_of_generated_step_over_largest_entry");
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++)
-		check(csv, &points[i], variants);
-	finish(csv);
-	csv = create(folder, "plmap_raw.csv",
-	             "layout,periods,w_h,coupling_k2_over_k1,error_pl,error_RK4,ratio_pl_over_RK4");
+		check_point(csv, &points[i], argv[0]);
+	table_close(csv, "plmap_check.csv");
+	csv = table_open(argv[1], "plmap_raw.csv",
+	                 "layout,periods,w_h,coupling_k2_over_k1,error_pl,error_RK4,ratio_pl_over_RK4");
 	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
 		say_progress("plmap: %s", layouts[i].name);
 		map_layout(csv, &layouts[i], quick ? 6 : 12);
 	}
-	finish(csv);
+	table_close(csv, "plmap_raw.csv");
 	return 0;
 }

@@ -186,16 +186,6 @@ void find_times(struct lines *lines, double seconds)
 
 /* ---- the table ---- */
 
-static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
-
-static void put_quoted(FILE *out, const char *text)
-{
-	putc('"', out);
-	for (; *text; text++)
-		putc(*text == '"' ? '\'' : *text, out);
-	putc('"', out);
-}
-
 static void put_settings(FILE *out, const struct line *line)
 {
 	const struct method *method = method_of(line);
@@ -218,7 +208,7 @@ void put_line(FILE *out, const struct lines *lines, const struct line *line, con
 	const struct samples *ns = &line->samples;
 	fprintf(out, "%s,", p->name);
 	put_quoted(out, method->name);
-	fprintf(out, ",%s,%s,%.6g,%s", families[method->family], method->tolerance ? "tolerance" : "step",
+	fprintf(out, ",%s,%s,%.6g,%s", family_names[method->family], method->tolerance ? "tolerance" : "step",
 	        line->setting, line->found);
 	if (ns->count > 0)
 		fprintf(out, "%.5g,%.5g,%.5g,%d,%d,", ns->min, ns->median, ns->max, ns->count, p->units);

@@ -18,4 +18,7 @@ void quad_taylor(const struct problem *p, struct truth *t);
 /* A decimal of at most 13 digits for the double next to it: 0.01 means 1/100. */
 __float128 quad_of_decimal(double x);
 
+/* e^{A length}, n x n, row-major, n at most 64 (truth.c) */
+void quad_exponential(int n, const __float128 *A, __float128 length, __float128 *E);
+
 #endif

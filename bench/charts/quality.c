@@ -124,13 +124,9 @@ static void check_damping(struct checks *c, const char *name, double wh, double 
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	const bool quick = flags_of(argc, &argv, "--quick", 1, 1, "quality [--quick] OUTDIR");
+	const char *folder = argv[0];
 	struct checks c;
-	if (argc != 2 + quick) {
-		fprintf(stderr, "usage: quality [--quick] OUTDIR\n");
-		return 2;
-	}
-	const char *folder = argv[1 + quick];
 	FILE *csv = table_open(folder, "quality.csv",
 	                       "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,"
 	                       "algorithmic_damping_ratio,elongation_size,decay_size");

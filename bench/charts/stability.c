@@ -5,11 +5,10 @@
  * Where does each method stay bounded on x'' + 2 zeta w x' + w^2 x = 0?  The spectral radius of one step over (w h,
  * zeta), and where it passes 1: stability_map_raw.csv, stability_boundary.csv; what is known of these boundaries beside
  * what is measured: stability_check.csv. `exact` is e^{A h} by hand, compared with generated code at a few points
- * (VARIANTS/oscillator_*.so, where they are).
+ * (VARIANTS/oscillator_*.so).
  */
 #include "amplification.h"
 
-#include <dlfcn.h>
 #include <math.h>
 #include <string.h>
 
@@ -178,8 +177,8 @@ static void check_growth(struct checks *c)
 static void check_exact(struct checks *c, const char *variants)
 {
 	static const struct { const char *file; double wh, zeta; } points[] = {
-		{"oscillator_undamped.so", 0.5, 0}, {"oscillator_damped.so", 5, 0.05},
-		{"oscillator_overdamped.so", 2, 1.25}};
+		{"oscillator_undamped", 0.5, 0}, {"oscillator_damped", 5, 0.05},
+		{"oscillator_overdamped", 2, 1.25}};
 	const struct subject undamped = {NULL, 0};
 	double worst = 0;
 	for (double wh = 0.01; wh <= 100; wh *= 1.1)
@@ -188,25 +187,18 @@ static void check_exact(struct checks *c, const char *variants)
 	for (int i = 0; i < 3; i++) {
 		const double over = points[i].zeta > 1 ? points[i].zeta - sqrt(points[i].zeta * points[i].zeta - 1)
 		                    : points[i].zeta;
-		char path[4096];
-		snprintf(path, sizeof path, "%s/%s", variants, points[i].file);
-		void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-		const double *Phi = handle ? dlsym(handle, "subject_Phi") : NULL;
+		const double *Phi = variant_symbol(variants, points[i].file, "subject_Phi");
 		double complex eigenvalue[2];
-		check(c, exp(-over * points[i].wh), Phi ? largest(eigenvalues_of(2, Phi, eigenvalue), eigenvalue) : NAN,
+		check(c, exp(-over * points[i].wh), largest(eigenvalues_of(2, Phi, eigenvalue), eigenvalue),
 		      1e-14, "exact generated zeta %g w h %g: rho of the emitted Phi", points[i].zeta, points[i].wh);
 	}
 }
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "stability [--quick] OUTDIR VARIANTS");
 	struct checks c;
-	if (argc != 3 + quick) {
-		fprintf(stderr, "usage: stability [--quick] OUTDIR VARIANTS\n");
-		return 2;
-	}
-	const char *folder = argv[1 + quick], *variants = argv[2 + quick];
+	const char *folder = argv[0], *variants = argv[1];
 	chart(folder, quick ? (struct grid){41, 16} : (struct grid){81, 31});
 	checks_open(&c, folder, "stability_check.csv");
 	check_ends(&c);

@@ -50,8 +50,6 @@ static quad exactly(double x)
 
 /* ---- linear: closed form ---- */
 
-struct flow { int size; quad A[MOST * MOST]; };
-
 static void product(int n, const quad *a, const quad *b, quad *c)
 {
 	for (int i = 0; i < n; i++)
@@ -75,17 +73,18 @@ static quad norm_of(int n, const quad *a)
 	return most;
 }
 
-/* e^{A tau} by scaling and squaring; Taylor terms until they no longer matter */
-static void exponential(const struct flow *f, quad tau, quad *E)
+struct flow { int size; quad A[MOST * MOST]; };
+
+/* Scaling and squaring; Taylor terms until they no longer matter */
+void quad_exponential(int n, const quad *A, quad tau, quad *E)
 {
 	enum { TERMS = 36 };
-	const int n = f->size;
 	static quad x[MOST * MOST], term[MOST * MOST], next[MOST * MOST];
 	int halvings = 0;
-	for (quad size = norm_of(n, f->A) * fabsq(tau); size > 0.25Q; size /= 2)
+	for (quad size = norm_of(n, A) * fabsq(tau); size > 0.25Q; size /= 2)
 		halvings++;
 	for (int i = 0; i < n * n; i++) {
-		x[i] = ldexpq(f->A[i] * tau, -halvings);
+		x[i] = ldexpq(A[i] * tau, -halvings);
 		E[i] = term[i] = i % (n + 1) == 0;
 	}
 	for (int k = 1; k <= TERMS; k++) {
@@ -164,8 +163,8 @@ static void closed_form(const struct problem *p, struct truth *t)
 		f.A[(size + 2) * f.size + size + 1] = w;
 	}
 	compare_asked(p, &f);
-	exponential(&f, exactly(p->unit), whole);
-	exponential(&f, exactly(p->unit) * TRUTH_BETWEEN, part);
+	quad_exponential(f.size, f.A, exactly(p->unit), whole);
+	quad_exponential(f.size, f.A, exactly(p->unit) * TRUTH_BETWEEN, part);
 	for (int i = 0; i < size; i++)
 		x[i] = exactly(p->start[i]);
 	x[size] = x[size + 1] = 1;
@@ -502,10 +501,8 @@ static double extrapolation_difference(const struct problem *p, const struct tru
 {
 	static const struct equations emitted = { NULL, as_emitted, 1e-15L, 0 };
 	struct truth *other = new_truth(p);
-	double most = 0;
 	extrapolated(p, &emitted, other);
-	for (int k = 0; k < p->units; k++)
-		most = farther(most, t, k, other->at_end + k * 2 * p->n);
+	const double most = truth_error(t, other->at_end);
 	truth_free(other);
 	return most;
 }
@@ -565,11 +562,11 @@ struct truth *truth_by_extrapolation(struct problem *p)
 	return t;
 }
 
-double truth_difference(const struct truth *t, const struct truth *other)
+double truth_error(const struct truth *t, const double *rows)
 {
 	double most = 0;
 	for (int k = 0; k < t->units; k++)
-		most = farther(most, t, k, other->at_end + k * 2 * t->n);
+		most = farther(most, t, k, rows + k * 2 * t->n);
 	return most;
 }
 

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What every topic's program does with files: its arguments, tables, variants, histories as rows, checks. */
+#include <dlfcn.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "charts.h"
+
+const char *const family_names[] = {"ours", "fixed", "adaptive", "propagator"};
+
+unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most, const char *usage)
+{
+	unsigned found = 0;
+	char **next = *argv + 1;
+	for (; next < *argv + argc && strncmp(*next, "--", 2) == 0; next++) {
+		const char *at = strstr(flags, *next);
+		unsigned bit = 1;
+		for (const char *c = flags; at && c < at; c++)
+			bit <<= *c == ' ';
+		found |= at ? bit : 0;
+	}
+	const int left = (int)(*argv + argc - next);
+	if (left < least || left > most) {
+		fprintf(stderr, "usage: %s\n", usage);
+		exit(2);
+	}
+	*argv = next;
+	return found;
+}
+
+FILE *file_in(const char *folder, const char *name, const char *mode)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *f = fopen(path, mode);
+	if (!f) {
+		perror(path);
+		exit(1);
+	}
+	return f;
+}
+
+FILE *table_open(const char *folder, const char *name, const char *head)
+{
+	FILE *csv = file_in(folder, name, "w");
+	fprintf(csv, "%s\n", head);
+	return csv;
+}
+
+void table_close(FILE *csv, const char *name)
+{
+	const bool bad = ferror(csv);
+	if (fclose(csv) != 0 || bad) {
+		perror(name);
+		exit(1);
+	}
+}
+
+void put_quoted(FILE *out, const char *text)
+{
+	putc('"', out);
+	for (; text && *text; text++)
+		putc(*text == '"' ? '\'' : *text, out);
+	putc('"', out);
+}
+
+void *variant_symbol(const char *folder, const char *file, const char *name)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s%s/%s.so", strchr(folder, '/') ? "" : "./", folder, file);
+	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL), *symbol = handle ? dlsym(handle, name) : NULL;
+	if (!symbol) {
+		fprintf(stderr, "%s\n", dlerror());
+		exit(1);
+	}
+	return symbol;
+}
+
+const pl_model *variant_model(const char *folder, const char *file)
+{
+	return variant_symbol(folder, file, "subject_model");
+}
+
+/* ---- histories ---- */
+
+double *history_rows(struct run *run, int units)
+{
+	const size_t entries = (size_t)units * 2 * (size_t)run->problem->n;
+	double *rows = calloc(entries + 1, sizeof *rows);
+	for (size_t i = 0; rows && i < entries; i++)
+		rows[i] = NAN;
+	if (!rows)
+		exit(1);
+	run->restart(run);
+	run->advance(run, units, rows);
+	return rows;
+}
+
+double largest_off(int n, int judged, const double *rows, const double *than, int units)
+{
+	double worst = 0;
+	for (int u = 0; u < units; u++)
+		for (int i = 0; i < judged; i++) {
+			const double off = fabs(rows[u * 2 * n + i] - than[u * 2 * n + i]);
+			worst = off <= worst ? worst : isfinite(off) ? off : INFINITY;
+		}
+	return worst;
+}
+
+/* ---- checks ---- */
+
+void checks_open(struct checks *c, const char *folder, const char *name)
+{
+	c->csv = table_open(folder, name, "what,known,measured,tolerance,result");
+	c->off = 0;
+}
+
+void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
+{
+	char what[200];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(what, sizeof what, format, arguments);
+	va_end(arguments);
+	const bool good = known == measured || fabs(measured - known) <= tolerance * (known == 0 ? 1 : fabs(known));
+	c->off += !good;
+	fprintf(c->csv, "\"%s\",%.9g,%.9g,%.2g,%s\n", what, known, measured, tolerance, good ? "ok" : "off");
+	if (!good)
+		say_progress("off: %s: known %.17g, measured %.17g, tolerance %.2g", what, known, measured, tolerance);
+}
+
+int checks_close(struct checks *c)
+{
+	table_close(c->csv, "checks");
+	return c->off > 0;
+}
