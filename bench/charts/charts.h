@@ -174,7 +174,7 @@ struct error error_of(struct run *run, const struct truth *truth);
 /* ---- table.c: what programs do with files; they leave the program with a message where they cannot ---- */
 
 extern const char *const family_names[];
-/* Which of `flags` ("--quick --list") come first, a bit each in that order; argv becomes what follows, `least` to `most`
+/* Which of `flags` ("--quick --list") come first, a bit each in that order; argv becomes what follows, least to most
  * arguments, else the program is left with its usage */
 unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most, const char *usage);
 FILE *file_in(const char *folder, const char *name, const char *mode);

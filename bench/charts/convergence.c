@@ -42,8 +42,10 @@ static void follow(struct curve *curve, const struct problem *p, const struct tr
 	const bool ours = method->family == OURS;
 	char file[4096];
 	for (int k = 0; intervals[k]; k++) {
-		snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name, intervals[k]);
-		struct run *run = ours ? generated_open(method, p, file) : method->open(method, p, whole / intervals[k]);
+		snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name,
+			intervals[k]);
+		struct run *run = ours ? generated_open(method, p, file) : method->open(method, p,
+			whole / intervals[k]);
 		if (!run) {
 			curve->refused = ours ? variant_refused(file) : NULL;
 			fprintf(stderr, "convergence: %s, %s, N = %d: %s\n", p->name, method->name, intervals[k],
@@ -53,7 +55,8 @@ static void follow(struct curve *curve, const struct problem *p, const struct tr
 		}
 		double *rows = history_rows(run, COMMON);
 		for (int i = 0; i < HORIZONS; i++)
-			curve->error[i][k] = largest_off(p->n, p->n, rows, truth->at_end, horizons[i]) / fabs(p->start[0]);
+			curve->error[i][k] = largest_off(p->n, p->n, rows, truth->at_end, horizons[i]) /
+				fabs(p->start[0]);
 		run->close(run);
 		free(rows);
 	}

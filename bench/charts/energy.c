@@ -181,7 +181,8 @@ int main(int argc, char **argv)
 	const double steps = quick ? 1e6 : 1e8;
 	int count;
 	const struct code *all = codes_read(argv[0], &count);
-	FILE *changes = table_open(argv[1], "energy_raw.csv", "case,method,family,real,step_s,steps,change,largest,word");
+	FILE *changes = table_open(argv[1], "energy_raw.csv",
+		"case,method,family,real,step_s,steps,change,largest,word");
 	FILE *decays = table_open(argv[1], "decay.csv", "method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,"
 	                          "measured_per_s,error_percent,word");
 	struct problem *p = NULL;               /* the latest given */

@@ -494,9 +494,11 @@ MARCH(explicit_step)
 /* ---- the list ---- */
 
 #define FIXED(NAME, ORDER, SETTINGS) \
-	.method = {.name = NAME, .family = FIXED, .order = ORDER, .settings = "fixed step; " SETTINGS, .open = fixed_open}
+	.method = {.name = NAME, .family = FIXED, .order = ORDER, .settings = "fixed step; " SETTINGS, \
+	           .open = fixed_open}
 #define STRUCTURAL(NAME, SETTINGS) \
-	.method = {.name = NAME, .family = FIXED, .linear_only = true, .order = 2, .settings = "fixed step; " SETTINGS, \
+	.method = {.name = NAME, .family = FIXED, .linear_only = true, .order = 2, \
+	           .settings = "fixed step; " SETTINGS, \
 	           .open = fixed_open}, .wants_linear = has_matrix, .unknowns = 1, .keeps_acceleration = true
 #define WAY(NAME) {NAME, NAME##_march}
 #define NEWMARK(WANTED, ...) \
@@ -510,7 +512,8 @@ MARCH(explicit_step)
 #define ONE_SOLUTION "matrix factored once, 1 evaluation and 1 solution a step; "
 #define TWO_SOLUTIONS "two substeps, each with its matrix factored once: 2 evaluations and 2 solutions a step; "
 #define NO_SOLUTION \
-	"explicit: products with matrices of the step, 1 evaluation a step; first order after a load that sets in at once; "
+	"explicit: products with matrices of the step, 1 evaluation a step; first order after a load that " \
+	"sets in at once; "
 #define CHUNG "Chung and Hulbert 1993, spectral radius at infinity "
 #define NOH "Noh and Bathe 2019, spectral radius at infinity "
 #define KOLAY "Kolay and Ricles 2014, spectral radius at infinity "
@@ -525,11 +528,13 @@ static const struct scheme schemes[] = {
 	{FIXED("RK4", 4, "the classical one; 4 evaluations a step"), .plain = WAY(rk4)},
 	/* explicit in q, implicit in v: Bathe's (M + h/2 C) */
 	{FIXED("central difference", 2,
-	       "as velocity Verlet; linear damping implicit in the velocity: I + h/2 C factored once (Bathe); nonlinear "
+	       "as velocity Verlet; linear damping implicit in the velocity: I + h/2 C factored once (Bathe); "
+	       "nonlinear "
 	       "forces of velocity are taken at v + h a; 1 evaluation a step"),
 	 .plain = WAY(verlet), NEWMARK(is_damped, 0.0, 0.0, 0.0, 0.5)},
 	{FIXED("Newmark", 2,
-	       "average acceleration, beta = 1/4, gamma = 1/2; linear: I + h/2 C + h^2/4 K factored once, 1 evaluation a "
+	       "average acceleration, beta = 1/4, gamma = 1/2; linear: I + h/2 C + h^2/4 K factored once, 1 "
+	       "evaluation a "
 	       "step; else in the accelerations by " NEWTON_SETTINGS),
 	 .plain = WAY(newmark), NEWMARK(has_matrix, 0.0, 0.0, 0.25, 0.5)},
 	{FIXED("generalized-alpha", 2,
@@ -544,7 +549,8 @@ static const struct scheme dormand_prince_5 = {
 	.plain = WAY(dormand_prince), .keeps_acceleration = true};
 /* By its alpha, -1/3 to 0 */
 static const struct scheme hht = {
-	STRUCTURAL("HHT-alpha", ONE_SOLUTION "Hilber, Hughes and Taylor 1977, alpha = -0.1"), .linear = WAY(newmark_linear),
+	STRUCTURAL("HHT-alpha", ONE_SOLUTION "Hilber, Hughes and Taylor 1977, alpha = -0.1"),
+	.linear = WAY(newmark_linear),
 	.prepare = newmark_prepare, .c = ALPHA_OF(0.0, 0.1)};
 static const struct scheme alpha_5 = {
 	STRUCTURAL("generalized-alpha 0.5", ONE_SOLUTION CHUNG "0.5"), .linear = WAY(newmark_linear),

@@ -34,7 +34,8 @@ struct fixed {
 	long units;                 /* gone since the start */
 	long evaluations;
 	bool failed, linear;
-	double *state, *ahead;      /* 3n each: coordinates, velocities, and accelerations, kept by some; of `between` */
+	/* 3n each: coordinates, velocities, and the accelerations that some methods keep; ahead: of `between` */
+	double *state, *ahead;
 	double *work[WORK];
 	double scale_q, scale_v;    /* Newton: largest |coordinate| and |velocity| so far */
 	double *weight;             /* Newton: 1 over the scale of each unknown */
@@ -53,11 +54,13 @@ struct scheme {
 	struct method method;       /* first: a pointer to it is a pointer to this */
 	struct way plain, linear;   /* plain: of any problem, or none */
 	bool (*wants_linear)(const struct problem *p); /* NULL: never */
-	void (*prepare)(const struct scheme *scheme, const struct problem *p, struct part *part); /* of the linear way */
+	/* of the linear way */
+	void (*prepare)(const struct scheme *scheme, const struct problem *p, struct part *part);
 	int unknowns;               /* implicit: 1 for n accelerations, 2 for 2n states; explicit: 0 */
 	bool keeps_acceleration;
 	struct newmark c;
-	double rho, substep;        /* the spectral radius for large steps; the first substep over h, 0: the best of rho */
+	/* the spectral radius for large steps; the first of two substeps over h, 0: the best one of rho */
+	double rho, substep;
 };
 
 INLINE void slope(struct fixed *f, double t, const double *y, double *dydt)

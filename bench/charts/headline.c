@@ -288,7 +288,8 @@ static void read_settings(struct rows *rows, const struct problem *p, const char
 	int reached;
 	double target;
 	struct found f = { 0 };
-	while (fscanf(in, "%lf %lf %lf %d %lf %99[^\n]", &target, &f.setting, &f.error, &reached, &f.estimate, name) == 6) {
+	while (fscanf(in, "%lf %lf %lf %d %lf %99[^\n]", &target, &f.setting, &f.error, &reached, &f.estimate,
+		name) == 6) {
 		struct row *row = add_row(rows, method_find(name), NULL);
 		row->target = target;
 		row->found = f;

@@ -163,10 +163,12 @@ static void check_generated(struct checks *c, const char *variants)
 		const struct subject s = {points[i].scheme, points[i].across};
 		const bool pl = strcmp(points[i].scheme, "pl") == 0;
 		double complex eigenvalue[MOST_EIGENVALUES];
-		const int count = pl ? eigenvalues_of(4, variant_symbol(variants, points[i].file, "subject_Phi"), eigenvalue)
+		const int count = pl ? eigenvalues_of(4, variant_symbol(variants, points[i].file, "subject_Phi"),
+			eigenvalue)
 		                  : amplification_of_model(variant_model(variants, points[i].file), 1e-12, eigenvalue);
 		check(c, growth(&s, points[i].wh), largest(count, eigenvalue), 1e-13,
-		      "%s %s %g w h %g: rho of generated code", points[i].scheme, pl ? "k2/k1" : "wA/w", points[i].across,
+		      "%s %s %g w h %g: rho of generated code", points[i].scheme, pl ? "k2/k1" : "wA/w",
+			points[i].across,
 		      points[i].wh);
 	}
 }

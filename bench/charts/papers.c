@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* papers [--quick] [--times] VARIANTS FOLDER: the findings of the four sources beside what is measured:
  * FOLDER/papers_000.csv (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances) and
- * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS holds what variants.sh made. The
+ * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS: what variants.sh made. The
  * sources' parameter values did not survive: those of the models are chosen. */
 #include <math.h>
 #include <stdarg.h>
@@ -53,7 +53,8 @@ void row_of(FILE *table, const char *source, const char *model, const char *meth
 	fputc('\n', table);
 }
 
-void time_of(const struct papers *papers, const char *source, const char *model, const char *method, const char *quantity,
+void time_of(const struct papers *papers, const char *source, const char *model, const char *method,
+	const char *quantity,
              const char *reported, const char *measured, const char *settings, struct samples ns)
 {
 	const char *const field[] = { source, model, method, quantity, reported ? reported : "not stated", measured };

@@ -31,7 +31,8 @@ FILE *table_begin(const struct papers *papers, const char *name);
 /* `reported` NULL: not stated (in what is left of the source); the others NULL: empty. `source`: of the file */
 void row_of(FILE *table, const char *source, const char *model, const char *method, const char *quantity,
             const char *reported, const char *recovered, const char *measured, const char *settings);
-void time_of(const struct papers *papers, const char *source, const char *model, const char *method, const char *quantity,
+void time_of(const struct papers *papers, const char *source, const char *model, const char *method,
+	const char *quantity,
              const char *reported, const char *measured, const char *settings, struct samples ns);
 #define put_row(table, ...) row_of(table, source, __VA_ARGS__)
 #define put_time(papers, ...) time_of(papers, source, __VA_ARGS__)

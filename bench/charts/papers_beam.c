@@ -199,7 +199,8 @@ static void compare_long(const struct papers *papers, FILE *table, const struct 
 				text("operator A(%d), h = %g s, %d s", speed, 1.0 / rate, LONG), NULL,
 				speed == 4 ? "bounded" : "bounded; decays",
 				text("%s: largest in the last 100 s %.3g m, in the first 100 s after the "
-					"spin-up %.3g m", !(last <= gone) ? "diverges" : last > 1.001 * early ? "grows" : last < 0.95 * early ? "decays" : "bounded", last, early),
+					"spin-up %.3g m", !(last <= gone) ? "diverges" : last > 1.001 * early
+						? "grows" : last < 0.95 * early ? "decays" : "bounded", last, early),
 				"Om = 4");
 			free(tip);
 			problem_free(p);
@@ -264,7 +265,8 @@ void beam_times(const struct papers *papers)
 void rotating_beam(struct papers *papers)
 {
 	FILE *table = table_begin(papers, "papers_004.csv");
-	FILE *picture = table_open(papers->folder, "papers_beam_tip.csv", "h_s,operator,t_s,largest_tip_in_last_second_m");
+	FILE *picture = table_open(papers->folder, "papers_beam_tip.csv",
+		"h_s,operator,t_s,largest_tip_in_last_second_m");
 	static struct reference beam4, beam15;
 	beam4.model = "beam4";
 	beam15.model = "beam15";

@@ -186,7 +186,8 @@ static void order_errors(const struct papers *papers, FILE *table, const struct 
 				text("largest displacement error over x1(0), %g s, against RK4 at 0.001 s", horizon[k]),
 				NULL, NULL, percent(by_fine[i].error), settings);
 			put_row(table, system->name, names[i],
-				text("largest displacement error over x1(0), %g s, against the closed form", horizon[k]),
+				text("largest displacement error over x1(0), %g s, against the closed form",
+					horizon[k]),
 				NULL, NULL, percent(by_truth[i].error), settings);
 		}
 		put_row(table, system->name, "all",

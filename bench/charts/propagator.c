@@ -429,12 +429,14 @@ static struct run *propagator_open(const struct method *method, const struct pro
 #define ROUNDED "e^{Ah} once in long double, each entry then rounded to double"
 #define AS_CODE "printed as C whose entries are constants, zeros left out; compiled as plgen's code is"
 #define BY(NAME, SETTINGS) \
-	.method = {.name = NAME, .family = PROPAGATOR, .linear_only = true, .settings = SETTINGS, .open = propagator_open}
+	.method = {.name = NAME, .family = PROPAGATOR, .linear_only = true, .settings = SETTINGS, \
+	           .open = propagator_open}
 
 static const struct kind kinds[] = {
 	{BY("exp(A h), loop", EXPONENTIAL "applied by a double loop, size known at run time")},
 	{BY("exp(A h) by GSL, loop",
-	    "e^{Ah} once by gsl_linalg_exponential_ss, GSL_PREC_DOUBLE, loads as states; applied by a double loop, size "
+	    "e^{Ah} once by gsl_linalg_exponential_ss, GSL_PREC_DOUBLE, loads as states; applied by a double "
+	    "loop, size "
 	    "known at run time"), .exponential = gsl_exponential},
 	{BY("exp(A h) rounded, loop", ROUNDED "; applied by a double loop, size known at run time"),
 	 .exponential = rounded_exponential},
@@ -446,7 +448,8 @@ static const struct kind kinds[] = {
 	 .way = DGEMV},
 	{BY("modal superposition",
 	    "gsl_eigen_nonsymmv: real modes where damping is classical, else complex; each advanced by its own "
-	    "exponential in closed form, loads by the exponential of the mode with them; output by the matrix of shapes"),
+	    "exponential in closed form, loads by the exponential of the mode with them; output by the matrix "
+	    "of shapes"),
 	 .way = MODAL},
 	{BY("exp(A h), loop, float",
 	    EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at run time"),

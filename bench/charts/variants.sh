@@ -19,7 +19,8 @@ convergence() {
 	for system in scs sdcs sdcsf; do
 		for scheme in pl exact; do
 			for n in $intervals; do
-				echo "convergence_${system}_${scheme}_$n.so models/$system.spec --scheme $scheme --step 30/$n"
+				echo "convergence_${system}_${scheme}_$n.so models/$system.spec" \
+					"--scheme $scheme --step 30/$n"
 			done
 		done
 	done
@@ -175,7 +176,8 @@ papers() {
 		for k in '4000 40 2000' '4000 40 4000' '4000 400 4000' '100 100 100'; do
 			# shellcheck disable=SC2086
 			set -- $k
-			echo "k$1_$2_$3_$scheme models/scs.spec --scheme $scheme -D k1=$1 -D k2=$2 -D k3=$3 --step 1/100"
+			echo "k$1_$2_$3_$scheme models/scs.spec --scheme $scheme" \
+				"-D k1=$1 -D k2=$2 -D k3=$3 --step 1/100"
 		done
 	done
 	for scheme in nc2 nc3 dq4 bm3; do

@@ -56,7 +56,8 @@ static bool own_radau(const struct kind *kind, double setting, double *rows)
 	memset(&d, 0, sizeof d);
 	for (int i = 0; i < WHOLE; i++)
 		scale[i] = i < WHOLE - N ? 1e150 : history.scale[i - (WHOLE - N)];
-	d.adaptive = (struct adaptive){.rhs = {.rhs = whole_slope}, .n = OWN_COORDINATES, .size = WHOLE, .scale = scale};
+	d.adaptive = (struct adaptive){.rhs = {.rhs = whole_slope}, .n = OWN_COORDINATES, .size = WHOLE,
+	                               .scale = scale};
 	return kept_history(&d.adaptive, kind, setting, &d.h, as_whole, WHOLE - N, rows);
 }
 
