@@ -381,10 +381,27 @@ static inline int PL(is_hidden)(const PL_TYPE *s, const real start[], const real
 #endif
 }
 
+/* States at rest so far: made: 1 over what the first that was tried makes of them.  Where several were too long that
+ * counts until they are larger: relative to themselves they would grow by small steps for long. */
+static inline void PL(leave_rest)(PL_TYPE *s, int rejected, const real unit[PL_STATES], real made[PL_STATES])
+{
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        if (s->unit[i] == 0 && pl_magnitude(s->gain[i]) > 0) {
+            made[i] = made[i] > 0 ? made[i] : unit[i];
+            if (rejected > 3) {
+                s->unit[i] = made[i];
+                s->scale[i] = 1 / made[i];
+            }
+        }
+    }
+}
+
 /* Whether a step of `size` h is as exact as it has to be; by what factor the next may be longer, or this has to be
  * shorter */
 static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[], const real jacobian[], real size,
-                              real unit[PL_STATES], real poly[PL_STAGES + 1][PL_COLUMNS], real *factor)
+                              int rejected, real made[PL_STATES], real unit[PL_STATES],
+                              real poly[PL_STAGES + 1][PL_COLUMNS], real *factor)
 {
     real k[PL_UNKNOWNS], error;
     int i, good;
@@ -399,6 +416,7 @@ static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[]
     }
     error = PL(finish)(s->start, size * PL_H, unit, k, poly, s->gain) + PL_NOTHING;
     good = error <= 2 * PL_TOLERANCE;
+    PL(leave_rest)(s, rejected, unit, made);
     if (error < (real)1e30) {
         *factor = (real)0.9 * pl_root(PL_TOLERANCE / error, PL_STAGES + 1);
     }
@@ -415,7 +433,7 @@ static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[]
 static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], real limit, const real rates[2],
                          int *tried)
 {
-    real jacobian[PL_ROOM(PL_ENTRIES)];
+    real jacobian[PL_ROOM(PL_ENTRIES)], made[PL_STATES] = {0};
     const int stop = s->stop;
     int rejected = 0, wrong = 0, i, j;
 #if PL_MODES > 0
@@ -433,7 +451,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
         if (!(size > PL_SHORTEST)) {
             return PL_NOT_FINITE;
         }
-        if (!PL(attempt)(s, start, slope, jacobian, size, unit, poly, &factor)) {
+        if (!PL(attempt)(s, start, slope, jacobian, size, rejected, made, unit, poly, &factor)) {
             s->want = size * (rejected++ < 3 || factor < (real)0.1 ? factor : (real)0.1);
 #if PL_ORDER > 0
             if (PL(product)(rates, s->want) < (real)0.5) {
