@@ -46,15 +46,15 @@ static inline real PL(when)(const PL(piece) *p)
 static void PL(again)(const void *from, const int *interval, const real *y, real *c, real *terms)
 {
     const PL(piece) *const p = (const PL(piece) *)from;
-    PL(expand_from)(p->s, p->start, p->slope, p->tau, p->when, PL(segment_of)(p->s), interval, y,
-                    (real (*)[PL_COLUMNS])c, terms);
+    PL(expand_from)(p->s, p->start, p->slope, p->tau, p->when, p->segment, interval, y, (real (*)[PL_COLUMNS])c,
+                    terms);
 }
 
 static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
 {
     p->contact = contact;
     p->tau = 0;
-    p->when = PL_CHOICES ? PL(time)(p->s) + PL_H / 2 : 0;
+    p->when = PL(middle)(p->s);
     PL(open)(&p->at, contact, p->y, p->rest, p->c[0], p->terms, p->work);
     p->at.expand = PL(again);
     p->at.from = p;
@@ -302,6 +302,7 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
     p.s = s;
     p.y = y;
     p.rest = rest;
+    p.segment = PL(segment_of)(s);
     PL(inputs_now)(s, u, p.start, p.slope);
     PL(watch)(&p, contact);
     contact->placed = 1;

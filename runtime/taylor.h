@@ -275,6 +275,7 @@ static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[]
     p.s = s;
     p.y = s->y;
     p.rest = s->rest;
+    p.segment = PL(segment_of)(s);
     p.splits = PL_MAX_SPLITS;
     PL(watch)(&p, &s->contact);
     p.at.c = s->series[0];

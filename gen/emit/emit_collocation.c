@@ -279,10 +279,10 @@ static void emit_step_function(const struct emitter *e)
 void emit_collocation_step(const struct emitter *e)
 {
 	emit_stage_tables(e);
-	emit_motion(e);
-	emit_inputs_now(e);
 	if (meets_contacts(e))
 		emit_series_functions(meeting(e));
+	emit_motion(e);
+	emit_inputs_now(e);
 	if (is_divided(e)) {
 		emit_divided_tables(meets_contacts(e) ? meeting(e) : e);
 		emit_passing_table(e, stages(e));

@@ -148,7 +148,7 @@ void emit_state_table(const struct emitter *e)
 
 /* ---- what is known of a time before the state is ---- */
 
-enum known_kind { KNOWN_DRIVEN, KNOWN_TIME, KNOWN_WHEN, KNOWN_LOAD, KNOWN_INPUT, KNOWN_PARAM };
+enum known_kind { KNOWN_DRIVEN, KNOWN_TIME, KNOWN_WHEN, KNOWN_SLOT, KNOWN_LOAD, KNOWN_INPUT, KNOWN_PARAM };
 struct known { enum known_kind kind; int index, part; }; /* column of a load, order of an input's derivative */
 struct knowns { int count; struct known *of; };
 
@@ -204,6 +204,8 @@ static struct knowns knowns_of(const struct emitter *e, const struct reads *r)
 		add_known(&list, KNOWN_TIME, 0, 0);
 	if (decides(e))
 		add_known(&list, KNOWN_WHEN, 0, 0);
+	for (int j = 0; meets_contacts(e) && j < e->step->divided->slots; j++)
+		add_known(&list, KNOWN_SLOT, j, 0);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++)
 			add_known(&list, KNOWN_LOAD, l, k);
@@ -292,6 +294,7 @@ static const char *known_text(const struct emitter *e, const struct known *k)
 	case KNOWN_DRIVEN: return drive_text(e, k->index);
 	case KNOWN_TIME:   return "t";
 	case KNOWN_WHEN:   return spell(e, "$n_time(s) + inside");
+	case KNOWN_SLOT:   return spell(e, "$n_force[segment][0][%d]", k->index);
 	case KNOWN_LOAD:
 		operand = load_operand(e, k->index, k->part);
 		return operand ? operand : "1.0";
@@ -334,6 +337,8 @@ static void emit_motion_locals(const struct emitter *e, const struct reads *r, c
 		const char *name = NULL;
 		if (k->kind == KNOWN_LOAD && k->part == 0 && read->load[k->index])
 			say(e, "    const double *const load%d = node + %d;\n", k->index + 1, i);
+		if (k->kind == KNOWN_SLOT && k->index == 0 && e->at_state)
+			say(e, "    const double *const force = node + %d;\n", i);
 		if (k->kind == KNOWN_TIME && read->time)
 			name = "t";
 		else if (k->kind == KNOWN_WHEN && e->at_state)
@@ -363,8 +368,8 @@ static bool reads_known(const struct emitter *e, enum motion_part part)
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
-	return any || (meets_contacts(e) && part == THE_EXPRESSIONS &&
-		       tape_reads(tape_of_part(e, part), TAPE_TIME, -1, 1));
+	const struct tape *t = meets_contacts(e) && part == THE_EXPRESSIONS ? tape_of_part(e, part) : NULL;
+	return any || (t && (tape_reads(t, TAPE_TIME, -1, 1) || tape_reads(t, TAPE_TABLE, -1, -1)));
 }
 
 bool watch_reads_known(const struct emitter *e)
@@ -415,7 +420,7 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 static void close_motion(const struct emitter *e, const struct tape *t, const struct reads *read, bool moves)
 {
 	close_function(e, spell(e, "%s%s%s",
-				any_known(e, read) || tape_reads(t, TAPE_TABLE, -1, TABLE_NODE) ||
+				any_known(e, read) || tape_reads(t, TAPE_TABLE, -1, -1) ||
 					tape_reads(t, TAPE_TIME, -1, 1) ? "" : "node ",
 				tape_reads(t, TAPE_ABOVE, -1, -1) || tape_reads(t, TAPE_HELD, -1, -1)
 					? "" : "interval ",
@@ -431,10 +436,10 @@ static void emit_series_body(const struct emitter *e, const struct reads *r, enu
 	const struct tape *t = set_part(e, made, part);
 	struct reads read = reads_of(e->model, 0, NULL);
 	note_reads(&read, e, t);
-	here.at_state = tape_reads(t, TAPE_TIME, -1, 1);
 	emit_motion_locals(&here, r, &read);
-	here.at_state = true;
 	emit_series_tape(&here, made);
+	say(e, "%s%s", tape_reads(t, TAPE_TIME, -1, 1) || !decides(e) ? "" : "    (void)when;\n",
+	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->divided->slots ? "" : "    (void)force;\n");
 	close_motion(e, t, &read, tape_reads(t, TAPE_STATE, -1, -1));
 }
 

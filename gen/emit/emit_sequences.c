@@ -124,18 +124,19 @@ void emit_force_table(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	int segments = e->system->segments, stride = x->order + 1;
+	int rows = x->contacts ? stride : x->order;     /* slopes are sequences of their own there */
 	if (!x->slots)
 		return;
-	const char **note = ARRAY(const char *, (size_t)x->order);
-	for (int k = 0; k < x->order; k++)
+	const char **note = ARRAY(const char *, (size_t)rows);
+	for (int k = 0; k < rows; k++)
 		note[k] = format("of coefficient %d", k + 1);
-	double *value = ARRAY(double, (size_t)(segments * x->order * x->slots)), *to = value;
+	double *value = ARRAY(double, (size_t)(segments * rows * x->slots)), *to = value;
 	for (int s = 0; s < segments; s++)
-		for (int k = 0; k < x->order; k++)
+		for (int k = 0; k < rows; k++)
 			for (int j = 0; j < x->slots; j++)
 				*to++ = x->changing[(j * segments + s) * stride + k];
 	emit_array(e, "What the load states add to each coefficient, in each segment of time", "force", 3,
-		   (const int[]){ segments, x->order, x->slots }, value, note);
+		   (const int[]){ segments, rows, x->slots }, value, note);
 }
 
 void emit_coefficients(const struct emitter *e)

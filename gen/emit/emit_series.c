@@ -45,7 +45,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 	case TAPE_TIME:  return n->part ? "when" : "t";
 	case TAPE_ABOVE: return format("interval[%d] > %d", n->index, n->part);
 	case TAPE_HELD:  return format("interval[%d] == %d", n->index, n->part);
-	default:         return format("force[%d][%d]", n->part, n->index);
+	default:         return spell(e, "force%s[%d]", e->at_state ? "" : format("[%d]", n->part), n->index);
 	}
 }
 

@@ -183,6 +183,8 @@ static void note_read(struct reads *r, const struct emitter *e, const struct tap
 		r->state[n->part ? model->system.velocity[n->index] : n->index] = true;
 	else if (n->op == TAPE_INPUT)
 		r->input[n->index + n->part * model->system.inputs] = true;
+	else if (n->op == TAPE_LOAD && n->part < 2 && is_polynomial(e->system->load[n->index].wave))
+		r->time = true;                         /* as load_operand has it */
 	else if (n->op == TAPE_LOAD)
 		r->load[n->index] = true;
 	else if (n->op == TAPE_PARAM)

@@ -195,7 +195,8 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 /* Rows of A and columns of B as integers */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
-	INTEGERS *row = integers((size_t)inner), *column = integers((size_t)(inner * columns)), *scale = integers((size_t)columns);
+	INTEGERS *row = integers((size_t)inner), *column = integers((size_t)(inner * columns));
+	INTEGERS *scale = integers((size_t)columns);
 	INTEGER common = INTEGER_ZERO;
 	for (int j = 0; j < columns; j++)
 		to_integers(inner, B + j, columns, scale[j], column + j * inner);

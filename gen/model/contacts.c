@@ -20,6 +20,9 @@ static void add_drag(struct building *b, const struct atom *a)
 		return;
 	for (int i = 0; i < v->terms; i++) {
 		const struct basis *basis = &v->term[i].basis;
+		if (basis->kind == BASIS_ATOM && model->system.segments > 1)
+			error(a->node->child[0]->start, "scheme exact takes others beside what is piecewise linear",
+			      "beside a series the velocity of friction has one formula for all time");
 		if (basis->kind == BASIS_ATOM || is_highest(&b->model->frame, basis))
 			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 			      "the velocity of friction is linear in velocities");

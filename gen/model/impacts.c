@@ -170,10 +170,9 @@ void tell_no_events(const struct building *b, struct place at)
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
 		      "a scheme that goes from event to event leaves no load over");
-	if ((scheme_row(scheme)->expands || scheme == SCHEME_EXACT) && b->model->system.segments > 1)
-		error(at, "scheme exact has them beside what is piecewise linear",
-		      "scheme %s has no friction and impacts beside loads that change their formula in time",
-		      scheme_name(scheme == SCHEME_EXACT ? SCHEME_TAYLOR : scheme));
+	if ((scheme_row(scheme)->expands || scheme == SCHEME_EXACT) && strikes_change(b))
+		error(at, "scheme exact takes them beside what is piecewise linear",
+		      "beside a series a guard and its jumps have one formula for all time");
 	error(at, format("scheme exact, of what is piecewise linear, and schemes taylor, radau and auto go from event "
 			 "to event: %s does not", scheme_name(scheme)),
 	      "friction and impacts are events inside steps, at which the scheme does not stop");

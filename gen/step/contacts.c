@@ -165,7 +165,14 @@ static int bare_slope(struct sequencing *w, int state)
 	int *made = &w->x->contacts->bare[state];
 	if (*made == NONE) {
 		struct sum slope = slope_of_state(w, state);
-		*made = sum_sequence(w, &slope);
+		int sequence = sum_sequence(w, &slope);
+		if (w->system->segments > 1) {
+			RATIONALS *scale = plain_scale(w);
+			struct sequence with = w->x->sequence[sequence];
+			add_changing_loads(w, &with, state, scale);
+			w->x->sequence[sequence] = with;
+		}
+		*made = sequence;
 	}
 	return *made;
 }
@@ -497,6 +504,11 @@ static int only_state(const struct sequencing *w, const struct form *velocity)
 		state = basis->order ? w->system->velocity[basis->index] : basis->index;
 	}
 	return state;
+}
+
+bool is_bare(const struct sequencing *w, int state)
+{
+	return w->x->contacts && w->x->contacts->bare[state] != NONE;
 }
 
 struct sum held_slope(struct sequencing *w, int state)

@@ -11,7 +11,7 @@ static void expand_state(struct sequencing *w, int state)
 	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
 	struct sequence made = w->x->sequence[state];
 	sum_numbers(w, &made, &sum, scale);
-	if (w->system->segments > 1)
+	if (w->system->segments > 1 && !is_bare(w, state))
 		add_changing_loads(w, &made, state, scale);
 	w->x->sequence[state] = made;
 }

@@ -1263,6 +1263,7 @@ void check_divided(const struct step *step);
 /* ---- contacts.c: impacts and friction beside a series ---- */
 
 void hold_contacts(struct sequencing *w);                    /* before the states have their slopes */
+bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
 
