@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* regions.h: regions as intervals of expressions between breakpoints, and a state in one of them, for the runtime's own
  * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and PLAY(m, i), the size of
- * what is never above 1 in expression i. */
-#ifndef PLRT_REGIONS_H
-#define PLRT_REGIONS_H
-
+ * what is never above 1 in expression i.  It has no guard, for it is a part of these. */
 #include "kept.h"
 
 typedef struct instant {
@@ -111,5 +108,3 @@ static int outside(const searched *m, const pl_contact *c, const walk *w, const 
     }
     return 0;
 }
-
-#endif
