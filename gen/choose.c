@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MORE_MODES = 3 };            /* than the fewest that lose less than is needed */
 
@@ -492,6 +493,23 @@ static bool find_taken(struct choosing *c)
 	return true;
 }
 
+/* Where the form that is asked for cannot be, any is tried. */
+static void try_any_form(struct choosing *c, struct request *request)
+{
+	const char *why = "--accuracy compensated takes the form delta or kick-drift-kick";
+	bool made = request->form == FORM_AUTO;
+	for (int i = 0; i < c->choice->alternatives; i++) {
+		const char *refused = c->choice->alternative[i].refused;
+		made = made || !refused;
+		why = refused && strstr(refused, ": ") ? strstr(refused, ": ") + 2 : why;
+	}
+	if (made)
+		return;
+	stand_aside(c->stepped->asked.form_at, format("--form %s", step_form_name(request->form)), why);
+	request->form = FORM_AUTO;
+	try_all(c);
+}
+
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
 {
 	struct choosing c = { .written = written, .stepped = stepped, .request = request, .trying = true };
@@ -500,6 +518,7 @@ struct step *choose_step(struct model *written, struct model *stepped, struct re
 	if (!find_requirements(stepped))
 		return NULL;
 	try_all(&c);
+	try_any_form(&c, request);
 	if (!find_taken(&c))
 		return NULL;
 	c.now = &c.choice->alternative[c.choice->taken];

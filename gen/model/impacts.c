@@ -167,9 +167,6 @@ bool strikes_change(const struct building *b)
 void tell_no_events(const struct building *b, struct place at)
 {
 	const enum scheme scheme = b->model->scheme;
-	if (b->request->loads_left)
-		error(at, "without --loads leftover they are exact",
-		      "a scheme that goes from event to event leaves no load over");
 	if ((scheme_row(scheme)->expands || scheme == SCHEME_EXACT) && strikes_change(b))
 		error(at, "scheme exact takes them beside what is piecewise linear",
 		      "beside a series a guard and its jumps have one formula for all time");

@@ -287,7 +287,7 @@ static bool goes_by_regions(const struct building *b)
 static void settle_impacts(void *context)
 {
 	struct building *b = context;
-	bool exact = goes_by_regions(b) && !b->request->loads_left;
+	bool exact = goes_by_regions(b);
 	if (!exact && !goes_by_series(b))
 		tell_no_events(b, b->spec->when->at);
 	build_impacts(b);
@@ -318,11 +318,26 @@ static void stay_with_series(struct building *b)
 	choose_order(model, b->request->single);
 }
 
+/* Loads are not left over, where that is asked for in vain. */
+static void keep_loads(struct building *b, const char *why)
+{
+	if (!b->request->loads_left)
+		return;
+	stand_aside(b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at, "--loads leftover",
+		    why);
+	struct request *request = NEW(struct request);
+	*request = *b->request;
+	request->loads_left = b->model->asked.loads_left = false;
+	b->request = request;
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->impacts == 0;
+	if (model->impacts > 0 || holds_friction(b))
+		keep_loads(b, "what goes from event to event has no quadrature");
 	stay_with_series(b);
 	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
@@ -334,12 +349,8 @@ static bool settle_scheme(struct building *b)
 		silent_guard(find_obstacle, b);
 	}
 	b->collector.scheme = scheme_name(model->scheme);
-	if (model->scheme == SCHEME_EXACT && b->request->loads_left) {
-		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at,
-			  format("%s have; %s holds loads over a step", leaving_schemes(" and "), holding_schemes()),
-			  "--loads leftover needs a scheme with a quadrature: exact has none");
-		return false;
-	}
+	if (model->scheme == SCHEME_EXACT)
+		keep_loads(b, format("scheme exact has no quadrature; %s have", leaving_schemes(" and ")));
 	if (model->scheme == SCHEME_EXACT && !linear && is_piecewise_linear(b)) {
 		find_regions(b);
 		collect_whole(b);               /* for outputs and NAME_rhs */

@@ -598,27 +598,6 @@ static void take_modal(struct step *step, struct modal *modal)
 		step->carry[i] = -1;
 }
 
-/* The step is built again in another form; where forms are tried in turn, this one is refused. */
-static void leave_modal(struct step *step, const char *why)
-{
-	if (step->model->asked.trial)
-		error(step->model->asked.form_at, NULL, "the form modal cannot step this model: %s", why);
-	stand_aside(step->model->asked.form_at, "--form modal", why);
-	step->plain = model_copy(step->model);
-	step->plain->asked.form = FORM_AUTO;
-	abandon();
-}
-
-void check_modal(struct step *step)
-{
-	const bool linear = step->kind == KIND_LINEAR || step->kind == KIND_TUNED;
-	const char *why = !linear			? "it is of a linear step"
-			  : step->model->asked.batch	? "it keeps modes in the place of states, which --batch steps"
-							: NULL;
-	if (step->model->asked.form == FORM_MODAL && why)
-		leave_modal(step, why);
-}
-
 void plan_modal(struct step *step)
 {
 	enum { AS_EXACT = 8 };          /* what states may lose that become modes, where nobody asked for them */
@@ -631,7 +610,7 @@ void plan_modal(struct step *step)
 	const char *objection = modal_objection(step);
 	struct modal *modal = objection ? NULL : modal_of(step);
 	if (asked && !modal)
-		leave_modal(step, objection ? objection : "two poles, or a pole and a load, are too close");
+		leave_form(step, objection ? objection : "two poles, or a pole and a load, are too close");
 	if (modal && (asked || modal->condition <= AS_EXACT))
 		take_modal(step, modal);
 	else

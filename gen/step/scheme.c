@@ -132,7 +132,7 @@ static void build_tuned_step(struct step *step)
 
 static void build_leftover_step(struct step *step)
 {
-	need_direct(step);
+	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover);
 	build_with_leftover(step);
 	series_plan(step);
@@ -255,7 +255,7 @@ static void divide_step(struct step *step)
 
 static void build_expanded_step(struct step *step)
 {
-	need_direct(step);
+	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step, 0);
@@ -271,7 +271,7 @@ static void build_collocated_step(struct step *step)
 	enum { AT_EVENTS = 4 };         /* derivatives that say what holds, slips or flies there */
 	bool switches = scheme_row(step->model->scheme)->switches;
 	int coords = step->model->n;
-	need_direct(step);
+	need_one_word(step);
 	if (coords > LIMIT_COLLOCATED)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has "
@@ -295,7 +295,7 @@ static void build_collocated_step(struct step *step)
 /* Times in a step at which forces are evaluated are those of a step by collocation. */
 static void build_normal_step(struct step *step)
 {
-	need_direct(step);
+	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, false);
 	make_read_table(&(struct reading){ step, 1 });
 	write_no_list(step);
@@ -340,7 +340,7 @@ static void build(void *context)
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
-	check_modal(step);
+	check_step_form(step);
 	check_anchors(step);
 	build_kind[step->kind](step);
 	if (model->asked.selftest)

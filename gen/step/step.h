@@ -698,7 +698,10 @@ int anchored_term(const struct step *step, int state, int column);   /* its inde
 
 const char *step_form_text(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
-void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
+void check_step_form(struct step *step);                         /* before the step: leaves what its kind has not */
+/* The step is built again in another form; where forms are tried in turn, this one is refused. */
+_Noreturn void leave_form(struct step *step, const char *why);
+void need_one_word(const struct step *step);                /* leaves the statement where two are asked for */
 void choose_form_of_regions(struct step *step);             /* the same of a piecewise-linear model */
 /* before its program; none where all of the state is compensated */
 void find_carries(struct step *step);
@@ -736,7 +739,6 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
-void check_modal(struct step *step);                        /* where it is asked for in vain */
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */

@@ -128,13 +128,45 @@ static const char *kick_objection(struct step *step)
 	return NULL;
 }
 
-void need_direct(const struct step *step)
+void leave_form(struct step *step, const char *why)
 {
 	const struct model *model = step->model;
-	if (model->asked.form != FORM_AUTO && model->asked.form != FORM_DIRECT)
-		error(model->asked.form_at, NULL,
-		      "the form %s is of a linear step: a step with a leftover has the form direct",
-		      step_form_name(model->asked.form));
+	const char *form = step_form_name(model->asked.form);
+	if (model->asked.trial)
+		error(model->asked.form_at, NULL, "the form %s cannot step this model: %s", form, why);
+	stand_aside(model->asked.form_at, format("--form %s", form), why);
+	step->plain = model_copy(model);
+	step->plain->asked.form = FORM_AUTO;
+	abandon();
+}
+
+/* The form of a step that is not linear; of one that is, whatever its coefficients let it be: FORM_AUTO */
+static enum step_form only_form(const struct step *step)
+{
+	const bool regions = step->kind == KIND_REGIONS || step->kind == KIND_PARTS;
+	if (step->kind == KIND_LINEAR || step->kind == KIND_TUNED)
+		return FORM_AUTO;
+	return regions && step->model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
+}
+
+void check_step_form(struct step *step)
+{
+	const enum step_form asked = step->model->asked.form, only = only_form(step);
+	if (asked == FORM_AUTO || asked == only)
+		return;
+	if (only == FORM_DELTA)
+		leave_form(step, "--accuracy compensated takes the form delta of a piecewise-linear step");
+	if (only == FORM_DIRECT)
+		leave_form(step, "it is of a linear step");
+	if (step->model->asked.compensated && (asked == FORM_DIRECT || asked == FORM_MODAL))
+		leave_form(step, "--accuracy compensated takes the form delta or kick-drift-kick");
+	if (asked == FORM_MODAL && step->model->asked.batch)
+		leave_form(step, "it keeps modes in the place of states, which --batch steps");
+}
+
+void need_one_word(const struct step *step)
+{
+	const struct model *model = step->model;
 	if (model->asked.compensated)
 		error(model->asked.compensated_at, NULL,
 		      "--accuracy compensated is of a linear step: a step with a leftover has the form direct");
@@ -152,13 +184,6 @@ void choose_form_of_regions(struct step *step)
 {
 	const struct model *model = step->model;
 	step->form = model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
-	if (model->asked.form != FORM_AUTO && model->asked.form != step->form && model->asked.compensated)
-		error(model->asked.form_at, NULL,
-		      "--accuracy compensated takes the form delta of a piecewise-linear step");
-	if (model->asked.form != FORM_AUTO && model->asked.form != step->form)
-		error(model->asked.form_at, NULL,
-		      "the form %s is of a linear step: a piecewise-linear step has the form direct",
-		      step_form_name(model->asked.form));
 	need_factors_in_two_words(model);
 }
 
@@ -184,16 +209,12 @@ void choose_form(struct step *step)
 	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
-			error(model->asked.form_at, "forms: direct, delta, kick-drift-kick",
-			      "the form kick-drift-kick cannot step this model: %s", objection);
+			leave_form(step, objection);
 	}
 	if (step->form != FORM_KICK_DRIFT_KICK) {
 		step->mass = NULL;
 		step->momenta = false;
 	}
-	if (model->asked.compensated && step->form == FORM_DIRECT)
-		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated takes the form delta or kick-drift-kick");
 	need_factors_in_two_words(model);
 	if (model->asked.compensated && step->branch->system.states > LIMIT_UNROLLED_STATES)
 		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states",

@@ -357,7 +357,7 @@ static void print_options(FILE *to)
 	if (has("modes"))       /* all of them; what no output sees is left out */
 		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 9 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12") || has("over3");
-	if (has("loads") && !scheme)
+	if (has("loads") && !scheme && !has("friction") && !has("impact"))
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
 	const bool curves = kinks || has("smooth") || expands() || moves();
