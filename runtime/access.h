@@ -13,7 +13,7 @@
  *     PL_KEPT, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
- *     PL_LEADS, PL_PEAKS         members lead and peak
+ *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
  *     PL_ANCHORED                1: loads have an anchor: since, PL(drop_anchor)(s)
  *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
  *     PL_STATUS, PL_RANGES       1: member status; ranges of PL(range_state)[]: PL(range)[][2]
@@ -195,6 +195,9 @@ static void PL(begin_time)(PL_TYPE *s, real t)
 #if PL_PEAKS > 0
     for (i = 0; i < PL_PEAKS; i++) {
         s->peak[i] = 0;
+#if PL_BY_VALUES
+        s->rise[i] = (real)1e30; /* not known */
+#endif
     }
 #endif
 #if PL_ANCHORED

@@ -58,7 +58,10 @@
 #undef pl_multiply_add
 #undef pl_not_finite
 #undef pl_peak
+#undef pl_peak_begin
 #undef pl_peak_bend
+#undef pl_peak_next
+#undef pl_peak_values
 #undef pl_power_apply
 #undef pl_ramp_before
 #undef pl_ramp_cancels

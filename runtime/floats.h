@@ -58,7 +58,10 @@
 #define pl_multiply_add pl_multiplyf_add
 #define pl_not_finite pl_not_finitef
 #define pl_peak pl_peakf
+#define pl_peak_begin pl_peakf_begin
 #define pl_peak_bend pl_peakf_bend
+#define pl_peak_next pl_peakf_next
+#define pl_peak_values pl_peakf_values
 #define pl_power_apply pl_powerf_apply
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels

@@ -20,6 +20,7 @@
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
+ *     PL_PEAKS                   above 0: peaks.h has PL(step), and its PL(one_step) is here
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
  *     PL(waves)(s, wave)                 values of known loads now
@@ -362,7 +363,11 @@ static inline void PL(changing_step)(PL_TYPE *s)
 #endif
 }
 
+#if PL_PEAKS > 0
+static void PL(one_step)(PL_TYPE *s)
+#else
 void PL(step)(PL_TYPE *s)
+#endif
 {
 #if PL_SETTLES
     if (s->segment == PL_SEGMENTS - 1) {

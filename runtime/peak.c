@@ -2,7 +2,10 @@
 /* The largest size of an output within a step: a bound that most steps stay below, else its Taylor polynomial. */
 #include "real.h"
 
-enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96 };
+enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96, MOST_TRIES = 60 };
+
+/* Of a step: a top is found once it is known so closely, where it is flat to rounding */
+#define NEAREST (REAL_DIGITS > 30 ? (real)1e-8 : (real)2e-4)
 
 static real size_of(real a)
 {
@@ -348,4 +351,163 @@ void pl_peak_bend(int size, const real *A, const real *row, real h, real *bend, 
             return;
         }
     }
+}
+
+/* ---- by values ---- */
+
+/* The largest second difference of values so far apart */
+static real bend_of(const pl_peak_values *l, int apart)
+{
+    const real *const v = l->value;
+    real most = 0;
+    int i;
+    for (i = apart; i + apart <= PL_PEAK_TIMES; i += apart) {
+        most = larger(most, size_of((v[i + apart] - v[i]) - (v[i] - v[i - apart])));
+    }
+    return most;
+}
+
+static real top_of(const pl_peak_values *l)
+{
+    real most = 0;
+    int i;
+    for (i = 0; i <= PL_PEAK_TIMES; i += l->apart) {
+        most = larger(most, size_of(l->value[i]));
+    }
+    return most;
+}
+
+/* Whether they stand so close that a parabola has about a quarter of the second differences of those twice as far
+ * apart, or that nothing between them can pass the peak */
+static int are_close(const pl_peak_values *l)
+{
+    const real bend = bend_of(l, l->apart), top = top_of(l);
+    if (l->apart == 1 || top + 4 * bend <= l->peak) {
+        return 1;
+    }
+    return l->apart <= PL_PEAK_TIMES / 8 && (bend <= (real)0.3 * bend_of(l, 2 * l->apart) || bend <= NEAREST * top);
+}
+
+/* Brent 1973, chapter 5: the top of the parabola through the best three, or where that is of no use a golden section;
+ * below 0: it is found */
+static real next_try(pl_peak_values *l)
+{
+    const real x = l->s[0], middle = (l->a + l->b) / 2, before = l->before;
+    const real r = (x - l->s[1]) * (l->size[0] - l->size[2]), t = (x - l->s[2]) * (l->size[0] - l->size[1]);
+    const real sign = t > r ? -1 : 1, q = 2 * size_of(t - r), p = sign * ((x - l->s[2]) * t - (x - l->s[1]) * r);
+    if (size_of(x - middle) + (l->b - l->a) / 2 <= 2 * NEAREST || l->tries++ == MOST_TRIES) {
+        return -1;
+    }
+    l->before = l->moved;
+    if (size_of(p) < size_of(q * before / 2) && p > q * (l->a - x) && p < q * (l->b - x)) {
+        l->moved = p / q;
+    } else {
+        l->before = x < middle ? l->b - x : l->a - x;
+        l->moved = (real)0.3819660113 * l->before;
+    }
+    if (size_of(l->moved) < NEAREST) {
+        return x + (l->moved > 0 ? NEAREST : -NEAREST);
+    }
+    return x + l->moved;
+}
+
+/* Of these times, whose sizes are known, the best three */
+static void keep(pl_peak_values *l, int place, real s, real size)
+{
+    int i;
+    for (i = 2; i > place; i--) {
+        l->s[i] = l->s[i - 1];
+        l->size[i] = l->size[i - 1];
+    }
+    l->s[place] = s;
+    l->size[place] = size;
+}
+
+static void take_try(pl_peak_values *l, real s, real size)
+{
+    const int best = size >= l->size[0], behind = best ? s >= l->s[0] : s < l->s[0];
+    if (behind) {
+        l->a = best ? l->s[0] : s;
+    } else {
+        l->b = best ? l->s[0] : s;
+    }
+    if (best || size >= l->size[1]) {
+        keep(l, best ? 0 : 1, s, size);
+    } else if (size >= l->size[2] || !(size_of(l->s[2] - l->s[1]) > 0)) {
+        keep(l, 2, s, size);
+    }
+}
+
+/* Around time i, which is higher than its neighbours */
+static void begin_top(pl_peak_values *l, int i)
+{
+    const int left = i > 0 ? i - l->apart : 0, right = i < PL_PEAK_TIMES ? i + l->apart : i;
+    const int other = left < i ? left : right, last = right > i ? right : left;
+    l->a = (real)left / PL_PEAK_TIMES;
+    l->b = (real)right / PL_PEAK_TIMES;
+    keep(l, 0, (real)last / PL_PEAK_TIMES, size_of(l->value[last]));
+    keep(l, 0, (real)other / PL_PEAK_TIMES, size_of(l->value[other]));
+    keep(l, 0, (real)i / PL_PEAK_TIMES, size_of(l->value[i]));
+    l->moved = l->before = l->b - l->a;
+    l->tries = 0;
+}
+
+/* Where the next top is looked for: no neighbour is larger, and what is between them may pass the peak */
+static real next_top(pl_peak_values *l)
+{
+    const real slack = 2 * bend_of(l, l->apart);
+    for (; l->top <= PL_PEAK_TIMES; l->top += l->apart) {
+        const int i = l->top, left = i > 0 ? i - l->apart : i, right = i < PL_PEAK_TIMES ? i + l->apart : i;
+        const real size = size_of(l->value[i]);
+        if (size >= size_of(l->value[left]) && size >= size_of(l->value[right]) && !(size + slack <= l->peak)) {
+            begin_top(l, i);
+            l->top += l->apart;
+            return l->at = next_try(l);
+        }
+    }
+    return -1;
+}
+
+static real next_time(pl_peak_values *l)
+{
+    return l->at = (real)l->time / PL_PEAK_TIMES;
+}
+
+real pl_peak_begin(pl_peak_values *l, real begin, real end, real peak)
+{
+    const real most = larger(size_of(begin), size_of(end));
+    l->peak = larger(peak, most);
+    l->value[0] = begin;
+    l->value[PL_PEAK_TIMES] = end;
+    l->apart = l->time = PL_PEAK_TIMES / 2;
+    l->top = 0;
+    if (!(begin - begin <= 0) || !(end - end <= 0) || !(peak - peak <= 0)) {       /* not finite */
+        l->peak = peak - peak <= 0 ? size_of(begin) + size_of(end) : peak;
+        return -1;
+    }
+    return next_time(l);
+}
+
+real pl_peak_next(pl_peak_values *l, real value)
+{
+    if (!(value - value <= 0)) {
+        return -1;
+    }
+    l->peak = larger(l->peak, size_of(value));
+    if (l->time > PL_PEAK_TIMES) {
+        take_try(l, l->at, size_of(value));
+        l->at = next_try(l);
+        return l->at >= 0 ? l->at : next_top(l);
+    }
+    l->value[l->time] = value;
+    l->time += 2 * l->apart;
+    if (l->time < PL_PEAK_TIMES) {
+        return next_time(l);
+    }
+    if (are_close(l)) {
+        return next_top(l);
+    }
+    l->apart /= 2;
+    l->time = l->apart;
+    return next_time(l);
 }

@@ -1,21 +1,104 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* peaks.h: output NAME = peak(EXPR), the largest |EXPR| so far: a step looks for larger values inside, before it moves
- * the state.  Included by the file of the model, which defines before it
+ * the state; or behind it, by values of NAME_at.  Included by the file of the model, which defines before it
+ *
+ *     PL_PEAKS, PL(peak_output)[]       how many such outputs, and which
+ *     PL_BY_VALUES                      1: by values.  PL_RAMPS: of inputs, some ramp
+ *
+ * and else
  *
  *     PL_SIZE                           numbers of x: the states and what acts on them
- *     PL_PEAKS, PL(peak_output)[]       how many such outputs, and which
  *     PL_SLOPE, PL_BEND                 [PL_SIZE][PL_SIZE], [PL_PEAKS][PL_SIZE] of s: x' = slope x; bend |x| is at
  *                                       least what an output is off its chord in a step
  *     PL_PEAK_ROW(c, p)                 peak p over x, with coefficients c
  *     PL_OWN, PL_REACHES                whether params change them; is c->reach[] there: as many times the
  *                                       PL(nominal).bend of what acts on the states is at least theirs
  *
- * and behind it PL(begin_step)(s, u, x), x at the start of a step; PL(move), the step itself; PL(now), outputs as they
- * are.  Instances of a batch look for peaks by PL(look), too. */
+ * and behind it PL(begin_step)(s, u, x), x at the start of a step; PL(one_step), the step itself; PL(now), outputs as
+ * they are.  Instances of a batch look for peaks by PL(look), too. */
 #include "numbers.h"
 
-static void PL(begin_step)(const PL_TYPE *s, const real *u, real x[PL_SIZE]);
+#if PL_INPUTS > 0
+#define PL_GIVEN , u
+static void PL(one_step)(PL_TYPE *s, const real u[PL_INPUTS]);
+#else
+#define PL_GIVEN
+static void PL(one_step)(PL_TYPE *s);
+#endif
 static void PL(now)(const PL_TYPE *s, real out[PL_OUTPUTS]);
+
+#if PL_BY_VALUES
+
+/* Outputs `part` of a step after its start, s, at whose end it is `after`; then: for it to work in */
+static void PL(values)(const PL_TYPE *s, const PL_TYPE *after, const real *u, real part, PL_TYPE *then,
+                       real out[PL_OUTPUTS])
+{
+    real y[PL_STATES];
+#if PL_INPUTS > 0
+    int i;
+#endif
+    PL(at)(s PL_GIVEN, part * PL_H, y);
+    PL(set)(then, PL(time)(s) + part * PL_H, y);
+#if PL_INPUTS > 0
+    for (i = 0; i < PL_INPUTS; i++) {
+        then->u[i] = after->u[i];
+#if PL_RAMPS
+        then->u[i] -= (1 - part) * PL_H * after->slope[i];
+        then->slope[i] = after->slope[i];
+#endif
+    }
+#endif
+    PL(now)(then, out);
+    (void)after;
+    (void)u;
+}
+
+/* Larger values inside the step.  Whether it is as smooth as its ends would show in the next */
+static PL_APART int PL(look_inside)(const PL_TYPE *s, const PL_TYPE *after, const real *u, int o, real begin,
+                                    real end, real *peak)
+{
+    PL_TYPE then = *s;
+    pl_peak_values looked;
+    real part = pl_peak_begin(&looked, begin, end, *peak);
+    while (part >= 0) {
+        real out[PL_OUTPUTS];
+        PL(values)(s, after, u, part, &then, out);
+        part = pl_peak_next(&looked, out[o]);
+    }
+    *peak = looked.peak;
+    return looked.apart >= PL_PEAK_TIMES / 8;
+}
+
+/* Where the second difference of the last three ends says that nothing passes the peak, it is not looked inside. */
+#if PL_INPUTS > 0
+void PL(step)(PL_TYPE *s, const real u[PL_INPUTS])
+{
+#else
+void PL(step)(PL_TYPE *s)
+{
+    const real *const u = NULL;
+#endif
+    const PL_TYPE before = *s;
+    real begin[PL_OUTPUTS], end[PL_OUTPUTS];
+    int p;
+    PL(now)(s, begin);
+    PL(one_step)(s PL_GIVEN);
+    PL(now)(s, end);
+    for (p = 0; p < PL_PEAKS; p++) {
+        const int o = PL(peak_output)[p];
+        const real rise = end[o] - begin[o], bend = pl_magnitude(rise - s->rise[p]);
+        const real from = pl_magnitude(begin[o]), to = pl_magnitude(end[o]);
+        if (!((from > to ? from : to) + bend <= s->peak[p])) {
+            s->rise[p] = PL(look_inside)(&before, s, u, o, begin[o], end[o], &s->peak[p]) ? rise : (real)1e30;
+        } else {
+            s->rise[p] = rise;
+        }
+    }
+}
+
+#else
+
+static void PL(begin_step)(const PL_TYPE *s, const real *u, real x[PL_SIZE]);
 
 /* Larger values inside the step from x to outputs `end`, into peak[] */
 static void PL(look)(const PL_TYPE *s, const real x[PL_SIZE], const real end[PL_OUTPUTS], real peak[PL_PEAKS])
@@ -55,26 +138,21 @@ static void PL(retune_peaks)(PL(coeffs) *c, const pl_two *A, real h)
 #endif
 
 #if PL_INPUTS > 0
-static void PL(move)(PL_TYPE *s, const real u[PL_INPUTS]);
-
 void PL(step)(PL_TYPE *s, const real u[PL_INPUTS])
-#else
-static void PL(move)(PL_TYPE *s);
-
-void PL(step)(PL_TYPE *s)
-#endif
 {
-    real x[PL_SIZE], end[PL_OUTPUTS];
-#if PL_INPUTS > 0
-    PL(begin_step)(s, u, x);
-    PL(move)(s, u);
 #else
-    PL(begin_step)(s, NULL, x);
-    PL(move)(s);
+void PL(step)(PL_TYPE *s)
+{
+    const real *const u = NULL;
 #endif
+    real x[PL_SIZE], end[PL_OUTPUTS];
+    PL(begin_step)(s, u, x);
+    PL(one_step)(s PL_GIVEN);
     PL(now)(s, end);
     PL(look)(s, x, end, s->peak);
 }
+
+#endif
 
 void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS])
 {

@@ -87,6 +87,24 @@ PL_REAL pl_peak(int size, const PL_REAL *A, const PL_REAL *row, const PL_REAL *b
 /* That bound: h^2/8 times what |row A^2 e^{A tau}| is at most, entry by entry */
 void pl_peak_bend(int size, const PL_REAL *A, const PL_REAL *row, PL_REAL h, PL_REAL *bend, PL_REAL *work);
 
+/* The same of an output of which values inside a step are all that is known: its caller is asked for them.  They are
+ * taken at halves, quarters, ... of the step, down to PL_PEAK_TIMES, until second differences say that nothing passes
+ * the peak or that a parabola stands for what is between three of them; then each top that may pass it is searched by
+ * Brent's method, which kinks and jumps only make slower. */
+#define PL_PEAK_TIMES 64
+typedef struct pl_peak_values {
+    PL_REAL peak;                      /* so far */
+    PL_REAL value[PL_PEAK_TIMES + 1];
+    PL_REAL at;                        /* where a value was asked for */
+    PL_REAL a, b, s[3], size[3];       /* a top is between a and b; the best three times there, their sizes */
+    PL_REAL moved, before;
+    int apart, time, top, tries;
+} pl_peak_values;
+
+/* begin, end: the values at both ends.  Where in the step, 0 to 1, the next is asked for; below 0: l->peak is found */
+PL_REAL pl_peak_begin(pl_peak_values *l, PL_REAL begin, PL_REAL end, PL_REAL peak);
+PL_REAL pl_peak_next(pl_peak_values *l, PL_REAL value);
+
 /* ---- apply.c: matrices times vectors ----------------------------------------------------------------------- */
 
 /* y = table x; table is rows x columns, row-major; x has `columns` entries, y `rows`.  y overlaps neither x nor table.

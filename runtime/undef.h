@@ -24,6 +24,7 @@
 #undef PL_BOUNDS
 #undef PL_BRANCHES
 #undef PL_BREAKS
+#undef PL_BY_VALUES
 #undef PL_CAPPED
 #undef PL_CARRIES
 #undef PL_CASE

@@ -89,6 +89,7 @@ void emit_access(const struct emitter *e)
 		   { "KEPT", step->program->compensated },
 		   { "CARRIES", step->carries }, { "RELATIVE", e->model->relative != NULL }, { "PHASES", e->phases },
 		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
+		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
 		   { "OWN", e->model->held || e->kind->own_factors }, { "RAMPS", e->ramps },

@@ -324,8 +324,7 @@ void emit_leftover_step(const struct emitter *e)
 		emit_loop_tables(e);
 	if (program->predicts)
 		emit_predictor(e);
-	say(e, "\nvoid $n_step(%s)\n"
-	       "{\n", step_parameters(e));
+	open_function(e, NULL, "%s", head_of_step(e));
 	emit_actions_of_step(e);
 	emit_step_end(e);
 	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");

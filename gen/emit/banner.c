@@ -479,7 +479,10 @@ static void banner_cost(const struct emitter *e)
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
-	if (has_peaks(e))
+	if (peaks_by_values(e->step))
+		banner_sentence(e, "Peaks are looked for by values inside a step where the last three ends do not "
+				   "show that none is passed.");
+	else if (has_peaks(e))
 		say(e, " * The look for peaks takes %d and %d more, the outputs counted, where a bound shows that none "
 		       "passes its peak.\n",
 		    program->peak_multiplications, program->peak_additions);

@@ -109,12 +109,12 @@ const char *written_local(const struct identifiers *c, const struct model *writt
 const struct expansion *own_expansion(const struct emitter *e);   /* of the step */
 const struct truncation *truncation_of(const struct emitter *e);  /* of the model */
 bool has_jump(const struct emitter *e);
+bool has_peak_rows(const struct emitter *e);                      /* which are found from x */
 bool has_ranges(const struct emitter *e);       /* the spec says in which some states stay */
 bool keeps_status(const struct emitter *e);
 bool tells_tolerance(const struct emitter *e);  /* of its states, as written */
 bool has_floors(const struct emitter *e);       /* some states have an absolute tolerance */
 bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
-const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
@@ -417,6 +417,7 @@ struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
+const char *head_of_step(const struct emitter *e);
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
 

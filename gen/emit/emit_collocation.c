@@ -268,9 +268,8 @@ static void emit_include(const struct emitter *e)
 
 static void emit_step_function(const struct emitter *e)
 {
-	say(e, "\nvoid $n_step(%s)\n"
-	       "{\n"
-	       "    const int wrong = $n_collocated(s, %s);\n", step_parameters(e), e->system->inputs ? "u" : "NULL");
+	open_function(e, NULL, "%s", head_of_step(e));
+	say(e, "    const int wrong = $n_collocated(s, %s);\n", e->system->inputs ? "u" : "NULL");
 	emit_step_end(e);
 	say(e, "    $n_settle(s, wrong);\n"
 	       "}\n");

@@ -78,7 +78,7 @@ static void emit_keep(const struct emitter *e)
 /* Of fixed order, all coefficients as locals: one way through but for what is kept */
 static void emit_straight_step(const struct emitter *e)
 {
-	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
+	open_function(e, NULL, "%s", head_of_step(e));
 	say(e, "    const double *const y = s->y;\n");
 	emit_coefficients(e);
 	for (int i = 0; i < e->system->states; i++)
@@ -248,7 +248,7 @@ static void emit_algorithm(const struct emitter *e)
 
 void emit_serving_step(const struct emitter *e)
 {
-	say(e, "\nvoid $n_step(%s) { $n_serve(s, %s); }\n", step_parameters(e), e->system->inputs ? "u" : "NULL");
+	say(e, "\n%s { $n_serve(s, %s); }\n", head_of_step(e), e->system->inputs ? "u" : "NULL");
 }
 
 void emit_expansion_step(const struct emitter *e)

@@ -286,7 +286,8 @@ static void emit_algorithm(const struct emitter *e)
 		   { "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
 		   { "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
 		   { "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
-		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL });
+		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL },
+		   { "PEAKS", peak_outputs(e->model) });
 	say(e, "#include \"normal.h\"\n");
 }
 

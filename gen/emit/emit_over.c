@@ -12,8 +12,8 @@ static int order_of(const struct emitter *e)
  * wants small code. */
 bool runs_in_blocks(const struct emitter *e)
 {
-	return spans_steps(e) && e->model->asked.rows != 1 && !has_ranges(e) && expands_in_step(e) && !watches(e) &&
-	       is_written_out(e, order_of(e));
+	return spans_steps(e) && e->model->asked.rows != 1 && !has_ranges(e) && !has_peaks(e) && expands_in_step(e) &&
+	       !watches(e) && is_written_out(e, order_of(e));
 }
 
 /* Of a state; 1: only the first is left */

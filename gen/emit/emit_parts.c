@@ -356,7 +356,7 @@ static void emit_step_call(const struct emitter *part)
 void emit_parts_step(const struct emitter *e)
 {
 	for_parts(e, e->step->parts, emit_step_of_part);
-	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
+	open_function(e, NULL, "%s", head_of_step(e));
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e, true), false);
 	for_parts(e, e->step->parts, emit_step_call);

@@ -27,7 +27,7 @@ static bool has_reach(const struct emitter *e)
 
 void emit_nominal_peaks(const struct emitter *e)
 {
-	const int size = e->step->layout.size, peaks = has_peaks(e) ? peak_outputs(e->model) : 0;
+	const int size = e->step->layout.size, peaks = has_peak_rows(e) ? peak_outputs(e->model) : 0;
 	if (peaks == 0)
 		return;
 	open_member(e, "double", "slope", format("[%d][%d]", size, size),
@@ -85,7 +85,7 @@ static void emit_include(const struct emitter *e)
 	bool own = e->kind->own_factors;
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
 		   { "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
-		   { "REACHES", has_reach(e) });
+		   { "REACHES", has_reach(e) }, { "BY_VALUES", 0 });
 	say_macro(e, "SLOPE", own ? "s->coeffs.slope" : spell(e, "$n_slope"));
 	say_macro(e, "BEND", own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"));
 	say_macro(e, "PEAK_ROW(c, p)", peak_row_text(e));
@@ -94,7 +94,7 @@ static void emit_include(const struct emitter *e)
 
 void emit_peak_tables(const struct emitter *e)
 {
-	if (!has_peaks(e))
+	if (!has_peak_rows(e))
 		return;
 	struct peaks peaks = peaks_of(e->step);
 	if (any_fixed(e))
@@ -107,16 +107,32 @@ void emit_peak_tables(const struct emitter *e)
 	emit_include(e);
 }
 
+/* Behind the step and what outputs are now */
+static void emit_values(const struct emitter *e)
+{
+	emit_peak_places(e);
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", 1 }, { "RAMPS", e->ramps });
+	say_include(e, "peaks.h");
+}
+
 /* ---- in the state ---- */
 
 void emit_peak_members(const struct emitter *e)
 {
+	const int peaks = peak_outputs(e->model);
 	if (has_peaks(e))
-		say(e, "    double peak[%d];       /* the largest sizes so far */\n", peak_outputs(e->model));
+		say(e, "    double peak[%d];       /* the largest sizes so far */\n", peaks);
+	if (peaks_by_values(e->step))
+		say(e, "    double rise[%d];       /* of these outputs in the last step */\n", peaks);
 }
 
 void emit_peak_step(const struct emitter *e)
 {
+	if (peaks_by_values(e->step)) {
+		emit_values(e);
+		return;
+	}
 	if (!has_peaks(e))
 		return;
 	open_function(e, "x at the start of a step",

@@ -388,7 +388,7 @@ static void emit_whole_step(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
-	open_function(e, NULL, "void $n_step(%s)", step_parameters(e));
+	open_function(e, NULL, "%s", head_of_step(e));
 	if (e->step->clears && !has_guards(e))
 		emit_whole_step(e);
 	else

@@ -324,7 +324,8 @@ void emit_run(const struct emitter *e)
 	}
 	emit_over_block(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
-		   { "INSIDE", serves_rows(e) }, { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
+		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
+		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
 		   { "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
 		   { "IN_STEP", rests && e->step->rest->in_step }, { "KEPT", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");

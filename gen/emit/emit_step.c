@@ -165,6 +165,12 @@ const char *step_parameters(const struct emitter *e)
 	return format("%s *s%s", e->name, given_inputs(e) ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
+/* Where peaks are looked for it goes by another name. */
+const char *head_of_step(const struct emitter *e)
+{
+	return format(has_peaks(e) ? "static void %s_one_step(%s)" : "void %s_step(%s)", e->name, step_parameters(e));
+}
+
 /* Into y: the state after a step in which the loads change their formula, from pass() */
 static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
 {
@@ -214,9 +220,9 @@ static void emit_changing_step(const struct emitter *e)
 		say(e, "    (void)u;\n");
 	say(e, "}\n"
 	       "\n"
-	       "void $n_step(%s)\n"
+	       "%s\n"
 	       "{\n",
-	    step_parameters(e));
+	    head_of_step(e));
 	if (e->step->forced)
 		emit_forced_changes(e);
 	else
@@ -234,9 +240,9 @@ void emit_step(const struct emitter *e)
 		return;
 	}
 	say(e, "\n"
-	       "%svoid $n_%s(%s)\n"
+	       "%s\n"
 	       "{\n",
-	    has_peaks(e) ? "static " : "", name_of_step(e), step_parameters(e));
+	    head_of_step(e));
 	emit_plain_step(e);
 	emit_step_end(e);
 	say(e, "}\n");

@@ -318,7 +318,7 @@ static void emit_series_at(const struct emitter *e)
 void emit_at(const struct emitter *e)
 {
 	bool changes = e->system->segments > 1;
-	if (!changes && !has_peaks(e))
+	if (!changes && !has_peak_rows(e))
 		emit_series_slopes(e);
 	if (!changes && is_blockwise(e))
 		emit_passing_algorithm(e);

@@ -421,7 +421,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		   { "SOLVED", p->solved },
 		   { "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
 		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
-		   { "PEAKS", has_peaks(e) ? peak_outputs(e->model) : 0 },
+		   { "PEAKS", has_peak_rows(e) ? peak_outputs(e->model) : 0 },
 		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
 		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 });
 }

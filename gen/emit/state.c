@@ -27,6 +27,11 @@ bool has_peaks(const struct emitter *e)
 	return peak_outputs(e->model) > 0;
 }
 
+bool has_peak_rows(const struct emitter *e)
+{
+	return has_peaks(e) && !peaks_by_values(e->step);
+}
+
 bool has_ranges(const struct emitter *e)
 {
 	return e->model->written->ranges > 0;
@@ -46,12 +51,6 @@ bool tells_tolerance(const struct emitter *e)
 bool keeps_status(const struct emitter *e)
 {
 	return e->kind->keeps_status || has_ranges(e);
-}
-
-/* The step itself goes by another name. */
-const char *name_of_step(const struct emitter *e)
-{
-	return has_peaks(e) ? "move" : "step";
 }
 
 bool has_jump(const struct emitter *e)

@@ -114,7 +114,7 @@ static void person_operations(FILE *to, const struct step *step)
 			step->no_anchors ? step->no_anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
-	if (peak_outputs(step->model) > 0)
+	if (step->program->peak_multiplications)
 		fprintf(to, ".\nThe look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
 			"none passes its peak",
 			program->peak_multiplications, program->peak_additions);

@@ -153,7 +153,7 @@ static void json_cost(FILE *to, const struct step *step)
 			"\"numbers\": %d}",
 			step->anchors ? step->anchors->steps : 1, program->wave_multiplications,
 			program->wave_additions, anchor_numbers(step));
-	if (peak_outputs(step->model) > 0)
+	if (program->peak_multiplications)
 		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
 			program->peak_multiplications, program->peak_additions);
 	if (step->forced)

@@ -426,6 +426,12 @@ static void print_look(FILE *to, const struct step *step)
 
 /* ---- collocation ---- */
 
+/* Of a force or a slope; beside contacts it has no formula of its own. */
+static const char *text_beside_contacts(const struct model *model, const struct form *form)
+{
+	return form ? form_text(model, form) : "that of the series, by what holds and slips";
+}
+
 static void print_collocation(FILE *to, const struct step *step)
 {
 	const struct collocation *x = step->collocation;
@@ -442,13 +448,13 @@ static void print_collocation(FILE *to, const struct step *step)
 		m->columns ? ", what loads and inputs give them apart" : "");
 	for (int i = 0; i < m->coords; i++)
 		fprintf(to, "    %s%s = %s\n", model->coord_name[i], highest_state(&model->system, i) == i ? "'" : "''",
-			form_text(model, m->force[i]));
+			text_beside_contacts(model, m->force ? m->force[i] : NULL));
 	fprintf(to, "Their Jacobian, where it is not 0:\n");
 	for (int k = 0; k < m->entries; k++)
 		fprintf(to, "    of %s by %s%s = %s\n", model->coord_name[m->entry[k].coord],
 			model->coord_name[m->entry[k].of],
 			m->entry[k].twice || highest_state(&model->system, m->entry[k].of) == m->entry[k].of ? "" : "'",
-			form_text(model, m->entry[k].slope));
+			text_beside_contacts(model, m->entry[k].slope));
 	fprintf(to, "An iteration of Newton's method: %d multiplications, %d additions, %d calls\n",
 		step->iteration.multiplications, step->iteration.additions, step->iteration.calls);
 }
@@ -499,7 +505,7 @@ void explain_program(FILE *to, const struct step *step)
 	print_reads(to, step);
 	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s%s\n", program->multiplications,
 		program->additions, program->calls,
-		peak_outputs(step->model) > 0 ? format("; the look for peaks %d and %d more",
+		step->program->peak_multiplications ? format("; the look for peaks %d and %d more",
 						       program->peak_multiplications, program->peak_additions)
 					      : "",
 		step->anchors ? format("; every %d steps %d and %d more", step->anchors->steps,

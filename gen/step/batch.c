@@ -19,6 +19,7 @@ static const char *objection_of_kind(const struct step *step)
 	       : of_kind[step->kind]		    ? of_kind[step->kind]
 	       : step->branch->system.segments > 1  ? "loads change their formula inside a step"
 	       : model->tuning && model->tuning->frequencies > 0 ? "its loads may have a frequency of its own"
+	       : peaks_by_values(step)		    ? "peaks are looked for inside its steps"
 	       : model->written->ranges > 0	    ? "ranges are looked at in its steps"
 	       : step->program->loops		    ? format("beyond %d states a step loops over its tables",
 							     LIMIT_UNROLLED_STATES)

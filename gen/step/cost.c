@@ -185,7 +185,7 @@ void count_peaks(struct step *step)
 	const struct model *model = step->model;
 	const struct linear *system = &step->branch->system;
 	int count = peak_outputs(model), size = step->layout.size;
-	if (count == 0)
+	if (count == 0 || peaks_by_values(step))
 		return;
 	bool *reads = ARRAY(bool, (size_t)system->loads);
 	/* of each the sums row . x and bend . |x|; their sum */

@@ -18,25 +18,40 @@ int peak_place(const struct model *model, const struct output *output)
 	return place;
 }
 
+/* One matrix over all of a step, of all of x, and outputs that are rows over it? */
+static bool is_one_flow(const struct step *step)
+{
+	bool rows = true;
+	for (int i = 0; i < step->model->outputs; i++)
+		rows = rows && !(step->model->output[i].peak && step->model->output[i].left);
+	return rows && (step->kind == KIND_LINEAR || (step->kind == KIND_TUNED && step->blocks->solved)) &&
+	       step->branch->system.segments <= 1;
+}
+
+bool peaks_by_values(const struct step *step)
+{
+	return peak_outputs(step->model) > 0 && !is_one_flow(step);
+}
+
+/* Inside a step what outputs read of such an input is not known. */
+static const struct input *smooth_input(const struct model *model, const struct output *output)
+{
+	const struct reads r = output->left ? reads_of(model, 1, (const struct form *const *)&output->left)
+					    : (struct reads){ 0 };
+	for (int i = 0; i < model->system.inputs; i++) {
+		bool value = mpq_sgn(output->input[0][i]) != 0, slope = mpq_sgn(output->input[1][i]) != 0;
+		if (model->system.input[i].hold > 1 && (value || slope || (r.input && r.input[i])))
+			return &model->system.input[i];
+	}
+	return NULL;
+}
+
 static const char *objection(const struct step *step, const struct output *output)
 {
-	if (output->left)
-		return "it is not linear";
-	if (step->model->switching)
-		return "the model is piecewise linear";
-	if (has_leftover(step))
-		return "the model has a leftover";
-	if (step->branch->system.segments > 1)
-		return "loads change their formula inside a step";
-	if (step->program->loops)
-		return format("beyond %d states a step loops over its tables", LIMIT_UNROLLED_STATES);
-	if (step->kind == KIND_LINEAR && !step->series.emitted)
-		return "the largest |pole| times h is above 8";
-	if (step->model->relative)
-		return "what moves as a whole is kept as differences";
-	if (step->forced)
-		return "the state is kept less what loads sustain";
-	return NULL;
+	if (!step->series.emitted)
+		return has_leftover(step) ? "there is no NAME_at" : "the largest |pole| times h is above 8";
+	const struct input *input = peaks_by_values(step) ? smooth_input(step->model, output) : NULL;
+	return input ? format("it reads %s, which goes through more than two samples", input->name) : NULL;
 }
 
 void check_peaks(const struct step *step)

@@ -604,6 +604,7 @@ struct peaks {                      /* of each of them, over x */
 };
 int peak_outputs(const struct model *model);                 /* how many */
 int peak_place(const struct model *model, const struct output *output); /* among them */
+bool peaks_by_values(const struct step *step);               /* and not from x at the start of a step */
 void check_peaks(const struct step *step);                   /* leaves the statement where one cannot be found */
 struct peaks peaks_of(const struct step *step);
 

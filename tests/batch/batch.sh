@@ -128,7 +128,7 @@ static int m_status(const m *s) { return pl_not_finite(s->y, 2); }
 
 static void m_begin_step(const m *s, const double *u, double x[2]) { m_get(s, x); (void)u; }
 static void m_now(const m *s, double out[2]) { out[0] = s->y[1]; out[1] = s->y[0]; }
-static void m_move(m *s)
+static void m_one_step(m *s)
 {
     const double x = s->y[0], v = s->y[1];
     s->y[0] = m_cos * x + m_sin * v;

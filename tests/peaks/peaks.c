@@ -10,7 +10,24 @@
 #define STEPS 400
 #endif
 enum { TIMES = 64, PEAKS = 4, INPUTS = 3 };
+#ifdef PLAIN                            /* outputs are x, y - 0.3 x, x', y' of a model without inputs */
+static double h = M_H;
+static void plain_step(m *s, const double *u)
+{
+    (void)u;
+    m_step(s);
+}
+static void plain_at(const m *s, const double *u, double tau, double *y)
+{
+    (void)u;
+    m_at(s, tau, y);
+}
+#define m_step plain_step
+#define m_at plain_at
+#define m_hold(s, u) (void)(u)
+#else
 static double c = 3, k = 900, h = M_H;
+#endif
 
 static double draw(void)                /* -1 .. 1 */
 {
@@ -37,12 +54,20 @@ static double between(const double *sample, int degree, double s)
 /* What outputs are made of, tau after the start of a step, without the model's own outputs */
 static void values(const m *s, const double *u, const double *sample, double tau, double *value)
 {
-    double y[M_STATES], t = m_time(s) + tau, now = between(sample, 3, tau / h), load = 20 * cos(11 * t) + exp(-t);
+    double y[M_STATES];
+#ifndef PLAIN
+    double t = m_time(s) + tau, now = between(sample, 3, tau / h), load = 20 * cos(11 * t) + exp(-t);
+#endif
     m_at(s, u, tau, y);
     value[0] = y[0];
     value[1] = y[1] - 0.3 * y[0];
     value[2] = y[2];
+#ifdef PLAIN
+    value[3] = y[3];
+    (void)sample;
+#else
     value[3] = now + load - c * y[2] - k * y[0] + 200 * y[1] + 0.2 * now;
+#endif
 }
 
 /* Higher than at both ends: the top of the parabola through three times, again and again */

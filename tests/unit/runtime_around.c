@@ -210,6 +210,7 @@ static const real swinging_bend[2][2] = {{(real)(SWING_H * SWING_H / 8), (real)(
 #define PL_PEAK_ROW(c, p) swinging_row[p]
 #define PL_OWN 0
 #define PL_REACHES 0
+#define PL_BY_VALUES 0
 void swinging_step(swinging *s);
 void swinging_out(const swinging *s, real out[3]);
 #include "peaks.h"
@@ -220,7 +221,7 @@ static void swinging_begin_step(const swinging *s, const real *u, real x[2])
     memcpy(x, s->y, sizeof s->y);
 }
 
-static void swinging_move(swinging *s)
+static void swinging_one_step(swinging *s)
 {
     const double c = cos(SWING_H), d = sin(SWING_H), x = (double)s->y[0], v = (double)s->y[1];
     s->y[0] = (real)(c * x + d * v);
