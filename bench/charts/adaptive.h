@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly
- * here, GSL's odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of
+ * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly,
+ * GSL's odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of
  * every coordinate is e times the largest coordinate of the history, of every velocity e times the largest velocity:
  * what a user who knows the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms).
  * So the weight of an error is between e and 2 e of the scale for everyone, and no work is lost where something passes
@@ -62,7 +62,11 @@ static inline const struct kind *kind_of(const struct adaptive *a)
 static inline void slope(struct adaptive *a, double t, const double *y, double *dydt)
 {
 	a->evaluations++;
+#ifdef INLINED_SLOPE            /* of the chart of any spec */
+	INLINED_SLOPE(t, y, dydt);
+#else
 	right_side(&a->rhs, t, y, dydt);
+#endif
 }
 
 /* Without a call, as fmax and fmin are at -O2; of what is not a number b is taken, and from larger(1, nan) comes nan */
@@ -82,6 +86,7 @@ struct run *adaptive_open(const struct method *method, const struct problem *pro
 	{.name = NAME, .family = ADAPTIVE, .tolerance = true, .order = ORDER, .settings = TOLERANCES SETTINGS, \
 	 .open = adaptive_open}
 
+extern const struct solver dormand_solver;                       /* dormand.c */
 extern const struct solver gsl_solver, gsl_fixed_solver;        /* solvers_gsl.c */
 extern const struct solver cvode_solver, arkode_solver, dirk_solver;         /* solvers_sundials.c */
 /* Kinds that stand in files of their own */

@@ -11,30 +11,30 @@ INLINE void model_slope(double t, const double *y, double *f)
 	slope(t, y, f);
 }
 
-/* adaptive.h has its own functions of these names */
+/* adaptive.h has its own function of this name */
 #define slope adaptive_slope
-#define all_finite adaptive_finite
 #define ONE_MODEL
 #include "../adaptive.h"
 #define adaptive_open NULL
 
 /* Inputs have corners at outputs, or jumps: it begins anew there with the length that it had, but ends a step at the
- * next one, where a step is better than what is read inside a longer one. length: h of its struct; whole: makes its
- * state of the model's, which stands behind `skip` entries of it */
+ * next one, where a step is better than what is read inside a longer one. length: h of its struct, or NULL; whole:
+ * makes its state of the model's, which stands behind `skip` entries of it */
 static inline bool kept_history(struct adaptive *a, const struct kind *kind, double setting, double *length,
                                 void (*whole)(const double *y, double *state), int skip, double *rows)
 {
-	const struct problem problem = {.name = "", .n = a->n, .unit = history.every};
+	const struct problem problem = {.name = "", .n = a->n, .unit = history.every, .start = history.start};
 	const struct solver *solver = kind->solver;
-	double state[2 * N], now[2 * N];
+	double state[2 * N], now[2 * N], none = history.every;
 	a->run.method = &kind->method;
 	a->run.problem = &problem;
 	a->run.setting = setting;
 	a->now = now;
+	length = length ? length : &none;
 	whole(history.start, state);
 	history.unit = 0;
 	bool good = solver->make(a) && solver->begin(a, 0.0, state);
-	if (INPUTS == 0 && skip == 0)
+	if (INPUTS == 0 && skip == 0 && a->walk)
 		return good && a->walk(a, history.units, rows);
 	for (int k = 0; k < history.units && good; k++, rows += N) {
 		const double from = k * history.every, left = (k + 1) * history.every - from, last = *length;
@@ -48,7 +48,8 @@ static inline bool kept_history(struct adaptive *a, const struct kind *kind, dou
 		good = good && solver->reach(a, (k + 1) * history.every, state);
 		memcpy(rows, state + skip, N * sizeof *rows);
 	}
-	return good && adaptive_finite(a->size, state);
+	solver->discard(a);
+	return good && all_finite(a->size, state);
 }
 
 #endif

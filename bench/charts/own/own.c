@@ -19,14 +19,14 @@ struct history history;
 #define RADAU "Radau IIA as in the kept charts, Jacobian by differences; equations inlined"
 static const struct peer peers[] = {
 	{"RK4", false, rk4, "classical, steps in an output; equations inlined"},
-	{"Dormand-Prince", true, dormand_prince, "5(4), PI controller, free interpolant of order 4; equations inlined"},
+	{"Dormand-Prince", true, own_dormand, "5(4), PI controller, free interpolant of order 4; equations inlined"},
 	{"DOP853", true, own_dop853, "as in the kept charts, interpolant of order 7; equations inlined"},
 	{"RADAU5", true, own_radau5, RADAU},
 	{"RADAU9", true, own_radau9, RADAU},
 	{"RADAU13", true, own_radau13, RADAU},
-	{"GSL rk8pd", true, gsl_rk8pd, "driver with scaled control, applied to each output time"},
-	{"CVODE Adams", true, cvode_adams, "fixed-point iteration, output from its interpolant"},
-	{"CVODE BDF", true, cvode_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
+	{"GSL rk8pd", true, own_rk8pd, "driver with scaled control, applied to each output time"},
+	{"CVODE Adams", true, own_adams, "fixed-point iteration, output from its interpolant"},
+	{"CVODE BDF", true, own_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
 	{"exact in regions, bisection", false, own_regions,
 	 "as in the kept charts, borders and matrices from the tables of plgen's C",
 	 has_regions},
@@ -454,7 +454,6 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	const char *folder = argv[3 + quick];
-	gsl_set_error_handler_off();
 	history.every = atof(argv[1 + quick]);
 	history.units = atoi(argv[2 + quick]);
 	if (!(history.every > 0) || history.units < 1)

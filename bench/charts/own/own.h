@@ -76,7 +76,7 @@ INLINE void slope(double t, const double *y, double *f)
 #endif
 }
 
-INLINE bool all_finite(const double *y)
+INLINE bool own_finite(const double *y)
 {
 	double zero = 0.0;
 	for (int i = 0; i < N; i++)
@@ -95,7 +95,12 @@ struct peer {
 	bool once;                      /* its step is an output */
 };
 
-/* Of the kept charts: kept_dop853.c, kept_radau.c, kept_regions.c, kept_literals.c */
+/* Of the kept charts: kept_solvers.c, kept_dop853.c, kept_radau.c, kept_regions.c, kept_literals.c. Absolute tolerances
+ * are the relative one times the largest coordinate, or velocity, of the history. */
+bool own_dormand(double setting, double *rows);
+bool own_rk8pd(double setting, double *rows);
+bool own_adams(double setting, double *rows);
+bool own_bdf(double setting, double *rows);
 bool own_dop853(double setting, double *rows);
 bool own_radau5(double setting, double *rows);
 bool own_radau9(double setting, double *rows);
