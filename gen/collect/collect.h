@@ -62,6 +62,7 @@ struct form *form_scale(const struct form *a, mpq_srcptr factor);
 /* one of them constant */
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b);
 bool is_constant(const struct form *form);                  /* 1 and pi only */
+bool has_coordinate(const struct form *form);               /* or an atom, or what stands behind those */
 mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */
 bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
 void check_form(struct place at, const struct form *form);  /* the limit on exact values */
@@ -112,6 +113,8 @@ struct collector {
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;
 };
+bool keeps(const struct collector *c);                      /* atoms, as a scheme with a leftover takes them */
+bool keeps_piecewise(const struct collector *c);            /* those that are piecewise linear */
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
@@ -178,6 +181,8 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 			     const struct form *a, const struct form *b);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b);
+/* A node that calls a function where another one stands: for messages, which show the place */
+const struct node *call_at(const struct node *node, enum function function, int count);
 struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param);
 bool reads_params(const struct form *form);                 /* some ATOM_PARAM stands in it */
 /* A factor that is constant but for comparisons and sgn, times what is piecewise linear: (x' > 0 ? c1 : c2)*x' = (x' >
@@ -264,5 +269,11 @@ struct straight {                      /* y + slope (argument - x), where the ar
 };
 int pieces_of_atom(const struct atom *a, struct straight **list);     /* in order; returns how many */
 int pieces_of_call(const struct node *node, struct straight **list);
+
+/* ---- functions.c: of one cell ---- */
+
+struct form *function_of_form(struct collector *c, struct node *node, struct form *x);
+/* that divides its arguments' range, of one cell of each */
+struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x);
 
 #endif

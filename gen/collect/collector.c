@@ -163,3 +163,13 @@ bool compare_values(enum comparison comparison, int order)
 	default:     return order != 0;
 	}
 }
+
+bool keeps(const struct collector *c)
+{
+	return c->vanishes || (c->keep == KEEP_ALL && !c->tolerant);
+}
+
+bool keeps_piecewise(const struct collector *c)
+{
+	return c->vanishes || (c->keep != KEEP_NOTHING && !c->tolerant);
+}

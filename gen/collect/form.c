@@ -330,3 +330,8 @@ struct form *coordinate_form(const struct frame *frame, int coord, int order)
 		return frame->form[order][coord];
 	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
 }
+
+bool has_coordinate(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
+}

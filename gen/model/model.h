@@ -302,6 +302,8 @@ struct relative {
 	mpq_t *solved;
 	                            /* NULL: equations stay as written */
 };
+struct relative *relative_new(const struct model *model);    /* without a link */
+void complete_relative(struct relative *r);                  /* once it is linked: names, orders and forms */
 struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
 /* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
@@ -631,6 +633,11 @@ int  add_system(struct switching *s, const struct linear *system, int segment, b
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
+int  count_candidates(struct switching *s);                 /* in one segment of time; strides of expressions */
+void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
+void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
+_Noreturn void too_many(const struct building *b, const struct switching *s);
+_Noreturn void too_many_in_time(const struct switching *s);
 int  breaks_of_all(const struct switching *s);               /* breakpoints of all its expressions */
 int  possible_regions(const struct switching *s);
 
@@ -736,8 +743,12 @@ void unit_of_expansion(const struct model *model, mpq_ptr unit);
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
 enum { LEAST_STAGES = 3, MOST_STAGES = 9 };
+void evaluate_truncation(void *context);                    /* of a building: order of a series, its most substeps */
+int  whole_number(struct building *b, struct node *node, int low, int high, const char *what); /* else it is refused */
 /* from its tolerance, which is the default where it is 0; of what is no series, none */
 void choose_order(struct model *model, bool single);
+/* An argument of the command line, then *at is where it stands; else what the spec has */
+struct node *asked_or_written(struct building *b, const char *asked, struct node *written, struct place *at);
 
 /* ---- bounds.c: what a spec says of single states ---- */
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a series and the stages of a collocation, from what a step may add. */
+/* The order of a series and the stages of a collocation: as they are asked for, or from what a step may add. */
 #include "model/model.h"
 
 #include <math.h>
+
+enum { LEAST_LOBATTO = 2, MOST_LOBATTO = 12 };  /* stages of collocation in normal modes */
 
 /* 8, 12, 16, 18 for 3, 6, 9, 12 digits: best within a third on smooth models, so much so that nobody needs to choose */
 static int order_for(mpq_srcptr tolerance)
@@ -34,6 +36,106 @@ void choose_order(struct model *model, bool single)
 		choose_stages(truncation, scheme_row(model->scheme)->switches);
 	else
 		truncation->order = order_for(truncation->tolerance);
+}
+
+/* ---- what the command line and the spec ask for ---- */
+
+struct node *asked_or_written(struct building *b, const char *asked, struct node *written, struct place *at)
+{
+	if (!asked)
+		return written;
+	struct source *source = source_argument(asked);
+	struct node *node = parse_argument(b->spec, source, 0);
+	*at = (struct place){ source, 0 };
+	if (!node)
+		abandon();
+	return node;
+}
+
+int whole_number(struct building *b, struct node *node, int low, int high, const char *what)
+{
+	RATIONAL value = ZERO;
+	collect_constant(&b->collector, node, value);
+	if (mpz_cmp_ui(mpq_denref(value), 1) != 0 || mpq_cmp_si(value, low, 1) < 0 || mpq_cmp_si(value, high, 1) > 0)
+		error(node->start, NULL, "%s is a whole number from %d to %d, found %s", what, low, high,
+		      readable_text(value));
+	int number = (int)mpz_get_si(mpq_numref(value));
+	return number;
+}
+
+static void evaluate_tolerance(struct building *b, struct node *node, struct place at)
+{
+	struct truncation *truncation = &b->model->truncation;
+	const bool single = b->request->single;
+	RATIONAL least = ZERO;
+	mpq_set_ui(least, 1, single ? 1000000 : 1000000000000000);
+	collect_constant(&b->collector, node, truncation->tolerance);
+	if (mpq_sgn(truncation->tolerance) <= 0 || mpq_cmp_ui(truncation->tolerance, 1, 1) >= 0)
+		error(at, "it is relative to the largest value of each state so far",
+		      "a tolerance is above 0 and below 1, found %s", readable_text(truncation->tolerance));
+	if (mpq_cmp(truncation->tolerance, least) < 0)
+		error(at, NULL, "a tolerance below %s is below the rounding of %s", single ? "1e-6" : "1e-15",
+		      target_name());
+}
+
+static int stages_of(struct building *b, struct node *node)
+{
+	int stages = LEAST_STAGES;
+	RATIONAL asked = ZERO;
+	collect_constant(&b->collector, node, asked);
+	while (stages <= MOST_STAGES && mpq_cmp_ui(asked, (unsigned long)stages, 1) != 0)
+		stages += 2;
+	if (stages > MOST_STAGES)
+		error(node->start, NULL, "the number of stages of scheme %s is 3, 5, 7 or 9, found %s",
+		      scheme_name(b->model->scheme), readable_text(asked));
+	return stages;
+}
+
+/* The steps that one expansion of fixed order is over */
+static int steps_of_expansion(struct building *b)
+{
+	struct node *over = b->model->asked.scheme_over;
+	const struct scheme_row *row = scheme_row(b->model->scheme);
+	if (!over)
+		return 1;
+	if (!row->expands || row->collocates)
+		error(over->start, "scheme taylor N over K", "no expansion of scheme %s is over several steps",
+		      row->name);
+	return whole_number(b, over, 1, MOST_OVER, "the number of steps of one expansion");
+}
+
+/* The order of a series, given or from its tolerance; the most steps within one h */
+void evaluate_truncation(void *context)
+{
+	enum { SUBSTEPS = 1000, MOST_SUBSTEPS = 1000000000 };
+	struct building *b = context;
+	struct model *model = b->model;
+	struct truncation *truncation = &model->truncation;
+	struct place at = b->spec->tolerance ? b->spec->tolerance->start : model->asked.scheme_at;
+	struct node *tolerance = asked_or_written(b, b->request->tolerance, b->spec->tolerance, &at);
+	struct node *order = model->asked.scheme_order, *substeps = b->spec->substeps;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	mpq_init(truncation->tolerance);
+	if (row->stages) {
+		model->stages = row->stages;
+		if (order)
+			model->stages = whole_number(b, order, LEAST_LOBATTO, MOST_LOBATTO, "a number of stages");
+		truncation->order = model->stages + 1;
+	}
+	if (order && !row->expands && !row->stages)
+		error(order->start,
+		      format("that of scheme taylor is given: scheme taylor %s",
+			     text_between(order->start, order->end)),
+		      "the order of scheme %s is its own", row->name);
+	if (tolerance)
+		evaluate_tolerance(b, tolerance, at);
+	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;
+	if (order && row->collocates)
+		truncation->stages = stages_of(b, order);
+	else if (order && row->expands)
+		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
+	truncation->over = steps_of_expansion(b);
+	choose_order(model, b->request->single);
 }
 
 void unit_of_expansion(const struct model *model, mpq_ptr unit)

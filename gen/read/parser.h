@@ -42,8 +42,9 @@ void add_child(struct node *node, struct node *child, bool inverse, struct place
 struct node *inlined(struct node *value, struct place at, struct place end);
 bool has_acceleration(const struct node *node);
 
-/* ---- expression.c ---- */
+/* ---- tokens.c, expression.c ---- */
 
+void nest(struct parser *p, struct place at);                /* a level deeper, within the limit */
 struct token take(struct parser *p);
 bool is_op(const struct parser *p, const char *op);
 bool take_op(struct parser *p, const char *op);
@@ -69,6 +70,8 @@ struct symbol *find_symbol(const struct parser *p, const char *name); /* as the 
 /* ---- statements.c ---- */
 
 struct token expect_new_name(struct parser *p, const char *what);
+struct place last_token(const struct parser *p, size_t length); /* where the one just taken begins */
+struct token read_state_name(struct parser *p, struct symbol **coord, int *component, const char *what);
 struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken);
 void add_file(struct spec *spec, const char *path);
 const char *beside(const struct source *source, const char *name); /* the path of what a text names */
@@ -86,6 +89,9 @@ void read_output(struct parser *p);
 void read_step(struct parser *p);
 struct node *take_order(struct parser *p, struct node **over);
 void read_scheme(struct parser *p);
+
+/* ---- asked.c ---- */
+
 void read_tolerance(struct parser *p);
 void read_substeps(struct parser *p);
 void read_range(struct parser *p);

@@ -197,6 +197,18 @@ static void make_forces(struct sequencing *w)
 	w->x->force = force;
 }
 
+/* How often each atom is read */
+static void count_uses(struct sequencing *w, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		if (!atom || w->uses[atom->index]++ > 0)
+			continue;
+		for (int k = 0; k < atom->operands; k++)
+			count_uses(w, atom->operand[k]);
+	}
+}
+
 static struct expansion *expand(const struct step *step, int order, bool with_forces)
 {
 	const struct linear *system = &step->branch->system;

@@ -558,19 +558,6 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	return w->atom[atom->index] = made;
 }
 
-/* ---- how often each atom is read ---- */
-
-void count_uses(struct sequencing *w, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *atom = form->term[i].basis.atom;
-		if (!atom || w->uses[atom->index]++ > 0)
-			continue;
-		for (int k = 0; k < atom->operands; k++)
-			count_uses(w, atom->operand[k]);
-	}
-}
-
 /* y' of a state: its row of A, loads, inputs, and what is left over, whose linear terms may cancel */
 struct sum slope_of_state(struct sequencing *w, int state)
 {

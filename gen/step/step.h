@@ -740,6 +740,10 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
+struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
+
+/* ---- by_modes.c: whether it is taken ---- */
+
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */
@@ -1234,7 +1238,6 @@ int  sequence_of_sum(struct sequencing *w, const struct sum *sum);  /* of a sing
 int  sequence_of_form(struct sequencing *w, const struct form *form);
 int  minus_sequence(struct sequencing *w, int a);
 int  positive_sequence(struct sequencing *w, const struct form *form, int a);  /* or else 0: the state chooses */
-void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
 
