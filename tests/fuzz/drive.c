@@ -559,8 +559,8 @@ static void run_steps(void)
 
 /* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs, by
  * more than what rounding makes of a step that begins in another region. From here, or from so far away, where what
- * sticks slips, and the larger of two is the other one. */
-static bool ramps_from(int input, double far)
+ * sticks slips, and the larger of two is the other one; above 0 or below it, for the same reason. */
+static bool ramps_from(int input, double far, double sign)
 {
 	double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
 	void *const s = malloc(of->whole->size);
@@ -571,10 +571,10 @@ static bool ramps_from(int input, double far)
 		start[j] = far != 0 ? (j % 2 ? -far : far) + j * 0.3 : 0.25 + j * 0.01;
 	for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
 		of->whole->init(s);
-		u[input] = round ? 1 : 0;
+		u[input] = round ? sign : 0;
 		of->whole->step(s, u);
 		of->whole->set(s, 0, start);
-		u[input] = 0.5;
+		u[input] = 0.5 * sign;
 		of->whole->step(s, u);
 		of->whole->get(s, seen[round]);
 		of->whole->out(s, seen[round] + of->whole->states);
@@ -588,7 +588,8 @@ static bool ramps_from(int input, double far)
 static void find_ramps(void)
 {
 	for (int i = 0; i < of->whole->inputs; i++)
-		ramps[i] = ramps_from(i, 0) || ramps_from(i, 2) || ramps_from(i, -2);
+		for (int k = 0; k < 6 && !ramps[i]; k++)
+			ramps[i] = ramps_from(i, 2 * (k / 2 - 1), k % 2 ? -1 : 1);
 }
 
 /* How far the truth takes a neighbour away: as far it takes errors of steps that are behind. Distances are those of
