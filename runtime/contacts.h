@@ -6,19 +6,23 @@
  * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
  * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations.  contacts: impacts, as
  * impact[k] with expression, breakpoint, upward and restitution; h; max_events.  instant: a state and what stands of
- * it, with time [s] after the start of the step, and chain. */
-#include "roots.h"
+ * it, with time [s] after the start of the step, and chain.  The enclosed run of the generator (gen/step/struck.c) goes
+ * by it, too, with limits of its own, and names of roots.h. */
 
 /* How many impacts there may be at one instant before they are ended, and how many more before they are ended again;
  * how many are listed; how many events there may be in a step; how often speeds are taken from what comes to rest; how
  * many places of the list are left for what comes to rest */
-enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 1000, LAST = 6 };
+enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 1000, LAST = 6 };
+#ifndef LISTED_AT_ONCE
+#define LISTED_AT_ONCE 12
+#endif
 
 /* CALM: of the fastest impact, what is slower is over.  BRIEF: of h, what is over by then is at rest.  SPAN: of h,
  * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
  * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force: sweeps that
  * leave 7/8 of a speed take it there before there are too many. */
-#ifdef REAL_IS_FLOAT
+#ifdef CALM /* the generator has its own */
+#elif defined REAL_IS_FLOAT
 #define CALM 0x1p-20f
 #define BRIEF PL_BRIEFF
 #define SPAN 0x1p-8f
@@ -28,6 +32,11 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, LISTED_AT_ONCE = 12, MOST_IN_STEP = 1 <<
 #define BRIEF PL_BRIEF
 #define SPAN 0x1p-10
 #define TINY 0x1p-192
+#endif
+#ifndef TOGETHER
+#define TOGETHER BRIEF
+#define HANGING (8 * MOST * MOST)
+#define IN_DOUBT 0
 #endif
 #define DEEP 64
 
@@ -109,9 +118,9 @@ static inline pl_chain no_impact(real h)
     return chain;
 }
 
-static void go_on(pl_chain *chain, real time, real h)
+static void go_on(pl_chain *chain, real time, real span)
 {
-    if (time - chain->last > SPAN * h) {
+    if (time - chain->last > span) {
         chain->most = 0;
         chain->close = 0;
     }
@@ -221,7 +230,7 @@ static real flight(const contacts *m, const instant *at, int k)
 }
 
 /* A length [unit] not much longer than the shortest flight that begins there */
-static real shortened(const contacts *m, const instant *at, real length)
+static inline real shortened(const contacts *m, const instant *at, real length)
 {
     int k;
     for (k = 0; k < m->impacts; k++) {
@@ -338,7 +347,7 @@ static uint32_t collide(const contacts *m, instant *at, int begins)
     uint32_t struck = 0, met = 0;
     real slow = -1;
     int k, calms = 0;
-    go_on(chain, at->time, m->h);
+    go_on(chain, at->time, SPAN * m->h);
     for (k = 0; k < m->impacts && !chain->full; k++) {
         real speed = 0;
         if (met >> k & 1 || touches(m, at, k)) {
@@ -421,8 +430,8 @@ static int combine(const resting *r, int count, int number, const int *before, i
     return cost;
 }
 
-/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none. */
-static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before)
+/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none.  how: as agrees */
+static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before, int *how)
 {
     int best = -1, least = 0, all = 1, number, i;
     for (i = 0; i < count; i++) {
@@ -434,10 +443,11 @@ static int best_of(const contacts *m, instant *at, const resting *r, int count, 
             continue;
         }
         agreed = agrees(m, at, r, count, interval);
-        cost += agreed == 1 ? 8 * MOST * MOST : 0;
+        cost += agreed == 1 ? HANGING : 0;
         if (agreed != 0 && (best < 0 || cost < least)) {
             best = number;
             least = cost;
+            *how = agreed;
         }
     }
     return best;
@@ -448,7 +458,7 @@ static int best_of(const contacts *m, instant *at, const resting *r, int count, 
 static void settle(const contacts *m, instant *at, int turned)
 {
     resting r[MOST];
-    int now[MOST], before[MOST], next[MOST], best, i;
+    int now[MOST], before[MOST], next[MOST], best, how = 2, i;
     const int count = find_resting(m, at, r);
     for (i = 0; i < count; i++) {
         now[i] = interval_of(m, at, r[i].expression);
@@ -457,11 +467,12 @@ static void settle(const contacts *m, instant *at, int turned)
     if (count == 0 || agrees(m, at, r, count, now) == 2) {
         return;
     }
-    best = best_of(m, at, r, count, before);
+    best = best_of(m, at, r, count, before, &how);
     if (best < 0) {
         say(at, PL_UNDECIDED);
         enter_all(m, at, r, count, now);
     } else {
+        say(at, how == 1 ? IN_DOUBT : 0);
         (void)combine(r, count, best, before, next);
         list_changes(m, at, r, count, now, next);
         enter_all(m, at, r, count, next);
@@ -495,7 +506,7 @@ static real most_pressed(const contacts *m, const instant *at, real *rounding)
 static uint32_t near_rest(const contacts *m, const instant *at)
 {
     real noise = 0, unused;
-    const real brief = BRIEF * step_of(m), most = most_pressed(m, at, &noise), fastest = most * brief / 2;
+    const real brief = TOGETHER * step_of(m), most = most_pressed(m, at, &noise), fastest = most * brief / 2;
     uint32_t set = 0;
     int k, together = 0;
     for (k = 0; k < m->impacts; k++) {

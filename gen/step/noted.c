@@ -47,25 +47,3 @@ int through_side(const struct through *t, int expression, mpq_srcptr at)
 	mpfi_sub_q(value, value, at);
 	return mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 }
-
-/* ---- jumps ---- */
-
-/* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
-bool through_follow(struct through *t)
-{
-	REAL none = WITH_BITS(64);
-	mpfr_set_zero(none, 1);
-	for (int e = 0; e < t->s->expressions; e++) {
-		const struct expression *x = &t->s->expression[e];
-		for (int way = 1; way;) {
-			int interval = interval_of(t->s, t->region, e);
-			way = interval < x->breaks && through_side(t, e, x->at[interval]) > 0	  ? 1
-			      : interval > 0 && through_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
-			if (!way)
-				break;
-			through_note_plain(t, e, interval - (way < 0), way > 0, none);
-			through_enter(t, t->region + way * x->stride);
-		}
-	}
-	return true;
-}

@@ -1,431 +1,566 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: impacts, and what comes to rest by them, by the rules of runtime/guards.c. */
+/* Of a way through crossings: impacts, what comes to rest by them, what sticks and what slips, by the law of the
+ * target, runtime/contacts.h, over enclosures: the nearest number of each, and 0 where it has 0. What that decides
+ * while it is more than rounding is not known, and more bits are asked for. */
 #include "step/through.h"
 
+#include <float.h>
+#include <limits.h>
 #include <math.h>
 
-/* Impacts at one instant, as runtime/chain.h has them: a selftest goes through MOST_STRUCK of them alone. */
-enum { MOST_STRUCK = 200, MOST_AT_ONCE = 1000, SOME = 100, MOST_ENDED = 600, MOST_SWEEPS = 1000,
-       CALM_BITS = 48, SELFTEST_BRIEF = 16 };
+/* ---- what the law is compiled with ---- */
 
-struct chain {                      /* impacts that follow each other at one instant */
-	int impacts, ended;
-	unsigned struck, acting;    /* of which those that do not rest now; the last ones */
-	double most;                /* the fastest */
+typedef double real;
+typedef struct law contacts;
+typedef struct through instant;
+
+enum { MOST = 6, MOST_STRUCK = 200, MOST_SWEPT = 100000, SELFTEST_BRIEF = 16 };
+
+#define LISTED_AT_ONCE INT_MAX      /* what a selftest compares ends before */
+#define HANGING 0                   /* that comes first by its changes, and is not known */
+#define IN_DOUBT (1 << 16)
+#define CALM m->calm
+#define BRIEF m->brief
+#define TOGETHER (m->solution ? BRIEF : SELFTEST_BRIEF * BRIEF)
+#define SPAN m->span
+
+struct bound {                      /* an impact in this segment of time */
+	int expression, breakpoint, upward, rest;
+	double restitution;
+	const struct strike *strike;
+	mpq_t *speed, *place, **jump, **still;  /* rows over x */
 };
 
-static void jump(struct through *t, int jumps, const struct jump *list)
+struct law {
+	int segment, impacts, max_events;
+	bool solution;
+	double h, calm, brief, span;
+	struct bound *impact;
+};
+
+static real larger(real a, real b)
 {
-	for (int k = 0; k < jumps; k++)
-		through_assign(t, list[k].state, list[k].row, t->y);
-	for (int k = 0; k < jumps; k++)
-		mpfi_set(t->x[list[k].state], t->y[list[k].state]);
+	return a > b ? a : b;
 }
 
-static int free_of(const struct through *t, const struct impact *p)
+static real smaller(real a, real b)
 {
-	return rest_of(t->s, t->segment, p) + (p->in[t->segment].upward ? -1 : 1);
+	return a < b ? a : b;
 }
 
-static void go_to(struct through *t, const struct impact *p, int interval)
+static real magnitude(real a)
 {
-	int now = interval_of(t->s, t->region, p->in[t->segment].expression);
-	if (now != interval)
-		through_enter(t, t->region + (interval - now) * t->s->expression[p->in[t->segment].expression].stride);
+	return fabs(a);
 }
 
-static int breakpoint_of(const struct through *t, const struct impact *p)
+static int interval_in(const struct through *t, int region, int expression)
 {
-	const struct expression *e = &t->s->expression[p->in[t->segment].expression];
+	return interval_of(t->s, region, expression);
+}
+
+static int place_of_rest(const struct through *t, const struct impact *p)
+{
+	return rest_of(t->s, t->segment, p);
+}
+
+#define interval_of interval_now    /* names of the law, which the model has otherwise */
+#define rest_of rest_in
+#define give_up end_impacts
+#include "contacts.h"
+
+/* ---- impacts of a segment of time ---- */
+
+static int breakpoint_of(const struct through *t, const struct strike *strike, bool bounces)
+{
+	const struct expression *e = &t->s->expression[strike->expression];
 	int b = 0;
-	while (!mpq_equal(e->at[b], p->in[t->segment].at))
+	while (!mpq_equal(e->at[b], strike->at))
 		b++;
-	return b + (p->bounces && !p->in[t->segment].upward);
+	return b + (bounces && !strike->upward);
 }
 
-static bool touches(const struct through *t, const struct impact *p)
+static mpq_t **rows_of_jumps(const struct through *t, int jumps, const struct jump *list)
 {
-	int interval = interval_of(t->s, t->region, p->in[t->segment].expression);
-	return p->bounces && (interval == rest_of(t->s, t->segment, p) || interval == free_of(t, p)) &&
-	       through_side(t, p->in[t->segment].expression, p->in[t->segment].at) == 0;
+	mpq_t **row = ARRAY(mpq_t *, (size_t)jumps + 1);
+	for (int k = 0; k < jumps && list; k++)
+		row[k] = through_row_of(t, list[k].row);
+	return row;
 }
 
-/* Whether a speed is 0 but for rounding: speeds that impacts have made equal */
+static void fill_bound(const struct through *t, int k, struct bound *b)
+{
+	const struct impact *p = &t->s->impact[k];
+	const struct strike *strike = &p->in[t->segment];
+	*b = (struct bound){ .expression = strike->expression, .upward = strike->upward, .rest = -1, .strike = strike };
+	b->breakpoint = breakpoint_of(t, strike, p->bounces);
+	b->restitution = p->bounces ? mpq_get_d(strike->restitution) : 0;
+	b->speed = through_row_of(t, strike->speed_row);
+	b->place = through_row_of(t, t->s->expression[strike->expression].row);
+	b->jump = rows_of_jumps(t, strike->jumps, strike->jump);
+	if (!p->bounces)
+		return;
+	b->rest = place_of_rest(t, p);
+	b->still = rows_of_jumps(t, strike->jumps, strike->still);
+}
+
+static const struct law *law_of(struct through *t)
+{
+	const bool solution = t->whole->asked.solution, coarse = t->whole->asked.single && !solution;
+	if (t->law && t->law->segment == t->segment)
+		return t->law;
+	if (!t->law)
+		t->chain = no_impact(mpq_get_d(t->whole->h));
+	struct law *m = NEW(struct law);
+	*m = (struct law){ .segment = t->segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
+			   .solution = solution, .h = mpq_get_d(t->whole->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
+			   .brief = coarse ? 0x1p-10 : 0x1p-23, .span = coarse ? 0x1p-8 : 0x1p-10 };
+	m->impact = ARRAY(struct bound, (size_t)m->impacts + 1);
+	for (int k = 0; k < m->impacts; k++)
+		fill_bound(t, k, &m->impact[k]);
+	return t->law = m;
+}
+
+/* ---- numbers of enclosures ---- */
+
+/* The end of an enclosure that is next to 0, 0 where it has 0 */
+static double nearest(mpfi_srcptr value)
+{
+	if (mpfi_has_zero(value))
+		return 0;
+	return mpfr_get_d(mpfi_is_neg(value) ? &value->right : &value->left, MPFR_RNDA);
+}
+
 static bool is_none(const struct through *t, const mpq_t *row)
 {
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, row, (const mpfi_t *)t->x, value);
+	through_dot(t, row, t->x, value);
 	return through_is_none(t, value, through_size(t, row));
 }
 
-/* Whether it comes closer: 1, 0, -1: not known. What was struck without restitution, or rests, does not. */
-static int closes(const struct through *t, int k, unsigned struck)
+static double value_of(const struct through *t, const mpq_t *row)
 {
-	const struct impact *p = &t->s->impact[k];
-	const struct strike *strike = &p->in[t->segment];
-	bool rests = interval_of(t->s, t->region, strike->expression) == rest_of(t->s, t->segment, p);
-	bool known, still = rests || ((struck >> k & 1) && mpq_sgn(strike->restitution) == 0);
-	mpq_t *row = through_row_of(t, p->in[t->segment].speed_row);
-	int sign = through_sign(t, (const mpq_t *)row, NULL, &known);
-	if (!known && !still)
-		still = is_none(t, (const mpq_t *)row);
-	rationals_free(row, (size_t)t->n);
-	return known ? sign > 0 : still ? 0 : -1;
+	INTERVAL value = OVER_BITS(t->precision);
+	through_dot(t, row, t->x, value);
+	return nearest(value);
 }
 
-/* How fast it comes closer, below 0: parts; at most. 0: it does not bounce, or whether is not known */
-static double speed_of(struct through *t, const struct impact *p)
+/* ---- what the law asks for ---- */
+
+static real unit(const contacts *m)
 {
-	if (!p->bounces)
+	(void)m;
+	return 1;
+}
+
+static real step_of(const contacts *m)
+{
+	return m->h;
+}
+
+static int interval_of(const contacts *m, const instant *t, int expression)
+{
+	(void)m;
+	return interval_in(t, t->region, expression);
+}
+
+static int interval_before(const contacts *m, const instant *t, int expression)
+{
+	(void)m;
+	return interval_in(t, t->before, expression);
+}
+
+static void go_to(const contacts *m, instant *t, int expression, int interval)
+{
+	int now = interval_of(m, t, expression);
+	if (now != interval)
+		through_enter(t, t->region + (interval - now) * t->s->expression[expression].stride);
+}
+
+static void renew(const contacts *m, instant *t)
+{
+	(void)m;
+	(void)t;
+}
+
+static int can_be(const contacts *m, const instant *t)
+{
+	(void)m;
+	return t->s->region[t->region].possible;
+}
+
+static int rest_of(const contacts *m, int k)
+{
+	return m->impact[k].rest;
+}
+
+static real depth(const contacts *m, const instant *t, int k, real *noise)
+{
+	const struct bound *b = &m->impact[k];
+	INTERVAL value = OVER_BITS(t->precision);
+	through_dot(t, b->place, t->x, value);
+	mpfi_sub_q(value, value, b->strike->at);
+	*noise = 0;
+	return b->upward ? nearest(value) : -nearest(value);
+}
+
+/* What is 2^-96 of the fastest is over. */
+static real speed_of(const contacts *m, const instant *t, int k)
+{
+	const double speed = t->undecided ? 0 : value_of(t, m->impact[k].speed);
+	return fabs(speed) <= t->chain.most * m->calm * m->calm ? 0 : speed;
+}
+
+/* What rests does not come closer, nor what was struck without restitution. */
+static real speed_of_met(const contacts *m, instant *t, int k)
+{
+	const struct bound *b = &m->impact[k];
+	const double speed = speed_of(m, t, k);
+	const bool still = rests(m, t, k) || (t->told->struck >> k & 1 && !(b->restitution > 0));
+	t->told->flies = false;
+	if (speed == 0 && !still && k != t->told->begins && value_of(t, b->speed) == 0 && !is_none(t, b->speed))
+		through_unknown(t, "whether what touches comes closer");
+	return speed;
+}
+
+static real least_speed(const contacts *m, const instant *t, real least)
+{
+	(void)m;
+	(void)t;
+	return larger(least, 0);
+}
+
+/* All further bounces of what leaves with v and is pressed back by a: 2 v/(a (1 - e)) */
+static void note_flight(const struct through *t, const struct bound *b, mpfi_srcptr press)
+{
+	RATIONAL loss = ZERO;
+	mpq_set_ui(loss, 1, 1);
+	mpq_sub(loss, loss, b->strike->restitution);
+	through_dot(t, b->speed, t->x, t->told->flight);
+	mpfi_abs(t->told->flight, t->told->flight);
+	mpfi_div(t->told->flight, t->told->flight, press);
+	mpfi_mul_ui(t->told->flight, t->told->flight, 2);
+	if (mpq_sgn(loss) > 0)
+		mpfi_div_q(t->told->flight, t->told->flight, loss);
+}
+
+/* Where the force is 0, of what does not move, by where it is heading; where it is not known, the most that it may be */
+static real press_of(const contacts *m, const instant *t, int k)
+{
+	const struct bound *b = &m->impact[k];
+	RATIONALS *row = through_times(t, b->speed, t->at->A);
+	INTERVAL press = OVER_BITS(t->precision);
+	bool known;
+	int sign = through_sign(t, row, NULL, &known);
+	through_dot(t, row, t->x, press);
+	t->told->flies = sign > 0;
+	t->told->doubtful = known ? -1 : k;
+	if (sign > 0)
+		note_flight(t, b, press);
+	if (sign != 0)
+		return nearest(press);
+	if (!known)
+		return fmax(fabs(mpfr_get_d(&press->left, MPFR_RNDA)), fabs(mpfr_get_d(&press->right, MPFR_RNDA)));
+	if (!m->solution || value_of(t, b->speed) != 0)
 		return 0;
-	mpq_t *row = through_row_of(t, p->in[t->segment].speed_row);
-	mpfi_t speed;
-	mpfi_init2(speed, t->precision);
-	through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, speed);
-	double most = 0;
-	if (!mpfi_has_zero(speed))
-		most = mpfr_get_d(mpfi_is_neg(speed) ? &speed->left : &speed->right, MPFR_RNDA);
-	mpfi_clear(speed);
-	rationals_free(row, (size_t)t->n);
-	return most;
+	return through_heads(t, t->at, b->expression, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
 }
 
-static bool is_laid(const struct through *t, int k)
+/* The states of so many assignments, all from the same state */
+static void assign(struct through *t, int count, const struct jump *jump, mpq_t *const *row)
 {
-	const struct impact *p = &t->s->impact[k];
-	return p->bounces &&
-	       interval_of(t->s, t->region, p->in[t->segment].expression) == rest_of(t->s, t->segment, p);
+	for (int k = 0; k < count; k++)
+		through_dot(t, row[k], t->x, t->y[jump[k].state]);
+	for (int k = 0; k < count; k++)
+		mpfi_set(t->x[jump[k].state], t->y[jump[k].state]);
 }
 
-/* Impacts with restitution 0, which keep momentum, until nothing of a set moves faster than that */
-static void halt(struct through *t, unsigned set, double least)
+static void jump(const contacts *m, instant *t, int k)
 {
-	bool moving = true;
-	for (int sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
-		moving = false;
-		for (int k = 0; k < t->s->impacts; k++) {
-			const struct strike *strike = &t->s->impact[k].in[t->segment];
-			if (!(set >> k & 1 || is_laid(t, k)))
-				continue;
-			moving |= fabs(speed_of(t, &t->s->impact[k])) > least;
-			jump(t, strike->jumps, strike->still);
-		}
-	}
+	const struct bound *b = &m->impact[k];
+	assign(t, b->strike->jumps, b->strike->jump, b->jump);
+	t->told->struck |= 1u << k;
+	t->told->begins = -1;
+	if (!m->solution && t->chain.impacts > MOST_STRUCK)
+		through_unknown(t, "whether what touches comes closer");
 }
 
-/* Into the intervals in which those of a set rest, as far as the region lets them: those that do now */
-static unsigned seat(struct through *t, unsigned set)
+static void stop(const contacts *m, instant *t, int k)
 {
-	unsigned laid = 0;
-	for (int k = 0; k < t->s->impacts; k++) {
-		int before = t->region;
-		if (!(set >> k & 1) || is_laid(t, k))
-			continue;
-		go_to(t, &t->s->impact[k], rest_of(t->s, t->segment, &t->s->impact[k]));
-		if (t->s->region[t->region].possible)
-			laid |= 1u << k;
-		else
-			through_enter(t, before);       /* others hold it already */
-	}
-	return laid;
+	const struct bound *b = &m->impact[k];
+	if (b->rest < 0 || t->undecided)
+		return;
+	assign(t, b->strike->jumps, b->strike->still, b->still);
+	if (t->told->doubtful == k)
+		through_unknown(t, "whether what bounces comes to rest");
+	if (++t->told->swept > MOST_SWEPT)
+		through_unknown(t, "what impacts without end come to: so many are not followed");
 }
 
-static void note_impact(struct through *t, int k, bool closes, mpfr_srcptr off)
+static void put_on(const contacts *m, instant *t, int k)
 {
-	const struct strike *strike = &t->s->impact[k].in[t->segment];
-	through_note_plain(t, strike->expression, breakpoint_of(t, &t->s->impact[k]), strike->upward == closes, off);
+	(void)m;        /* enclosed, it is there */
+	(void)t;
+	(void)k;
 }
 
-/* Those of a set come to rest together and with those that do. */
-static void lay(struct through *t, unsigned set, struct chain *chain, mpfr_srcptr off)
+static void keep(const contacts *m, instant *t)
 {
-	halt(t, set, ldexp(chain->most, -2 * CALM_BITS));
-	unsigned laid = seat(t, set);
-	for (int k = 0; k < t->s->impacts; k++)
-		if (laid >> k & 1)
-			note_impact(t, k, true, off);
-	chain->struck &= ~laid;
+	(void)m;
 	through_hold(t);
 }
 
-/* Those that touch and have come to less than `slow` by striking each other without end come to rest together. For
- * --solution alone: a selftest compares what is listed, too, and the target lists as many as it has room for. */
-static void calm(struct through *t, double slow, struct chain *chain, mpfr_srcptr off)
+/* An event is listed by its enclosed time, and what bounces on behind it by that of the last bounce. */
+static int has_listed(const contacts *m, instant *t, int loses, real time, int expression, int breakpoint, int upward)
 {
-	unsigned set = 0;
-	for (int k = 0; k < t->s->impacts; k++)
-		if (touches(t, &t->s->impact[k]) && fabs(speed_of(t, &t->s->impact[k])) <= slow)
-			set |= 1u << k;
-	lay(t, set, chain, off);
-}
-
-/* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
- * what has been parted for good. */
-static void end_chain(struct through *t, struct chain *chain, mpfr_srcptr off)
-{
-	unsigned set = 0;
-	double fastest = 0;
-	for (int k = 0; k < t->s->impacts; k++)
-		if (touches(t, &t->s->impact[k]))
-			fastest = fmax(fastest, speed_of(t, &t->s->impact[k]));
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct impact *p = &t->s->impact[k];
-		bool loses = touches(t, p) && mpq_cmp_ui(p->in[t->segment].restitution, 1, 1) < 0;
-		double speed = loses ? speed_of(t, p) : -16 * fastest;
-		if (speed > 0 || (chain->acting >> k & 1 && speed > -16 * fastest))
-			set |= 1u << k;
+	(void)m;
+	(void)loses;
+	(void)time;
+	if (!t->told->off)
+		return 1;
+	through_note_plain(t, expression, breakpoint, upward, t->told->off);
+	if (t->told->flies) {
+		struct passed *last = &t->list[t->passed - 1];
+		last->stands = mpfi_has_zero(t->told->flight);
+		mpfi_add(last->at, last->at, t->told->flight);
+		t->told->flies = false;
 	}
-	lay(t, set, chain, off);
-	chain->impacts = MOST_AT_ONCE - SOME;
-	chain->ended++;
+	return 1;
 }
 
-/* Impacts within 2^-10 h follow each other in no time to speak of. */
-static struct chain go_on(struct through *t)
+static int listed(const instant *t)
 {
-	mpq_t since;
-	mpq_init(since);
-	mpq_sub(since, t->base, t->struck);
-	mpq_div(since, since, t->whole->h);
-	struct chain chain = { .most = mpq_get_d(since) > 0x1p-10 ? 0 : t->fastest };
-	mpq_set(t->struck, t->base);
-	mpq_clear(since);
-	return chain;
+	(void)t;
+	return 0;
 }
 
-/* One more impact; false: there are too many. */
-static bool has_room(struct through *t, int k, struct chain *chain)
+static void count_rest(instant *t)
 {
-	if (chain->impacts % (SOME / 2) == 0 && chain->ended == 0)
-		chain->acting = 0;
-	chain->acting |= 1u << k;
-	chain->most = fmax(chain->most, speed_of(t, &t->s->impact[k]));
-	return chain->impacts++ <= (t->whole->asked.solution ? MOST_AT_ONCE : MOST_STRUCK) && chain->ended < MOST_ENDED;
+	(void)t;
 }
 
-static bool collide(struct through *t, int begins, mpfr_srcptr off, struct chain *chain)
+static void say(instant *t, int status)
 {
-	bool calms = false;
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct impact *p = &t->s->impact[k];
-		int comes = k == begins ? 1 : touches(t, p) ? closes(t, k, chain->struck) : 0;
-		if (t->whole->asked.solution && comes != 0 && k != begins &&
-		    fabs(speed_of(t, p)) <= ldexp(chain->most, -CALM_BITS)) {
-			calms = true;
-			continue;
+	if (t->undecided || status == 0)
+		return;
+	if (status == IN_DOUBT)
+		through_unknown(t, "what sticks and what slips");
+	else if (status == PL_UNDECIDED)
+		through_unknown(t, "what sticks: no combination of what sticks and what slips agrees");
+	else
+		through_unknown(t, "whether what touches comes closer");
+}
+
+/* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
+static void follow(const contacts *m, instant *t, int jumped)
+{
+	for (int e = 0; e < t->s->expressions; e++) {
+		const struct expression *x = &t->s->expression[e];
+		for (int way = 1; way;) {
+			const int interval = interval_of(m, t, e);
+			way = interval < x->breaks && through_side(t, e, x->at[interval]) > 0	  ? 1
+			      : interval > 0 && through_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
+			if (way == 0 || (!jumped && is_stopped(m, t, e, way)))
+				break;
+			(void)has_listed(m, t, 1, t->time, e, interval - (way < 0), way > 0);
+			through_enter(t, t->region + way * x->stride);
 		}
-		if (comes == 0)
-			continue;
-		if (t->whole->asked.solution && chain->impacts == MOST_AT_ONCE && comes > 0) {
-			end_chain(t, chain, off);
-			begins = k = -1;
-			continue;
+	}
+}
+
+/* ---- what sticks, rests or slips ---- */
+
+/* The side to which the gate that was met has let an expression go; 0: it has not */
+static int side_let_go(const instant *t, int expression)
+{
+	const struct gate *gate = t->told->met;
+	return !gate || !gate->release || gate->expression != expression ? 0 : gate->upward ? 1 : -1;
+}
+
+/* Whether what is next to its hold is there: it touches, and its velocity is but rounding */
+static bool is_there(const contacts *m, const instant *t, int expression, int impact)
+{
+	if (impact < 0) {
+		RATIONALS *row = through_row_of(t, t->s->expression[expression].row);
+		return is_none(t, row);
+	}
+	return touches(m, t, impact) && is_none(t, m->impact[impact].speed);
+}
+
+static int find_resting(const contacts *m, const instant *t, resting *found)
+{
+	int count = 0;
+	for (int e = 0; e < t->s->expressions; e++)
+		for (int k = 1; k < t->s->expression[e].breaks && count < MOST; k++) {
+			const int side = interval_of(m, t, e) - k, impact = impact_resting(t->s, t->segment, e, k);
+			if (!is_stick(&t->s->expression[e], k) || side < -1 || side > 1)
+				continue;
+			if (side == 0 || side == side_let_go(t, e) || is_there(m, t, e, impact))
+				found[count++] = (resting){ .expression = e, .held = k, .impact = impact };
 		}
-		if (comes < 0 || !has_room(t, k, chain))
-			return through_unknown(t, "whether what touches comes closer");
-		calms = false;
-		note_impact(t, k, true, off);
-		jump(t, p->in[t->segment].jumps, p->in[t->segment].jump);
-		if (p->bounces)
-			go_to(t, p, free_of(t, p));
-		chain->struck |= 1u << k;
-		begins = k == begins ? -1 : begins;
-		k = -1;
+	return count;
+}
+
+/* 2: its force holds it in a region, 0: it does not, 1: not known */
+static int is_held(const instant *t, const struct area *area, int expression)
+{
+	for (int k = 0; k < area->gates; k++) {
+		const struct gate *gate = &area->gate[k];
+		bool known;
+		if (gate->expression != expression || !gate->release)
+			continue;
+		if (side_let_go(t, expression) == (gate->upward ? 1 : -1))
+			return 0;
+		int sign = through_sign(t, gate->row, gate->limit, &known);
+		if (known && sign == 0)
+			sign = through_sign(t, gate->slope, NULL, &known);
+		if (!known || sign > 0)
+			return !known;
 	}
-	if (calms)
-		calm(t, ldexp(chain->most, -CALM_BITS), chain, off);
-	t->fastest = chain->most;
-	return true;
+	return 2;
 }
 
-/* left = 2 v/(a (1 - e)) of what leaves with v and is pressed back by a; false: nothing presses it. *known false:
- * whether anything does is not known, and left is the least that it may be. */
-static bool time_left(struct through *t, const struct impact *p, mpfi_ptr left, bool *known)
+/* Whether others hold it already where it neither sticks nor rests: as the target has it */
+static bool is_spared(const contacts *m, instant *t, int region, const resting *r, int count, const resting *of, int side)
 {
-	RATIONALS *row = through_row_of(t, p->in[t->segment].speed_row);
-	RATIONALS *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	RATIONAL part = ZERO;
-	INTERVAL a = OVER_BITS(t->precision);
-	bool presses = through_sign(t, (const mpq_t *)press, NULL, known) > 0;
-	bool leaves = mpq_sgn(p->in[t->segment].restitution) != 0 || !is_none(t, (const mpq_t *)row);
-	mpfi_set_ui(left, 0);
-	if (t->whole->asked.solution && *known && !presses && !leaves)  /* by a force that begins at 0 */
-		presses = through_heads(t, t->at, p->in[t->segment].expression, known) ==
-			  (p->in[t->segment].upward ? 1 : -1);
-	if ((presses || !*known) && leaves) {
-		through_dot(t, (const mpq_t *)row, (const mpfi_t *)t->x, left);
-		through_dot(t, (const mpq_t *)press, (const mpfi_t *)t->x, a);
-		mpfi_abs(a, a);
-		mpfr_set(&a->left, presses ? &a->left : &a->right, MPFR_RNDD);
-		mpfi_div(left, left, a);
-		mpq_set_si(part, 1, 1);
-		mpq_sub(part, p->in[t->segment].restitution, part);
-		mpfi_div_q(left, left, part);
-		mpfi_mul_ui(left, left, 2);
+	const int stuck = region - side * t->s->expression[of->expression].stride;
+	int flying = region;
+	bool known;
+	if (t->s->region[stuck].possible || of->impact >= 0)
+		return !t->s->region[stuck].possible;
+	for (int i = 0; i < count; i++)
+		if (r[i].impact >= 0 && interval_in(t, region, r[i].expression) == r[i].held)
+			flying += (free_of(m, r[i].impact) - r[i].held) * t->s->expression[r[i].expression].stride;
+	return t->s->region[flying].possible &&
+	       through_heads(t, through_area(t, flying), of->expression, &known) == side && known;
+}
+
+/* Whether one of them agrees with a region: 2, 1: not known, 0 */
+static int agrees_one(const contacts *m, instant *t, int region, const resting *r, int count, const resting *one)
+{
+	const struct area *area = through_area(t, region);
+	const int side = interval_in(t, region, one->expression) - one->held, goes = side_let_go(t, one->expression);
+	bool known;
+	if (one->impact >= 0 && side == 0 && speed_of(m, t, one->impact) < 0)
+		return 0;
+	if (one->impact >= 0 && side == (m->impact[one->impact].upward ? 1 : -1))
+		return 0;
+	if (side == 0)
+		return is_held(t, area, one->expression);
+	if (side == goes && one->impact >= 0)
+		return 2;
+	const int way = through_heads(t, area, one->expression, &known);
+	if (!known)
+		return side == goes ? 2 : 1;
+	return way == side || (way == 0 && is_spared(m, t, region, r, count, one, side)) ? 2 : 0;
+}
+
+static int agrees(const contacts *m, instant *t, const resting *r, int count, const int *interval)
+{
+	int region = t->region, agreed = 2;
+	for (int i = 0; i < count; i++)
+		region += (interval[i] - interval_of(m, t, r[i].expression)) * t->s->expression[r[i].expression].stride;
+	if (!t->s->region[region].possible)
+		return 0;
+	for (int i = 0; i < count && agreed != 0; i++) {
+		const int one = agrees_one(m, t, region, r, count, &r[i]);
+		agreed = one < agreed ? one : agreed;
 	}
-	return presses;
+	return agreed;
 }
 
-/* What was struck without restitution and is not pressed back parts with a speed of 0. */
-static void note_touching(struct through *t, unsigned struck, mpfr_srcptr off)
+static int is_pressed(const contacts *m, const instant *t, int k)
 {
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct strike *strike = &t->s->impact[k].in[t->segment];
-		if (!(struck >> k & 1) || mpq_sgn(strike->restitution) != 0 || !touches(t, &t->s->impact[k]) ||
-				is_laid(t, k) || fabs(speed_of(t, &t->s->impact[k])) > 0)
+	bool known, any = false;
+	t->told->flies = false;
+	t->told->doubtful = -1;
+	if (!m->solution)
+		t->told->together = true;
+	for (int g = 0; g < t->at->gates; g++) {
+		const struct gate *gate = &t->at->gate[g];
+		if (!gate->release || gate->expression != m->impact[k].expression)
 			continue;
-		t->order[strike->expression] = 2;
-		t->back[strike->expression] = strike->upward;
-		mpfr_set(t->fresh_off, off, MPFR_RNDU);
+		if (through_sign(t, gate->row, gate->limit, &known) >= 0)
+			return 0;
+		any = true;
+	}
+	return any;
+}
+
+/* ---- events ---- */
+
+/* gate: what was met, NULL: nothing; off: how far from base it may be, NULL: what changes is not listed */
+static const struct law *begin(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	const struct law *m = law_of(t);
+	t->told->met = gate;
+	t->told->off = off;
+	t->told->struck = 0;
+	t->told->swept = 0;
+	t->told->begins = t->told->doubtful = -1;
+	t->told->flies = t->told->together = false;
+	t->time = mpq_get_d(t->base);
+	t->before = t->region;
+	t->chain.all = 0;
+	return m;
+}
+
+/* What is on its guard with a speed of 0, and rested there before or was struck without restitution, has the value 0
+ * where it is, with its slope. */
+static void note_touching(const struct law *m, struct through *t)
+{
+	for (int k = 0; k < m->impacts; k++) {
+		const struct bound *b = &m->impact[k];
+		const bool rested = b->rest >= 0 && interval_in(t, t->before, b->expression) == b->rest,
+			   struck = t->told->struck >> k & 1 && !(b->restitution > 0);
+		if (b->rest < 0 || !(rested || struck) || rests(m, t, k) || !touches(m, t, k) ||
+		    fabs(speed_of(m, t, k)) > 0)
+			continue;
+		t->order[b->expression] = 2;
+		t->back[b->expression] = b->upward;
+		if (t->told->off)
+			mpfr_set(t->fresh_off, t->told->off, MPFR_RNDU);
+		else
+			mpfr_set_zero(t->fresh_off, 1);
 	}
 }
 
-/* By the stated rule: where infinitely many bounces take no more than 2^-23 h (float: 2^-10). What lies already is
- * pressed by what comes to rest on it, and gets its share of the momentum. */
-static bool come_to_rest(struct through *t, struct chain *chain, mpfr_srcptr off)
+bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
-	mpq_t brief, one;
-	mpfi_t left;
-	bool known = true;
-	mpq_inits(brief, one, NULL);
-	mpfi_init2(left, t->precision);
-	mpq_set_ui(one, 1, 1);
-	mpq_div_2exp(brief, t->whole->h, t->whole->asked.single && !t->whole->asked.solution ? 10 : 23);
-	for (int k = 0; k < t->s->impacts && known; k++) {
-		const struct impact *p = &t->s->impact[k];
-		if (!(chain->struck >> k & 1) || !p->bounces || mpq_cmp(p->in[t->segment].restitution, one) >= 0 ||
-				!touches(t, p))
-			continue;
-		bool presses = time_left(t, p, left, &known);
-		if (known && !presses)
-			continue;
-		bool stands = mpfi_has_zero(left) > 0 && mpq_sgn(p->in[t->segment].restitution) != 0;
-		mpfi_sub_q(left, left, brief);
-		known = mpfr_sgn(&left->left) > 0 || (known && mpfr_sgn(&left->right) <= 0);
-		if (!known || mpfr_sgn(&left->left) > 0)
-			continue;
-		mpfi_add_q(left, left, brief);
-		const int before = t->passed;
-		lay(t, 1u << k, chain, off);
-		if (t->passed == before)
-			continue;
-		mpfi_add(t->list[t->passed - 1].at, t->list[t->passed - 1].at, left);
-		t->list[t->passed - 1].stands = stands;
-		known = through_settle(t, NULL, off);
-	}
-	mpfi_clear(left);
-	mpq_clears(brief, one, NULL);
-	return known || t->undecided || through_unknown(t, "whether what bounces comes to rest");
+	const struct law *m = begin(t, gate, off);
+	if (gate)
+		t->before -= gate->leads;
+	settle(m, t, gate != NULL);
+	note_touching(m, t);
+	return !t->undecided && through_slide(t, gate, off);
 }
 
-/* The acceleration by which a contact is pressed; its gap, below 0: open */
-static double press_of(const struct through *t, const struct impact *p, double *gap)
+bool through_take_up(struct through *t, mpfr_srcptr off)
 {
-	const struct strike *strike = &p->in[t->segment];
-	mpq_t *row = through_row_of(t, strike->speed_row);
-	mpq_t *place = through_row_of(t, t->s->expression[strike->expression].row);
-	mpq_t *press = through_times(t, (const mpq_t *)row, (const mpq_t *)t->at->A);
-	mpfi_t value;
-	mpfi_init2(value, t->precision);
-	through_dot(t, (const mpq_t *)place, (const mpfi_t *)t->x, value);
-	mpfi_sub_q(value, value, strike->at);
-	*gap = strike->upward ? mpfi_get_d(value) : -mpfi_get_d(value);
-	through_dot(t, (const mpq_t *)press, (const mpfi_t *)t->x, value);
-	double pressed = mpfi_get_d(value);
-	mpfi_clear(value);
-	rationals_free(row, (size_t)t->n);
-	rationals_free(place, (size_t)t->n);
-	rationals_free(press, (size_t)t->n);
-	return pressed;
-}
-
-/* Several contacts that are as good as at rest together, those that fly: all that any of them could still do is over
- * within `brief` [s] under the force that presses one of them. */
-static unsigned near_rest(struct through *t, double brief)
-{
-	unsigned set = 0;
-	double most = 0, gap;
-	int together = 0;
-	for (int k = 0; k < t->s->impacts; k++)
-		if (touches(t, &t->s->impact[k]))
-			most = fmax(most, press_of(t, &t->s->impact[k], &gap));
-	const double fastest = most * brief / 2;
-	for (int k = 0; k < t->s->impacts && fastest > 0; k++) {
-		const struct impact *p = &t->s->impact[k];
-		const struct strike *strike = &p->in[t->segment];
-		bool flies = p->bounces && interval_of(t->s, t->region, strike->expression) == free_of(t, p);
-		if (!(flies || is_laid(t, k)) || (press_of(t, p, &gap), gap < -fastest * brief))
-			continue;
-		if (flies && fabs(speed_of(t, p)) > fastest * (1 - mpq_get_d(strike->restitution)))
-			continue;
-		set |= (unsigned)flies << k;
-		together++;
-	}
-	return together > 1 ? set : 0;
-}
-
-/* Whether forces press all of a set, which rests in this region */
-static bool all_pressed(const struct through *t, unsigned set)
-{
-	for (int k = 0; k < t->s->impacts; k++)
-		for (int g = 0; g < t->at->gates && set >> k & 1; g++) {
-			const struct gate *gate = &t->at->gate[g];
-			bool known;
-			if (gate->release && gate->expression == t->s->impact[k].in[t->segment].expression &&
-			    through_sign(t, (const mpq_t *)gate->row, gate->limit, &known) >= 0)
-				return false;
-		}
-	return true;
-}
-
-/* Several that strike each other come to rest together if all of them are pressed then. What rounding adds to the rule
- * on the target is no matter for a selftest, which ends before. */
-static bool rest_together(struct through *t, struct chain *chain, mpfr_srcptr off)
-{
-	const double brief = mpq_get_d(t->whole->h) * 0x1p-23;
-	unsigned set = near_rest(t, t->whole->asked.solution ? brief : SELFTEST_BRIEF * brief);
-	int before = t->region;
-	if (set == 0)
-		return true;
-	if (!t->whole->asked.solution)
-		return through_unknown(t, "whether several come to rest together");
-	set = seat(t, set);
-	bool pressed = all_pressed(t, set);
-	through_enter(t, before);
-	if (!pressed)
-		return true;
-	lay(t, set, chain, off);
-	return through_settle(t, NULL, off);
-}
-
-/* Contacts at rest that an impact has given a speed away from each other */
-static void part(struct through *t, mpfr_srcptr off)
-{
-	for (int k = 0; k < t->s->impacts; k++) {
-		const struct impact *p = &t->s->impact[k];
-		if (!is_laid(t, k) || !(speed_of(t, p) < 0))
-			continue;
-		note_impact(t, k, false, off);
-		go_to(t, p, free_of(t, p));
-	}
+	const struct law *m = begin(t, NULL, off);
+	follow(m, t, 1);
+	(void)collide(m, t, -1);
+	settle(m, t, 0);
+	keep(m, t);
+	note_touching(m, t);
+	return !t->undecided && through_slide(t, NULL, off);
 }
 
 bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
-	struct chain chain = go_on(t);
+	const struct law *m = begin(t, NULL, off);
 	bool known = stream_change(t->at->flow, NULL, off, t->x);
-	through_enter(t, t->region + (t->s->impact[gate->impact].bounces ? 0 : gate->leads));
-	known = known && collide(t, gate->impact, off, &chain);
+	through_enter(t, t->region + (m->impact[gate->impact].rest >= 0 ? 0 : gate->leads));
+	t->told->begins = gate->impact;
+	const unsigned struck = collide(m, t, gate->impact);
 	known = known && stream_change(t->at->flow, NULL, off, t->x);
-	if (!known)
+	if (!known || t->undecided)
 		return t->undecided ? false : through_unknown(t, "when an impact is");
-	/* first what an impact sets in motion leaves where it stuck, then what still sticks is held */
-	part(t, off);
-	if (!through_follow(t))
-		return false;
-	through_hold(t);
-	if (!through_settle(t, NULL, off) || !come_to_rest(t, &chain, off) || !rest_together(t, &chain, off))
-		return false;
-	note_touching(t, chain.struck, off);
-	return true;
+	follow(m, t, 0);
+	settle(m, t, 1);
+	come_to_rest(m, t, struck);
+	keep(m, t);
+	if (t->told->together)
+		return through_unknown(t, "whether several come to rest together");
+	note_touching(m, t);
+	return !t->undecided && through_slide(t, NULL, off);
 }

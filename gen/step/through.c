@@ -95,16 +95,9 @@ static bool next_segment(struct through *t)
 		return true;
 	through_enter(t, t->region + regions_at_once(t->s));
 	t->speed = 0;
-	if (!through_follow(t))
-		return false;
-	if (!has_events(t->s))
-		return true;
 	REAL none = WITH_BITS(64);
 	mpfr_set_zero(none, 1);
-	through_hold(t);
-	bool known = through_settle(t, NULL, none);
-	through_hold(t);
-	return known;
+	return through_take_up(t, none);
 }
 
 static bool changes_here(const struct through *t)
@@ -173,7 +166,9 @@ static void make_room(struct through *t)
 	for (int k = 0; k < 2; k++)
 		t->near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
 	t->most = ARRAY(double, t->n);
-	mpq_inits(t->base, t->struck, NULL);
+	mpq_init(t->base);
+	t->told = NEW(struct telling);
+	mpfi_init2(t->told->flight, t->precision);
 	mpfr_init2(t->fresh_off, 64);
 	mpfr_init2(t->most_off, 64);
 	mpfr_init2(t->one, 2);
@@ -241,7 +236,8 @@ void through_free(struct through *t)
 	free_room(t->n, t->x);
 	free_room(t->n, t->y);
 	series_room_free(&t->room);
+	mpfi_clear(t->told->flight);
 	mpfr_clears(t->one, t->fresh_off, t->most_off, NULL);
-	mpq_clears(t->base, t->struck, NULL);
+	mpq_clear(t->base);
 	discard(t);
 }

@@ -28,6 +28,17 @@ struct area {                       /* a region as it is met */
 	int gates;
 	struct gate *gate;
 };
+struct telling {                    /* of what happens at one instant */
+	const struct gate *met;     /* NULL: none */
+	mpfr_srcptr off;            /* how far from base it may be; NULL: nothing is listed */
+	unsigned struck;            /* impacts that have acted, as bits */
+	int begins;                 /* the impact whose guard was met, before it acts; -1 */
+	int doubtful;               /* the contact of which it is not known whether a force presses it; -1: none */
+	int swept;                  /* speeds taken from what comes to rest */
+	bool together;              /* several come to rest together */
+	bool flies;                 /* of the contact that was looked at last: its flights [s] */
+	mpfi_t flight;
+};
 struct through {
 	const struct model *whole, *model;
 	const struct region_part *part; /* NULL: both are one */
@@ -62,8 +73,12 @@ struct through {
 	bool *back;                 /* which way it would come back */
 	mpfr_t fresh_off, most_off;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
-	mpq_t struck;               /* the last impact [s], and the fastest of those that it follows */
-	double fastest;
+	/* Of struck.c: */
+	double time;                /* base [s] */
+	int before;                 /* the region before what happens now */
+	pl_chain chain;
+	const struct law *law;      /* impacts of this segment of time; NULL: none yet */
+	struct telling *told;
 	int passed, most_passed;    /* most: 0: any number */
 	struct passed *list;
 	const char *undecided;
@@ -94,11 +109,10 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 
 /* of e - at: 1 above, -1 below; 0: not told apart */
 int  through_side(const struct through *t, int expression, mpq_srcptr at);
-bool through_follow(struct through *t);                      /* what has left its interval by a jump */
 void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
 
-/* ---- settling.c: what sticks and what slips ---- */
+/* ---- settling.c: signs, and where what was held goes ---- */
 
 /* Of row . x - less: its sign, 0 where it is 0; *known false: it is not told apart from 0 */
 int  through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known);
@@ -110,13 +124,16 @@ void through_assign(struct through *t, int state, const struct output *output, m
 bool through_unknown(struct through *t, const char *what);   /* false */
 void through_hold(struct through *t);                        /* states that the region gives */
 /* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
-int  through_heads(struct through *t, const struct area *area, int expression, bool *known);
-/* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
-bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
+int  through_heads(const struct through *t, const struct area *area, int expression, bool *known);
+/* A slider without mass whose velocity an event has turned round sticks from there on. */
+bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
 
-/* ---- struck.c: impacts, and what comes to rest by them ---- */
+/* ---- struck.c: impacts, what comes to rest by them, what sticks and what slips ---- */
 
+/* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
+bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
+bool through_take_up(struct through *t, mpfr_srcptr off);   /* behind a change of the loads */
 bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
 
 /* ---- begun.c ---- */
