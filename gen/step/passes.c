@@ -4,7 +4,10 @@
 
 #include <math.h>
 
-enum { AT_ONCE = 64 };              /* events at one instant, before they count as without end */
+enum {
+	AT_ONCE = 64,               /* events at one instant, before they count as without end */
+	SPARE_BITS = 64
+};
 
 /* ---- a piece that stays clear ---- */
 
@@ -77,11 +80,13 @@ static void add_room(struct through *t, int degree)
 /* The gate's polynomial in s, less its limit, and that of its slope */
 static void expand_gate(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau)
 {
+	INTERVAL length = OVER_BITS(t->precision);
+	mpfi_set_q(length, tau);
 	add_room(t, degree);
 	for (int m = 0; m <= degree; m++) {
 		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->room.term[m], t->value[m]);
 		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->room.term[m], t->slope[m]);
-		mpfi_mul_q(t->slope[m], t->slope[m], tau);
+		mpfi_mul(t->slope[m], t->slope[m], length);
 	}
 	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
 }
@@ -207,6 +212,23 @@ static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off
 	mpfr_mul_q(off, off, tau, MPFR_RNDU);
 }
 
+/* Each event would lengthen the time by all bits of the enclosures: it is kept to little more than these, and x is that
+ * of any time so close. */
+static bool shorten_base(struct through *t, const struct stream *flow, mpfr_ptr off)
+{
+	const mp_bitcnt_t bits = (mp_bitcnt_t)t->precision + SPARE_BITS;
+	if (mpz_sizeinbase(mpq_denref(t->base), 2) <= bits)
+		return true;
+	REAL least = WITH_BITS(2);
+	mpfr_set_ui_2exp(least, 1, -(mpfr_exp_t)bits, MPFR_RNDN);
+	mpz_mul_2exp(mpq_numref(t->base), mpq_numref(t->base), bits);
+	mpz_fdiv_q(mpq_numref(t->base), mpq_numref(t->base), mpq_denref(t->base));
+	mpz_set_ui(mpq_denref(t->base), 1);
+	mpq_div_2exp(t->base, t->base, bits);
+	mpfr_add(off, off, least, MPFR_RNDU);
+	return stream_change(flow, NULL, least, t->x);
+}
+
 /* What sticks and slips behind it */
 static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 {
@@ -234,15 +256,15 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	mpfr_get_q(part, s);
 	mpq_mul(part, part, tau);
 	mpq_add(t->base, t->base, part);
+	bool known = shorten_base(t, before, off);
 	t->at_once = mpq_sgn(part) == 0 ? t->at_once + 1 : 0;
 	through_note(t, gate, off);
-	bool known;
 	if (gate->impact >= 0) {
 		mpfi_clear(t->list[--t->passed].at);    /* as what is struck it is noted again */
-		known = through_strike(t, gate, off);
+		known = known && through_strike(t, gate, off);
 	} else {
 		through_enter(t, t->region + gate->leads);
-		known = stream_change(before, t->at->flow, off, t->x);
+		known = known && stream_change(before, t->at->flow, off, t->x);
 		if (has_events(t->s))
 			known = known && settle(t, gate, off);
 	}

@@ -72,8 +72,9 @@ bool through_unknown(struct through *t, const char *what)
 
 /* ---- where what was held goes ---- */
 
-/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
-int through_heads(const struct through *t, const struct area *area, int expression, bool *known)
+/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
+ * first one is but rounding */
+int through_heads(const struct through *t, const struct area *area, int expression, bool still, bool *known)
 {
 	mpq_t *row = through_row_of(t, t->s->expression[expression].row);
 	int sign = 0;
@@ -82,7 +83,8 @@ int through_heads(const struct through *t, const struct area *area, int expressi
 		mpq_t *next = through_times(t, row, area->A);
 		rationals_free(row, (size_t)t->n);
 		row = next;
-		sign = through_sign(t, row, NULL, known);
+		if (k > 0 || !still)
+			sign = through_sign(t, row, NULL, known);
 	}
 	rationals_free(row, (size_t)t->n);
 	return sign;

@@ -94,11 +94,11 @@ static void fill_bound(const struct through *t, int k, struct bound *b)
 	*b = (struct bound){ .expression = strike->expression, .upward = strike->upward, .rest = -1, .strike = strike };
 	b->breakpoint = breakpoint_of(t, strike, p->bounces);
 	b->restitution = p->bounces ? mpq_get_d(strike->restitution) : 0;
-	b->speed = through_row_of(t, strike->speed_row);
 	b->place = through_row_of(t, t->s->expression[strike->expression].row);
 	b->jump = rows_of_jumps(t, strike->jumps, strike->jump);
-	if (!p->bounces)
+	if (!p->bounces)        /* it has no speed */
 		return;
+	b->speed = through_row_of(t, strike->speed_row);
 	b->rest = place_of_rest(t, p);
 	b->still = rows_of_jumps(t, strike->jumps, strike->still);
 }
@@ -233,6 +233,7 @@ static real least_speed(const contacts *m, const instant *t, real least)
 static void note_flight(const struct through *t, const struct bound *b, mpfi_srcptr press)
 {
 	RATIONAL loss = ZERO;
+	t->told->bounces = b->restitution > 0;
 	mpq_set_ui(loss, 1, 1);
 	mpq_sub(loss, loss, b->strike->restitution);
 	through_dot(t, b->speed, t->x, t->told->flight);
@@ -262,7 +263,7 @@ static real press_of(const contacts *m, const instant *t, int k)
 		return fmax(fabs(mpfr_get_d(&press->left, MPFR_RNDA)), fabs(mpfr_get_d(&press->right, MPFR_RNDA)));
 	if (!m->solution || value_of(t, b->speed) != 0)
 		return 0;
-	return through_heads(t, t->at, b->expression, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
+	return through_heads(t, t->at, b->expression, true, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
 }
 
 /* The states of so many assignments, all from the same state */
@@ -320,7 +321,7 @@ static int has_listed(const contacts *m, instant *t, int loses, real time, int e
 	through_note_plain(t, expression, breakpoint, upward, t->told->off);
 	if (t->told->flies) {
 		struct passed *last = &t->list[t->passed - 1];
-		last->stands = mpfi_has_zero(t->told->flight);
+		last->stands = t->told->bounces && mpfi_has_zero(t->told->flight);
 		mpfi_add(last->at, last->at, t->told->flight);
 		t->told->flies = false;
 	}
@@ -376,14 +377,21 @@ static int side_let_go(const instant *t, int expression)
 	return !gate || !gate->release || gate->expression != expression ? 0 : gate->upward ? 1 : -1;
 }
 
-/* Whether what is next to its hold is there: it touches, and its velocity is but rounding */
+/* Whether the speed of a contact is but rounding: what rests has none */
+static bool is_still(const contacts *m, const instant *t, int k)
+{
+	return rests(m, t, k) ? value_of(t, m->impact[k].speed) == 0 : is_none(t, m->impact[k].speed);
+}
+
+/* Whether what is next to its hold is there, with a velocity that is but rounding; what may bounce comes to rest by the
+ * time of its bounces, as on the target rounding makes some velocity of none */
 static bool is_there(const contacts *m, const instant *t, int expression, int impact)
 {
 	if (impact < 0) {
 		RATIONALS *row = through_row_of(t, t->s->expression[expression].row);
 		return is_none(t, row);
 	}
-	return touches(m, t, impact) && is_none(t, m->impact[impact].speed);
+	return !(m->impact[impact].restitution > 0) && touches(m, t, impact) && is_still(m, t, impact);
 }
 
 static int find_resting(const contacts *m, const instant *t, resting *found)
@@ -431,7 +439,7 @@ static bool is_spared(const contacts *m, instant *t, int region, const resting *
 		if (r[i].impact >= 0 && interval_in(t, region, r[i].expression) == r[i].held)
 			flying += (free_of(m, r[i].impact) - r[i].held) * t->s->expression[r[i].expression].stride;
 	return t->s->region[flying].possible &&
-	       through_heads(t, through_area(t, flying), of->expression, &known) == side && known;
+	       through_heads(t, through_area(t, flying), of->expression, false, &known) == side && known;
 }
 
 /* Whether one of them agrees with a region: 2, 1: not known, 0 */
@@ -448,7 +456,8 @@ static int agrees_one(const contacts *m, instant *t, int region, const resting *
 		return is_held(t, area, one->expression);
 	if (side == goes && one->impact >= 0)
 		return 2;
-	const int way = through_heads(t, area, one->expression, &known);
+	const bool still = one->impact >= 0 && is_still(m, t, one->impact);
+	const int way = through_heads(t, area, one->expression, still, &known);
 	if (!known)
 		return side == goes ? 2 : 1;
 	return way == side || (way == 0 && is_spared(m, t, region, r, count, one, side)) ? 2 : 0;

@@ -36,7 +36,7 @@ struct telling {                    /* of what happens at one instant */
 	int doubtful;               /* the contact of which it is not known whether a force presses it; -1: none */
 	int swept;                  /* speeds taken from what comes to rest */
 	bool together;              /* several come to rest together */
-	bool flies;                 /* of the contact that was looked at last: its flights [s] */
+	bool flies, bounces;        /* of the contact that was looked at last: its flights [s], not all at once */
 	mpfi_t flight;
 };
 struct through {
@@ -123,8 +123,9 @@ mpq_t *through_row_of(const struct through *t, const struct output *output);
 void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh);
 bool through_unknown(struct through *t, const char *what);   /* false */
 void through_hold(struct through *t);                        /* states that the region gives */
-/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0 */
-int  through_heads(const struct through *t, const struct area *area, int expression, bool *known);
+/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
+ * first one is but rounding */
+int  through_heads(const struct through *t, const struct area *area, int expression, bool still, bool *known);
 /* A slider without mass whose velocity an event has turned round sticks from there on. */
 bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
