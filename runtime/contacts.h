@@ -430,7 +430,8 @@ static int combine(const resting *r, int count, int number, const int *before, i
     return cost;
 }
 
-/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none.  how: as agrees */
+/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none.  how: what
+ * agrees says */
 static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before, int *how)
 {
     int best = -1, least = 0, all = 1, number, i;

@@ -244,7 +244,7 @@ static void note_flight(const struct through *t, const struct bound *b, mpfi_src
 		mpfi_div_q(t->told->flight, t->told->flight, loss);
 }
 
-/* Where the force is 0, of what does not move, by where it is heading; where it is not known, the most that it may be */
+/* Of no force, where it does not move, by where it is heading; of one that is not known, the most that it may be */
 static real press_of(const contacts *m, const instant *t, int k)
 {
 	const struct bound *b = &m->impact[k];
@@ -428,7 +428,8 @@ static int is_held(const instant *t, const struct area *area, int expression)
 }
 
 /* Whether others hold it already where it neither sticks nor rests: as the target has it */
-static bool is_spared(const contacts *m, instant *t, int region, const resting *r, int count, const resting *of, int side)
+static bool is_spared(const contacts *m, instant *t, int region, const resting *r, int count, const resting *of,
+		      int side)
 {
 	const int stuck = region - side * t->s->expression[of->expression].stride;
 	int flying = region;
