@@ -585,11 +585,14 @@ static bool ramps_from(int input, double far, double sign)
 	return ramp;
 }
 
+/* Where no such state shows it, the descriptor tells. */
 static void find_ramps(void)
 {
-	for (int i = 0; i < of->whole->inputs; i++)
+	for (int i = 0; i < of->whole->inputs; i++) {
 		for (int k = 0; k < 6 && !ramps[i]; k++)
 			ramps[i] = ramps_from(i, 2 * (k / 2 - 1), k % 2 ? -1 : 1);
+		ramps[i] = ramps[i] || of->whole->start_samples[i] == 1;
+	}
 }
 
 /* How far the truth takes a neighbour away: as far it takes errors of steps that are behind. Distances are those of
