@@ -17,33 +17,32 @@
  * and members chain and rested of contact.  placed is 1; 2 where what holds may have changed, 3 where that has just
  * been looked at. */
 
+/* The degree of their polynomials: guards have one more */
+#define PL_WAY (PL_STAGES + PL_CONTACTS)
+
 /* ---- the expressions where the internal step starts, and along it ---- */
 
 /* Where it starts: c[0]; all further coefficients are 0 */
 static void PL(values_here)(const PL_TYPE *s, const real start[], const real slope[],
-                            real c[PL_STAGES + 1][PL_TERMS], real terms[PL_TERMS])
+                            real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
 {
     real known[PL_ROOM(PL_KNOWN)];
-    PL(no_slopes)(PL_TERMS, c[0]);
+    PL(no_slopes)(PL_WAY, PL_TERMS, c[0]);
     PL(known_at)(s, PL_WATCH_READS, start, slope, 0, (real)1e-9, known);
     PL(watch)(known, s->contact.interval, s->start, c[0], terms);
 }
 
 #if PL_CONTACTS
-/* A guard of a bounce follows from its speed, a watch with these values at the nodes of a step of dt [s]: beside a
- * place that is rounded the way of a short flight would not show. */
-static void PL(guards_along)(real dt, const real value[PL_STAGES][PL_TERMS], real c[PL_STAGES + 1][PL_TERMS])
+/* A guard of a bounce is the integral of its speed, a watch, over a step of dt [s]: beside a place that is rounded the
+ * way of a short flight would not show. */
+static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
 {
-    int i, k, m;
+    int i, m;
     for (i = 0; i < PL(along).impacts; i++) {
         const pl_strike *const p = &PL(along).impact[i];
         const real per = (p->upward ? dt : -dt) * p->per;
-        for (m = 0; m < PL_STAGES && p->hold >= 0; m++) {
-            real sum = 0;
-            for (k = 0; k < PL_STAGES; k++) {
-                sum += PL(monomial)[m][k] * value[k][PL_EXPRESSIONS + p->speed];
-            }
-            c[m + 1][p->expression] = per * sum / (real)(m + 1);
+        for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
+            c[m + 1][p->expression] = per * c[m][PL_EXPRESSIONS + p->speed] / (real)(m + 1);
         }
     }
 }
@@ -51,20 +50,20 @@ static void PL(guards_along)(real dt, const real value[PL_STAGES][PL_TERMS], rea
 
 /* ... along a step of `size` h: polynomials through their values there and at the nodes */
 static void PL(values_along)(const PL_TYPE *s, const real start[], const real slope[], real size,
-                             const real poly[PL_STAGES + 1][PL_COLUMNS], real c[PL_STAGES + 1][PL_TERMS],
+                             const real poly[PL_STAGES + 1][PL_COLUMNS], real c[PL_WAY + 1][PL_TERMS],
                              real terms[PL_TERMS])
 {
-    real y[PL_STATES], value[PL_STAGES][PL_TERMS], spare[PL_TERMS], known[PL_ROOM(PL_KNOWN)];
+    real y[PL_STATES], value[PL_TERMS], spare[PL_TERMS], known[PL_ROOM(PL_KNOWN)];
     int k;
     PL(values_here)(s, start, slope, c, terms);
     for (k = 0; k < PL_STAGES; k++) {
         PL(known_at)(s, PL_WATCH_READS, start, slope, PL(node)[k] * size, size / 2, known);
         PL(at_node)(s, poly, k, y);
-        PL(watch)(known, s->contact.interval, y, value[k], spare);
-        PL(add_node)(PL_TERMS, k, value[k], c[0]);
+        PL(watch)(known, s->contact.interval, y, value, spare);
+        PL(add_node)(PL_TERMS, k, value, c[0]);
     }
 #if PL_CONTACTS
-    PL(guards_along)(size * PL_H, (const real (*)[PL_TERMS])value, c);
+    PL(guards_along)(size * PL_H, c);
 #endif
 }
 
@@ -75,7 +74,7 @@ static void PL(values_along)(const PL_TYPE *s, const real start[], const real sl
  * The interval of one expression may choose what another is. */
 static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 {
-    real c[PL_STAGES + 1][PL_TERMS], terms[PL_TERMS];
+    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS];
     int i, again = PL_CHANGES;
     for (i = 0; i < PL_EXPRESSIONS; i++) {
         s->contact.interval[i] = 0;
@@ -173,7 +172,7 @@ static int PL(pass_here)(PL_TYPE *s, const real start[], const real slope[])
 /* Whether an expression has left its interval where the next internal step starts: by a jump */
 static int PL(left)(PL_TYPE *s, const real start[], const real slope[])
 {
-    real c[PL_STAGES + 1][PL_TERMS], terms[PL_TERMS];
+    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS];
     PL(values_here)(s, start, slope, c, terms);
     return pl_divided_left(&PL(passing), c[0], terms, s->contact.interval, &s->contact.last);
 }
@@ -183,7 +182,7 @@ static int PL(left)(PL_TYPE *s, const real start[], const real slope[])
 /* ---- the first crossing in a step ---- */
 
 typedef struct PL(search) { /* of a step */
-    real c[PL_STAGES + 1][PL_TERMS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_STAGES)];
+    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_WAY)];
     pl_crossing found;
     int splits, exact; /* the guard of a bounce that has just left it: its way is known better than its place */
 #if PL_CONTACTS
@@ -210,6 +209,15 @@ static void PL(look_along)(PL(search) *f, PL_TYPE *s)
     f->at.chain = s->contact.chain;
 }
 
+/* There is no step yet: what holds may be known by then, or not. */
+static inline int PL(not_yet)(PL_TYPE *s, int placed)
+{
+    s->contact.placed = placed;
+    s->size = 0;
+    s->ready = 0;
+    return PL_ANOTHER;
+}
+
 /* The size of the largest coordinate so far */
 static real PL(largest_place)(const PL_TYPE *s)
 {
@@ -220,6 +228,36 @@ static real PL(largest_place)(const PL_TYPE *s)
     }
     return most;
 }
+
+#if PL_ORDER > 0
+/* Up to the first event within `length` h of a series, where there is one, or not as far, as short flights say: 0, or
+ * what went wrong; PL_NO_MOVE: it is here */
+static int PL(end_at_crossing)(PL_TYPE *s, real terms[], real *length)
+{
+    real work[PL_DIVIDED_WORK(PL_ORDER)], next;
+    int splits = PL_MAX_SPLITS;
+    pl_instant at;
+    PL(open)(&at, &s->contact, s->start, s->rest, s->poly[0], terms, work);
+    at.chain = s->contact.chain;
+    if (s->contact.placed < 3 && pl_events_left(&PL(events), &at)) {
+        return PL(not_yet)(s, 2);
+    }
+    next = pl_events_next(&PL(events), &at, length, &splits);
+    if (splits < 0) {
+        return PL_TOO_MANY_EVENTS | pl_not_finite(s->poly[0], (PL_ORDER + 1) * PL_COLUMNS);
+    }
+    s->contact.placed = 1;
+    if (next < 0) {
+        s->contact.last.expression = -1;
+        s->status |= pl_events_places(&PL(events), &at, *length, PL_TOLERANCE * PL(largest_place)(s));
+        return 0;
+    }
+    s->contact.last = at.next;
+    s->stop = PL_AT_CROSSING;
+    *length = next;
+    return next < PL_HERE ? PL_NO_MOVE : 0;
+}
+#endif
 
 /* Where the first is, before *end, which may become less, as parts of the step; below 0: there is none */
 static real PL(find_first)(PL(search) *f, const PL_TYPE *s, real *end)
@@ -290,7 +328,7 @@ static void PL(move_end)(PL_TYPE *s, const real start[], const real slope[],
         }
         PL(known_at)(s, PL_WATCH_READS, start, slope, theta * size, size / 2, known);
         PL(watch)(known, s->contact.interval, y, value, spare);
-        for (m = PL_STAGES; m > 0; m--) {
+        for (m = PL_WAY; m > 0; m--) {
             rate = rate * theta + (real)m * f->c[m][which];
         }
         change = (b - value[which]) / rate;
@@ -299,15 +337,6 @@ static void PL(move_end)(PL_TYPE *s, const real start[], const real slope[],
         }
         theta += change;
     }
-}
-
-/* There is no step yet: what holds may be known by then, or not. */
-static inline int PL(not_yet)(PL_TYPE *s, int placed)
-{
-    s->contact.placed = placed;
-    s->size = 0;
-    s->ready = 0;
-    return PL_ANOTHER;
 }
 
 /* Ends the step that was found at the first crossing in it, where there is one: 0, or what went wrong; PL_NO_MOVE: it
@@ -362,8 +391,10 @@ static int PL(pass)(PL_TYPE *s, const real start[], const real slope[], const re
             if (met) {
                 break;
             }
+#if PL_CONTACTS
             s->want = part * s->size / 4;
             return PL(not_yet)(s, 1);
+#endif
         }
         s->size *= part;
         s->per = 1 / s->size;

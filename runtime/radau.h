@@ -237,10 +237,10 @@ static int PL(ends)(const real y[PL_STATES], const real gain[PL_STATES])
 
 #if PL_ARGUMENTS > 0 || PL_EXPRESSIONS > 0
 /* Polynomials in powers of theta that are constant so far: c[0] is theirs to fill */
-static void PL(no_slopes)(int columns, real c[])
+static void PL(no_slopes)(int degree, int columns, real c[])
 {
     int i;
-    for (i = columns; i < (PL_STAGES + 1) * columns; i++) {
+    for (i = columns; i < (degree + 1) * columns; i++) {
         c[i] = 0;
     }
 }
@@ -277,7 +277,7 @@ static int PL(shows_along)(const PL_TYPE *s, const real start[], const real slop
 {
     real c[PL_STAGES + 1][PL_ARGUMENTS], y[PL_STATES], value[PL_ARGUMENTS], known[PL_ROOM(PL_KNOWN)];
     int i, k;
-    PL(no_slopes)(PL_ARGUMENTS, c[0]);
+    PL(no_slopes)(PL_STAGES, PL_ARGUMENTS, c[0]);
     PL(known_at)(s, PL_TRACE_READS, start, slope, 0, size / 2, known);
     PL(trace)(known, PL(intervals)(s), s->start, c[0]);
     for (k = 0; k < PL_STAGES; k++) {

@@ -89,7 +89,9 @@ static inline void PL(measure_beside)(PL_TYPE *s)
     }
 }
 
-#if PL_EXPRESSIONS > 0
+#if PL_CONTACTS
+static int PL(end_at_crossing)(PL_TYPE *s, real terms[], real *length);
+#elif PL_EXPRESSIONS > 0
 /* Up to the first crossing within `length` h, where there is one: 0, or what went wrong; PL_NO_MOVE: it is here */
 static inline int PL(end_at_crossing)(PL_TYPE *s, const real terms[PL_EXPRESSIONS], real *length)
 {
@@ -115,8 +117,9 @@ static inline int PL(end_at_crossing)(PL_TYPE *s, const real terms[PL_EXPRESSION
  * PL_NOT_FINITE, it is of no use.  Where stability bounds several in a row, the collocation is next. */
 static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], real limit, const real rates[2])
 {
-    real terms[PL_ROOM(PL_EXPRESSIONS)], length, product;
+    real terms[PL_ROOM(PL_TERMS)], length, product;
 #if PL_EXPRESSIONS > 0
+    real most;
     int wrong;
 #endif
     PL(expand_from)(s, start, slope, PL(since)(s) * PL_H, PL(when)(s), PL(leg_of)(s), PL(intervals)(s), s->start,
@@ -155,11 +158,13 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
         s->run = s->bounds = 0;
     }
 #if PL_EXPRESSIONS > 0
+    most = length;
     wrong = PL(end_at_crossing)(s, terms, &length);
     if (wrong) {
         return wrong;
     }
-    if (s->stop == PL_AT_CROSSING) {
+    if (length < most) {
+        s->stop = s->stop == PL_AT_CROSSING ? s->stop : PL_AT_ERROR;
         PL(ahead)((const real (*)[PL_COLUMNS])s->poly, length, s->gain);
     }
 #endif

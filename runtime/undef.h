@@ -229,6 +229,7 @@
 #undef PL_VECTOR
 #undef PL_WATCHED
 #undef PL_WATCH_READS
+#undef PL_WAY
 #undef PL_WAVES
 #undef PL_WHOLE
 #undef PL_WIDE

@@ -201,7 +201,8 @@ static void emit_bound_rates(const struct emitter *e)
 
 static void emit_series_beside(const struct emitter *e)
 {
-	emit_series_functions(e);
+	if (!meets_contacts(e))
+		emit_series_functions(e);
 	emit_series_ahead(e);
 	emit_hidden_table(e);
 	emit_bound_rates(e);
@@ -236,13 +237,13 @@ static void emit_passage_limits(const struct emitter *e)
 {
 	emit_divided_macros(e);
 	say_macro(e, "MAX_SPLITS", whole_text(meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS));
-	say_macro(e, "TERMS", whole_text(terms_of_events(e)));
 	say_macro(e, "WATCH_READS", whole_text(watch_reads_known(e)));
 	if (!meets_contacts(e))
 		return;
 	say_macro(e, "EVENT_ORDER", whole_text(e->step->divided->order));
 	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->divided->columns));
-	say_macro(e, "CHOICES", whole_text(has_choices(meeting(e))));
+	if (!switches(e))
+		say_macro(e, "CHOICES", whole_text(has_choices(meeting(e))));
 }
 
 static void emit_include(const struct emitter *e)
@@ -253,7 +254,7 @@ static void emit_include(const struct emitter *e)
 		   { "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
-		   { "CONTACTS", meets_contacts(e) },
+		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
@@ -284,7 +285,7 @@ void emit_collocation_step(const struct emitter *e)
 	emit_inputs_now(e);
 	if (is_divided(e)) {
 		emit_divided_tables(meets_contacts(e) ? meeting(e) : e);
-		emit_passing_table(e, stages(e));
+		emit_passing_table(e, stages(e) + meets_contacts(e));
 	}
 	if (meets_contacts(e)) {
 		emit_event_tables(e);

@@ -305,19 +305,6 @@ static void settle_contacts(void *context)
 	find_contacts(context);
 }
 
-/* Of the two that scheme auto chooses between only series go from event to event. */
-static void stay_with_series(struct building *b)
-{
-	struct model *model = b->model;
-	if (!scheme_row(model->scheme)->switches || (model->impacts == 0 && !holds_friction(b)))
-		return;
-	say_note(model->asked.scheme_at, "scheme %s goes by series alone: its collocation does not go from event to "
-		 "event", scheme_name(model->scheme));
-	model->scheme = SCHEME_TAYLOR;
-	model->truncation.order = model->truncation.stages = 0;
-	choose_order(model, b->request->single);
-}
-
 /* Loads are not left over, where that is asked for in vain. */
 static void keep_loads(struct building *b, const char *why)
 {
@@ -338,7 +325,6 @@ static bool settle_scheme(struct building *b)
 	bool linear = is_linear(b) && model->impacts == 0;
 	if (model->impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
-	stay_with_series(b);
 	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
@@ -388,7 +374,7 @@ static bool is_stiff(struct building *b)
 static void prefer_stiff(struct building *b)
 {
 	struct model *model = b->model;
-	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || has_contacts(model) || !is_stiff(b))
+	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
 		return;
 	model->scheme = SCHEME_AUTO;
 	model->truncation.order = 0;

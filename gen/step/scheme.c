@@ -279,7 +279,7 @@ static void build_collocated_step(struct step *step)
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
-	build_series(step, has_contacts(step->model) ? AT_EVENTS : 0);
+	build_series(step, has_contacts(step->model) && !switches ? AT_EVENTS : 0);
 	divide_step(step);
 	step->collocation = collocation_of(step);
 	step->motion = motion_of(step);
