@@ -80,11 +80,17 @@ static void PL(use_segment)(real A[PL_SIZE][PL_SIZE], int segment)
 #endif
 }
 
+#if PL_SEGMENTS > 1
+#define PL_SEGMENT(s) (s)->segment
+#else
+#define PL_SEGMENT(s) 0
+#endif
+
 /* x goes on by tau [s]; `whole`: then to the state as it is known outside.  The segment in which that is */
 static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE], int whole, real tau, real x[PL_SIZE])
 {
     real A[PL_SIZE][PL_SIZE], work[2 * PL_SIZE], done = 0;
-    int i, j, segment = s->segment;
+    int i, j, segment = PL_SEGMENT(s);
     pl_series series;
     for (i = 0; i < PL_SIZE; i++) {
         for (j = 0; j < PL_SIZE; j++) {
@@ -96,6 +102,7 @@ static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE]
     series.degree = PL_DEGREE;
     series.halvings = PL_HALVINGS;
     series.A = A[0];
+#if PL_SEGMENTS > 1
     for (; segment < PL_SEGMENTS - 1 && PL(until)(s, segment) < tau; segment++) {
         const real ahead = PL(until)(s, segment);
         PL(use_segment)(A, segment);
@@ -107,6 +114,7 @@ static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE]
         PL(add_forced)(PL(forced_change)[segment], x);
 #endif
     }
+#endif
     PL(use_segment)(A, segment);
     pl_series_advance(&series, tau - done, x, work);
 #if PL_FORCED > 0
@@ -114,6 +122,7 @@ static int PL(pass_changes)(const PL_TYPE *s, const real slope[PL_SIZE][PL_SIZE]
         PL(add_forced)(PL(forced_part)[segment], x);
     }
 #endif
+    (void)s;
     (void)whole;
     return segment;
 }

@@ -15,6 +15,7 @@
 #undef PL_AT_BREAKPOINTS
 #undef PL_AT_ONCE
 #undef PL_BANKS
+#undef PL_BARE
 #undef PL_BASE
 #undef PL_BEATS
 #undef PL_BEND
@@ -33,7 +34,9 @@
 #undef PL_CHANGE
 #undef PL_CHANGES
 #undef PL_CHANGING
+#undef PL_CHANNEL
 #undef PL_CHECKS
+#undef PL_CHOICE
 #undef PL_CHOICES
 #undef PL_CLEARS
 #undef PL_COLUMNS
@@ -53,6 +56,7 @@
 #undef PL_DRIVEN
 #undef PL_EACH
 #undef PL_ELAPSED
+#undef PL_END
 #undef PL_ENDED
 #undef PL_ENTRIES
 #undef PL_EQUATIONS
@@ -120,6 +124,7 @@
 #undef PL_MEASURED
 #undef PL_MET
 #undef PL_MET_BY
+#undef PL_MIDDLE
 #undef PL_MODAL
 #undef PL_MODES
 #undef PL_MOMENTA
@@ -176,6 +181,7 @@
 #undef PL_SAMPLED
 #undef PL_SAMPLES
 #undef PL_SEARCH
+#undef PL_SEGMENT
 #undef PL_SEGMENTS
 #undef PL_SELECTOR
 #undef PL_SERVES

@@ -191,7 +191,7 @@ static void emit_passes(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	const char *which = many_operators(e) ? "which, " : "", *u = e->system->inputs ? "u, " : "";
-	const char *more = format("%s%s%s", which, u, e->step->layout.powers ? "NULL, " : "");
+	const char *more = format("%s%s%s", which, u, e->step->layout.powers == 1 ? "NULL, " : "");
 	if (adds_driven(e))
 		say(e, "        $n rest = *s;\n"
 		       "        for (i = 0; i < $N_STATES; i++) { rest.y[i] = 0.0; }\n");

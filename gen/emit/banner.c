@@ -553,6 +553,9 @@ static void banner_functions(const struct emitter *e)
 				   : "the samples to come are not known");
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);
+	else if (e->step->layout.powers == PARABOLA)
+		banner_sentence(e, "%s", spell(e, "$n_at is of fourth order: a parabola through what is left over at "
+						  "both ends and in the middle."));
 }
 
 static void banner_asides(const struct emitter *e)

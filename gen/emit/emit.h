@@ -407,6 +407,7 @@ void emit_series_slopes(const struct emitter *e);                  /* A, of x' =
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_vector_now(const struct emitter *e);                    /* NAME_vector_now(s, u, x) */
 void emit_at_by(const struct emitter *e, const char *function);   /* NAME_at, by NAME_function(s, u, tau, y) */
 void emit_at_start(const struct emitter *e);
 int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */

@@ -114,7 +114,7 @@ static const char *input_parameter(const struct emitter *e)
 
 static void emit_leftover_now(const struct emitter *e)
 {
-	if (e->step->layout.powers)
+	if (e->step->layout.powers == 1)
 		say(e, "    %s\n", leftover_of_step(e, 0, "s->y", "left"));
 }
 
@@ -123,7 +123,8 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	const struct layout *layout = &e->step->layout;
 	const bool whole = e->step->forced && e->system->segments == 1 && !e->model->relative;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
-	if (looped || layout->powers)
+	const int channels = layout->powers ? layout->powers * e->system->channels : 0;
+	if (looped || channels)
 		say(e, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
@@ -131,9 +132,17 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
-	if (layout->powers)
-		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n",
-		    e->system->channels, layout->channel, e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
+	if (channels)
+		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", channels, layout->channel,
+		    layout->powers > 1 ? "0.0" : e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
+}
+
+void emit_vector_now(const struct emitter *e)
+{
+	open_function(e, "x now", "static void $n_vector_now(const $n *s, const double u[], double x[%d])",
+		      e->step->layout.size);
+	emit_series_vector(e, false);
+	close_function(e, "u");
 }
 
 /* ---- loads that change their formula ---- */
@@ -168,8 +177,9 @@ static void emit_passing_algorithm(const struct emitter *e)
 {
 	const struct forced *forced = e->step->forced;
 	const int acting = e->step->layout.size - e->system->states;
-	const int blocks = e->system->segments == 1 ? count_blocks(e) : 0;
-	const struct load_slopes slopes = blocks ? (struct load_slopes){ .first = -1 } : load_slopes_of(e->step);
+	const bool changes = e->system->segments > 1;
+	const int blocks = !changes && is_blockwise(e) ? count_blocks(e) : 0;
+	const struct load_slopes slopes = changes ? load_slopes_of(e->step) : (struct load_slopes){ .first = -1 };
 	if (slopes.first >= 0)
 		emit_load_slopes(e, &slopes);
 	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
@@ -192,7 +202,7 @@ void emit_passing(const struct emitter *e)
 	open_function(e, "The state tau after now, from change to change of the loads on the way",
 		      "static %s $n_pass(const $n *s, %s%s%sdouble tau, %sdouble y[$N_STATES])",
 		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
-		      layout->powers ? "const double *left, " : "", forced ? "int whole, " : "");
+		      layout->powers == 1 ? "const double *left, " : "", forced ? "int whole, " : "");
 	say(e, "    double x[%d];\n", layout->size);
 	emit_series_vector(e, true);
 	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
@@ -282,7 +292,7 @@ void emit_at_by(const struct emitter *e, const char *function)
 static void emit_passing_at(const struct emitter *e)
 {
 	const char *which = e->step->branches > 1 ? "which, " : "", *u = given_inputs(e) ? "u, " : "";
-	const char *left = e->step->layout.powers ? "left, " : "", *whole = e->step->forced ? "1, " : "";
+	const char *left = e->step->layout.powers == 1 ? "left, " : "", *whole = e->step->forced ? "1, " : "";
 	bool relative = e->model->relative != NULL;
 	emit_leftover_now(e);
 	if (relative)
@@ -315,9 +325,74 @@ static void emit_series_at(const struct emitter *e)
 	emit_hand_over(e);
 }
 
+/* The point of a step that is p/2 h after its start, as the leftover counts them */
+static int point_at(const struct step *step, int p)
+{
+	RATIONAL part = ZERO;
+	int point = 0;
+	mpq_set_ui(part, (unsigned)p, 2);
+	mpq_canonicalize(part);
+	while (!mpq_equal(step->program->node[point], part))
+		point++;
+	return point;
+}
+
+static void emit_left_at(const struct emitter *e)
+{
+	open_function(e, NULL, "static void $n_left_at(const $n *s, int which, int point, const double *u, "
+		      "const double y[$N_STATES], double left[%d])", e->system->channels);
+	emit_samples(e);
+	say(e, "    $n_leftover(s, which, point, %s, y, left);\n", samples_of_step(e));
+	close_function(e, "u");
+}
+
+/* Which operator serves */
+static void emit_choice(const struct emitter *e)
+{
+	open_function(e, NULL, "static int $n_choice(const $n *s, const double *u)");
+	emit_samples(e);
+	say(e, "    (void)u;\n"
+	       "    return %s;\n", selection_call(e));
+	close_function(e, "");
+}
+
+static void emit_go_on(const struct emitter *e, bool blocks)
+{
+	open_function(e, NULL, "static void $n_go_on(const $n *s, int which, double tau, double *x)");
+	say(e, blocks ? "    $n_pass_blocks(%s, tau, x);\n" : "    (void)$n_pass_changes(s, %s, 0, tau, x);\n",
+	    slope_text(e));
+	close_function(e, "s which");
+}
+
+/* States under the parabola through what is left over at three points */
+static void emit_parabola(const struct emitter *e, bool blocks)
+{
+	const struct layout *layout = &e->step->layout;
+	emit_vector_now(e);
+	emit_left_at(e);
+	if (e->step->branches > 1)
+		emit_choice(e);
+	emit_go_on(e, blocks);
+	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", layout->size }, { "INPUTS", given_inputs(e) },
+		   { "CHANNEL", layout->channel }, { "FORCES", e->system->channels },
+		   { "MIDDLE", point_at(e->step, 1) }, { "END", point_at(e->step, 2) });
+	say_macro(e, "BARE", spell(e, has_peaks(e) ? "$n_one_step" : "$n_step"));
+	say_macro(e, "CHOICE(s, u)", e->step->branches > 1 ? spell(e, "$n_choice(s, u)") : "0");
+	say_include(e, "parabola.h");
+	emit_at_by(e, "state_at");
+}
+
 void emit_at(const struct emitter *e)
 {
 	bool changes = e->system->segments > 1;
+	if (e->step->layout.powers == PARABOLA) {
+		if (!changes)
+			emit_series_slopes(e);
+		if (!changes)
+			emit_passing_algorithm(e);
+		emit_parabola(e, !changes && is_blockwise(e));
+		return;
+	}
 	if (!changes && !has_peak_rows(e))
 		emit_series_slopes(e);
 	if (!changes && is_blockwise(e))

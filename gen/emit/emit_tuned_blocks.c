@@ -426,16 +426,6 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 });
 }
 
-static void emit_vector_now(const struct emitter *e)
-{
-	say(e, "\n/* x now */\n"
-	       "static void $n_vector_now(const $n *s, const double u[], double x[%d])\n"
-	       "{\n", e->step->layout.size);
-	emit_series_vector(e, false);
-	say(e, "    (void)u;\n"
-	       "}\n");
-}
-
 static void emit_group_call(const struct emitter *e, const struct tuned_block *first)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);

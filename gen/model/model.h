@@ -507,6 +507,7 @@ struct layout {
 	/* index of the first leftover; each is a chain of so many integrators, its force the first */
 	int channel, powers;
 };
+enum { PARABOLA = 3 };              /* powers of a leftover: its value and two derivatives */
 struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */
 /* the same, in all segments of time where that is at most twice as large */
 struct layout layout_of_segments(const struct linear *system, int powers);

@@ -151,9 +151,7 @@ const char *no_values_between(const struct step *step)
 	case KIND_COLLOCATED:
 		return NULL;
 	default:
-		return has_leftover(step) && !step->layout.powers
-			       ? "between its steps the scheme has no values of its order"
-			       : "the largest |pole| times h is above 8";
+		return "the largest |pole| times h is above 8";
 	}
 }
 
@@ -191,6 +189,9 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
+	else if (step->layout.powers == PARABOLA)
+		fprintf(to, "%s_at: what is exact under a parabola through what is left over, of fourth order in h.\n",
+			model->name);
 	else if (step->normal)
 		fprintf(to, "%s_at: the step's modes under the polynomial of its forces, by series of %d terms.\n",
 			model->name, step->normal->within.terms);

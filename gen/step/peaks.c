@@ -49,7 +49,7 @@ static const struct input *smooth_input(const struct model *model, const struct 
 static const char *objection(const struct step *step, const struct output *output)
 {
 	if (!step->series.emitted)
-		return has_leftover(step) ? "there is no NAME_at" : "the largest |pole| times h is above 8";
+		return "the largest |pole| times h is above 8";
 	const struct input *input = peaks_by_values(step) ? smooth_input(step->model, output) : NULL;
 	return input ? format("it reads %s, which goes through more than two samples", input->name) : NULL;
 }

@@ -95,6 +95,10 @@ static void build_with_leftover(struct step *step)
 	recipe->step = step;
 	recipe->program = step->program = NEW(struct program);
 	write_recipe(recipe);
+	if (step->layout.powers == PARABOLA) {  /* what NAME_at asks for */
+		add_node(recipe, 1, 2);
+		add_node(recipe, 1, 1);
+	}
 	make_tables(step, recipe->tables, recipe->table);
 	find_carries(step);
 	step->program->reads = ARRAY(bool, step->branch->system.states);
@@ -133,7 +137,8 @@ static void build_tuned_step(struct step *step)
 static void build_leftover_step(struct step *step)
 {
 	need_one_word(step);
-	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover);
+	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover ? 1
+							: step->kind == KIND_LEFTOVER ? PARABOLA : 0);
 	build_with_leftover(step);
 	series_plan(step);
 }

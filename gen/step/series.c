@@ -151,9 +151,9 @@ void series_plan(struct step *step)
 	struct series *series = &step->series;
 	REAL angle = WITH_BITS(BITS);
 	largest_angle(step, 0, step->branches, angle);
-	/* what is left over is held over the step, or there is none */
-	bool held = !has_leftover(step) || step->layout.powers > 0;
-	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
+	/* what is left over is a polynomial in the step, or there is none */
+	bool known = !has_leftover(step) || step->layout.powers > 0;
+	series->emitted = known && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* parabola.h: states inside a step of a scheme whose leftovers are those of points in it: what is exact goes on under
+ * the parabola through what is left over at both ends and in the middle, where the state is that under the chord.  Off
+ * by the fourth power of h, as a step of the fourth order is over all, times the third derivative of what is left over;
+ * what it misses at the end of the step is taken back by the cube of the time, so that values meet those of the steps.
+ * Included by the file of the model behind its step, which defines before it
+ *
+ *     PL_TYPE                    the model, with member y
+ *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_CHANNEL on of each of
+ *     PL_FORCES                  leftovers its value and two derivatives
+ *     PL_MIDDLE, PL_END          points of the step: as PL(left_at) counts them, whose first is 0
+ *     PL_BARE                    the step that looks for no peaks
+ *     PL_CHOICE(s, u)            operator that serves
+ *
+ *     PL(vector_now)(s, u, x)              x at the start of the step, nothing left over
+ *     PL(go_on)(s, which, tau, x)          e^{A tau} x
+ *     PL(left_at)(s, which, point, u, y, left)   what is left over at state y */
+#include "numbers.h"
+
+/* x, part of h after now, of leftovers at 0, 1/2 and 1 h */
+static void PL(under)(const PL_TYPE *s, const real *u, int which, real left[3][PL_FORCES], real part, real x[PL_SIZE])
+{
+    int i;
+    PL(vector_now)(s, u, x);
+    for (i = 0; i < PL_FORCES; i++) {
+        real *const of = x + PL_CHANNEL + 3 * i;
+        of[0] = left[0][i];
+        of[1] = (4 * left[1][i] - 3 * left[0][i] - left[2][i]) / PL_H;
+        of[2] = 4 * ((left[0][i] - left[1][i]) + (left[2][i] - left[1][i])) / PL_H / PL_H;
+    }
+    PL(go_on)(s, which, part * PL_H, x);
+}
+
+/* y tau [s] after now */
+static PL_APART void PL(state_at)(const PL_TYPE *s, const real *u, real tau, real y[PL_STATES])
+{
+    const int which = PL_CHOICE(s, u);
+    const real part = tau / PL_H;
+    PL_TYPE end = *s;
+    real left[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
+    int i;
+#if PL_INPUTS > 0
+    PL_BARE(&end, u);
+#else
+    PL_BARE(&end);
+#endif
+    PL(left_at)(s, which, 0, u, s->y, left[0]);
+    PL(left_at)(s, which, PL_END, u, end.y, left[2]);
+    for (i = 0; i < PL_FORCES; i++) {
+        left[1][i] = (left[0][i] + left[2][i]) / 2;
+    }
+    PL(under)(s, u, which, left, (real)1 / 2, x);
+    PL(left_at)(s, which, PL_MIDDLE, u, x, left[1]);
+    PL(under)(s, u, which, left, 1, x);
+    for (i = 0; i < PL_STATES; i++) {
+        missed[i] = end.y[i] - x[i];
+    }
+    PL(under)(s, u, which, left, part, x);
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] = part > 0 ? x[i] + part * part * part * missed[i] : s->y[i];
+    }
+}
+
+#include "undef.h"
