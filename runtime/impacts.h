@@ -12,6 +12,7 @@ typedef pl_guards searched, contacts;
 enum { MOST = 6 };
 
 #include "contacts.h"
+#include "agree.h"
 
 /* ---- regions ---- */
 
@@ -31,8 +32,6 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
     }
 }
 
-/* Of one expression: between the numbers of regions one of its intervals apart; its interval in a region; its
- * breakpoints */
 static PL_APART int stride_of(const pl_guards *m, int expression)
 {
     int stride = 1, i;
@@ -45,6 +44,16 @@ static PL_APART int stride_of(const pl_guards *m, int expression)
 static PL_APART int interval_in(const pl_guards *m, int region, int expression)
 {
     return region / stride_of(m, expression) % (m->breaks[expression] + 1);
+}
+
+static int is_possible(const pl_guards *m, int region)
+{
+    return m->matrix[region] >= 0;
+}
+
+static int region_now(const instant *at)
+{
+    return at->c->region;
 }
 
 static const real *breakpoints_of(const pl_guards *m, int expression)
@@ -88,7 +97,7 @@ static void renew(const pl_guards *m, instant *at)
 
 static int can_be(const pl_guards *m, const instant *at)
 {
-    return m->matrix[at->c->region] >= 0;
+    return is_possible(m, at->c->region);
 }
 
 static void keep(const pl_guards *m, instant *at)
@@ -303,17 +312,16 @@ static int rises(const pl_guards *m, int region, int k, const real *x, real *wor
     return heading(n, matrix_of(m->A, m, m->matrix[region]), m->gate + (ptrdiff_t)m->guard[k].row * n, x, work) > 0;
 }
 
-/* Whether a guard of what sticks lets it */
-static int is_held(const pl_guards *m, int region, int expression, const real *x, real *work)
+static int holds_in(const pl_guards *m, instant *at, int region, int expression)
 {
     int k;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
-        const real pull = m->guard[k].expression == expression ? pull_of(m, k, x) : -1;
-        if (pull > 0 || (pull >= 0 && rises(m, region, k, x, work))) {
+        const real pull = m->guard[k].expression == expression ? pull_of(m, k, at->x) : -1;
+        if (pull > 0 || (pull >= 0 && rises(m, region, k, at->x, at->work))) {
             return 0;
         }
     }
-    return 1;
+    return 2;
 }
 
 /* Whether what would be held there is let go to this side at this instant, by a force that is at its limit but for
@@ -334,65 +342,16 @@ static int is_let_go(const pl_guards *m, int region, int expression, int side, c
     return 0;
 }
 
-/* Where an expression is heading in a region */
-static int heading_in(const pl_guards *m, const instant *at, int region, int expression)
+static int is_freed(const pl_guards *m, const instant *at, int region, const resting *one, int side, int known)
 {
-    return heading(m->size, matrix_of(m->A, m, m->matrix[region]), m->row + expression * m->size, at->x, at->work);
+    (void)known;
+    return is_let_go(m, region, one->expression, side, at->x, at->work);
 }
 
-/* Whether others hold it already where it neither sticks nor rests, for no region holds it twice: friction slips there
- * as it would but for the contacts at rest. */
-static int is_spared(const pl_guards *m, const instant *at, int region, const resting *r, int count, const resting *of,
-                     int side)
+static int heading_in(const pl_guards *m, instant *at, int region, const resting *one, int *known)
 {
-    int flying = region, i;
-    const int stuck = region - side * stride_of(m, of->expression);
-    if (m->matrix[stuck] >= 0 || of->impact >= 0) {
-        return m->matrix[stuck] < 0;
-    }
-    for (i = 0; i < count; i++) {
-        if (r[i].impact >= 0 && interval_in(m, region, r[i].expression) == r[i].held) {
-            flying += (free_of(m, r[i].impact) - r[i].held) * stride_of(m, r[i].expression);
-        }
-    }
-    return m->matrix[flying] >= 0 && heading_in(m, at, flying, of->expression) == side;
-}
-
-/* Whether one of them agrees with a region: what sticks is held, what slips moves away as it does there */
-static int agrees_one(const pl_guards *m, const instant *at, int region, const resting *r, int count,
-                      const resting *one)
-{
-    const int side = interval_in(m, region, one->expression) - one->held;
-    int way;
-    if (one->impact >= 0 && side == 0 && speed_of(m, at, one->impact) < 0) {
-        return 0;
-    }
-    if (one->impact >= 0 && side == (m->impact[one->impact].upward ? 1 : -1)) {
-        return 0;
-    }
-    if (side == 0) {
-        return is_held(m, region, one->expression, at->x, at->work);
-    }
-    way = heading_in(m, at, region, one->expression);
-    return way == side || (way == 0 && is_spared(m, at, region, r, count, one, side)) ||
-           is_let_go(m, region, one->expression, side, at->x, at->work);
-}
-
-static int agrees(const pl_guards *m, instant *at, const resting *r, int count, const int *interval)
-{
-    int region = at->c->region, i;
-    for (i = 0; i < count; i++) {
-        region += (interval[i] - interval_in(m, region, r[i].expression)) * stride_of(m, r[i].expression);
-    }
-    if (m->matrix[region] < 0) {
-        return 0;
-    }
-    for (i = 0; i < count; i++) {
-        if (!agrees_one(m, at, region, r, count, &r[i])) {
-            return 0;
-        }
-    }
-    return 2;
+    (void)known;
+    return heading(m->size, matrix_of(m->A, m, m->matrix[region]), m->row + one->expression * m->size, at->x, at->work);
 }
 
 static int is_pressed(const pl_guards *m, const instant *at, int impact)

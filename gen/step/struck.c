@@ -32,6 +32,7 @@ struct bound {                      /* an impact in this segment of time */
 };
 
 struct law {
+	const struct switching *s;
 	int segment, impacts, max_events;
 	bool solution;
 	double h, calm, brief, span;
@@ -53,9 +54,9 @@ static real magnitude(real a)
 	return fabs(a);
 }
 
-static int interval_in(const struct through *t, int region, int expression)
+static int interval_in(const struct law *m, int region, int expression)
 {
-	return interval_of(t->s, region, expression);
+	return interval_of(m->s, region, expression);
 }
 
 static int place_of_rest(const struct through *t, const struct impact *p)
@@ -67,6 +68,7 @@ static int place_of_rest(const struct through *t, const struct impact *p)
 #define rest_of rest_in
 #define give_up end_impacts
 #include "contacts.h"
+#include "agree.h"
 
 /* ---- impacts of a segment of time ---- */
 
@@ -111,7 +113,7 @@ static const struct law *law_of(struct through *t)
 	if (!t->law)
 		t->chain = no_impact(mpq_get_d(t->whole->h));
 	struct law *m = NEW(struct law);
-	*m = (struct law){ .segment = t->segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
+	*m = (struct law){ .s = t->s, .segment = t->segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
 			   .solution = solution, .h = mpq_get_d(t->whole->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
 			   .brief = coarse ? 0x1p-10 : 0x1p-23, .span = coarse ? 0x1p-8 : 0x1p-10 };
 	m->impact = ARRAY(struct bound, (size_t)m->impacts + 1);
@@ -159,14 +161,12 @@ static real step_of(const contacts *m)
 
 static int interval_of(const contacts *m, const instant *t, int expression)
 {
-	(void)m;
-	return interval_in(t, t->region, expression);
+	return interval_in(m, t->region, expression);
 }
 
 static int interval_before(const contacts *m, const instant *t, int expression)
 {
-	(void)m;
-	return interval_in(t, t->before, expression);
+	return interval_in(m, t->before, expression);
 }
 
 static void go_to(const contacts *m, instant *t, int expression, int interval)
@@ -182,10 +182,24 @@ static void renew(const contacts *m, instant *t)
 	(void)t;
 }
 
+static int stride_of(const contacts *m, int expression)
+{
+	return m->s->expression[expression].stride;
+}
+
+static int is_possible(const contacts *m, int region)
+{
+	return m->s->region[region].possible;
+}
+
+static int region_now(const instant *t)
+{
+	return t->region;
+}
+
 static int can_be(const contacts *m, const instant *t)
 {
-	(void)m;
-	return t->s->region[t->region].possible;
+	return is_possible(m, t->region);
 }
 
 static int rest_of(const contacts *m, int k)
@@ -408,9 +422,10 @@ static int find_resting(const contacts *m, const instant *t, resting *found)
 	return count;
 }
 
-/* 2: its force holds it in a region, 0: it does not, 1: not known */
-static int is_held(const instant *t, const struct area *area, int expression)
+static int holds_in(const contacts *m, instant *t, int region, int expression)
 {
+	const struct area *area = through_area(t, region);
+	(void)m;
 	for (int k = 0; k < area->gates; k++) {
 		const struct gate *gate = &area->gate[k];
 		bool known;
@@ -427,55 +442,20 @@ static int is_held(const instant *t, const struct area *area, int expression)
 	return 2;
 }
 
-/* Whether others hold it already where it neither sticks nor rests: as the target has it */
-static bool is_spared(const contacts *m, instant *t, int region, const resting *r, int count, const resting *of,
-		      int side)
+static int heading_in(const contacts *m, instant *t, int region, const resting *one, int *known)
 {
-	const int stuck = region - side * t->s->expression[of->expression].stride;
-	int flying = region;
-	bool known;
-	if (t->s->region[stuck].possible || of->impact >= 0)
-		return !t->s->region[stuck].possible;
-	for (int i = 0; i < count; i++)
-		if (r[i].impact >= 0 && interval_in(t, region, r[i].expression) == r[i].held)
-			flying += (free_of(m, r[i].impact) - r[i].held) * t->s->expression[r[i].expression].stride;
-	return t->s->region[flying].possible &&
-	       through_heads(t, through_area(t, flying), of->expression, false, &known) == side && known;
-}
-
-/* Whether one of them agrees with a region: 2, 1: not known, 0 */
-static int agrees_one(const contacts *m, instant *t, int region, const resting *r, int count, const resting *one)
-{
-	const struct area *area = through_area(t, region);
-	const int side = interval_in(t, region, one->expression) - one->held, goes = side_let_go(t, one->expression);
-	bool known;
-	if (one->impact >= 0 && side == 0 && speed_of(m, t, one->impact) < 0)
-		return 0;
-	if (one->impact >= 0 && side == (m->impact[one->impact].upward ? 1 : -1))
-		return 0;
-	if (side == 0)
-		return is_held(t, area, one->expression);
-	if (side == goes && one->impact >= 0)
-		return 2;
 	const bool still = one->impact >= 0 && is_still(m, t, one->impact);
-	const int way = through_heads(t, area, one->expression, still, &known);
-	if (!known)
-		return side == goes ? 2 : 1;
-	return way == side || (way == 0 && is_spared(m, t, region, r, count, one, side)) ? 2 : 0;
+	bool told;
+	const int way = through_heads(t, through_area(t, region), one->expression, still, &told);
+	*known = told;
+	return way;
 }
 
-static int agrees(const contacts *m, instant *t, const resting *r, int count, const int *interval)
+static int is_freed(const contacts *m, const instant *t, int region, const resting *one, int side, int known)
 {
-	int region = t->region, agreed = 2;
-	for (int i = 0; i < count; i++)
-		region += (interval[i] - interval_of(m, t, r[i].expression)) * t->s->expression[r[i].expression].stride;
-	if (!t->s->region[region].possible)
-		return 0;
-	for (int i = 0; i < count && agreed != 0; i++) {
-		const int one = agrees_one(m, t, region, r, count, &r[i]);
-		agreed = one < agreed ? one : agreed;
-	}
-	return agreed;
+	(void)m;
+	(void)region;
+	return side == side_let_go(t, one->expression) && (one->impact >= 0 || !known);
 }
 
 static int is_pressed(const contacts *m, const instant *t, int k)
@@ -520,7 +500,7 @@ static void note_touching(const struct law *m, struct through *t)
 {
 	for (int k = 0; k < m->impacts; k++) {
 		const struct bound *b = &m->impact[k];
-		const bool rested = b->rest >= 0 && interval_in(t, t->before, b->expression) == b->rest,
+		const bool rested = b->rest >= 0 && interval_in(m, t->before, b->expression) == b->rest,
 			   struck = t->told->struck >> k & 1 && !(b->restitution > 0);
 		if (b->rest < 0 || !(rested || struck) || rests(m, t, k) || !touches(m, t, k) ||
 		    fabs(speed_of(m, t, k)) > 0)
