@@ -566,6 +566,12 @@ static void try_variant(const char *text, const struct judge *j, const struct va
             complain(format("refused: %s", said));
         return;
     }
+    if (v->form == FORM_KICK_DRIFT_KICK && step->form != v->form) {
+        trial.compared++;
+        if (!strstr(diagnostics(), "stands aside"))
+            complain("another form, of which nothing is said");
+        return;
+    }
     if (!may) {
         complain("accepted, though it cannot be");
         return;
