@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Peers on any model that are not of the kept charts. Where a model has inputs, integrators stop at every output: inputs
- * have corners, or jumps, there. */
+/* Peers on any model that are not of the kept charts. Where a model has inputs, integrators stop at every output:
+ * inputs have corners, or jumps, there. */
 #ifndef PEERS_H
 #define PEERS_H
 
