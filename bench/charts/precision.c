@@ -113,48 +113,25 @@ struct ours {
 	bool over;                      /* one expansion is over several units */
 };
 
+#define EXACT(NAME, OPTIONS) {.name = NAME, .options = OPTIONS, .exact = true}
+#define LEFT(NAME) {.name = NAME, .options = "--scheme " NAME}
+#define CHOSEN(NAME) {.name = NAME, .options = "--scheme " NAME, .series = true, .tolerance = true}
+#define SERIES(NAME) {.name = "taylor " NAME, .options = "'--scheme=taylor " NAME "'", .series = true}
+#define OVER(NAME) {.name = "taylor " NAME, .options = "'--scheme=taylor " NAME "'", .series = true, .over = true}
+#define MODES(NAME, OPTIONS) {.name = NAME, .options = OPTIONS, .modes = true}
 static const struct ours ours[] = {
-	{ .name = "exact", .options = "", .exact = true },
-	{ .name = "exact, direct", .options = "--form direct", .exact = true },
-	{ .name = "exact, delta", .options = "--form delta", .exact = true },
-	{ .name = "exact, kick-drift-kick", .options = "--form kick-drift-kick", .exact = true },
-	{ .name = "exact, compensated", .options = "--accuracy compensated", .exact = true },
-	{ .name = "exact, float", .options = "--real float", .exact = true },
-	{ .name = "exact, float, delta", .options = "--real float --form delta", .exact = true },
-	{ .name = "exact, float, kick-drift-kick", .options = "--real float --form kick-drift-kick", .exact = true },
-	{ .name = "exact, float, compensated", .options = "--real float --accuracy compensated", .exact = true },
-	{ .name = "pl", .options = "--scheme pl" },
-	{ .name = "etd1", .options = "--scheme etd1" },
-	{ .name = "etdrk2", .options = "--scheme etdrk2" },
-	{ .name = "etdrk4", .options = "--scheme etdrk4" },
-	{ .name = "nc2", .options = "--scheme nc2" },
-	{ .name = "nc3", .options = "--scheme nc3" },
-	{ .name = "dq4", .options = "--scheme dq4" },
-	{ .name = "bm3", .options = "--scheme bm3" },
-	{ .name = "taylor", .options = "--scheme taylor", .series = true, .tolerance = true },
-	{ .name = "radau", .options = "--scheme radau", .series = true, .tolerance = true },
-	{ .name = "auto", .options = "--scheme auto", .series = true, .tolerance = true },
-	{ .name = "taylor 4", .options = "'--scheme=taylor 4'", .series = true },
-	{ .name = "taylor 5", .options = "'--scheme=taylor 5'", .series = true },
-	{ .name = "taylor 6", .options = "'--scheme=taylor 6'", .series = true },
-	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
-	{ .name = "taylor 9", .options = "'--scheme=taylor 9'", .series = true },
-	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
-	{ .name = "taylor 4 over 2", .options = "'--scheme=taylor 4 over 2'", .series = true, .over = true },
-	{ .name = "taylor 5 over 2", .options = "'--scheme=taylor 5 over 2'", .series = true, .over = true },
-	{ .name = "taylor 6 over 2", .options = "'--scheme=taylor 6 over 2'", .series = true, .over = true },
-	{ .name = "taylor 6 over 3", .options = "'--scheme=taylor 6 over 3'", .series = true, .over = true },
-	{ .name = "taylor 6 over 4", .options = "'--scheme=taylor 6 over 4'", .series = true, .over = true },
-	{ .name = "taylor 8 over 2", .options = "'--scheme=taylor 8 over 2'", .series = true, .over = true },
-	{ .name = "taylor 8 over 3", .options = "'--scheme=taylor 8 over 3'", .series = true, .over = true },
-	{ .name = "taylor 8 over 4", .options = "'--scheme=taylor 8 over 4'", .series = true, .over = true },
-	{ .name = "taylor 12 over 2", .options = "'--scheme=taylor 12 over 2'", .series = true, .over = true },
-	{ .name = "taylor 12 over 3", .options = "'--scheme=taylor 12 over 3'", .series = true, .over = true },
-	{ .name = "etdam4", .options = "--scheme etdam4", .modes = true },
-	{ .name = "etdam5", .options = "--scheme etdam5", .modes = true },
-	{ .name = "etdam6", .options = "--scheme etdam6", .modes = true },
-	{ .name = "etdcol 4", .options = "'--scheme=etdcol 4'", .modes = true },
-	{ .name = "etdcol 6", .options = "'--scheme=etdcol 6'", .modes = true },
+	EXACT("exact", ""), EXACT("exact, direct", "--form direct"), EXACT("exact, delta", "--form delta"),
+	EXACT("exact, kick-drift-kick", "--form kick-drift-kick"), EXACT("exact, compensated", "--accuracy compensated"),
+	EXACT("exact, float", "--real float"), EXACT("exact, float, delta", "--real float --form delta"),
+	EXACT("exact, float, kick-drift-kick", "--real float --form kick-drift-kick"),
+	EXACT("exact, float, compensated", "--real float --accuracy compensated"),
+	LEFT("pl"), LEFT("etd1"), LEFT("etdrk2"), LEFT("etdrk4"), LEFT("nc2"), LEFT("nc3"), LEFT("dq4"), LEFT("bm3"),
+	CHOSEN("taylor"), CHOSEN("radau"), CHOSEN("auto"),
+	SERIES("4"), SERIES("5"), SERIES("6"), SERIES("8"), SERIES("9"), SERIES("12"),
+	OVER("4 over 2"), OVER("5 over 2"), OVER("6 over 2"), OVER("6 over 3"), OVER("6 over 4"), OVER("8 over 2"),
+	OVER("8 over 3"), OVER("8 over 4"), OVER("12 over 2"), OVER("12 over 3"),
+	MODES("etdam4", "--scheme etdam4"), MODES("etdam5", "--scheme etdam5"), MODES("etdam6", "--scheme etdam6"),
+	MODES("etdcol 4", "'--scheme=etdcol 4'"), MODES("etdcol 6", "'--scheme=etdcol 6'"),
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
@@ -429,48 +406,38 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 
 int main(int argc, char **argv)
 {
-	bool list = false, names = false, scales = false, errors = false, quick = false;
-	int at = 1;
-	for (; at < argc && argv[at][0] == '-'; at++) {
-		list = list || strcmp(argv[at], "--list") == 0;
-		scales = scales || strcmp(argv[at], "--scales") == 0;
-		names = names || strcmp(argv[at], "--names") == 0;
-		errors = errors || strcmp(argv[at], "--errors") == 0;
-		quick = quick || strcmp(argv[at], "--quick") == 0;
-	}
+	const unsigned flags = flags_of(argc, &argv, "--quick --list --names --scales --errors", 0, MODELS + 2,
+		"precision --list [--quick] [MODEL...]\n"
+		"       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		"       precision --names [--quick] [MODEL...]\n"
+		"       precision --errors [--quick] VARIANTS [MODEL...]\n"
+		"       precision --scales [--quick] VARIANTS [MODEL...]");
+	const bool quick = flags & 1, list = flags & 2, names = flags & 4, scales = flags & 8, errors = flags & 16;
 	const int files = list || names ? 0 : scales || errors ? 1 : 2;
-	if (argc - at < files) {
-		fputs("usage: precision --list [--quick] [MODEL...]\n"
-		      "       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
-		      "       precision --names [--quick] [MODEL...]\n"
-		      "       precision --errors [--quick] VARIANTS [MODEL...]\n"
-		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
-		return 2;
-	}
-	FILE *out = files < 2 ? stdout : fopen(argv[at + 1], "w");
+	int named = 0;
+	while (argv[files + named])
+		named++;
+	FILE *out = files < 2 ? stdout : fopen(argv[1], "w");
 	if (!out) {
-		perror(argv[at + 1]);
+		perror(argv[1]);
 		return 1;
 	}
 	if (files == 2)
 		put_head(out);
-	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
-		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
-		if (argc == at + files && quick && !scales && !m->quick)
+	for (int i = 0; i < (named > 0 ? named : MODELS); i++) {
+		const struct charted *m = named > 0 ? model_named(argv[files + i]) : &models[i];
+		if (named == 0 && quick && !scales && !m->quick)
 			continue;
 		if (names)
 			puts(m->name);
 		else if (list)
 			list_model(m, quick);
 		else if (scales)
-			say_scales(out, m, argv[at], quick);
+			say_scales(out, m, argv[0], quick);
 		else
-			measure(errors ? NULL : out, m, argv[at], quick, quick ? 0.5 : 5);
+			measure(errors ? NULL : out, m, argv[0], quick, quick ? 0.5 : 5);
 		fflush(out);
 	}
-	if (ferror(out) || fclose(out) != 0) {
-		fputs("precision: cannot write the table\n", stderr);
-		return 1;
-	}
+	table_close(out, "precision");
 	return 0;
 }

@@ -56,40 +56,13 @@ static int push(struct tape *x, enum op op, int a, int b, quad factor)
 	return x->count++;
 }
 
-static int add(struct tape *x, int a, int b)
-{
-	return push(x, ADD, a, b, 0);
-}
-
-static int subtract(struct tape *x, int a, int b)
-{
-	return push(x, SUBTRACT, a, b, 0);
-}
-
-static int times(struct tape *x, int a, int b)
-{
-	return push(x, TIMES, a, b, 0);
-}
-
-static int over(struct tape *x, int a, int b)
-{
-	return push(x, OVER, a, b, 0);
-}
-
-static int scaled(struct tape *x, quad factor, int a)
-{
-	return push(x, SCALED, a, a, factor);
-}
-
-static int shifted(struct tape *x, quad by, int a)
-{
-	return push(x, SHIFTED, a, a, by);
-}
-
-static int root(struct tape *x, int a)
-{
-	return push(x, ROOT, a, a, 0);
-}
+#define add(x, a, b) push(x, ADD, a, b, 0)
+#define subtract(x, a, b) push(x, SUBTRACT, a, b, 0)
+#define times(x, a, b) push(x, TIMES, a, b, 0)
+#define over(x, a, b) push(x, OVER, a, b, 0)
+#define scaled(x, factor, a) push(x, SCALED, a, 0, factor)
+#define shifted(x, by, a) push(x, SHIFTED, a, 0, by)
+#define root(x, a) push(x, ROOT, a, 0, 0)
 
 /* The sine; its cosine is the node after it */
 static int sine(struct tape *x, int a)

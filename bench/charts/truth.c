@@ -25,6 +25,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define NUMBER long double
+#include "equations.h"
+
 typedef __float128 quad;
 enum { MOST = 64 };                 /* entries of a state, load states included */
 
@@ -191,43 +194,13 @@ struct equations {
 	int parts;
 };
 
-static void pendulum(const struct problem *p, real t, const real *y, real *dydt)
-{
-	(void)p, (void)t;
-	dydt[0] = y[1];
-	dydt[1] = -sinl(y[0]);
+#define SMOOTH(NAME, N) \
+static void NAME##_of(const struct problem *p, real t, const real *y, real *dydt) \
+{ \
+	(void)p; \
+	NAME##_slopes(t, y, dydt); \
 }
-
-static void vanderpol(const struct problem *p, real t, const real *y, real *dydt)
-{
-	(void)t;
-	dydt[0] = y[1];
-	const real mu = strcmp(p->name, "vanderpol") == 0 ? 1 : strcmp(p->name, "vanderpol_stiff") == 0 ? 100 : 1000;
-	dydt[1] = mu * (1 - y[0] * y[0]) * y[1] - y[0];
-}
-
-static void quad2dof(const struct problem *p, real t, const real *y, real *dydt)
-{
-	(void)p, (void)t;
-	dydt[0] = y[2];
-	dydt[1] = y[3];
-	dydt[2] = -y[0] - 2 * y[0] * y[1];
-	dydt[3] = -y[1] - y[0] * y[0] + y[1] * y[1];
-}
-
-static void duffing(const struct problem *p, real t, const real *y, real *dydt)
-{
-	(void)p;
-	dydt[0] = y[1];
-	dydt[1] = 0.5L * cosl(1.4L * t) - 0.2L * y[1] - y[0] - y[0] * y[0] * y[0];
-}
-
-static void mathieu(const struct problem *p, real t, const real *y, real *dydt)
-{
-	(void)p;
-	dydt[0] = y[1];
-	dydt[1] = -0.1L * y[1] - (1 - 0.4L * cosl(2 * t)) * y[0];
-}
+EQUATIONS(SMOOTH)
 
 /* tests/leftover/cantilever.h, whose folder has a hand.h of its own */
 real cantilever_speed(real Om, real t, real *slope);
@@ -276,14 +249,9 @@ static void as_emitted(const struct problem *p, real t, const real *y, real *dyd
 		dydt[i] = slope[i];
 }
 
+#define SMOOTH_ROW(NAME, N) { #NAME, NAME##_of, 1e-16L, 0 },
 static const struct equations by_hand[] = {
-	{ "pendulum", pendulum, 1e-16L, 0 },
-	{ "vanderpol", vanderpol, 1e-16L, 0 },
-	{ "vanderpol_stiff", vanderpol, 1e-16L, 0 },
-	{ "vanderpol_stiffer", vanderpol, 1e-16L, 0 },
-	{ "quad2dof", quad2dof, 1e-16L, 0 },
-	{ "duffing", duffing, 1e-16L, 0 },
-	{ "mathieu", mathieu, 1e-16L, 0 },
+	EQUATIONS(SMOOTH_ROW)
 	{ "half_car_lifting", half_car_lifting, 1e-16L, 0 },
 	{ "beam4", beam, 1e-13L, 40 },
 	{ "beam15", beam, 1e-13L, 40 },
