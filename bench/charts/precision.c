@@ -121,7 +121,8 @@ struct ours {
 #define MODES(NAME, OPTIONS) {.name = NAME, .options = OPTIONS, .modes = true}
 static const struct ours ours[] = {
 	EXACT("exact", ""), EXACT("exact, direct", "--form direct"), EXACT("exact, delta", "--form delta"),
-	EXACT("exact, kick-drift-kick", "--form kick-drift-kick"), EXACT("exact, compensated", "--accuracy compensated"),
+	EXACT("exact, kick-drift-kick", "--form kick-drift-kick"),
+	EXACT("exact, compensated", "--accuracy compensated"),
 	EXACT("exact, float", "--real float"), EXACT("exact, float, delta", "--real float --form delta"),
 	EXACT("exact, float, kick-drift-kick", "--real float --form kick-drift-kick"),
 	EXACT("exact, float, compensated", "--real float --accuracy compensated"),
