@@ -2,8 +2,8 @@
 /* truths VARIANTS: what the charts hold errors against, Taylor series in quadruple precision, beside the other road,
  * extrapolation in long double on equations written a second time (equations.h, which peers have in double). Their
  * difference is stated; it is what long double loses, so its bound is each model's own. And NAME_rhs must be the same
- * model: agreement. VARIANTS: what truths.sh made. With LONG in the environment over all of the time, else the first part of what takes
- * long; of stiff motion what is left has a jump. */
+ * model: agreement. VARIANTS: what truths.sh made. With LONG in the environment over all of the time, else the first
+ * part of what takes long; of stiff motion what is left has a jump. */
 #include <math.h>
 #include <stdlib.h>
 
