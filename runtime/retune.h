@@ -19,6 +19,7 @@
  *     PL_PEAKS                   outputs that are peaks, of peaks.h
  *     PL_WORK, PL_PASS_WORK, PL_SIZE            numbers of two words that a retune works in, a state between; of x
  *     PL_BLOCKS                  for the state at any time; 0: it is not asked for
+ *     PL_JUMPS                   1: PL(jump), by that; PL(pass_steps)(s, n) moves the rest of it n steps on
  *
  *     PL(nominal), PL(until)     the spec's coefficients; time to a change of the loads
  *     PL(retune_groups)(c, params, h, value, work)   each group by PL(retune_group), if there is one
@@ -516,5 +517,27 @@ static void PL(pass)(const PL_TYPE *s, const real u[], real tau, real y[PL_STATE
     }
 #endif
 }
+
+#if PL_JUMPS
+static void PL(pass_steps)(PL_TYPE *s, uint64_t n);
+#if PL_SEGMENTS > 1
+static inline void PL(pass_segments)(PL_TYPE *s);
+#endif
+
+/* n steps at once: by e^{A n h} of the instance's own params */
+void PL(jump)(PL_TYPE *s, uint64_t n)
+{
+    real y[PL_STATES];
+    int i;
+    PL(pass)(s, NULL, (real)n * s->coeffs.h, y);
+    for (i = 0; i < PL_STATES && n > 0u; i++) {
+        s->y[i] = y[i];
+    }
+    PL(pass_steps)(s, n);
+#if PL_SEGMENTS > 1
+    PL(pass_segments)(s);
+#endif
+}
+#endif
 #endif
 #include "undef.h"

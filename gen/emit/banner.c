@@ -550,6 +550,7 @@ static void banner_functions(const struct emitter *e)
 		    e->kind->no_jump  ? e->kind->no_jump
 		    : has_peaks(e) ? "peaks are found step by step"
 		    : has_ranges(e) ? "ranges are looked at step by step"
+		    : e->kind->own_factors && no_at ? no_at
 				   : "the samples to come are not known");
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);

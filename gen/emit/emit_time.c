@@ -483,9 +483,12 @@ static void emit_pass_steps(const struct emitter *e)
 	close_function(e, "");
 }
 
-
 void emit_jump(const struct emitter *e)
 {
+	if (e->kind->own_factors) {     /* retune.h has it */
+		emit_pass_steps(e);
+		return;
+	}
 	const struct leap leap = leap_of(e->step);
 	struct leap_entry *entry;
 	const int entries = leap_entries_of(e->step, &leap, &entry);

@@ -423,7 +423,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
 		   { "PEAKS", has_peak_rows(e) ? peak_outputs(e->model) : 0 },
 		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
-		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 });
+		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 }, { "JUMPS", has_jump(e) });
 }
 
 static void emit_group_call(const struct emitter *e, const struct tuned_block *first)

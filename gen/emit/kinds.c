@@ -22,7 +22,6 @@ static const struct kind linear = {
 
 static const struct kind tuned = {
 	.banner = banner_linear,
-	.no_jump = "retuned coefficients have one word",
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.own_factors = true,
 	.step = emit_step,

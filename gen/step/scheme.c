@@ -260,7 +260,6 @@ static void divide_step(struct step *step)
 
 static void build_expanded_step(struct step *step)
 {
-	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step, 0);
@@ -276,7 +275,6 @@ static void build_collocated_step(struct step *step)
 	enum { AT_EVENTS = 4 };         /* derivatives that say what holds, slips or flies there */
 	bool switches = scheme_row(step->model->scheme)->switches;
 	int coords = step->model->n;
-	need_one_word(step);
 	if (coords > LIMIT_COLLOCATED)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has "

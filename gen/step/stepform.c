@@ -169,7 +169,8 @@ void need_one_word(const struct step *step)
 	const struct model *model = step->model;
 	if (model->asked.compensated)
 		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated is of a linear step: a step with a leftover has the form direct");
+		      "--accuracy compensated needs a step that adds to the state: scheme %s multiplies it",
+		      scheme_name(model->scheme));
 }
 
 static void need_factors_in_two_words(const struct model *model)
