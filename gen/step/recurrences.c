@@ -322,11 +322,14 @@ static tape_ref negative(struct tape *t, tape_ref ref)
 	return tape_unary(t, TAPE_NEG, ref);
 }
 
-/* (early a_k - sum over 0 < j < k of c_j b_{k-j} - c_0 early b_k) / b_0 */
-static tape_ref early_quotient(struct recurrences *r, int sequence, const struct sequence *s, int k)
+/* Of another sequence the k-th, or its early part */
+typedef tape_ref part_of(struct recurrences *r, int sequence, int k);
+
+/* (a_k - c_0 b_k - sum over 0 < j < k of c_j b_{k-j}) / b_0 */
+static tape_ref quotient(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct tape *t = r->t;
-	tape_ref above = s->a == NONE ? TAPE_NONE : early(r, s->a, k), below = early(r, s->b, k);
+	tape_ref above = s->a == NONE ? TAPE_NONE : part(r, s->a, k), below = part(r, s->b, k);
 	struct list sum = { 0 };
 	if (below != TAPE_NONE)
 		add(&sum, times(t, recurrence(r, sequence, 0), below));
@@ -339,11 +342,11 @@ static tape_ref early_quotient(struct recurrences *r, int sequence, const struct
 	return times(t, above, helper(r, sequence));
 }
 
-/* (early a_k - sum over 0 < j < k of c_j c_{k-j}) / (2 c_0) */
-static tape_ref early_root(struct recurrences *r, int sequence, const struct sequence *s, int k)
+/* (a_k - sum over 0 < j < k of c_j c_{k-j}) / (2 c_0) */
+static tape_ref root(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct tape *t = r->t;
-	tape_ref above = early(r, s->a, k), old = whole(t, old_part(r, sequence, sequence, k, 1));
+	tape_ref above = part(r, s->a, k), old = whole(t, old_part(r, sequence, sequence, k, 1));
 	if (above == TAPE_NONE && old == TAPE_NONE)
 		return TAPE_NONE;
 	if (old != TAPE_NONE)
@@ -385,9 +388,9 @@ static tape_ref early_ref(struct recurrences *r, int sequence, int k)
 	const struct sequence *s = sequence_of(r, sequence);
 	struct list sum = { 0 };
 	if (s->kind == SEQUENCE_QUOTIENT)
-		return early_quotient(r, sequence, s, k);
+		return quotient(r, sequence, s, k, early);
 	if (s->kind == SEQUENCE_ROOT)
-		return early_root(r, sequence, s, k);
+		return root(r, sequence, s, k, early);
 	if (s->kind == SEQUENCE_POWER)
 		return early_power(r, sequence, s, k);
 	add_early_terms(r, &sum, s, k);
@@ -556,39 +559,20 @@ static tape_ref value_at_start(struct recurrences *r, const struct sequence *s)
 	return tape_call(r->t, s->function, a);
 }
 
-/* (a_k - sum over j < k of c_j b_{k-j}) / b_0 */
-static tape_ref quotient(struct recurrences *r, int sequence, const struct sequence *s, int k)
+/* At k = 0 */
+static tape_ref first(struct recurrences *r, const struct sequence *s)
 {
 	struct tape *t = r->t;
-	tape_ref above = s->a == NONE ? TAPE_NONE : recurrence(r, s->a, k);
-	struct list sum = { 0 };
-	if (k == 0)
-		return tape_binary(t, TAPE_DIV, above == TAPE_NONE ? tape_number(t, 1) : above, recurrence(r, s->b, 0));
-	for (int j = 0; j < k; j++)
-		add(&sum, pair(r, sequence, j, s->b, k - j));
-	tape_ref below = chain(t, &sum);
-	return times(t, above == TAPE_NONE ? negative(t, below) : minus(t, above, below), helper(r, sequence));
-}
-
-/* (a_k - sum over 0 < j < k of c_j c_{k-j}) / (2 c_0) */
-static tape_ref root(struct recurrences *r, int sequence, const struct sequence *s, int k)
-{
-	struct tape *t = r->t;
-	tape_ref above = recurrence(r, s->a, k);
-	if (k == 0)
-		return tape_call(t, FN_SQRT, above);
-	tape_ref old = whole(t, old_part(r, sequence, sequence, k, 1));
-	if (old != TAPE_NONE)
-		above = above == TAPE_NONE ? negative(t, old) : minus(t, above, old);
-	return times(t, above == TAPE_NONE ? tape_number(t, 0) : above, helper(r, sequence));
+	tape_ref a = s->a == NONE ? tape_number(t, 1) : recurrence(r, s->a, 0);
+	return s->kind == SEQUENCE_ROOT	   ? tape_call(t, FN_SQRT, a)
+	       : s->kind == SEQUENCE_POWER ? tape_binary(t, TAPE_POWER, a, tape_double(t, s->exponent))
+					   : tape_binary(t, TAPE_DIV, a, recurrence(r, s->b, 0));
 }
 
 /* sum over j < k of (exponent (k-j) - j)/k a_{k-j} c_j / a_0 */
 static tape_ref power(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	struct list sum = { 0 };
-	if (k == 0)
-		return tape_binary(r->t, TAPE_POWER, recurrence(r, s->a, 0), tape_double(r->t, s->exponent));
 	add_power_terms(r, &sum, sequence, s, 0, k);
 	return times(r->t, chain(r->t, &sum), helper(r, sequence));
 }
@@ -628,9 +612,9 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 	switch (s->kind) {
 	case SEQUENCE_SUM:
 	case SEQUENCE_INTEGRAL: return from < 0 ? value_at_start(r, s) : sum_at(r, s, from);
-	case SEQUENCE_QUOTIENT: return quotient(r, sequence, s, k);
-	case SEQUENCE_ROOT:     return root(r, sequence, s, k);
-	case SEQUENCE_POWER:    return power(r, sequence, s, k);
+	case SEQUENCE_QUOTIENT: return k ? quotient(r, sequence, s, k, recurrence) : first(r, s);
+	case SEQUENCE_ROOT:     return k ? root(r, sequence, s, k, recurrence) : first(r, s);
+	case SEQUENCE_POWER:    return k ? power(r, sequence, s, k) : first(r, s);
 	case SEQUENCE_CHOICE:   return choice(r, s, k);
 	default:                break;
 	}
