@@ -248,15 +248,6 @@ static void drop_modes(struct choosing *c, struct dropping *d)
 		try_modes(c, d, count);
 }
 
-/* Where loads or inputs act, what is dropped may follow them at once. */
-static bool has_statics(const struct linear *system)
-{
-	bool acts = system->inputs > 0;
-	for (int l = 0; l < system->loads; l++)
-		acts = acts || load_acts(system, &system->load[l]);
-	return acts;
-}
-
 static void try_fewer(struct choosing *c)
 {
 	const char *why;
@@ -275,7 +266,7 @@ static void try_fewer(struct choosing *c)
 	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
 	if (!modes || modes->count < 2)
 		return;
-	for (int statics = 0; statics <= has_statics(&whole->system); statics++)
+	for (int statics = 0; statics <= is_driven(&whole->system); statics++)
 		drop_modes(c, &(struct dropping){ .modes = modes, .order = modes_by_share(modes),
 						  .statics = statics });
 }

@@ -102,6 +102,8 @@ mpz_t *integers(size_t count);                             /* 0 */
 mpfr_t *reals(size_t count, mpfr_prec_t bits);             /* 0, of so many bits */
 mpfi_t *enclosures(size_t count, mpfr_prec_t bits);        /* likewise */
 bool  rationals_equal(size_t count, const mpq_t *a, const mpq_t *b);
+/* x is ratio times another, which is not 0 */
+bool  rationals_multiple(size_t count, const mpq_t *x, const mpq_t *of, mpq_ptr ratio);
 bool  rationals_zero(size_t count, const mpq_t *q);       /* all of them are 0 */
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */

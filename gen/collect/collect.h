@@ -61,6 +61,7 @@ const struct form_term **terms_within(const struct form *form, bool *seen);
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 /* one of them constant */
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b);
+struct form constant_terms(const struct form *form);        /* the first: 1 and pi; it shares them */
 bool is_constant(const struct form *form);                  /* 1 and pi only */
 bool has_coordinate(const struct form *form);               /* or an atom, or what stands behind those */
 mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */

@@ -335,3 +335,11 @@ bool has_coordinate(const struct form *form)
 {
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
 }
+
+struct form constant_terms(const struct form *form)
+{
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	return plain;
+}

@@ -19,6 +19,7 @@ bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column);
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
 bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x); /* A x = y; false: A is singular */
+bool rational_symmetric(int n, const mpq_t *A);
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
 /* numerators and denominators that may have factors in common: for who only rounds them */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);

@@ -183,6 +183,15 @@ bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x)
 	return regular;
 }
 
+bool rational_symmetric(int n, const mpq_t *A)
+{
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < i; j++)
+			if (!mpq_equal(A[i * n + j], A[j * n + i]))
+				return false;
+	return true;
+}
+
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
 {
 	for (int j = 0; j < n; j++) {

@@ -205,6 +205,19 @@ bool load_acts(const struct linear *system, const struct load *load)
 	return false;
 }
 
+bool any_load_acts(const struct linear *system)
+{
+	bool acts = false;
+	for (int l = 0; l < system->loads; l++)
+		acts = acts || load_acts(system, &system->load[l]);
+	return acts;
+}
+
+bool is_driven(const struct linear *system)
+{
+	return system->inputs > 0 || any_load_acts(system);
+}
+
 bool is_constant_column(const struct linear *system, int column)
 {
 	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)

@@ -57,6 +57,8 @@ int column_of_load(const struct linear *system, int load);  /* its first */
 int input_columns(const struct linear *system);
 bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 bool load_acts(const struct linear *system, const struct load *load);
+bool any_load_acts(const struct linear *system);
+bool is_driven(const struct linear *system);                 /* by a load or an input */
 
 /* ---- model.c: the equations of motion, exact ---- */
 

@@ -43,41 +43,13 @@ static const char *objection(const struct model *model)
 
 /* ---- which matrix ---- */
 
-static bool is_symmetric(int n, const mpq_t *A)
-{
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < i; j++)
-			if (!mpq_equal(A[i * n + j], A[j * n + i]))
-				return false;
-	return true;
-}
-
-static bool all_of_second_order(const struct linear *system)
-{
-	for (int i = 0; i < system->n; i++)
-		if (system->velocity[i] < 0)
-			return false;
-	return true;
-}
-
-static bool is_zero(size_t count, const mpq_t *A)
-{
-	for (size_t i = 0; i < count; i++)
-		if (mpq_sgn(A[i]) != 0)
-			return false;
-	return true;
-}
-
 static bool commute(int n, const mpq_t *A, const mpq_t *B)
 {
 	const size_t cells = (size_t)n * (size_t)n;
 	RATIONALS *AB = rationals(cells), *BA = rationals(cells);
 	rational_product(n, n, n, A, B, AB);
 	rational_product(n, n, n, B, A, BA);
-	bool same = true;
-	for (size_t i = 0; i < cells && same; i++)
-		same = mpq_equal(AB[i], BA[i]);
-	return same;
+	return rationals_equal(cells, AB, BA);
 }
 
 static bool all_real(const struct invariants *of)
@@ -93,15 +65,15 @@ static bool take_coordinates(struct mode_basis *basis, const struct linear *syst
 {
 	const int n = system->n;
 	const size_t cells = (size_t)n * (size_t)n;
-	if (!all_of_second_order(system))
+	if (system->states < 2 * n)             /* some are of first order */
 		return false;
 	basis->A = rationals(cells);
 	basis->D = rationals(cells);
 	rational_product(n, n, n, basis->inverse, system->K, basis->A);
 	rational_product(n, n, n, basis->inverse, system->C, basis->D);
-	if (!is_zero(cells, basis->D) && !commute(n, basis->A, basis->D))
+	if (!rationals_zero(cells, basis->D) && !commute(n, basis->A, basis->D))
 		return false;
-	if (is_symmetric(n, system->M) && is_symmetric(n, system->K))
+	if (rational_symmetric(n, system->M) && rational_symmetric(n, system->K))
 		basis->invariants = invariants_symmetric(n, basis->A, system->M, system->K);
 	if (!basis->invariants)
 		basis->invariants = invariants_of(n, basis->A, n);

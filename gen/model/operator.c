@@ -223,9 +223,7 @@ struct jacobian_work {
 
 static void constant_part(struct collector *c, const struct form *form, mpq_ptr value)
 {
-	struct form plain = { 0, form->term, 0 };
-	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
+	const struct form plain = constant_terms(form);
 	constant_value(c, &plain, value);
 }
 

@@ -107,9 +107,7 @@ static void refuse_force(const struct node *node, const struct form *form)
 static struct compared compared_here(struct looking *l, const struct node *node, const struct form *form,
 				     mpq_ptr constant)
 {
-	struct form plain = { 0, form->term, 0 };
-	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
+	const struct form plain = constant_terms(form);
 	constant_value(&l->b->collector, &plain, constant);
 	return (struct compared){ node, form_sum(form, &plain, true), constant, order_met(l) };
 }

@@ -180,17 +180,9 @@ static mpq_t *weights_of(const struct model *model, const mpq_t *u)
 /* Do the weights change with tunable params? */
 static bool retunes(const struct model *model, const mpq_t *w, const mpq_t *other)
 {
-	int first = 0;
-	bool differ = false;
-	RATIONAL a = ZERO, b = ZERO;
-	while (first < model->n && mpq_sgn(w[first]) == 0)
-		first++;
-	for (int j = 0; j < model->n && first < model->n; j++) {
-		mpq_mul(a, w[first], other[j]);
-		mpq_mul(b, w[j], other[first]);
-		differ = differ || !mpq_equal(a, b);
-	}
-	return differ;
+	RATIONAL ratio = ZERO;
+	const size_t n = (size_t)model->n;
+	return !rationals_zero(n, w) && !rationals_multiple(n, other, w, ratio);
 }
 
 /* ---- groups ---- */

@@ -58,9 +58,7 @@ void spread_loads(struct building *b, const struct form *form,
 {
 	struct linear *system = &b->model->system;
 	RATIONAL constant = ZERO;
-	struct form plain = { 0, form->term, 0 };
-	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
-		plain.terms++;
+	const struct form plain = constant_terms(form);
 	constant_value(&b->collector, &plain, constant);
 	if (mpq_sgn(constant) != 0)
 		spread(context, (int)(load_of_wave(b->model, b->polynomial) - system->load), 0, constant);

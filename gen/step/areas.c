@@ -244,27 +244,11 @@ void through_loads(struct through *t)
 			wave_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
 }
 
-/* Whether one row is a positive multiple of the other */
-static bool is_multiple(int n, const mpq_t *a, const mpq_t *b)
-{
-	int first = 0;
-	while (first < n && mpq_sgn(a[first]) == 0)
-		first++;
-	if (first == n || mpq_sgn(b[first]) != mpq_sgn(a[first]))
-		return false;
-	bool same = true;
-	RATIONAL ratio = ZERO, part = ZERO;
-	mpq_div(ratio, b[first], a[first]);
-	for (int i = 0; i < n && same; i++) {
-		mpq_mul(part, a[i], ratio);
-		same = mpq_equal(part, b[i]) != 0;
-	}
-	return same;
-}
-
 bool through_meets(const struct through *t, const struct gate *one, const struct gate *other)
 {
-	return one->release && other->release && is_multiple(t->n, one->row, other->row);
+	RATIONAL ratio = ZERO;
+	return one->release && other->release && rationals_multiple((size_t)t->n, other->row, one->row, ratio) &&
+	       mpq_sgn(ratio) > 0;
 }
 
 /* ---- what cannot be told ---- */

@@ -57,26 +57,32 @@ static int find_breakpoint(struct divided *d, mpq_srcptr at)
 	return d->breaks++;
 }
 
-/* The first terms: 1 and pi */
-static int constant_terms(const struct form *form)
-{
-	int count = 0;
-	while (count < form->terms && form->term[count].basis.kind <= BASIS_PI)
-		count++;
-	return count;
-}
-
-static void value_of_constants(const struct form *form, int count, mpq_ptr value)
+static void value_of_constants(const struct form *plain, mpq_ptr value)
 {
 	RATIONAL part = ZERO, pi = ZERO;
 	constant_pi(pi);
 	mpq_set_ui(value, 0, 1);
-	for (int i = 0; i < count; i++) {
-		mpq_set(part, form->term[i].factor);
-		if (form->term[i].basis.kind == BASIS_PI)
+	for (int i = 0; i < plain->terms; i++) {
+		mpq_set(part, plain->term[i].factor);
+		if (plain->term[i].basis.kind == BASIS_PI)
 			mpq_mul(part, part, pi);
 		mpq_add(value, value, part);
 	}
+}
+
+/* What stands beside the constants of a form, and their value */
+static const struct form *beside_constants(const struct form *form, mpq_ptr value)
+{
+	const struct form plain = constant_terms(form);
+	value_of_constants(&plain, value);
+	return form_sum(form, &plain, true);
+}
+
+/* e = (form - constant)/factor passes -constant/factor */
+static void to_breakpoint(mpq_ptr value, mpq_srcptr factor)
+{
+	mpq_div(value, value, factor);
+	mpq_neg(value, value);
 }
 
 /* a - b, or what stands beside a constant as it was written: b - a */
@@ -86,60 +92,53 @@ static const struct form *difference_of(const struct form *a, const struct form 
 	return *turned ? form_difference(b, a) : form_difference(a, b);
 }
 
+struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
+{
+	struct division division = { .expression = NONE };
+	RATIONAL value = ZERO;
+	division.expression = find_divided(w, beside_constants(form, value), factor);
+	to_breakpoint(value, factor);
+	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
+	division.above = mpq_sgn(factor) > 0;
+	return division;
+}
+
+/* Of constants */
+static struct division decided(const struct form *d)
+{
+	RATIONAL value = ZERO;
+	value_of_constants(d, value);
+	return (struct division){ .expression = NONE, .above = mpq_sgn(value) > 0 };
+}
+
 struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b)
 {
 	bool turned;
+	RATIONAL factor = ZERO;
 	const struct form *d = difference_of(a, b, &turned);
-	int constants = constant_terms(d);
-	struct form plain = { constants, d->term, 0 };
-	struct division division = { .expression = NONE };
-	RATIONAL value = ZERO, factor = ZERO;
-	value_of_constants(d, constants, value);
-	division.above = (mpq_sgn(value) > 0) != turned;
-	if (constants < d->terms) {
-		division.expression = find_divided(w, form_sum(d, &plain, true), factor);
-		mpq_div(value, value, factor);
-		mpq_neg(value, value);          /* e = (d - constant)/factor against -constant/factor */
-		division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
-		division.above = (mpq_sgn(factor) > 0) != turned;
-	}
+	struct division division = is_constant(d) ? decided(d) : divide_form(w, d, factor);
+	division.above = division.above != turned;
 	return division;
 }
 
 bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division)
 {
-	bool turned;
-	const struct form *d = difference_of(a, b, &turned);
-	int constants = constant_terms(d);
-	struct form plain = { constants, d->term, 0 };
+	bool turned, known = true;
 	RATIONAL value = ZERO, factor = ZERO;
-	value_of_constants(d, constants, value);
-	*division = (struct division){ .expression = NONE, .breakpoint = 0, .above = (mpq_sgn(value) > 0) != turned };
-	if (constants < d->terms) {
-		division->expression = known_expression(x, form_sum(d, &plain, true), factor);
-		if (division->expression != NONE) {
-			mpq_div(value, value, factor);
-			mpq_neg(value, value);
-			division->breakpoint = known_breakpoint(&x->expression[division->expression], value);
-			division->above = (mpq_sgn(factor) > 0) != turned;
-		}
+	const struct form *d = difference_of(a, b, &turned);
+	*division = decided(d);
+	if (!is_constant(d)) {
+		division->expression = known_expression(x, beside_constants(d, value), factor);
+		known = division->expression != NONE;
 	}
-	return constants == d->terms || (division->expression != NONE && division->breakpoint != NONE);
-}
-
-struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
-{
-	int constants = constant_terms(form);
-	struct form plain = { constants, form->term, 0 };
-	struct division division = { .expression = NONE };
-	RATIONAL value = ZERO;
-	value_of_constants(form, constants, value);
-	division.expression = find_divided(w, form_sum(form, &plain, true), factor);
-	mpq_div(value, value, factor);
-	mpq_neg(value, value);
-	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
-	division.above = mpq_sgn(factor) > 0;
-	return division;
+	if (known && !is_constant(d)) {
+		to_breakpoint(value, factor);
+		division->breakpoint = known_breakpoint(&x->expression[division->expression], value);
+		division->above = mpq_sgn(factor) > 0;
+		known = division->breakpoint != NONE;
+	}
+	division->above = division->above != turned;
+	return known;
 }
 
 /* ---- once all are there ---- */

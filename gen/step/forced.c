@@ -392,10 +392,8 @@ void plan_forced(struct step *step)
 	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36;
 	struct linear *system = &step->branch->system;
 	struct course course;
-	bool acts = false, any = false, *able = ARRAY(bool, system->loads);
-	for (int l = 0; l < system->loads; l++)
-		acts = acts || load_acts(system, &system->load[l]);
-	if (!acts || system->heldK || !make_course(step, &course))
+	bool any = false, *able = ARRAY(bool, system->loads);
+	if (!any_load_acts(system) || system->heldK || !make_course(step, &course))
 		return;
 	step->rounding = bound_of(step, &course, NULL);
 	if (!step->rounding.known || step->rounding.relative <= much || step->model->tuning)

@@ -293,34 +293,22 @@ double slopes_of_inputs(const struct linear *system, const struct kept *k, doubl
 	return sum;
 }
 
-/* What is surely reached is so by its first samples. */
-static struct extent lasting_extent(const struct step *step, const struct spread *spread, struct kept *k)
+/* Of a lasting run, what is surely reached is so by its first samples. */
+struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k)
 {
 	enum { HEAD = 20000 };
 	const struct linear *system = &step->branch->system;
 	const double h = mpq_get_d(step->model->h);
-	struct extent e = walk_loads(HEAD, h, spread, k, NULL);
+	const bool lasts = is_lasting(k, steps);
+	const long walked = lasts ? HEAD : steps;
+	struct extent e = walk_loads(walked, h, spread, k, NULL);
 	double by_inputs = 0;
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
-		by_inputs += sum_of_input(system, HEAD, k, i, c, NULL);
-	lasting_sizes(spread, k, h);
+		by_inputs += sum_of_input(system, walked, k, i, c, NULL);
+	if (lasts)
+		lasting_sizes(spread, k, h);
 	add_inputs(spread, k);
-	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - e.slack - by_inputs * 1e-6);
-	return e;
-}
-
-struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k)
-{
-	const struct linear *system = &step->branch->system;
-	const double h = mpq_get_d(step->model->h);
-	if (is_lasting(k, steps))
-		return lasting_extent(step, spread, k);
-	struct extent e = walk_loads(steps, h, spread, k, NULL);
-	double by_inputs = 0;
-	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
-		by_inputs += sum_of_input(system, steps, k, i, c, NULL);
-	add_inputs(spread, k);
-	const double slack = e.slack + by_inputs * (1e-9 + spread->slack * (double)steps);
+	const double slack = e.slack + by_inputs * (lasts ? 1e-6 : 1e-9 + spread->slack * (double)steps);
 	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - slack);
 	return e;
 }

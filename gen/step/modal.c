@@ -35,18 +35,6 @@ static struct rectangle *stiffness_at(const struct linear *system, const struct 
 	return P;
 }
 
-static bool is_symmetric(const struct linear *system)
-{
-	const int n = system->n;
-	bool same = true;
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < i && same; j++)
-			same = mpq_equal(system->M[i * n + j], system->M[j * n + i]) &&
-			       mpq_equal(system->C[i * n + j], system->C[j * n + i]) &&
-			       mpq_equal(system->K[i * n + j], system->K[j * n + i]);
-	return same;
-}
-
 /* ---- one mode ---- */
 
 struct mode_vectors {
@@ -63,7 +51,7 @@ static bool null_vectors(const struct linear *system, const struct mode_vectors 
 	if (!null_rectangles(n, P, m->v))
 		return false;
 	scale_rectangles(n, m->v);
-	if (is_symmetric(system)) {
+	if (rational_symmetric(n, system->M) && rational_symmetric(n, system->C) && rational_symmetric(n, system->K)) {
 		for (int i = 0; i < n; i++)
 			rectangle_set(&m->u[i], &m->v[i]);
 		return true;

@@ -120,24 +120,6 @@ void find_turns(struct normal_work *w)
 
 /* ---- what is left over ---- */
 
-/* X = ratio Y; false: it is no multiple */
-static bool is_multiple(size_t cells, const mpq_t *X, const mpq_t *Y, mpq_ptr ratio)
-{
-	size_t first = 0;
-	while (first < cells && mpq_sgn(Y[first]) == 0)
-		first++;
-	if (first == cells)
-		return false;
-	RATIONAL product = ZERO;
-	mpq_div(ratio, X[first], Y[first]);
-	bool multiple = true;
-	for (size_t i = 0; i < cells && multiple; i++) {
-		mpq_mul(product, ratio, Y[i]);
-		multiple = mpq_equal(product, X[i]);
-	}
-	return multiple;
-}
-
 struct pattern {                    /* of a matrix, as rationals */
 	const mpq_t **exact;        /* per bank */
 	bool own;                   /* it differs from bank to bank */
@@ -171,7 +153,7 @@ static double *multiples_of(const struct normal_work *w, const struct pattern *p
 	RATIONAL ratio = ZERO;
 	bool all = !pattern->own;
 	for (int b = 0; b < w->normal->banks && all; b++) {
-		all = is_multiple(cells, X[b], pattern->exact[b], ratio);
+		all = rationals_multiple(cells, X[b], pattern->exact[b], ratio);
 		factor[b] = all ? round_rational(ratio) : 0;
 	}
 	return all ? factor : NULL;

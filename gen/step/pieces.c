@@ -120,14 +120,15 @@ static void times_matrix(int n, double *row, const double *A)
 }
 
 enum { PARTS = 8 };                 /* of a piece: within one, a derivative grows by e^{|A| d / PARTS} at most */
-struct growth {                     /* over a part: e^{A d / PARTS}, e^{|A| d / PARTS}, size x size */
+struct growth {                     /* over a part: e^{A d / PARTS}, e^{|A| d / PARTS}, size x size, in one block */
 	double *E, *most;
 };
 
 static struct growth growth_of(int n, const double *A, double d)
 {
 	size_t cells = (size_t)n * (size_t)n;
-	struct growth growth = { ARRAY(double, cells), ARRAY(double, cells) };
+	double *both = ARRAY(double, 2 * cells);
+	struct growth growth = { both, both + cells };
 	exponential(n, A, d / PARTS, false, growth.E);
 	exponential(n, A, d / PARTS, true, growth.most);
 	return growth;
@@ -190,7 +191,6 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 	for (int j = 0; j < size && step->model->asked.single; j++)
 		bend[j] *= 1 + ldexp(1, -22);           /* still a bound when it is printed as a float */
 	discard(growth.E);
-	discard(growth.most);
 }
 
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
@@ -218,7 +218,6 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 		}
 	}
 	discard(growth.E);
-	discard(growth.most);
 }
 
 static void fill_bounds(const struct step *step, const struct pieces *pieces, int branch)
@@ -231,7 +230,6 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	piece->fourth = bound_rows(step, piece->row, piece->slopes, &growth, 4, d * d * d * d / 384);
 	piece->reach = reach_of_rows(step, branch, piece->slopes, step->model->switching->expressions, piece->row);
 	discard(growth.E);
-	discard(growth.most);
 }
 
 /* ---- a step over the whole of h, which most often is seen in a line to stay clear ---- */
@@ -354,7 +352,6 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
 	piece->still = ARRAY(double, step->model->switching->expressions);
 	discard(growth.E);
-	discard(growth.most);
 }
 
 static void fill_crossing(const struct step *step, const struct pieces *pieces, int branch)
@@ -374,7 +371,6 @@ static void fill_crossing(const struct step *step, const struct pieces *pieces, 
 		gather_loads(step, pieces->bounded, piece->third + i * size);
 	}
 	discard(growth.E);
-	discard(growth.most);
 }
 
 /* Below this size of all entries of x together, no number of a step overflows */

@@ -63,14 +63,6 @@ struct quadrature {
 	} node[4];
 };
 
-static bool is_driven(const struct linear *system)
-{
-	for (int l = 0; l < system->loads; l++)
-		if (load_acts(system, &system->load[l]))
-			return true;
-	return system->inputs > 0;
-}
-
 /* What the node of this stage predicts: r at it */
 static int add_predicted(struct recipe *r, long p, unsigned long q)
 {

@@ -54,14 +54,6 @@ static bool decays(const struct linear *block)
 	return negative;
 }
 
-static bool any_load(const struct linear *system)
-{
-	bool acts = false;
-	for (int l = 0; l < system->loads; l++)
-		acts = acts || load_acts(system, &system->load[l]);
-	return acts;
-}
-
 /* Modes are apart whatever their blocks. */
 static void part_modes(const struct modal *modal, int *part)
 {
@@ -85,7 +77,7 @@ void plan_rest(struct step *step)
 	rest->parts = blocks;
 	rest->in_step = system->states > LIMIT_UNROLLED_STATES;
 	for (int b = 0; b < blocks; b++) {
-		const bool free = !any_load(&block[b].system) && decays(&block[b].system);
+		const bool free = !any_load_acts(&block[b].system) && decays(&block[b].system);
 		any = any || free;
 		all = all && free;
 		for (int i = 0; i < block[b].system.states; i++)
