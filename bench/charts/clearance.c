@@ -95,6 +95,37 @@ static int region_of(const struct clearance *r, const double *y)
 	return region;
 }
 
+static void clearance_get(const struct run *run, double *y)
+{
+	const struct clearance *r = (const struct clearance *)run;
+	memcpy(y, r->y ? NV_DATA_S(r->y) : r->z, 2 * (size_t)r->n * sizeof *y);
+}
+
+static long clearance_evaluations(const struct run *run)
+{
+	const struct clearance *r = (const struct clearance *)run;
+	return r->y ? r->evaluations : -1;
+}
+
+static void clearance_close(struct run *run)
+{
+	struct clearance *r = (struct clearance *)run;
+	for (int region = 0; region < REGIONS; region++)
+		for (int level = 0; level < LEVELS; level++)
+			free(r->Phi[region][level]);
+	if (r->memory)
+		CVodeFree(&r->memory);
+	if (r->fixed_point)
+		SUNNonlinSolFree(r->fixed_point);
+	if (r->y)
+		N_VDestroy(r->y);
+	if (r->tolerances)
+		N_VDestroy(r->tolerances);
+	if (r->context)
+		SUNContext_Free(&r->context);
+	free(r);
+}
+
 static struct clearance *clearance_new(const struct method *method, const struct problem *problem, double setting)
 {
 	static struct hand_system s;
@@ -104,14 +135,10 @@ static struct clearance *clearance_new(const struct method *method, const struct
 		return NULL;
 	make(&s);
 	fill(r, &s);
-	r->run = (struct run){.method = method, .problem = problem, .setting = setting};
+	r->run = (struct run){.method = method, .problem = problem, .setting = setting, .get = clearance_get,
+	                      .evaluations = clearance_evaluations, .close = clearance_close};
 	memcpy(r->start, problem->start, 2 * (size_t)r->n * sizeof *r->start);
 	return r;
-}
-
-static long clearance_evaluations(const struct run *run)
-{
-	return ((const struct clearance *)run)->evaluations;
 }
 
 /* ---- exact in regions ---- */
@@ -190,27 +217,6 @@ static void exact_between(struct run *run, double fraction, double *y)
 	r->region = region;
 }
 
-static void exact_get(const struct run *run, double *y)
-{
-	const struct clearance *r = (const struct clearance *)run;
-	memcpy(y, r->z, 2 * (size_t)r->n * sizeof *y);
-}
-
-static void exact_close(struct run *run)
-{
-	struct clearance *r = (struct clearance *)run;
-	for (int region = 0; region < REGIONS; region++)
-		for (int level = 0; level < LEVELS; level++)
-			free(r->Phi[region][level]);
-	free(r);
-}
-
-static long no_evaluations(const struct run *run)
-{
-	(void)run;
-	return -1;
-}
-
 static struct run *exact_open(const struct method *method, const struct problem *problem, double setting)
 {
 	const int steps = steps_of(problem, setting);
@@ -222,9 +228,6 @@ static struct run *exact_open(const struct method *method, const struct problem 
 	r->run.restart = exact_restart;
 	r->run.advance = exact_advance;
 	r->run.between = exact_between;
-	r->run.get = exact_get;
-	r->run.evaluations = no_evaluations;
-	r->run.close = exact_close;
 	exact_restart(&r->run);
 	return &r->run;
 }
@@ -317,28 +320,6 @@ static void roots_between(struct run *run, double fraction, double *y)
 		y[i] = good ? NV_Ith_S(r->y, i) : NAN;
 }
 
-static void roots_get(const struct run *run, double *y)
-{
-	const struct clearance *r = (const struct clearance *)run;
-	memcpy(y, NV_DATA_S(r->y), 2 * (size_t)r->n * sizeof *y);
-}
-
-static void roots_close(struct run *run)
-{
-	struct clearance *r = (struct clearance *)run;
-	if (r->memory)
-		CVodeFree(&r->memory);
-	if (r->fixed_point)
-		SUNNonlinSolFree(r->fixed_point);
-	if (r->y)
-		N_VDestroy(r->y);
-	if (r->tolerances)
-		N_VDestroy(r->tolerances);
-	if (r->context)
-		SUNContext_Free(&r->context);
-	free(r);
-}
-
 static bool roots_make(struct clearance *r)
 {
 	const struct problem *p = r->run.problem;
@@ -370,11 +351,8 @@ static struct run *roots_open(const struct method *method, const struct problem 
 	r->run.restart = roots_restart;
 	r->run.advance = roots_advance;
 	r->run.between = roots_between;
-	r->run.get = roots_get;
-	r->run.evaluations = clearance_evaluations;
-	r->run.close = roots_close;
 	if (!roots_make(r)) {
-		roots_close(&r->run);
+		clearance_close(&r->run);
 		return NULL;
 	}
 	roots_restart(&r->run);
