@@ -21,7 +21,7 @@
 
 /* ---- by time ---- */
 
-#if PL_ORDER > 0
+#if PL_ORDER > 0 && (PL_IN_PARTS || !PL_CONTACTS)
 static inline int PL(segment_of)(const PL_TYPE *s)
 {
 #if PL_SEGMENTS > 1

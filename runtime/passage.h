@@ -218,13 +218,14 @@ static inline int PL(not_yet)(PL_TYPE *s, int placed)
     return PL_ANOTHER;
 }
 
-/* The size of the largest coordinate so far */
+/* The size of the largest coordinate so far, or of the way of the largest velocity in a step of h */
 static real PL(largest_place)(const PL_TYPE *s)
 {
     real most = 0;
     int i;
-    for (i = 0; i < PL_COORDS; i++) {
-        most = s->scale[i] > most ? s->scale[i] : most;
+    for (i = 0; i < PL_STATES; i++) {
+        const real size = i < PL_COORDS ? s->scale[i] : PL_H * s->scale[i];
+        most = size > most ? size : most;
     }
     return most;
 }
