@@ -21,17 +21,22 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 10
  * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
  * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force: sweeps that
  * leave 7/8 of a speed take it there before there are too many. */
-#ifdef CALM /* the generator has its own */
-#elif defined REAL_IS_FLOAT
-#define CALM 0x1p-20f
-#define BRIEF PL_BRIEFF
-#define SPAN 0x1p-8f
-#define TINY 0x1p-96f
+#ifdef REAL_IS_FLOAT
+#define CALM_OF_REAL 0x1p-20f
+#define BRIEF_OF_REAL PL_BRIEFF
+#define SPAN_OF_REAL 0x1p-8f
+#define TINY_OF_REAL 0x1p-96f
 #else
-#define CALM 0x1p-48
-#define BRIEF PL_BRIEF
-#define SPAN 0x1p-10
-#define TINY 0x1p-192
+#define CALM_OF_REAL 0x1p-48
+#define BRIEF_OF_REAL PL_BRIEF
+#define SPAN_OF_REAL 0x1p-10
+#define TINY_OF_REAL 0x1p-192
+#endif
+#ifndef CALM /* the generator has its own */
+#define CALM CALM_OF_REAL
+#define BRIEF BRIEF_OF_REAL
+#define SPAN SPAN_OF_REAL
+#define TINY TINY_OF_REAL
 #endif
 #ifndef TOGETHER
 #define TOGETHER BRIEF
