@@ -624,7 +624,7 @@ static void compare_quadrature(const struct model *model, struct judge *judge, c
 
 /* ---- which tables there are ---- */
 
-static bool is_driven(const struct linear *system)
+static bool has_drive(const struct linear *system)
 {
     for (int l = 0; l < system->loads; l++)
         for (int k = 0; k < system->load[l].columns; k++)
@@ -654,7 +654,7 @@ static struct expected_tables expected_tables(const struct model *model)
     struct expected_tables e = { 1, { { 1, 1 } } };
     if (model->scheme == SCHEME_ETDRK4)
         expect_table(&e, (struct fraction){ 1, 2 });
-    for (int i = 0; i < quadratures[model->scheme].nodes && is_driven(&model->system); i++) {
+    for (int i = 0; i < quadratures[model->scheme].nodes && has_drive(&model->system); i++) {
         const struct fraction c = quadratures[model->scheme].c[i];
         if (c.p == 0 || quadratures[model->scheme].weight[i].p == 0)
             continue;
