@@ -411,13 +411,16 @@ static real next_try(pl_peak_values *l)
     return x + l->moved;
 }
 
-/* Of these times, whose sizes are known, the best three */
+/* Of these times, whose sizes are known, the best three.  One by one: of a loop compilers make a memmove. */
 static void keep(pl_peak_values *l, int place, real s, real size)
 {
-    int i;
-    for (i = 2; i > place; i--) {
-        l->s[i] = l->s[i - 1];
-        l->size[i] = l->size[i - 1];
+    if (place < 2) {
+        l->s[2] = l->s[1];
+        l->size[2] = l->size[1];
+    }
+    if (place < 1) {
+        l->s[1] = l->s[0];
+        l->size[1] = l->size[0];
     }
     l->s[place] = s;
     l->size[place] = size;

@@ -21,7 +21,8 @@ void emit_phi(const struct emitter *e)
 	if (e->step->shown->no_phi)
 		return;
 	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
-	if (e->model->relative && (has_jump(e) || (e->kind->reads_phi && e->kind->reads_phi(e->step))))
+	const bool leaps = has_jump(e) && !e->kind->own_factors;
+	if (e->model->relative && (leaps || (e->kind->reads_phi && e->kind->reads_phi(e->step))))
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
 }
 

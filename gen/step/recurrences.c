@@ -33,7 +33,7 @@ struct tape *tape_of_recurrences(const struct recurrences *r)
 /* The node under the sequence's name, with a number or a word behind it */
 static tape_ref named(struct recurrences *r, tape_ref ref, int sequence, const char *what)
 {
-	if (r->names.name)
+	if (r->names.name && ref != TAPE_NONE)
 		tape_name(r->t, ref, format("%s_%s", r->names.name(r->names.context, sequence), what));
 	return ref;
 }
