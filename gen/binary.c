@@ -3,6 +3,7 @@
  * load. */
 #define _GNU_SOURCE     /* environ */
 #include "command.h"
+#include "command.h"
 
 #include <errno.h>
 #include <spawn.h>

@@ -7,6 +7,14 @@
  * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
  * tried, where there are such. Where all modes are kept the states are those that were written. */
 #include "measuring.h"
+#include "command.h"
+#include "measuring.h"
+#include "model/needs.h"
+#include "model/shortening.h"
+#include "report/report.h"
+#include "step/certificates.h"
+#include "step/cost.h"
+#include "step/images.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #ifndef PLGEN_COMMAND_H
 #define PLGEN_COMMAND_H
 
+#include "emit/printed.h"
 #include "fmu/fmu.h"
 
 /* ---- main.c: the pipeline ---- */

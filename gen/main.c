@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plgen: the pipeline as one column of calls. Text is written to memory and published only when all went well. */
 #include "command.h"
+#include "command.h"
+#include "emit/emit.h"
+#include "model/elsewhere.h"
+#include "model/needs.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
+#include "report/report.h"
+#include "step/images.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -4,6 +4,11 @@
  * spec's start and from its neighbours, and the cheapest that meets all needs is taken. It is measured, not
  * certified. */
 #include "measuring.h"
+#include "command.h"
+#include "measuring.h"
+#include "model/needs.h"
+#include "report/report.h"
+#include "step/certificates.h"
 
 #include <math.h>
 #include <stdlib.h>

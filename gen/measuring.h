@@ -6,6 +6,8 @@
 #include "command.h"
 #include "run/run.h"
 
+struct alternative;
+
 /* Of a need: two references agree to a hundredth, so much is left for the step that is tried. */
 #define WITHIN 0.99
 enum { MOST_TRIED = 9, MOST_SAMPLES = 2000000, MOST_KEPT = 4000000 };

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starts and loads beside those of the spec: what is chosen is tried from there too. */
 #include "measuring.h"
+#include "measuring.h"
+#include "model/needs.h"
+#include "step/certificates.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,9 @@
 /* The command line: options as a table, from which usage is written, and what goes together. */
 #define _GNU_SOURCE     /* getopt_long */
 #include "command.h"
+#include "command.h"
+#include "report/report.h"
+#include "step/forms.h"
 
 #include <getopt.h>
 #include <stdlib.h>

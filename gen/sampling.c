@@ -3,6 +3,8 @@
  * counts is what its samples show: two in the shortest period of the loads and of the modes that are kept, as Nyquist
  * and Shannon ask for; and a hundred until the first need ends. */
 #include "command.h"
+#include "command.h"
+#include "step/images.h"
 
 #include <math.h>
 

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step that is tried for needs that are measured: built, run beside a reference, counted, put in order. */
 #include "measuring.h"
+#include "measuring.h"
+#include "model/needs.h"
+#include "model/shortening.h"
+#include "step/certificates.h"
+#include "step/images.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* init, set, get, time, status, hold: what access.h is told of the model. */
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "step/forms.h"
+#include "step/normal.h"
+#include "step/rows.h"
 
 static void emit_initial(const struct emitter *e, const char *name, const struct model *model)
 {

@@ -1,6 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The comment at the top: the equations, the poles, what the scheme does, what a step costs. */
-#include "emit/emit.h"
+#include "emit/blocks.h"
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "emit/series.h"
+#include "emit/tunable.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "model/relative.h"
+#include "report/report.h"
+#include "step/collocation.h"
+#include "step/cost.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/images.h"
+#include "step/normal.h"
+#include "step/regions.h"
+#include "step/rows.h"
+#include "step/series_contacts.h"
 
 #include <string.h>
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
 
 #include <string.h>
 

@@ -1,6 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program and its tables as C. Everything printed here is meant to be read. */
+#include "emit/blocks.h"
+#include "emit/declarations.h"
 #include "emit/emit.h"
+#include "emit/kinds.h"
+#include "emit/many.h"
+#include "emit/modes.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "step/certificates.h"
+#include "step/divided.h"
+#include "step/expansion.h"
 
 #include <ctype.h>
 

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_batch: what the header has of it, and what batch.h is told. */
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "emit/many.h"
+#include "emit/steps.h"
+#include "step/rows.h"
 
 #include <string.h>
 

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions: a step that stays clear of every breakpoint, as sums with a bound for each expression. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/steps.h"
+#include "model/expressions.h"
+#include "model/regions.h"
+#include "step/tuned.h"
 
 #include <string.h>
 

@@ -2,7 +2,13 @@
 /* Steps by collocation, as long as a tolerance lets them be, with outputs from their polynomials; beside them, where
  * the scheme switches, steps by the Taylor series.  How they go is in the runtime (radau.h, which the model's file
  * includes): here is what it is told of the model. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/collocation.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/guards.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions: what the few crossings of a step are found by, in the runtime (few.h, which the model's file includes): the
  * expressions, their bounds, x over the whole step and over a part of it. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/text.h"
 
 #include <string.h>
 

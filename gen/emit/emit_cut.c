@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Schemes with a leftover from crossing to crossing: what the runtime's cut.h, which the model's file includes, is told
  * of the model, and a whole step by the scheme's own tables. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "step/divided.h"
+#include "step/expansion.h"
 
 static const struct cut *cut_of(const struct emitter *e)
 {

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas that the state chooses: what a model keeps of them, and where a series ends that goes on with others. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/text.h"
+#include "model/contacts.h"
+#include "step/divided.h"
+#include "step/expansion.h"
 
 static const struct expansion *expansion(const struct emitter *e)
 {

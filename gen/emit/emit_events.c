@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Impacts, contacts at rest and dry friction beside a series: their tables, and how the search of events makes the
  * series anew. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/text.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
 
 #include <string.h>
 

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps by the Taylor series of the solution: its sums as straight lines, and what the runtime's taylor.h, which the
  * model's file includes, is told of it. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "step/expansion.h"
+#include "step/guards.h"
 
 #include <string.h>
 

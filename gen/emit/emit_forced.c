@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The forced part of loads that the step leaves out: NAME_forced, and its tables where they change their formula. */
-#include "emit/emit.h"
+#include "emit/steps.h"
+#include "model/relative.h"
+#include "step/forms.h"
 
 /* [segment][row][column] */
 static void print_forced(const struct emitter *e, const char *name, const char *what, int segments, int rows,

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of steps in normal modes: tables of a bank, between coordinates and modes, functions of time, forces on the modes. */
-#include "emit/emit.h"
+#include "emit/modes.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "step/normal.h"
 
 #include <math.h>
 

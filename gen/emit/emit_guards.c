@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions with dry friction as C: their guards, what holds states in them, and the search that goes from event to
  * event. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/text.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "step/guards.h"
 
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
 {

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a model has of params that an instance holds: types, retune. */
-#include "emit/emit.h"
+#include "emit/formulas.h"
+#include "emit/kinds.h"
+#include "emit/regions.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "step/normal.h"
+#include "step/tuned.h"
 
 static const struct tuning *held(const struct emitter *e)
 {

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pieces of a step between the shortest and the whole, as C: of regions, and of linear parts, whose fastest pole turns
  * far in it. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/text.h"
+#include "model/regions.h"
+#include "step/guards.h"
 
 /* ---- how many ---- */
 

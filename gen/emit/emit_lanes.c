@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
  * many instances as there are lanes, from the arrays and back. */
-#include "emit/emit.h"
+#include "emit/kinds.h"
+#include "emit/many.h"
+#include "emit/steps.h"
+#include "step/recipe.h"
+#include "step/rows.h"
 
 #include <string.h>
 

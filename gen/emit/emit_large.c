@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The step of a large model by its independent blocks: rows as everywhere; a loop over blocks that are alike; the
  * columns of a large block's matrix, summed in a form that compilers make vectors of. */
-#include "emit/emit.h"
+#include "emit/blocks.h"
+#include "step/forms.h"
 
 enum {
 	ROW_MULTIPLE = 8,           /* columns are as long: no vector has a rest */

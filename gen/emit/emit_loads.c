@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads on the target: phases as turns, growths as exponents of 2, load states made of them at a step's start. */
-#include "emit/emit.h"
+#include "emit/kinds.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "model/tuning.h"
 
 #include <string.h>
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step of modes: s->y holds the real parts of the pairs, then their imaginary parts, then what is real. */
-#include "emit/emit.h"
+#include "emit/modes.h"
+#include "step/forms.h"
+#include "step/tapes.h"
 
 static const char **mode_names(const struct emitter *e)
 {

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The highest derivatives of the coordinates and their Jacobian as C: what depends on time alone once for a time, the
  * rest for a state. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/collocation.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
+#include "step/unseen.h"
 
 #include <stdlib.h>
 #include <string.h>

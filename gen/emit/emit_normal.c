@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are told of
  * them: tables, sums over them, sizes. */
-#include "emit/emit.h"
+#include "emit/modes.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/normal.h"
+#include "step/rows.h"
+#include "step/weights.h"
 
 #include <math.h>
 #include <string.h>

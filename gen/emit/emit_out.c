@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
-#include "emit/emit.h"
+#include "emit/steps.h"
+#include "model/reads.h"
 
 /* The output of a row of that table: NULL behind the last */
 static const struct output *output_of_row(const struct model *model, int row)

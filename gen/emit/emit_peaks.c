@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* output NAME = peak(x): a step looks for larger values inside, before it moves the state. */
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "emit/steps.h"
+#include "step/rows.h"
 
 static const char **peak_names(const struct emitter *e)
 {

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A piecewise-linear model as C: tables of its regions, and a step that leaves finding crossings to the runtime. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/steps.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "step/guards.h"
 
 static const struct switching *regions_of(const struct emitter *e)
 {

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions whose matrices tunable params change: an instance has the tables of its search, which NAME_retune, of
  * retuned.h, computes anew. Here is what both hold. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/tunable.h"
+#include "model/contacts.h"
+#include "step/guards.h"
+#include "step/tuned.h"
 
 static const struct tuning *retuned_of(const struct emitter *e)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_rhs: the equations as written, for any ODE solver. */
-#include "emit/emit.h"
+#include "emit/steps.h"
+#include "model/building.h"
+#include "model/reads.h"
 
 #include <string.h>
 

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions of a series: what they are handed, what of loads and inputs they read, its coefficients. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
 
 #include <string.h>
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The coefficients of a series as C: their tape under the names of states and letters. */
-#include "emit/emit.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "step/expansion.h"
+#include "step/recipe.h"
 
 #include <string.h>
 

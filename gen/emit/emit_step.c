@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
-#include "emit/emit.h"
+#include "emit/blocks.h"
+#include "emit/kinds.h"
+#include "emit/modes.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/forms.h"
 
 bool *loads_of_step(const struct emitter *e)
 {

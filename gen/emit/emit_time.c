@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
-#include "emit/emit.h"
+#include "emit/blocks.h"
+#include "emit/kinds.h"
+#include "emit/series.h"
+#include "emit/steps.h"
+#include "step/forms.h"
 
 #include <string.h>
 

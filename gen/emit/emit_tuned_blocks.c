@@ -2,7 +2,13 @@
 /* Linear models with tunable params: an instance holds its own factors, of a large model those of independent blocks
  * that params touch, and NAME_retune, of retune.h, computes them anew on the target. What it is told: equations,
  * blocks, which it takes together in groups, sizes. */
-#include "emit/emit.h"
+#include "emit/blocks.h"
+#include "emit/declarations.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "step/rows.h"
+#include "step/tuned.h"
 
 static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
 {

@@ -3,7 +3,8 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "model/tuning.h"
 
 /* body.x' as BODY_X_DOT; as it is written, body_x_dot, where capitals name something else too. */
 static const char *as_index(const char *name, bool capitals)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of what may move as a whole: states as written, and as they are kept. */
-#include "emit/emit.h"
+#include "emit/declarations.h"
+#include "model/relative.h"
 
 /* The rate of a coordinate, over written values y; or what was gained of it, y being gains */
 static const char *rate_text(const struct emitter *e, const struct form *rate, bool whole)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a scheme leaves over as a function of the state: what it reads, how it is called, its text. */
-#include "emit/emit.h"
+#include "emit/steps.h"
+#include "emit/tunable.h"
+#include "model/reads.h"
+#include "step/weights.h"
 
 #include <string.h>
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions: tables that there is one of for each matrix, and sums over their rows as text. */
-#include "emit/emit.h"
+#include "emit/regions.h"
+#include "emit/steps.h"
+#include "model/expressions.h"
+#include "model/regions.h"
 
 int expressions_of(const struct emitter *e)
 {

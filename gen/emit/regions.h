@@ -3,6 +3,11 @@
 #ifndef PLGEN_EMIT_REGIONS_H
 #define PLGEN_EMIT_REGIONS_H
 
+#include "step/regions.h"
+
+struct emitter;
+struct guards;
+
 /* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
 
 #define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */

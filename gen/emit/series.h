@@ -3,6 +3,11 @@
 #ifndef PLGEN_EMIT_SERIES_H
 #define PLGEN_EMIT_SERIES_H
 
+#include "base/base.h"
+
+struct expansion;
+
+
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
 /* Of a scheme with a leftover from crossing to crossing, */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Factors that the instance has, in steps and in outputs. */
-#include "emit/emit.h"
+#include "emit/formulas.h"
+#include "step/tuned.h"
 
 int place_in(int count, const int *list, int what)
 {

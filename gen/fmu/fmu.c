@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files of an FMU and their order. */
 #include "fmu/fmu.h"
+#include "model/tuning.h"
+#include "step/step.h"
 
 #include <string.h>
 

@@ -3,7 +3,11 @@
 #ifndef PLGEN_FMU_H
 #define PLGEN_FMU_H
 
-#include "emit/emit.h"
+#include "base/base.h"
+
+struct step;
+struct model;
+
 
 /* ---- archive.c: files in one file ---- */
 

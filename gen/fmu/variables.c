@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names and start values of what the importer sees. */
 #include "fmu/fmu.h"
+#include "model/tuning.h"
+#include "step/step.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The augmented state x, of which x' = A x: states, what a scheme holds, load states, inputs, channels. */
-#include "model/model.h"
+#include "model/reads.h"
 
 static struct layout place(const struct linear *system, int powers, const bool *needed, int segments, bool held)
 {

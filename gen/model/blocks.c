@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coordinates that do not influence each other, in either direction, are separate systems: each has its own B(s), and
  * the factors between them are exactly 0. */
-#include "model/model.h"
+#include "model/linear.h"
 
 /* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
 static int *components(const struct linear *system)

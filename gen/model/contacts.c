@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Impacts and dry friction beside what is not piecewise linear, which a Taylor series is made of: no regions, but what
  * holds something and what lets it go as forms. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/contacts.h"
+#include "model/friction.h"
 
 /* Its index; -1: it is none */
 static int drag_of(const struct model *model, const struct atom *atom)

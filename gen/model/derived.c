@@ -2,7 +2,7 @@
 /* Params that are made of tunable ones in another way than as sums of products: sin(p), sqrt(k/m), the 1 + p of
  * x/(1 + p), p > 1 ? a : b; where an entry has too many products, all sums. Each is a tunable param of its own, behind
  * those of the spec, which the target finds from these by its expression. */
-#include "model/model.h"
+#include "model/tuning.h"
 
 /* ---- what a sum of products is not ---- */
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coordinates that are differences along a tree, and a centre: what they are called, the written ones as forms of them,
  * and values of either from those of the other. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/relative.h"
+#include "model/tuning.h"
 
 #include <string.h>
 

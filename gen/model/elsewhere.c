@@ -3,7 +3,9 @@
  * matrices, other params. So nothing is derived from its text: the model is built anew at a few exact values, and every
  * entry of it is found from its values there (fit.c). What could only seem to be a sum of products, a function or a
  * condition, is a param of its own where it is made of params alone (derived.c), or refused before. */
-#include "model/model.h"
+#include "model/elsewhere.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
 
 /* ---- points ---- */
 

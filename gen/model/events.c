@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Intervals of regions in which something is held, and what begins at their ends. */
-#include "model/model.h"
+#include "model/contacts.h"
 
 int impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward)
 {

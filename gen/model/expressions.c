@@ -2,7 +2,10 @@
 /* What is compared with breakpoints: terms that compare multiples of one form share an expression. Its loads may have
  * another formula in each segment of time; it is known again there by the terms that compare it, and by what of it is
  * not of time alone. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/expressions.h"
+#include "model/friction.h"
+#include "model/reads.h"
 
 /* ---- intervals and rates ---- */
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which tunable params of regions are factors, numbers in their matrices: those that cannot go as held inputs. The
  * model is built at the spec's values with one after the other as an input, in silence. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/elsewhere.h"
+#include "model/tuning.h"
 
 struct attempt {
 	struct building *b;

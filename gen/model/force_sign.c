@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The sign of a friction force F, as far as it is seen: F is at 0 or above as long as a sum of powers, exponentials and
  * waves of time is, beside what never is below 0. */
-#include "model/model.h"
+#include "model/friction.h"
 
 /* max(5*y + 1, 0), abs(x), x^2 */
 static bool is_never_negative(const struct atom *a)

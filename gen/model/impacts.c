@@ -2,7 +2,9 @@
 /* Impacts: where a guard comes true by crossing, the state jumps, linearly. One that turns the speed of its guard, s to
  * -e s, along one direction, v -> v - (1 + e) d s, is a bounce; after infinitely many of them in finite time, or after
  * one where e is 0, its contact rests. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/friction.h"
+#include "model/tuning.h"
 
 /* ---- guards and jumps as forms ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear systems of coordinates of first and second order. */
-#include "model/model.h"
+#include "model/linear.h"
 
 struct linear linear_like(const struct linear *shape)
 {

@@ -6,6 +6,8 @@
  * tell.
  */
 #include "model/modes.h"
+#include "model/needs.h"
+#include "model/shortening.h"
 
 #include <float.h>
 #include <math.h>

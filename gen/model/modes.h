@@ -3,7 +3,11 @@
 #ifndef PLGEN_MODES_H
 #define PLGEN_MODES_H
 
-#include "model/model.h"
+#include "base/base.h"
+
+struct modes;
+struct mode;
+
 
 struct mode_basis {
 	struct invariants *invariants; /* of A, or of M^-1 K */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The terms of the equations that no M, C and K have: what poles, frequency responses and static gains know nothing of.
  * A known load in time is none of them, whatever its formula: all these are the same without it. */
-#include "model/model.h"
+#include "model/building.h"
 
 #include <string.h>
 

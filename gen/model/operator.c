@@ -2,7 +2,8 @@
 /* The linear operator A of y' = A y + loads + inputs + r(t, y), and the leftover r. Without a statement A is what the
  * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that
  * still depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/relative.h"
 
 /* ---- the fixed names ---- */
 

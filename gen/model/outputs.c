@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as rows over states, load states and inputs. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/friction.h"
+#include "model/reads.h"
+#include "model/relative.h"
 
 #include <string.h>
 

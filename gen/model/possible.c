@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which regions can be: inequalities of their expressions that hold together, by elimination (Fourier and Motzkin).
  * Whether forces jump with a velocity from one to the next. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/contacts.h"
+#include "model/reads.h"
 
 static const struct node *last_term(const struct switching *s)
 {

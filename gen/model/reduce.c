@@ -6,7 +6,9 @@
  * These rows themselves grow as powers of the fastest pole. So the basis is that which is 1 at a written state of its
  * own, 0 at those of the other rows, and small elsewhere: written states that lie in the space are rows of it, and
  * what a row is a combination of stands in the row. */
-#include "model/model.h"
+#include "model/reads.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
 
 #include <math.h>
 #include <string.h>

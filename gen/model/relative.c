@@ -11,7 +11,11 @@
  *
  * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
  * are derived in them from the start; where the user looks, states are the written ones. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "model/relative.h"
+#include "model/tuning.h"
 
 #include <string.h>
 

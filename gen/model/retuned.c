@@ -4,7 +4,11 @@
  * numbers of the model. It is looked at elsewhere (elsewhere.c), regions close to the spec's values, where breakpoints
  * keep their order and factors their sign: what decided on the way which region is which has to keep its sign on the
  * target. */
-#include "model/model.h"
+#include "model/contacts.h"
+#include "model/elsewhere.h"
+#include "model/reads.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
 
 #include <string.h>
 

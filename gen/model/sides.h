@@ -3,7 +3,8 @@
 #ifndef PLGEN_SIDES_H
 #define PLGEN_SIDES_H
 
-#include "model/model.h"
+struct atom;
+
 
 struct side {
 	struct collector *c;

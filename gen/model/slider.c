@@ -4,7 +4,8 @@
  * has to bear, q. Up to F the slider sticks and v = 0; beyond, it slides so that q stays F, which gives its place; it
  * sticks again where v would turn round (W. D. Iwan, Journal of Applied Mechanics 33, 1966). With a damper beside it v
  * is what the damper makes of what q has above F, a function of straight pieces. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/friction.h"
 
 /* ---- which it is ---- */
 

@@ -5,6 +5,8 @@
  * what they have there: a jump for p = 0, a kink for p = 1, more than that beyond, as x*abs(x) at 0 with p = 2. A
  * scheme is then of order p + 1 at most: a step across the surface errs by h^{p+1}, and crossings do not become more
  * as h shrinks. The difference is written symbolically and measured at points of the surface, in 320 bits. */
+#include "model/building.h"
+#include "model/reads.h"
 #include "model/sides.h"
 
 #include <string.h>

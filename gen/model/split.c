@@ -2,7 +2,8 @@
 /* What is left over, sorted: forces that are linear in coordinates and velocities with factors of time alone, waves,
  * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
  */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/reads.h"
 
 struct split_work {
 	struct building *b;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which model is stepped: that of the equations, or one over coordinates that part what moves as a whole. */
-#include "model/model.h"
+#include "model/regions.h"
+#include "model/relative.h"
+#include "model/tuning.h"
 
 /* The coordinate from which all of its group are measured */
 static int root_of(const struct relative *r, int coord)

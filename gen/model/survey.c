@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How large each mode's answer is in each output, in double precision: sums of |residues|, to choose by and to tell. */
 #include "model/modes.h"
+#include "model/shortening.h"
 
 #include <complex.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residuals to M, C, K, loads and inputs. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/tuning.h"
 
 static void fill_row(struct linear *system, int row, const struct form *form)
 {

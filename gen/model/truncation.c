@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of a series and the stages of a collocation: as they are asked for, or from what a step may add. */
-#include "model/model.h"
+#include "model/building.h"
+#include "model/checks.h"
 
 #include <math.h>
 

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived: for a person, and as JSON for a program. */
+#include "model/building.h"
+#include "model/reads.h"
 #include "report/report.h"
+#include "step/collocation.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/images.h"
+#include "step/normal.h"
+#include "step/tuned.h"
 
 #include <string.h>
 

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived, as JSON for a program. */
+#include "model/reads.h"
+#include "model/tuning.h"
 #include "report/report.h"
+#include "step/collocation.h"
+#include "step/cost.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/images.h"
+#include "step/rows.h"
 
 #include <math.h>
 

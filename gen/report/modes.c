@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of steps in normal modes: modes, operators, which way a step goes, what was found of its stability. */
+#include "model/reads.h"
 #include "report/report.h"
+#include "step/normal.h"
+#include "step/weights.h"
 
 const char *operators_of_modes(const struct step *step)
 {

@@ -2,6 +2,7 @@
 /* Of a model that is not linear there are no poles, mode shapes, frequency responses and static gains: those of the
  * terms that happen to be linear are of another model. What they would leave out is said by name. */
 #include "report/report.h"
+#include "step/step.h"
 
 enum { NAMED = 12 };
 

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
+#include "model/friction.h"
 #include "report/report.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/guards.h"
+#include "step/regions.h"
 
 /* ---- bytes and work ---- */
 

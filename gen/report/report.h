@@ -3,7 +3,20 @@
 #ifndef PLGEN_REPORT_H
 #define PLGEN_REPORT_H
 
-#include "step/step.h"
+#include "math/math.h"
+
+struct pole_report;
+struct step;
+struct irrationals;
+struct model;
+struct divided;
+struct switching;
+struct alternative;
+struct requirement;
+struct shortening;
+struct output;
+struct resolvent;
+struct linear;
 
 /* ---- report.c: poles and polynomials for a reader ---- */
 

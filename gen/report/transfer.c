@@ -2,7 +2,9 @@
 /* Transfer functions H(s) = scale N(s)/D(s) of the linear part, exact and without common factors: each output over each
  * input u, and over what each load forces with its function of time taken as u. The image of an output under the ramp
  * u = t from rest is H(s)/s^2, under a step H(s)/s (Laplace transform of an integral). */
+#include "model/reads.h"
 #include "report/report.h"
+#include "step/images.h"
 
 #include <math.h>
 

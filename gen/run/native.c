@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The C of a model as code in memory, by libtcc: a compiler of a millisecond, which rounds each product and each sum as
  * it is written. It reads no file and needs none. */
+#include "run_texts.h"
+#include "emit/emit.h"
 #include "run/run.h"
 
 #include <libtcc.h>
@@ -8,7 +10,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "run_texts.h"
 
 /* ---- the text ---- */
 

@@ -3,7 +3,7 @@
 #ifndef PLGEN_RUN_H
 #define PLGEN_RUN_H
 
-#include "emit/emit.h"
+#include "emit/printed.h"
 
 /* ---- count.c: C that counts what it does ---- */
 

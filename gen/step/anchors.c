@@ -7,7 +7,8 @@
  * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a
  * table of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing
  * accumulates. A step of regions has many L and asks for z itself: there E_l alone is the table. */
-#include "step/step.h"
+#include "step/forms.h"
+#include "step/images.h"
 
 #include <math.h>
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: regions as they are met, what ends them, and loads at a time. */
+#include "model/elsewhere.h"
+#include "model/friction.h"
+#include "step/references.h"
 #include "step/through.h"
 
 #include <math.h>

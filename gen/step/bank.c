@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A bank: linear terms of the leftover that differ from operator to operator, and what all operators leave alike. */
-#include "step/step.h"
+#include "step/weights.h"
 
 static mpq_srcptr linear_factor(const struct form *form, int coord, int order)
 {

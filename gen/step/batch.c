@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of which models many instances step as lanes: those whose instances share all but state and factors. Of others each
  * takes its steps by itself. */
-#include "step/step.h"
+#include "model/tuning.h"
+#include "step/rows.h"
 
 static const char *objection_of_kind(const struct step *step)
 {

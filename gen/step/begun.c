@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: where it begins. */
+#include "model/contacts.h"
 #include "step/through.h"
 
 /* ---- the start ---- */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The linear systems that a step is made of. */
-#include "step/step.h"
+#include "model/regions.h"
+#include "step/images.h"
 
 /* The ramps of inputs as channels: u', held and as the slope of u */
 static struct linear driven_system(const struct linear *region)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a step turns modes in the place of states: where nothing stands against it, and it costs less than half. */
-#include "step/step.h"
+#include "step/forms.h"
+#include "step/images.h"
 
 /* ---- what stands against it ---- */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* States of a linear model in closed form, for the target's self-test to step to. */
-#include "step/step.h"
+#include "step/images.h"
+#include "step/references.h"
 
 #include <math.h>
 

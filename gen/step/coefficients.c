@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of a step: which responses, or entries of e^{A tau}, each of their numbers is a sum of. */
+#include "model/reads.h"
+#include "step/images.h"
 #include "step/numbers.h"
 
 #include <math.h>

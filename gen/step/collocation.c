@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Radau IIA collocation with s stages (Hairer and Wanner 1996, IV.5): its nodes, the integrals of the polynomials that
  * are 1 at one of them, and the modes of those, all enclosed and rounded once; nodes of Lobatto. */
-#include "step/step.h"
+#include "step/collocation.h"
+#include "step/recipe.h"
 
 enum { BITS = 512 };                /* far beyond what rounding needs: entries have no more than 40 bits before it */
 

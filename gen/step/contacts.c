@@ -3,7 +3,10 @@
  * between two equal breakpoints: of friction its velocity, of a contact at rest the guard of its impacts. The force
  * that holds it is a sequence like others: what makes the rate of its velocity 0, of the accelerations without it,
  * which are sequences too. Where several act on each other, each combination of those that hold has its own. */
-#include "step/step.h"
+#include "model/friction.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
 
 /* ---- what divides ---- */
 

@@ -1,6 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step costs: evaluations of what is left over, load states, sums. */
-#include "step/step.h"
+#include "model/contacts.h"
+#include "model/needs.h"
+#include "model/reads.h"
+#include "step/collocation.h"
+#include "step/cost.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/normal.h"
+#include "step/rows.h"
+#include "step/tapes.h"
 
 struct cost { int multiplications, additions, calls; };
 

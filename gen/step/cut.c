@@ -2,9 +2,11 @@
 /* A scheme with a leftover that goes from crossing to crossing: between two of them the formulas are those of given
  * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
  * crosses a breakpoint is made again in parts, whose tables the target makes. */
-#include "step/step.h"
-
 #include "plrt.h"
+#include "step/cost.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+
 
 #include <math.h>
 

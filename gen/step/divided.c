@@ -2,7 +2,11 @@
 /* Formulas that the state chooses: each comparison is of an expression, smooth until the next event, with a breakpoint.
  * A series, or a step of a collocation, is of the formulas between two events; where an expression passes a breakpoint
  * it ends. */
-#include "step/step.h"
+#include "model/reads.h"
+#include "model/regions.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
 
 #include <limits.h>
 

@@ -2,7 +2,8 @@
 /* What the rounding of its constants alone does to a linear step over many steps: the eigenvalues z of the map that the
  * program makes with the constants as they are emitted, beside e^{p h} of the poles p. The map is made by running the
  * program on unit states in rationals, so that it is that of any form; its eigenvalues are enclosed like poles. */
-#include "step/step.h"
+#include "step/forms.h"
+#include "step/images.h"
 
 enum { DRIFT_BITS = 256 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exact numbers of the equations that stand in the code as they are: the border where each is rounded, once. */
-#include "step/step.h"
+#include "step/images.h"
 
 struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 {

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The solution as a Taylor series: a sequence of coefficients for each state, which of them there are, and which are
  * read. */
-#include "step/step.h"
+#include "model/checks.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/series_contacts.h"
+#include "step/unseen.h"
 
 /* ---- the states ---- */
 

@@ -11,7 +11,11 @@
  * Where differences of coordinates are kept, a load that drives one of them fast is in all that are measured from it,
  * and what is written as their sum would be the small rest of large numbers: so y_p is added to the states as written,
  * each by factors of its own, and the bound is of these too. */
+#include "model/relative.h"
+#include "step/cost.h"
+#include "step/forms.h"
 #include "step/kept.h"
+#include "step/tapes.h"
 
 #include <math.h>
 

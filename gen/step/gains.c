@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* e^{A d} - I of a region in two words: what a piece of the step adds to a state that keeps what rounding takes. */
-#include "step/step.h"
+#include "model/reads.h"
+#include "step/images.h"
+#include "step/regions.h"
 
 #include <math.h>
 

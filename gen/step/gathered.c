@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions whose tables an instance has: what of x stays from step to step, 1 and held params, and what is never
  * above 1 is gathered beforehand, so that a step that stays clear has sums over the rest alone. */
-#include "step/step.h"
+#include "model/expressions.h"
+#include "model/regions.h"
+#include "model/tuning.h"
+#include "step/regions.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What scheme pl solves exactly and what it holds over a step, and how that errs. */
-#include "step/step.h"
+#include "step/tables.h"
 
 struct normalizing { int n; const mpq_t *inverse; };
 

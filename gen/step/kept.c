@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step as a map in double: what it keeps, and how large states and an output become by loads and inputs; and the
  * exact course of the model beside it. */
+#include "model/relative.h"
+#include "step/forms.h"
+#include "step/images.h"
 #include "step/kept.h"
 
 #include <math.h>

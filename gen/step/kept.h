@@ -4,7 +4,11 @@
 #ifndef PLGEN_KEPT_H
 #define PLGEN_KEPT_H
 
-#include "step/step.h"
+#include "base/base.h"
+
+struct spread;
+struct linear;
+
 
 struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); without waves cos(p) = 1 */
 	int power;

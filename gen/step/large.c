@@ -2,7 +2,8 @@
 /* A large step by its independent blocks: a few small ones as rows that can be read, many alike in one loop over their
  * numbers, a large one by the columns of its matrix, which compilers vectorise. What is zero between blocks leaves no
  * trace. */
-#include "step/step.h"
+#include "step/forms.h"
+#include "step/tuned.h"
 
 enum {
 	ROW_STATES = LIMIT_UNROLLED_STATES, /* of a block, for rows, or for the body of a loop */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The step as one matrix over states and load states, in two words, so that its powers leap over many steps. */
-#include "step/step.h"
+#include "model/reads.h"
+#include "step/images.h"
 
 struct leap leap_of(const struct step *step)
 {

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What outputs lose with the modes that are dropped, at every sample. */
+#include "model/shortening.h"
+#include "step/certificates.h"
 #include "step/kept.h"
 
 #include <math.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The highest derivatives of the coordinates as forms, the mass matrix folded in, and their Jacobian: what an implicit
  * scheme solves. */
-#include "step/step.h"
+#include "model/contacts.h"
+#include "step/collocation.h"
+#include "step/expansion.h"
 
 static struct basis basis_of_state(const struct linear *system, int state)
 {

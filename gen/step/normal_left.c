@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is left over, in normal modes: V^T times matrices times V, times functions of time. Matrices that are multiples
  * of each other are one. */
-#include "step/step.h"
+#include "step/normal.h"
+#include "step/weights.h"
 
 #include <math.h>
 

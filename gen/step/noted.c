@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: the list of them, and where expressions stand. */
+#include "model/expressions.h"
+#include "model/regions.h"
+#include "step/references.h"
 #include "step/through.h"
 
 #include <math.h>

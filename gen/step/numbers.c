@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Each number of a step is decided exactly to be rational, or enclosed ever more tightly until both ends of the
  * enclosure round to the same double (Ziv); so each is rounded once, correctly. */
+#include "step/images.h"
 #include "step/numbers.h"
 
 #include <math.h>

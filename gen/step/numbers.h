@@ -3,7 +3,10 @@
 #ifndef PLGEN_NUMBERS_H
 #define PLGEN_NUMBERS_H
 
-#include "step/step.h"
+#include "base/base.h"
+
+struct coefficient;
+struct model;
 
 enum { FIRST_PRECISION = 128 };     /* doubled while a number is not decided */
 

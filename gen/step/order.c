@@ -4,7 +4,9 @@
  * a step that grows with tolerance^(1/(P-1)), its last but one term being at the tolerance; and where it is long it has
  * more instructions than a processor keeps decoded. Then a lower order is cheaper: by a third where the equations have
  * seven products, for the same error. */
-#include "step/step.h"
+#include "model/checks.h"
+#include "step/cost.h"
+#include "step/expansion.h"
 
 #include <math.h>
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: the first event of a piece, and what is behind it. */
+#include "model/contacts.h"
+#include "step/references.h"
 #include "step/through.h"
 
 #include <math.h>

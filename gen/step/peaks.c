@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs of which the largest size is asked for: rows over x, and what of |x| bounds how far they bend in a step. */
-#include "step/step.h"
+#include "model/reads.h"
+#include "step/regions.h"
+#include "step/rows.h"
+#include "step/tuned.h"
 
 int peak_outputs(const struct model *model)
 {

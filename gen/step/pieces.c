@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a piecewise-linear model finds its crossings with: the expressions that breakpoints divide, and how fast each
  * may change within a piece of the step. */
-#include "step/step.h"
+#include "model/elsewhere.h"
+#include "model/expressions.h"
+#include "model/regions.h"
+#include "step/regions.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program of a step. */
-#include "step/step.h"
+#include "model/contacts.h"
+#include "model/needs.h"
+#include "model/reads.h"
+#include "step/forms.h"
 
 enum step_kind kind_of_step(const struct model *model)
 {

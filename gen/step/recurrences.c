@@ -2,7 +2,9 @@
 /* The coefficients of a series as nodes of a tape, each from those before it (Griewank and Walther, Evaluating
  * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
  * by its gains (newest.c). */
-#include "step/step.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/tapes.h"
 
 #include <math.h>
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers below the range of full precision take many times as long as others, and tell nothing: factors that are so
  * small leave the step, and what has decayed that far comes to rest. */
-#include "step/step.h"
+#include "step/forms.h"
+#include "step/images.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scheme takes the equations apart into what is solved exactly and what is held over a step, and writes the step as
  * a program over the tables of the exact part. */
-#include "step/step.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "step/collocation.h"
+#include "step/cost.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/forms.h"
+#include "step/images.h"
+#include "step/normal.h"
+#include "step/recipe.h"
+#include "step/regions.h"
+#include "step/rows.h"
+#include "step/tuned.h"
 
 /* A page that a person reads is unrolled; what is larger, has several operators, or loads that change, loops over its
  * tables. */

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms to sums of sequences, atoms to recurrences, each once. Sources of the recurrences: Moore 1966; Griewank and
  * Walther 2008, chapter 13. */
-#include "step/step.h"
+#include "step/divided.h"
+#include "step/expansion.h"
+#include "step/sequences.h"
 
 int new_sequence(struct sequencing *w, struct sequence sequence)
 {

@@ -8,7 +8,12 @@
  * rounding
  *
  * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
-#include "step/step.h"
+#include "model/contacts.h"
+#include "model/reads.h"
+#include "model/tuning.h"
+#include "step/cost.h"
+#include "step/forms.h"
+#include "step/tapes.h"
 
 #include <string.h>
 

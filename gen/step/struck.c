@@ -2,6 +2,8 @@
 /* Of a way through crossings: impacts, what comes to rest by them, what sticks and what slips, by the law of the
  * target, runtime/contacts.h, over enclosures: the nearest number of each, and 0 where it has 0. What that decides
  * while it is more than rounding is not known, and more bits are asked for. */
+#include "model/contacts.h"
+#include "step/references.h"
 #include "step/through.h"
 
 #include <float.h>

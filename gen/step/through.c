@@ -3,6 +3,9 @@
  * state is kept at rational times, as the region that it is in would have it there; what an event's time is not known
  * by becomes a width of the state. Between events it goes by powers of e^{A d} from where the grid of pieces d was met
  * first, so that widths grow by events and not by steps. */
+#include "model/regions.h"
+#include "model/tuning.h"
+#include "step/references.h"
 #include "step/through.h"
 
 /* ---- a piece ---- */

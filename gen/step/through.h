@@ -3,7 +3,10 @@
 #ifndef PLGEN_THROUGH_H
 #define PLGEN_THROUGH_H
 
-#include "step/step.h"
+#include "math/math.h"
+#include "model/linear.h"
+
+struct output;
 
 /* What so many bits do not tell apart is one: two instants, a force and its limit. */
 enum { THROUGH_SLOTS = 64, BITS_OF_ONE = 768 };

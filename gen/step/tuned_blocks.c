@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A linear step with tunable params. Of a large one what params touch is the instance's, and the target computes
  * e^{A h} of these independent blocks alone; the others keep their tables. Any other is one block. */
-#include "step/step.h"
+#include "model/elsewhere.h"
+#include "step/recipe.h"
+#include "step/tuned.h"
 
 /* ---- what stands in the code ---- */
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which factors of a step are 0 whatever the tunable params are: the others may not be left out of the code. What the
  * equations are for values that are related by nothing tells it. */
-#include "step/step.h"
+#include "model/regions.h"
+#include "step/tuned.h"
 
 static void add_couplings(const struct step *step, const struct linear *system, bool *reads)
 {

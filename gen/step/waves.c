@@ -4,7 +4,8 @@
  * step. Of its values C and S at the step's start, cos(w (t + s) + p) = C cos(w s) - S sin(w s), so the response is C
  * and S times those to cos and sin from rest, which Taylor series give. No quadrature has a part in it.
  */
-#include "step/step.h"
+#include "step/normal.h"
+#include "step/weights.h"
 
 #include <math.h>
 

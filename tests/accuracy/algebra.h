@@ -4,8 +4,10 @@
 #ifndef ALGEBRA_H
 #define ALGEBRA_H
 
+#include "base/base.h"
 #include "evaluator.h"
-#include "model/model.h"
+
+struct load;
 
 void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b, bool subtract);   /* sum +- a b */
 bool eliminate(size_t rows, size_t width, mpq_t *W); /* its left square part made the identity; false: it is singular */

@@ -15,9 +15,11 @@
 #include "bitwise_specs.h"
 #include "algebra.h"
 #include "cases.h"
-#include "report/report.h"
 #include "random_spec.h"
 #include "rationals.h"
+#include "model/shortening.h"
+#include "report/report.h"
+#include "step/images.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -16,8 +16,8 @@
 #include "algebra.h"
 #include "cases.h"
 #include "drawn.h"
-#include "step/step.h"
 #include "random_spec.h"
+#include "measuring.h"
 
 #include <math.h>
 #include <stdlib.h>

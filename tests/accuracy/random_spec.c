@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "random_spec.h"
 #include "drawn.h"
+#include "base/base.h"
 
-#include "step/step.h"
 
 #include <string.h>
 

@@ -6,7 +6,8 @@
 #ifndef JUDGE_H
 #define JUDGE_H
 
-#include "emit/emit.h"
+#include "base/base.h"
+
 
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing
  * there. */

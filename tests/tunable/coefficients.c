@@ -12,11 +12,14 @@
  * for the spec's values, bit for bit. The largest met is printed for each family; for states also in ulp of the largest
  * entry of Phi - I, for ramps in ulp of the largest entry of both columns.
  */
-#include "emit/emit.h"
 #include "tuned.h"
 #include "cases.h"
 #include "drawn.h"
 #include "../emitted/worse.h"
+#include "emit/steps.h"
+#include "model/relative.h"
+#include "model/shortening.h"
+#include "model/tuning.h"
 
 #include <ctype.h>
 #include <math.h>

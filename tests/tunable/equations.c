@@ -9,10 +9,10 @@
  * fulfil them, and rows of outputs have to be equal. Nothing is rounded.  Random specs write their factors with nested
  * params, matrices, lets and sketches; none may be refused.
  */
-#include "step/step.h"
 #include "algebra.h"
 #include "cases.h"
 #include "drawn.h"
+#include "model/tuning.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /* The doors of the mathematics by identities: what is multiplied out is divided, factored, inverted or summed back,
  * exactly or within the enclosures; enclosures are held against values that MPFR has from closed forms. */
 #include "draw.h"
-#include "model/model.h"
+#include "emit/text.h"
 
 #include <string.h>
 

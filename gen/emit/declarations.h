@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The comment at the top, the header, and what is the same for every model. */
+#ifndef PLGEN_EMIT_DECLARATIONS_H
+#define PLGEN_EMIT_DECLARATIONS_H
+
+#include "emit/state.h"
+
+struct emitter;
+
+/* ---- banner.c, declarations.c: what a header has ---- */
+
+void emit_banner(const struct emitter *e);
+void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
+void banner_leftover(const struct emitter *e);
+void banner_cut(const struct emitter *e);
+void banner_regions(const struct emitter *e);
+void banner_parts(const struct emitter *e);
+void banner_expanded(const struct emitter *e);
+void banner_collocated(const struct emitter *e);
+void banner_normal(const struct emitter *e);
+const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
+const char **names_of_inputs(const struct emitter *e);
+void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
+void announce(const struct emitter *e, const char *text, const char *comment);     /* one declaration */
+void open_declarations(const struct emitter *e, const char *included);
+void close_declarations(const struct emitter *e);
+void emit_counts(const struct emitter *e, int inputs);            /* NAME_STATES and the like */
+void declare_reading(const struct emitter *e, const char *status_note);           /* get, time, status */
+void declare_driven_step(const struct emitter *e, const char *note);              /* step, out, run, at */
+void emit_declarations(const struct emitter *e, bool rhs);
+
+/* ---- kept.c: states as written, and as they are kept ---- */
+
+void emit_conversions(const struct emitter *e);
+
+/* ---- access.c: init, set, get, time, status ---- */
+
+void emit_access(const struct emitter *e);
+
+/* ---- descriptor.c: tables for all to read, and the descriptor ---- */
+
+void emit_phi(const struct emitter *e);
+void emit_mode_matrices(const struct emitter *e);               /* of a model of some modes: from and to all states */
+void emit_gamma(const struct emitter *e);
+void emit_descriptor(const struct emitter *e);
+/* names, NAME_any_init and the like, NAME_model; `core`: with what only a whole model has */
+void emit_model(const struct emitter *e, int inputs, bool core);
+
+/* ---- selftest.c: reference states in closed form, for the target to step to ---- */
+
+void emit_selftest(const struct emitter *e, bool jumps);
+
+/* ---- emit_peaks.c: the largest sizes of outputs ---- */
+
+void emit_peak_tables(const struct emitter *e);
+void emit_peak_members(const struct emitter *e);
+void emit_peak_step(const struct emitter *e);
+/* Members of NAME_coeffs, of tunable models */
+void emit_nominal_peaks(const struct emitter *e);
+
+#endif

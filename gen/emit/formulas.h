@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Forms with atoms as C, and what a scheme leaves over. */
+#ifndef PLGEN_EMIT_FORMULAS_H
+#define PLGEN_EMIT_FORMULAS_H
+
+#include "emit/state.h"
+#include "step/tapes.h"
+#include "tape/tape.h"
+
+struct action;
+struct basis;
+struct emitter;
+struct form;
+struct model;
+struct output;
+
+/* ---- formulas.c: forms with atoms as C, by a tape ---- */
+
+struct formulas;
+enum formula_table { TABLE_NODE = LINEAR_TABLES, TABLE_EXCESS };  /* of TAPE_TABLE too: node[], excess[] */
+/* How forms are read: over y[], u[] and t as the equations are written, else by the locals of the step; what the state
+ * chooses as interval[] says, the intervals of the step's expressions, else as the state is; conditions on time alone
+ * as at the time that the C `when` is, NULL: at t */
+struct reading { bool written, by_intervals; const char *when; };
+const char *basis_now(const struct emitter *e, const struct basis *basis); /* its operand; NULL: 1 */
+/* What is to be formulas, all of it: what several read is computed once, under the name of a let where it has one. */
+struct formulas *formulas_new(const struct emitter *e, struct reading how, int count, const struct form *const *form);
+struct tape *formulas_tape(const struct formulas *f);             /* to set targets in */
+tape_ref formula(struct formulas *f, const struct form *form);
+tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum of the sizes of its terms */
+void formulas_finish(struct formulas *f);                         /* once all is set */
+struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
+void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */
+void emit_formulas(struct formulas *f, int indent);
+
+/* ---- leftover.c: what a scheme leaves over, as a function ---- */
+
+bool many_operators(const struct emitter *e);
+bool any_of(const bool *flag, int count);
+/* What a leftover, an operator, is handed in a step: samples at its start, their slopes [1/s] */
+const char *samples_of_step(const struct emitter *e);
+/* A call at a node of the step, and one in the outputs, into `left` */
+const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left);
+const char *leftover_of_outputs(const struct emitter *e);
+/* Does an output read an acceleration that something left over acts on? */
+bool reads_channels(const struct model *model);
+void emit_leftover(const struct emitter *e);                      /* and of a bank the choice of an operator */
+
+const char *selection_call(const struct emitter *e);              /* of a bank: which operator serves now */
+
+/* ---- loops.c: a step with a leftover that loops over its tables ---- */
+
+void emit_loop_tables(const struct emitter *e);
+const char *matrix_text(const struct emitter *e, const char *name); /* its first entry, of the operator that serves */
+const char *vector_name(int stage);
+bool flows_apart(const struct emitter *e);                        /* where a change of the loads may interrupt them */
+void emit_operands(const struct emitter *e);                      /* declares load, input, which the tables multiply */
+/* target = Phi y + loads + inputs over the time of table t; from rest: the loads and inputs alone */
+void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
+void emit_combination_loop(const struct emitter *e, const struct action *a);
+void emit_sum_loop(const struct emitter *e, const struct action *a);
+
+/* ---- actions.c: the step of a scheme that leaves something over ---- */
+
+void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
+void emit_leftover_step(const struct emitter *e);
+void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+
+/* ---- tuned_terms.c: factors that the instance has ---- */
+
+bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
+/* Entry of an enum linear_table in a step, in outputs */
+const char *linear_entry(const struct emitter *e, const struct tape_node *n);
+int  place_in(int count, const int *list, int what);              /* count: it is not there */
+/* Its row of factors, in struct NAME_coeffs */
+const char *tuned_output_row(const struct emitter *e, const struct output *output);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* C that was printed, read and printed again. */
+#ifndef PLGEN_EMIT_PRINTED_H
+#define PLGEN_EMIT_PRINTED_H
+
+#include "emit/state.h"
+
+/* ---- included.c, single.c, apart.c: C that was printed, printed again, in this order ---- */
+
+typedef void rewriter(FILE *to, const char *text, const char *name); /* of a model of this name */
+rewriter print_included;        /* the runtime's algorithms in the place of the lines that include them, for double */
+rewriter print_single;          /* C for double as C for float */
+rewriter print_apart;           /* no local is called as the model */
+bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes, or a header? */
+
+/* ---- printed.c: C that was printed, read again ---- */
+
+bool in_name(char c);
+size_t name_length(const char *text);
+bool is_named(const char *text, size_t length, const char *name); /* is a word of that length this one? */
+const char *behind_plain(const char *text);                       /* a character, and all up to a word, a string, a / */
+/* Behind a comment, a string, or a line of the preprocessor that starts here; NULL: none does */
+const char *behind_quoted(const char *text, bool line_start);
+const char *behind(const char *text, char last);                  /* the first `last` that is in no braces */
+
+#endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads, steps and values between them as C. */
+#ifndef PLGEN_EMIT_STEPS_H
+#define PLGEN_EMIT_STEPS_H
+
+#include "emit/formulas.h"
+#include "emit/state.h"
+
+struct emitter;
+
+void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
+void emit_load_members(const struct emitter *e);
+const char *phase_rate_text(const struct emitter *e);             /* of the model, or the instance */
+void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
+/* declares load1[...] for the loads wanted */
+void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
+void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
+void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
+void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
+bool outputs_read(const struct emitter *e, int load);
+void emit_anchor_tables(const struct emitter *e);                 /* of anchors: tables, and NAME_anchor */
+void emit_anchor_members(const struct emitter *e);
+/* as emit_load_states, in a step: at the anchor, to be multiplied with turned[...]; elsewhere: of now */
+void emit_anchored_loads(const struct emitter *e, const bool *loads);
+void emit_loads_at_anchor(const struct emitter *e, const bool *loads);    /* where one stands now */
+void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
+void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
+const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
+const char *column_operand(const struct emitter *e, int column);
+
+void emit_phase_rates(const struct emitter *e);                   /* rows of initialisers */
+const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
+const char *growth_step_text(const struct emitter *e, int load);
+void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
+void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
+void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
+/* declares load states, and i where one is `looped` over; x[...] = what the series advances */
+void emit_series_vector(const struct emitter *e, bool looped);
+void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
+/* in a step that is no list of assignments: what only adds up is 0 over it */
+void emit_set_aside(const struct emitter *e);
+void emit_take_back(const struct emitter *e);
+void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_vector_now(const struct emitter *e);                    /* NAME_vector_now(s, u, x) */
+void emit_at_by(const struct emitter *e, const char *function);   /* NAME_at, by NAME_function(s, u, tau, y) */
+void emit_at_start(const struct emitter *e);
+int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
+bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
+void emit_step(const struct emitter *e);
+/* what a step assigns to states that are `stepped` (NULL: all), to be printed */
+struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
+void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
+void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
+const char *step_parameters(const struct emitter *e);
+const char *head_of_step(const struct emitter *e);
+
+/* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
+
+void emit_delay_declarations(const struct emitter *core);
+void emit_delays(const struct emitter *core);
+
+void emit_out(const struct emitter *e);
+void emit_run(const struct emitter *e);
+void emit_at(const struct emitter *e);
+void emit_jump(const struct emitter *e);
+void emit_rhs(const struct emitter *e);
+bool rhs_needs_math(const struct emitter *e);
+
+#endif

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the builders of a model share, and what they do. */
+#ifndef PLGEN_MODEL_BUILDING_H
+#define PLGEN_MODEL_BUILDING_H
+
+#include "collect/collect.h"
+#include "model/model.h"
+
+struct expression;
+struct model;
+struct node;
+struct output;
+struct request;
+struct spec;
+struct strike;
+struct switching;
+
+/* ---- the builders of a model share ---- */
+
+struct residual {                   /* left side minus right side of one scalar equation */
+	struct form *form;
+	struct place at, end;
+};
+struct building {                   /* what the builders share */
+	struct spec *spec;
+	struct model *model;
+	struct collector collector;
+	const struct request *request;
+	const struct wave *polynomial; /* the wave of t^k alone */
+	struct snapshot *snapshot;  /* per interval between changes of formula in time */
+	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
+	int nominals;               /* its intervals */
+	const bool *factor;         /* per tunable param: a number of regions, and no input; NULL: none is */
+	struct point *values;       /* nothing fixed but tunable params; made on first use */
+	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
+	struct form **load;
+	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
+	int *owner;                 /* per coordinate: its residual */
+};
+struct snapshot {                   /* the equations and outputs in one interval of time */
+	int residuals, written;     /* all; those of written equations come first */
+	struct residual *residual;
+	struct form **element;      /* per element of the sketch: its force */
+	struct value **output;      /* per output statement; NULL: not linear */
+	struct strike **strike;     /* per `when` and stop; NULL: it has been told */
+};
+
+/* ---- equations.c: equations and sketches to residuals ---- */
+
+void collect_equations(struct building *b, struct snapshot *snapshot);
+void collect_outputs(struct building *b, struct snapshot *snapshot);
+int  find_order(const struct spec *spec, int coord);
+void build_outputs(struct building *b);
+/* of states, loads and inputs; no highest derivatives */
+struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e);
+struct output *row_of_form(struct building *b, struct form *form);
+/* the same with the highest derivatives that a system gives */
+struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
+void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
+bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
+void add_elements(struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
+void check_mass(const struct building *b);
+
+/* ---- delays.c: inputs as they were some time ago ---- */
+
+void find_delays(struct building *b);                       /* model->delays; after the step is known */
+
+/* ---- system.c: residuals to M, C, K, loads and inputs ---- */
+
+void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
+/* Tunable params that the instance has, at the spec's values: what is linear there belongs to the linear core, and the
+ * difference is left over. Itself, where it reads none. */
+const struct form *nominal_form(struct building *b, const struct form *form);
+/* Whether what params multiply is parted so for inputs and loads too: a series puts both together again */
+bool parts_params(const struct building *b);
+void fill_loads(struct building *b, int segment, int row, const struct form *residual);
+void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
+void spread_loads(struct building *b, const struct form *form,
+		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
+/* one row of everything */
+void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual);
+/* the model's coordinates, loads and inputs; no factors yet */
+struct linear empty_system(const struct model *model);
+
+/* ---- settle.c: which scheme the equations allow ---- */
+
+bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
+/* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */
+bool leaves_over(const struct building *b);
+bool needs_regions(const struct building *b);                    /* scheme exact has regions for them */
+void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+/* whose coordinates or inputs do not have the factors of the first segment; NULL: none */
+const struct node *changing_factor(struct building *b, int segment);
+
+/* ---- nonlinear.c: what is not in M, C and K ---- */
+
+void find_nonlinear(void *building);                        /* each with its place and its text */
+
+#endif

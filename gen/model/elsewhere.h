@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model at other values of its tunable params. */
+#ifndef PLGEN_MODEL_ELSEWHERE_H
+#define PLGEN_MODEL_ELSEWHERE_H
+
+#include "math/math.h"
+#include "model/model.h"
+
+struct building;
+struct layout;
+struct linear;
+struct model;
+struct output;
+struct request;
+struct retuned_row;
+struct tuned_equations;
+struct tuning;
+
+/* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
+
+enum { WHOLE_POINTS = FIT_POINTS + 1 };         /* of which all entries are kept: what is equal at them stays */
+struct difference {                 /* two models may not have it; with another value of a param ... */
+	bool (*same)(const struct model *, const struct model *);
+	const char *text, *note;
+};
+struct elsewhere {
+	const struct model *model;
+	const struct request *request;
+	struct tuning *tuning;      /* params, the spec's values */
+	const bool *factor;         /* as in struct request */
+	const mpq_t *near;          /* as in struct fit */
+	int differences;
+	const struct difference *difference;
+	mpq_t *(*read)(struct elsewhere *s, const struct model *model);     /* its entries */
+	ptrdiff_t entries, changing;
+	const struct model *other;  /* the first of them */
+	struct model *found;
+	mpq_t *values, **point;     /* params at points looked at so far */
+	int points;
+	mpq_ptr **seen;             /* entries there, NULL: 0; of the first points all, of others those that change */
+	ptrdiff_t *place;           /* per entry: which of those that change; -1: it does not. NULL: not known yet */
+	mpq_t zero;
+	struct fit fit;             /* of the last entry */
+};
+/* Waves, their order, times at which they change; any_rate: frequencies may differ */
+bool same_loads(const struct linear *a, const struct linear *b, bool any_rate);
+_Noreturn void tell_difference(struct elsewhere *s, const struct difference *difference);
+void look_elsewhere(struct elsewhere *s);
+mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
+bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
+/* its terms; false: it is no such sum, as refuse_fit says */
+bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
+_Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
+void add_tuned_unit(struct tuned_equations *all, int row, int column);
+
+struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */
+	const struct model *model;
+	const struct layout *x;
+	int rows;
+	struct retuned_row *row;
+	mpq_t *entry;               /* rows x columns */
+};
+struct listing list_rows(const struct model *model, const struct layout *x);
+/* An output, whose loads have so many segments of time, in one of these, or as x in all */
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
+		   int segment, mpq_t *row);
+/* factors.c */
+const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is compared with breakpoints. */
+#ifndef PLGEN_MODEL_EXPRESSIONS_H
+#define PLGEN_MODEL_EXPRESSIONS_H
+
+#include "model/model.h"
+
+struct form;
+struct model;
+struct node;
+struct output;
+struct switching;
+
+struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
+	struct form *form;          /* without constant; sign and scale as first written */
+	/* in each segment of time it is in + shift: its loads may have other formulas */
+	int segments;
+	struct form **in;
+	mpq_t *shift;
+	int terms;
+	struct comparing *term;     /* that compare it: expressions.c */
+	struct output *row;         /* the same as a row */
+	int breaks;
+	mpq_t *at;                  /* rising */
+	const struct node *node;    /* where it comes from */
+	int stride;                 /* of its interval in the index of a region */
+	int met;                    /* rises in the order in which the equations show expressions */
+};
+
+/* ---- expressions.c: what is compared with breakpoints ---- */
+
+struct compared {                   /* form + constant with 0 */
+	const struct node *node;    /* by this term */
+	struct form *form;          /* without constant */
+	mpq_srcptr constant;
+	int met;                    /* of struct expression, where it is one */
+};
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
+ * and scale in which it was written, and form is its own. form + constant = of (e - at) */
+int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
+/* In segments where nothing depends on it, it is as in the one before, or after. */
+void complete_expressions(struct switching *s);
+struct form *form_in(const struct expression *e, int segment); /* what breakpoints divide, in a segment of time */
+bool share_expression(const struct switching *a, const struct switching *b);
+bool changes_in_time(const struct expression *e);
+const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Piecewise-linear equations as regions with linear ones. */
+#ifndef PLGEN_MODEL_REGIONS_H
+#define PLGEN_MODEL_REGIONS_H
+
+#include "model/model.h"
+
+struct atom;
+struct building;
+struct expression;
+struct form;
+struct friction;
+struct hold;
+struct impact;
+struct linear;
+struct model;
+struct node;
+struct output;
+struct release;
+struct slide;
+struct slider;
+
+struct region {                     /* one interval for each expression, in one segment of time */
+	bool possible;              /* its inequalities can hold together */
+	int system;                 /* index of its equations; equal ones are one */
+	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
+	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
+	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
+	struct output **grip;       /* per friction that outputs read: the same as a row; NULL: nothing */
+	struct slide *slide;        /* per slider's atom */
+	int holds, releases;
+	struct hold *hold;
+	struct release *release;
+};
+struct sign { mpq_t number; bool least; };  /* by which something was decided; least: by its being at least 0 */
+struct switching {
+	int rows, *row;             /* of the equations that it is of */
+	int expressions;
+	struct expression *expression;
+	int segments;               /* of time: those of the model, or 1 where nothing of it changes */
+	/* all, possible or not: products of the expressions' intervals, of each segment of time in order */
+	int regions;
+	struct region *region;      /* NULL where there are parts */
+	int systems;
+	/* where there are parts one: that of the first region of each; one segment of time */
+	struct linear *system;
+	int aparts;
+	const struct node **apart;  /* terms that share no expression with others */
+	bool torn;                  /* one has become such: the search begins anew */
+	/* per system: a segment in which it serves; there expressions are the same in all */
+	int *system_segment;
+	int parts;                  /* 0: its regions are those of all coordinates together */
+	struct region_part *part;
+	int frictions;
+	struct friction *friction;
+	int sliders;
+	struct slider *slider;
+	int impacts;                /* the model's */
+	struct impact *impact;
+	int felts;                  /* friction of which outputs read what it carries: as they have it, for all time */
+	const struct atom **felt;
+	int signs;                  /* where there are factors */
+	struct sign *sign;
+	int sharing;                /* parts that have these regions together, since some move as a whole */
+};
+/* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
+ * at times of their own. */
+struct region_part {
+	int coord;                  /* the first */
+	struct model *model;        /* of them alone; its `switching` has no expressions where they are linear */
+	int *state;                 /* per state of it: that of the whole model */
+	int *input;                 /* likewise of the inputs that act on it or are in its expressions */
+	int *expression;            /* likewise */
+};
+
+/* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
+
+bool is_piecewise_linear(const struct building *b);
+int  interval_of(const struct switching *s, int region, int expression);
+/* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
+struct switching *regions_of_rows(struct building *b, int rows, int *row);
+void remove_idle_breaks(struct switching *s);
+/* its index; apart: with no other's, though they are equal */
+int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
+int  segment_of_region(const struct switching *s, int region);      /* of time */
+int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
+int  count_candidates(struct switching *s);                 /* in one segment of time; strides of expressions */
+void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
+void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
+_Noreturn void too_many(const struct building *b, const struct switching *s);
+_Noreturn void too_many_in_time(const struct switching *s);
+int  breaks_of_all(const struct switching *s);               /* breakpoints of all its expressions */
+int  possible_regions(const struct switching *s);
+
+/* ---- parts.c: regions of independent coordinates ---- */
+
+void find_regions(struct building *b);                      /* says what cannot be treated */
+/* of a region of a part in the number of the model's: its intervals, by the strides of the whole */
+int  share_of_region(const struct region_part *part, const struct switching *whole, int region);
+void place_region_loads(struct building *b);
+/* their systems; after the loads of all have their places */
+void build_regions(struct building *b);
+
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is asked of a model, on the command line and in the spec. */
+#ifndef PLGEN_MODEL_REQUEST_H
+#define PLGEN_MODEL_REQUEST_H
+
+#include "collect/collect.h"
+#include "math/math.h"
+#include "tape/tape.h"
+
+struct relative;
+
+struct building;
+struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
+	const char *step, *scheme, *prefix, *tolerance;
+	const char *modes;
+	/* which tunable params regions have as numbers, not as inputs; stands on what builds a model. NULL: none */
+	const bool *(*find_factors)(struct building *b);
+	bool reduce;
+	bool loads_left;            /* known loads are left to the scheme */
+	bool compensated;           /* two-word arithmetic */
+	bool single;                /* the target's numbers are floats */
+	bool step_open;             /* nothing says how long a step is: one is chosen */
+	bool real_given;            /* that was said: --real */
+	bool selftest;              /* NAME_selftest */
+	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
+	bool batch;                 /* NAME_batch */
+	enum step_form form;
+	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
+	bool solution;              /* the closed form is wanted, whatever the scheme */
+	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
+	int definitions;
+	const char **definition;    /* NAME=EXPR */
+	/* Where it is asked for, command line or spec: found when the model is built */
+	struct place scheme_at;     /* source NULL: it is not */
+	struct node *scheme_order, *scheme_over; /* of a series; NULL: not given */
+	struct place step_at, form_at, compensated_at;
+	struct place end_at;        /* the end of --solution, else as step_at */
+	/* What builders ask for to build a model a second time; then nothing is told again */
+	/* values of the tunable params in place of the spec's, to see what the equations become: */
+	const mpq_t *tunable;
+	                            /* no step, no initial values */
+	/* with them: those of the tunable params that regions have as numbers, the others as inputs; else NULL */
+	const bool *factor;
+	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+	bool undivided;             /* regions are those of all coordinates together */
+	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
+};
+
+struct truncation {                 /* of a Taylor series */
+	int order;                  /* of its last term in h; of collocation in h */
+	int stages;                 /* of a collocation; 0: there is none */
+	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h, */
+	int over;                   /* and one expansion is over so many of them */
+	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
+	/* per state: what a step may add to it beside the tolerance of its size now; 0: its largest size counts. NULL:
+	 * so of all */
+	mpq_t *absolute;
+	int substeps;               /* most within one h */
+};
+struct state_range {                /* in which the spec says that a state stays */
+	struct place at;
+	int state;
+	mpq_t low, high;
+};
+struct requirement {                /* a need, evaluated */
+	const struct need *need;
+	int output;
+	mpq_t bound, until;         /* in the output's unit, or as a part of its largest value; [s] */
+	mpq_t *most;                /* per input: of its size */
+};
+struct wanted_modes {               /* of the statement `modes`, or of --modes */
+	struct place at;            /* source NULL: all */
+	int count, *number;
+	bool each;                  /* those numbers; else number[0] is how many, the best */
+	bool statics;               /* what is dropped follows loads and inputs at once */
+};
+struct reduction {                  /* what --reduce found */
+	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	bool irreducible;           /* it was asked for, and every state is seen */
+	int dropped;                /* written states that are no combination of the reduced ones */
+	const char **dropped_name;
+	mpq_t *row;                 /* of a reduced model, states x written states: each state over the written ones */
+};
+struct nonlinear {                  /* a term of the equations, or what jumps */
+	struct place at;
+	const char *text;           /* as written */
+};
+struct delay {                      /* of an input */
+	const struct symbol *symbol; /* what it is then: an input of the model */
+	int back;                   /* in parts of the step */
+};
+struct delays {                     /* NULL in a model without */
+	const char *name;           /* the model's own; that of what has all inputs is NAME_core */
+	mpq_t h;                    /* the step; the model's is a part of it */
+	int parts;
+	int inputs;                 /* that the text declares: they come first */
+	int count, most;            /* most: of `back` */
+	struct delay *delay;        /* by index of the input */
+};
+
+#endif

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A linear step in its forms: direct, delta, kick-drift-kick, modal, by blocks, with anchors. */
+#ifndef PLGEN_STEP_FORMS_H
+#define PLGEN_STEP_FORMS_H
+
+#include "step/step.h"
+
+struct coefficient;
+struct group;
+struct linear;
+struct operand;
+struct program;
+struct step;
+
+/* part times the load states solves the equations: what some loads sustain by themselves */
+struct forced {
+	bool *load;                 /* per load: one of them; then the step is without it */
+	int rows, written;          /* the states as they are kept, and those as written from this row on */
+	struct coefficient *part;   /* [segment of time][row][load column] */
+	mpq_t *exact;               /* the same */
+	/* [segment of time][state][load column]: what the state that is kept gains from there to the next */
+	struct coefficient *change;
+	bool changes;               /* any of it */
+	int multiplications, additions; /* to add it */
+};
+
+/* ---- forced.c: what rounding does to a step with loads ---- */
+
+/* its rounding; its forced part, where the bound is the better for it */
+void plan_forced(struct step *step);
+const char *rounding_text(const struct step *step);
+
+enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
+struct anchored_term { int state, column; };
+struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
+	int steps;                  /* from one to the next */
+	bool *load;                 /* per load: an anchor keeps its states */
+	bool turned;                /* the step turns them into those of now, and has no terms */
+	int terms;                  /* of a step: by state, then by column of a load */
+	struct anchored_term *term;
+	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
+	double *turn;               /* [load][steps since][2]: e^{a l h} cos(w l h) and sin */
+};
+
+/* ---- anchors.c: functions of loads every so many steps, tables between ---- */
+
+void check_anchors(struct step *step);                      /* says where they are asked for in vain */
+void drop_anchors(struct step *step, const char *why);
+void plan_anchors(struct step *step);                       /* after its table */
+void fill_anchors(struct step *step);                       /* after its forced part is chosen */
+int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
+
+/* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
+
+const char *step_form_text(const struct step *step);          /* delta, compensated */
+void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
+void check_step_form(struct step *step);                         /* before the step: leaves what its kind has not */
+/* The step is built again in another form; where forms are tried in turn, this one is refused. */
+_Noreturn void leave_form(struct step *step, const char *why);
+void need_one_word(const struct step *step);                /* leaves the statement where two are asked for */
+void choose_form_of_regions(struct step *step);             /* the same of a piecewise-linear model */
+/* before its program; none where all of the state is compensated */
+void find_carries(struct step *step);
+struct program *linear_program(const struct step *step);    /* from its table */
+/* in the code: loads that change have none */
+bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
+
+/* ---- large.c: a large step by its independent blocks ---- */
+
+void find_groups(struct program *program, const struct step *step);     /* and what they cost */
+/* of a block's row; a state is one of the block */
+const struct coefficient *group_factor(const struct step *step, const struct group *g, int row, int block,
+				       const struct operand *operand, int segment);
+/* In some segment of time, of some block: else it leaves no trace. */
+bool group_acts(const struct step *step, const struct group *g, int row, const struct operand *operand);
+
+/* ---- drift.c: what the rounding of its constants does to a linear step ---- */
+
+struct drift {                      /* per step, of the mode where it is largest */
+	double amplitude;           /* ln|z| - Re p h */
+	double phase;               /* |arg z - Im p h| [rad] */
+	bool known;                 /* nothing is left over, and the step does not loop over Phi */
+};
+struct drift drift_of(const struct step *step);
+const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
+
+/* ---- modal.c: a step of modes instead of states ---- */
+
+struct modal {                      /* modal states: the real parts of the pairs, their imaginary parts, what is real */
+	int states, pairs, reals, loads, inputs;
+	double *turn;               /* e^{p h}, as the modal states stand */
+	double *to, *from;          /* modal states from states, and back; states x states */
+	double *load, *input;       /* what a step adds; states x columns */
+	double *output;             /* outputs x states: what of them is linear; NULL: they are the states */
+	struct drift drift;
+	double condition;           /* what rounding gains that goes through both, 1 at best */
+};
+struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
+
+/* ---- by_modes.c: whether it is taken ---- */
+
+void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
+
+/* ---- rest.c: what is too small to count ---- */
+
+struct rest {                       /* parts of the state that nothing but themselves moves, and that decay */
+	bool in_step;               /* the step looks; else the run does */
+	int parts, *part;           /* per state as it is kept: its part; -1: of none that comes to rest */
+};
+void leave_out_lost(struct step *step);                      /* factors; before the program */
+void plan_rest(struct step *step);                           /* step->rest */
+
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The Laplace images of what a step is made of, and natural frequencies. */
+#ifndef PLGEN_STEP_IMAGES_H
+#define PLGEN_STEP_IMAGES_H
+
+#include "step/step.h"
+
+struct linear;
+struct load;
+struct model;
+struct poly;
+struct response;
+struct spectrum;
+
+/* ---- resolvent.c: the Laplace images of what a step needs ---- */
+
+/* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+struct excitation {
+	mpq_srcptr a, w;
+	int powers;                 /* m = 0 .. powers-1; where w = 0 there is no sine */
+	mpq_t *force;               /* [m][cos, sin][equation]: on the equations */
+	mpq_t *direct;              /* [m][cos, sin]: added to the result itself */
+};
+struct excitation excitation_new(int n, mpq_srcptr a, mpq_srcptr w, int powers); /* all 0; a, w NULL: 0 */
+struct question {                   /* row . y(tau) */
+	const mpq_t *initial;       /* y(0), one per state; NULL: 0 */
+	int excitations;
+	struct excitation *excitation;
+	const mpq_t *row;           /* one per state */
+};
+struct resolvent;                   /* adj P and B of one system */
+struct resolvent *resolvent_of(const struct linear *system);
+struct response *image_of(struct resolvent *r, const struct question *question);
+/* Where the response of this number to a state or load of `system` is kept for who asks again: NULL at first, and for
+ * another system than before. Of many states none is. */
+struct response **response_kept(struct resolvent *r, const struct linear *system, int number);
+/* B(s) = det P, as many as its degree + 1 */
+void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
+struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
+const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
+
+/* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
+
+/* Phi_ij, held terms included */
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j);
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load,
+				  int column);
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column,
+				   mpq_srcptr h);
+/* of one load: z_to(t+tau) from z_from(t) */
+struct response *response_of_load_state(const struct load *load, int to, int from);
+struct kernel_part;
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
+				    const struct kernel_part *part, mpq_srcptr h);
+/* what its unit force gives the states' derivatives */
+mpq_t *impulse_of_channel(const struct linear *system, int channel);
+struct started {                    /* a response that starts at a time of its own */
+	struct response *response;
+	mpq_t start;
+};
+/* output(t) from t = 0 as a sum of responses; returns how many */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
+			const struct output *output, struct started **list);
+struct output state_as_output(const struct linear *system, int state); /* read alone */
+/* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
+ * segment of time; of an input u = value + slope tau, from rest */
+struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);
+struct response *output_of_load(struct resolvent *r, const struct linear *system, const struct output *output, int load,
+				int column, const mpq_t *initial);
+struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
+				 int input, mpq_srcptr value, mpq_srcptr slope);
+/* its value, rational or the nearest of 256 bits */
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
+
+/* ---- frequencies.c: natural frequencies and damping ratios ---- */
+
+struct pole_report {                /* sorted by |p|, then by real part */
+	mpfr_t re, im;              /* rounded from 256 bits */
+	mpfr_t hertz, damping_ratio;
+	int multiplicity;
+	bool pair;                  /* stands for itself and its conjugate */
+};
+/* an error at the step where they are not told apart */
+int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report);
+
+#endif

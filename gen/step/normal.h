@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps in normal modes. */
+#ifndef PLGEN_STEP_NORMAL_H
+#define PLGEN_STEP_NORMAL_H
+
+#include "step/step.h"
+
+struct eigenpairs;
+struct model;
+struct normal_mode;
+struct step;
+
+/* ---- normal.c: normal modes of the operators of a bank, and what is left over in them ---- */
+
+enum { NORMAL_BITS = 192 };         /* of modes and weights, before they are rounded */
+struct mode_block {                 /* modes that no entry of M and K couples with others */
+	int modes, *coord;          /* as many coordinates as modes */
+	int place, rows;            /* in vectors of modes: where they stand; with what makes their number even */
+};
+struct normal_matrix {              /* a matrix of forces on the modes: times a sum of vectors of modes */
+	double *value;              /* [bank][mode i][mode j]; nothing below 2^-160 of the largest */
+	int terms;
+	/* factor[bank] times function times eta, eta' */
+	struct normal_term { int function; bool velocity; double *factor; } *term;
+};
+struct normal_stage {               /* modes at a time after the step's start, from it and from forces */
+	int points;
+	double *flow;               /* [bank][e, s, de, ds][place] */
+	double *weight;             /* [bank][point][eta, eta'][place] */
+	double *wave;               /* [bank][wave][of cos, of sin at the step's start][eta, eta'][place] */
+};
+struct stability {                  /* of a multistep method, functions of time frozen */
+	double span;                /* [s] over which they are looked at */
+	double radius;              /* the largest spectral radius of a step; */
+	int bank;                   /* where that is: the operator, */
+	double time;                /* the time [s] */
+	double growth;              /* ln of what all steps of the span together let grow at most; */
+	double growth_factor;       /* that itself */
+};
+struct within {                     /* a step: states inside it, by Taylor series over its parts */
+	double angle;               /* by which a mode or a wave turns or decays in a step at most: in as many parts */
+	int terms;
+	double *stiffness, *damping; /* [bank][place] lambda, 2 delta; no damping: NULL */
+	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by,
+	 * [power - 1][node - 1]: through past forces and the new one (NULL: of a method of one step); through those
+	 * at all nodes */
+	double *past, *nodes;
+};
+struct normal {
+	int modes, width;           /* n; length of a vector of modes */
+	int banks, blocks;
+	struct mode_block *block;
+	int *place;                 /* per mode: in a vector */
+	double *to, *from;          /* [bank][mode][coordinate] V^T M; [bank][coordinate][mode] V */
+	double *turn;               /* [bank but the last][place][place] V^T M V - I, from its modes to the next's */
+	double *frequency, *ratio;  /* [bank][mode]: sqrt(lambda), 0 below 0; delta over it */
+	int matrices;
+	struct normal_matrix *matrix;
+	double **force;             /* per function: [bank][place]; NULL: none */
+	double *wave;               /* forces of waves: [bank][wave][cos, sin][place] */
+	int points;                 /* of the multistep method; 0: each step is by collocation */
+	bool twice;                 /* predict, evaluate, correct, evaluate; else the last is left out */
+	struct normal_stage step;   /* the predictor: points past forces, the last first */
+	double *correct;            /* [bank][eta, eta'][place]: of the force's excess over its extrapolation */
+	double *extrapolate;        /* [point] */
+	int stages;                 /* of a step by collocation; */
+	/* its sweeps, from forces extrapolated from the step before; where there is none, all equal at first */
+	int sweeps, first_sweeps;
+	double *ahead;              /* [stage][node]: forces extrapolated to this step's nodes from those of the last */
+	int kept;                   /* forces that are kept between steps: points, or stages + 1 */
+	struct normal_stage *stage;
+	mpq_t *node;                /* stages + 1, from 0 to 1 */
+	/* Once all functions of time are constant: over [omega eta, eta', 1, waves], by columns: [size][2 width]; the
+	 * operator whose modes they are. NULL: they never are */
+	double *settled, *omega, *period; /* omega and 1/omega: [place] */
+	int settled_bank;
+	struct stability stability; /* of a multistep method */
+	struct within within;
+};
+void check_mode_orders(const struct step *step);      /* of what has no modes of second order there is no operator */
+struct normal *normal_of(struct step *step);                /* leaves the statement where there is none */
+struct normal_work {                /* what its builders share */
+	struct step *step;
+	const struct model *model;
+	struct normal *normal;
+	mpq_t *M;                   /* rows are those of the equations of the coordinates */
+	struct eigenpairs *pairs;   /* per bank */
+	struct normal_mode *mode;          /* per bank and mode */
+};
+
+/* ---- normal_left.c: what is left over, in modes ---- */
+
+double round_real(mpfr_srcptr x);
+mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */
+void find_transforms(struct normal_work *w);
+void find_turns(struct normal_work *w);
+void find_matrices(struct normal_work *w);
+void find_forces(struct normal_work *w);
+
+/* ---- within.c: states inside a step in normal modes ---- */
+
+void find_within(struct normal_work *w);
+
+/* ---- frozen.c: stability of multistep methods in normal modes ---- */
+
+struct stability stability_of(const struct step *step, bool twice);
+
+#endif

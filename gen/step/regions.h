@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps of piecewise-linear models, and what they find their crossings with. */
+#ifndef PLGEN_STEP_REGIONS_H
+#define PLGEN_STEP_REGIONS_H
+
+#include "step/step.h"
+
+struct branch;
+struct output;
+struct step;
+struct switching;
+struct table;
+
+/* Of a step that is not left to the search: crossings, and parts looked at */
+enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
+
+/* ---- switched.c: steps of piecewise-linear models ---- */
+
+void build_regions_step(struct step *step);
+void build_parts_step(struct step *step);
+int products_of_piece(const struct step *step);             /* and of the bound that shows it clear */
+bool is_cleared_by_tables(const struct step *step);         /* a step that clears does by tables, not case by case */
+long products_of_unmet(const struct step *step);            /* of one with friction or impacts that clears, at most */
+
+/* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
+
+struct region_piece {               /* of a branch, d = h 2^-halvings is its shortest piece; x as in struct layout */
+	double *row;                /* of each expression: row . x, expressions x size */
+	double *slopes;             /* A of x' = A x, size x size [x/s]; second words behind them */
+	double *Phi;                /* e^{A h}, size x size */
+	double *gain;               /* e^{A h} - I in two words, 2 size x size: first ones, then second ones; or NULL */
+	double **rung;              /* as in pl_ladder, the shortest first */
+	double *reach;              /* of each expression, of each rung but the first, and of h */
+	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
+	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
+				    /* d^4/384 times the fourth derivative of each; expressions x size */
+	/* Where a step clears: over h, each expression is off its chord by at most off . |x(0)| + still.
+	 * Where it is swift: rounding and what its Taylor polynomial leaves out make its value and h times its slope
+	 * wrong by at most slack . |x(0)|; turn and bend are slope and fourth
+	 * over h */
+	double *off, *still, *slack, *turn, *bend;
+	double *added;              /* of a retuned model: what stays of x adds to each state over h */
+	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
+	double *turns;              /* h A */
+};
+struct pieces {
+	double **rows;              /* of each expression: row . x, expressions x size; in each segment of time */
+	double *row;                /* in the first */
+	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
+	struct region_piece *piece;        /* per branch */
+	/* Where a step clears: */
+	bool *bounded;              /* per entry of x: never above 1, and where a step is swift part of `still` */
+	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
+	double *edge;               /* of a retuned model: see gathered.c */
+	/* Where it is swift: */
+	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
+	int degree;
+	double *weight;             /* 1/k!, k = 0 .. degree */
+};
+#define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
+struct pieces pieces_of(const struct step *step);
+/* Sum of the sizes of a row's factors of loads that are never above 1 */
+double size_of_bounded(const struct step *step, const double *row);
+/* Of rows over x in one branch's system: d/3 times the slope, and bounds as in struct region_piece; rows x size each */
+void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
+		    double *slope, double *second, double *fourth);
+#define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
+#define LARGE_FLOAT (0x1p60)
+double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
+/* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
+ * state has one word */
+double *gain_of(const struct step *step, const struct table *table, int halvings);
+/* e^{A d} of load states among themselves, to Phi, size x size; low: the second words, NULL: none */
+void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double *low);
+/* ladder.c: e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
+ * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an
+ * instance has its tables */
+void plan_ladder(struct step *step, int branch);
+double **rungs_of(const struct step *step, int branch);
+double *reach_of_rows(const struct step *step, int branch, const double *A, int rows, const double *row);
+bool has_ladder(const struct step *step);
+int room_for_rungs(const struct step *step);
+int rung_halvings(const struct branch *branch, int rung);   /* of h, to its length */
+double *Phi_over(const struct step *step, const struct table *table, int halvings);
+void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
+/* the same in two words: 2 x size */
+void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
+/* Of |x|: how far row . x is at most off its chord over h, entry by entry */
+void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
+
+/* ---- gathered.c: what stays of x, in the tables of an instance ---- */
+
+bool is_bounded_load(const struct step *step, int load);    /* it has load states that are never above 1 */
+/* sqrt(a^2 + b^2) is at most the larger and so much of the smaller, 2^1/2 - 1 */
+#define FOLDED 0.41421356237309515
+int *staying_columns(const struct step *step, int *count);  /* of x: 1, and held params */
+bool any_stays(const struct step *step);
+bool any_still(const struct step *step);                    /* that, or something is never above 1 */
+int param_of_column(const struct step *step, int column);   /* of such a one; -1: it is 1 */
+int edges_of_regions(const struct switching *s);            /* breakpoints, and two open ends of each expression */
+/* Of a step that clears and is not swift: `added` and `still` of each piece, `edge` */
+void gather(const struct step *step, struct pieces *pieces);
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sequences of Taylor coefficients, each made from those before it. */
+#ifndef PLGEN_STEP_SEQUENCES_H
+#define PLGEN_STEP_SEQUENCES_H
+
+#include "step/step.h"
+
+struct expansion;
+struct form;
+struct step;
+
+/* ---- sequences of Taylor coefficients, each made from those before it ---- */
+
+/* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
+ * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
+ * sequence, or sum over j = 0..k of a_j b_{k-j} (Moore; Griewank and Walther 2008, chapter 13). */
+enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_PARAM, TERM_SEQUENCE, TERM_PRODUCT };
+struct sequence_term {
+	enum term_kind kind;
+	int a, b;                   /* which; the power of t; the load's column; the two sequences */
+	double *factor;             /* per k */
+	/* of a load that changes its formula: its place in the table of factors; -1: factor[] holds in all segments */
+	int slot;
+};
+enum sequence_kind {
+	SEQUENCE_SUM,               /* c_k = sum at k */
+	SEQUENCE_INTEGRAL,          /* c_0 = function of a_0, or a state; c_{k+1} = sum at k, 1/(k+1) in its factors */
+	SEQUENCE_QUOTIENT,          /* c = a/b; a NONE: 1/b */
+	SEQUENCE_ROOT,              /* c^2 = a */
+	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
+	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
+	SEQUENCE_CHOICE             /* a where the condition holds, else b */
+};
+/* By which a choice is made: two forms linear in t that are compared, an expression of the state above a breakpoint,
+ * or another sequence that is not 0 and changes with such choices alone */
+/* or whether an expression is held between two breakpoints, this and its twin */
+enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_HOLD, CHOICE_BY_SEQUENCE };
+struct sequence {
+	enum sequence_kind kind;
+	int state;                  /* of an integral that is one; NONE */
+	enum function function;     /* of another: its value from a (and b) */
+	int a, b;
+	double exponent;
+	enum choice_kind choice;
+	const struct form *left, *right; /* what the condition compares, linear in t */
+	enum comparison comparison;
+	int expression, breakpoint; /* or which it is above; of the expression's, in order of their first appearance */
+	int test;                   /* or the sequence */
+	int terms;
+	struct sequence_term *term;
+	int degree;                 /* all beyond are 0; order + 1: none need be */
+	int top;                    /* the last that something reads; -1: none */
+	bool late;                  /* the k-th stands where others have their (k+1)-th */
+	bool known;                 /* it depends on time and inputs alone */
+	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their
+	 * k-th */
+	int gains;                  /* 0: not made so */
+	int *gain;
+	bool split;                 /* others read its early part and gains */
+};
+
+/* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
+
+struct key {                        /* of a sum, before its factors are numbers; kind, a and b as in sequence_term */
+	enum term_kind kind;
+	int a, b;
+	mpq_t factor;
+};
+struct sum {
+	int keys;
+	struct key *key;
+};
+struct sequencing {                 /* what the makers of sequences share */
+	const struct step *step;
+	const struct linear *system;
+	struct expansion *x;
+	struct layout layout;       /* states, loads, inputs, channels */
+	mpq_t **slopes;             /* per segment: x' = slopes x */
+	mpq_t pi;
+	mpq_t unit;                 /* of time: D, h or several of them */
+	int *uses;                  /* per atom */
+	int *atom;                  /* per atom: its sequence; NONE: not made yet */
+	int operands;               /* forms that are no single atom, each made once */
+	struct { const struct form *form; int sequence; } *operand;
+};
+void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor);
+/* Its terms into s, at k times scale[k] */
+void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
+mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
+mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
+/* of a state, whose force changes from segment to segment: in a table */
+void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
+
+/* ---- sequences.c: forms to sums, atoms to recurrences ---- */
+
+int  new_sequence(struct sequencing *w, struct sequence sequence);
+int  sum_sequence(struct sequencing *w, const struct sum *sum);
+int  sequence_of_sum(struct sequencing *w, const struct sum *sum);  /* of a single one itself */
+int  sequence_of_form(struct sequencing *w, const struct form *form);
+int  minus_sequence(struct sequencing *w, int a);
+int  positive_sequence(struct sequencing *w, const struct form *form, int a);  /* or else 0: the state chooses */
+/* sum += scale form; leaves the statement at what has no series */
+void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+#endif
