@@ -5,9 +5,6 @@
 
 #include "emit/state.h"
 
-struct emitter;
-struct group;
-
 /* ---- emit_large.c: the step of a large model ---- */
 
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */

@@ -5,8 +5,6 @@
 
 #include "emit/state.h"
 
-struct emitter;
-
 /* ---- banner.c, declarations.c: what a header has ---- */
 
 void emit_banner(const struct emitter *e);

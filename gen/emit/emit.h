@@ -5,8 +5,6 @@
 
 #include "emit/state.h"
 
-struct step;
-
 /* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _rhs: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);

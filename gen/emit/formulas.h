@@ -7,13 +7,6 @@
 #include "step/tapes.h"
 #include "tape/tape.h"
 
-struct action;
-struct basis;
-struct emitter;
-struct form;
-struct model;
-struct output;
-
 /* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
 struct formulas;

@@ -6,8 +6,6 @@
 #include "emit/state.h"
 #include "step/step.h"
 
-struct emitter;
-
 /* ---- kinds.c: what the C of a step has that depends on its kind, in the order of the C ---- */
 
 struct kind {                           /* NULL: none of its own */

@@ -5,8 +5,6 @@
 
 #include "emit/state.h"
 
-struct emitter;
-
 /* ---- emit_lanes.c, emit_batch.c: many instances in one call ---- */
 
 struct batch {

@@ -5,9 +5,6 @@
 
 #include "emit/state.h"
 
-struct emitter;
-struct normal;
-
 /* ---- emit_forces.c: tables of modes, and forces on them ---- */
 
 const struct normal *normal_of_step(const struct emitter *e);

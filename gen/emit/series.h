@@ -7,7 +7,6 @@
 
 struct expansion;
 
-
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
 /* Of a scheme with a leftover from crossing to crossing, */

@@ -6,10 +6,7 @@
 #include "emit/text.h"
 #include "step/step.h"
 
-struct expansion;
-struct model;
 struct reads;
-struct truncation;
 
 /* ---- state.c: the state in emitted code ---- */
 

@@ -6,8 +6,6 @@
 #include "emit/formulas.h"
 #include "emit/state.h"
 
-struct emitter;
-
 void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
 void emit_load_members(const struct emitter *e);
 const char *phase_rate_text(const struct emitter *e);             /* of the model, or the instance */

@@ -6,11 +6,7 @@
 #include "step/step.h"
 
 struct kind;
-struct linear;
-struct model;
 struct region_part;
-struct step;
-struct symbol;
 
 /* ---- text.c: what all emitters write with ---- */
 

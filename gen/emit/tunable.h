@@ -5,10 +5,8 @@
 
 #include "emit/state.h"
 
-struct emitter;
 struct fixed_slope;
 struct tuned_equations;
-struct tuning;
 
 /* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
 

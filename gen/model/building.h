@@ -7,13 +7,7 @@
 #include "model/model.h"
 
 struct expression;
-struct model;
-struct node;
-struct output;
-struct request;
-struct spec;
 struct strike;
-struct switching;
 
 /* ---- the builders of a model share ---- */
 

@@ -5,13 +5,6 @@
 
 #include "model/model.h"
 
-struct building;
-struct fixing;
-struct form;
-struct model;
-struct node;
-struct place;
-
 /* ---- bounds.c: what a spec says of single states ---- */
 
 void evaluate_absolutes(struct building *b);                /* into truncation.absolute */

@@ -7,14 +7,6 @@
 #include "model/model.h"
 #include "model/regions.h"
 
-struct atom;
-struct building;
-struct form;
-struct model;
-struct output;
-struct snapshot;
-struct when;
-
 struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */
 	int state;
 	struct form *form;

@@ -6,15 +6,8 @@
 #include "math/math.h"
 #include "model/model.h"
 
-struct building;
-struct layout;
-struct linear;
-struct model;
-struct output;
-struct request;
 struct retuned_row;
 struct tuned_equations;
-struct tuning;
 
 /* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
 

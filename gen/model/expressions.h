@@ -5,12 +5,6 @@
 
 #include "model/model.h"
 
-struct form;
-struct model;
-struct node;
-struct output;
-struct switching;
-
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
 	struct form *form;          /* without constant; sign and scale as first written */
 	/* in each segment of time it is in + shift: its loads may have other formulas */

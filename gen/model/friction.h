@@ -6,15 +6,6 @@
 #include "model/contacts.h"
 #include "model/model.h"
 
-struct atom;
-struct basis;
-struct building;
-struct form;
-struct node;
-struct region;
-struct snapshot;
-struct switching;
-
 /* ---- force_sign.c: whether a friction force may fall below 0 ---- */
 
 /* At 0 or above, at 0 or below, from `from` to `to` (NULL: for good), as far as that is seen of what time alone

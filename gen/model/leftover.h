@@ -7,12 +7,8 @@
 #include "math/math.h"
 #include "tape/tape.h"
 
-struct atom;
 struct building;
-struct form;
 struct model;
-struct node;
-struct wave;
 
 struct output {
 	const char *name;

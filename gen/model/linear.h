@@ -8,7 +8,6 @@
 #include "tape/tape.h"
 
 struct model;
-struct wave;
 
 /* ---- linear.c: linear systems of coordinates ---- */
 

@@ -13,7 +13,6 @@
 struct bearing;
 struct drag;
 struct impact;
-struct relative;
 struct residual;
 struct shortening;
 struct snapshot;

@@ -8,7 +8,6 @@
 struct modes;
 struct mode;
 
-
 struct mode_basis {
 	struct invariants *invariants; /* of A, or of M^-1 K */
 	bool moves;                 /* of M^-1 K */

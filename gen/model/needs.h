@@ -5,8 +5,6 @@
 
 #include "model/model.h"
 
-struct model;
-
 /* ---- needs.c: how exact outputs have to be ---- */
 
 struct target {                     /* a processor: what it takes of instructions */

@@ -5,11 +5,6 @@
 
 #include "model/model.h"
 
-struct form;
-struct load;
-struct model;
-struct symbol;
-
 /* ---- spell.c: loads, forms and equations for a reader ---- */
 
 const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */

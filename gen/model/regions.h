@@ -5,17 +5,9 @@
 
 #include "model/model.h"
 
-struct atom;
-struct building;
 struct expression;
-struct form;
 struct friction;
 struct hold;
-struct impact;
-struct linear;
-struct model;
-struct node;
-struct output;
 struct release;
 struct slide;
 struct slider;

@@ -5,9 +5,6 @@
 
 #include "model/model.h"
 
-struct form;
-struct model;
-
 /* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
 
 struct link {                       /* of a written coordinate x: what is kept in its place */

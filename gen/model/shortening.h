@@ -5,8 +5,6 @@
 
 #include "model/model.h"
 
-struct model;
-
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
 struct model *model_reduce(struct model *model);             /* itself where nothing can go, or shall */

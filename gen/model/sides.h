@@ -5,7 +5,6 @@
 
 struct atom;
 
-
 struct side {
 	struct collector *c;
 	const struct form *g;

@@ -5,12 +5,6 @@
 
 #include "model/model.h"
 
-struct model;
-struct node;
-struct request;
-struct spec;
-struct tunable;
-
 /* ---- retuned.c: how equations, outputs and regions follow from tunable params that are no inputs of them ---- */
 
 /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */

@@ -5,10 +5,7 @@
 
 #include "step/step.h"
 
-struct model;
 struct modes;
-struct requirement;
-struct step;
 
 /* ---- rounding.c: how far an output of the emitted program may be off ---- */
 

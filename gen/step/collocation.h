@@ -5,9 +5,6 @@
 
 #include "step/step.h"
 
-struct form;
-struct step;
-
 /* ---- collocation.c: Radau IIA ---- */
 
 struct stage_mode {                 /* of A: A v = z v, u A = z u, u v = 1 */

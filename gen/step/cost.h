@@ -5,10 +5,6 @@
 
 #include "step/step.h"
 
-struct program;
-struct step;
-struct target;
-
 /* ---- cost.c: what a step costs ---- */
 
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */

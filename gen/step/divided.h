@@ -5,10 +5,7 @@
 
 #include "step/step.h"
 
-struct expansion;
-struct form;
 struct sequencing;
-struct step;
 
 struct divided {                    /* an expression of the state that breakpoints divide, smooth between events */
 	const struct form *form;    /* without constant; sign and scale as first written */

@@ -9,7 +9,6 @@
 
 struct contacts;
 struct divided;
-struct step;
 struct unseen;
 
 struct expansion {

@@ -5,13 +5,6 @@
 
 #include "step/step.h"
 
-struct coefficient;
-struct group;
-struct linear;
-struct operand;
-struct program;
-struct step;
-
 /* part times the load states solves the equations: what some loads sustain by themselves */
 struct forced {
 	bool *load;                 /* per load: one of them; then the step is without it */

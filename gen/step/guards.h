@@ -6,9 +6,7 @@
 #include "model/tuning.h"
 #include "step/step.h"
 
-struct model;
 struct pieces;
-struct step;
 
 /* ---- guards.c: events of regions with dry friction ---- */
 

@@ -5,13 +5,6 @@
 
 #include "step/step.h"
 
-struct linear;
-struct load;
-struct model;
-struct poly;
-struct response;
-struct spectrum;
-
 /* ---- resolvent.c: the Laplace images of what a step needs ---- */
 
 /* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */

@@ -5,10 +5,7 @@
 
 #include "step/step.h"
 
-struct eigenpairs;
-struct model;
 struct normal_mode;
-struct step;
 
 /* ---- normal.c: normal modes of the operators of a bank, and what is left over in them ---- */
 

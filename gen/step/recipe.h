@@ -5,8 +5,6 @@
 
 #include "step/step.h"
 
-struct step;
-
 /* ---- recipe.c: what recipes are written in; one that asks for more than there is room for is refused ---- */
 
 enum { RECIPE_TABLES = 8 };

@@ -5,10 +5,7 @@
 
 #include "step/step.h"
 
-struct model;
-struct output;
 struct region_part;
-struct step;
 
 /* ---- through.c: a piecewise-linear model through its crossings, enclosed ---- */
 

@@ -5,12 +5,6 @@
 
 #include "step/step.h"
 
-struct branch;
-struct output;
-struct step;
-struct switching;
-struct table;
-
 /* Of a step that is not left to the search: crossings, and parts looked at */
 enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
 

@@ -5,11 +5,6 @@
 
 #include "step/step.h"
 
-struct linear;
-struct model;
-struct output;
-struct step;
-
 /* ---- rows.c: outputs after several steps, from what stands at the start of a block of them ---- */
 
 struct row_column {                 /* of a block: what this gives every number of it */

@@ -5,10 +5,6 @@
 
 #include "step/step.h"
 
-struct expansion;
-struct form;
-struct step;
-
 /* ---- sequences of Taylor coefficients, each made from those before it ---- */
 
 /* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant

@@ -6,9 +6,6 @@
 #include "model/model.h"
 #include "step/tables.h"
 
-struct linear;
-struct step;
-
 struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
 	bool emitted;               /* max|pole| h <= 8 */
 	int degree, halvings;

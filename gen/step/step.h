@@ -8,14 +8,12 @@
 #include "step/slopes.h"
 
 struct anchors;
-struct branch;
 struct choice;
 struct collocation;
 struct cut;
 struct expansion;
 struct forced;
 struct modal;
-struct model;
 struct motion;
 struct normal;
 struct rest;

@@ -5,8 +5,6 @@
 
 #include "model/model.h"
 
-struct model;
-struct response;
 struct started;
 struct step;
 struct resolvent;

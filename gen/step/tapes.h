@@ -6,17 +6,6 @@
 #include "step/step.h"
 #include "tape/tape.h"
 
-struct basis;
-struct coefficient;
-struct form;
-struct group;
-struct linear;
-struct model;
-struct output;
-struct product;
-struct step;
-struct wave;
-
 /* ---- tapes.c: what forms read, a linear step and rows of outputs as nodes of a tape ---- */
 
 int load_of_wave(const struct linear *system, const struct wave *wave); /* the number of loads: of none */

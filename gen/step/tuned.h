@@ -6,9 +6,6 @@
 #include "model/tuning.h"
 #include "step/step.h"
 
-struct group;
-struct step;
-
 /* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
 
 /* in its table: what vanishes at these values only is no zero */

@@ -5,10 +5,6 @@
 
 #include "step/step.h"
 
-struct form;
-struct linear;
-struct model;
-
 /* ---- unseen.c: what coefficients at one time may not show ---- */
 
 enum unseen_kind {                  /* what of the argument a series has to follow: */

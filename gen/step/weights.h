@@ -5,11 +5,7 @@
 
 #include "step/step.h"
 
-struct eigenpairs;
-struct form;
-struct model;
 struct normal_work;
-struct step;
 
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */
 
