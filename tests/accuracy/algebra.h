@@ -4,7 +4,7 @@
 #ifndef ALGEBRA_H
 #define ALGEBRA_H
 
-#include "base/base.h"
+#include "model/model.h"
 #include "evaluator.h"
 
 struct load;

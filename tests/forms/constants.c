@@ -13,6 +13,8 @@
 #include "cases.h"
 #include "drawn.h"
 #include "random_spec.h"
+#include "emit/printed.h"
+#include "model/relative.h"
 
 #include <ctype.h>
 #include <float.h>

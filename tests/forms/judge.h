@@ -6,7 +6,10 @@
 #ifndef JUDGE_H
 #define JUDGE_H
 
-#include "base/base.h"
+#include "emit/emit.h"
+#include "model/tuning.h"
+#include "step/forms.h"
+#include "step/tables.h"
 
 
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing
