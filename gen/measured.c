@@ -6,7 +6,7 @@
 #include "measuring.h"
 #include "command.h"
 #include "measuring.h"
-#include "model/needs.h"
+#include "model/checks.h"
 #include "report/report.h"
 #include "step/certificates.h"
 

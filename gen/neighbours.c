@@ -2,7 +2,7 @@
 /* Starts and loads beside those of the spec: what is chosen is tried from there too. */
 #include "measuring.h"
 #include "measuring.h"
-#include "model/needs.h"
+#include "model/checks.h"
 #include "step/certificates.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* One step that is tried for needs that are measured: built, run beside a reference, counted, put in order. */
 #include "measuring.h"
 #include "measuring.h"
-#include "model/needs.h"
+#include "model/checks.h"
 #include "model/shortening.h"
 #include "step/certificates.h"
 #include "step/images.h"

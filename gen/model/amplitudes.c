@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether two models differ in how large their loads are, and in nothing else: so a param is known as an amplitude. */
+#include "model/checks.h"
 #include "model/expressions.h"
-#include "model/needs.h"
 #include "model/reads.h"
 #include "model/regions.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is looked at before a model is done: bounds, orders, the Jacobian, warnings. */
+/* What is looked at before a model is done: bounds, orders, the Jacobian, warnings, needs. */
 #ifndef PLGEN_MODEL_CHECKS_H
 #define PLGEN_MODEL_CHECKS_H
 
@@ -52,5 +52,20 @@ void lint(struct building *b);
 /* ---- warnings.c: what a spec may say but is better told about ---- */
 
 void warn(struct building *b);
+
+/* ---- needs.c: how exact outputs have to be ---- */
+
+struct target {                     /* a processor: what it takes of instructions */
+	const char *name;
+	struct { double multiplication, addition, wave, step; } cost[2]; /* in double, in float */
+};
+/* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
+bool find_requirements(struct model *model);
+bool steps_exactly(const struct model *model);              /* by scheme exact, or by one that nothing is left to */
+bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
+
+/* ---- amplitudes.c ---- */
+
+bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
 
 #endif

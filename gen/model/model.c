@@ -4,7 +4,6 @@
 #include "model/checks.h"
 #include "model/contacts.h"
 #include "model/model.h"
-#include "model/needs.h"
 #include "model/relative.h"
 #include "model/tuning.h"
 

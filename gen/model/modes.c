@@ -5,8 +5,8 @@
  * force; else they are those of the state matrix. Sizes are sums of |residues| in double precision: to choose by and to
  * tell.
  */
+#include "model/checks.h"
 #include "model/modes.h"
-#include "model/needs.h"
 #include "model/shortening.h"
 
 #include <float.h>

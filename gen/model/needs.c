@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How exact outputs have to be, until when, for which inputs; what a step may cost on which target. */
+#include "model/checks.h"
 #include "model/contacts.h"
-#include "model/needs.h"
 #include "model/tuning.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was chosen for the needs of a spec, and from what: accuracy against cost. */
-#include "model/needs.h"
+#include "model/checks.h"
 #include "model/shortening.h"
 #include "report/report.h"
 #include "step/certificates.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step costs: evaluations of what is left over, load states, sums. */
+#include "model/checks.h"
 #include "model/contacts.h"
-#include "model/needs.h"
 #include "model/reads.h"
 #include "step/collocation.h"
 #include "step/cost.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program of a step. */
+#include "model/checks.h"
 #include "model/contacts.h"
-#include "model/needs.h"
 #include "model/reads.h"
 #include "step/forms.h"
 

@@ -5,7 +5,7 @@
 #
 #     lines.sh SOURCE_ROOT
 #
-# Not looked at: what programs write (doc/charts, doc/gallery, doc/combinations.md, *.csv, *.expect) or read as data
+# Not looked at: what programs write (doc/charts, doc/gallery, doc/combinations.md, *.csv) or read as data
 # (*.list, *.mtx, *.txt of tests), and specs of tests/errors (*.cases) and tests/fuzz, where a line may be what is
 # tested.
 set -u

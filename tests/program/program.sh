@@ -1,24 +1,27 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# program.sh PLGEN ROOT [CASE]: the text of --explain=program. A case is a line of cases.list, whose last word is the
-# spec from the root of the sources, and NAME.expect. And the assignments of linear steps, done as they are printed,
-# come to where the closed form is.
+# program.sh PLGEN ROOT [CASE]: the text of --explain=program. A case is a line of cases.list that begins with ===: its
+# last word is the spec, from the root of the sources; what is said stands behind it. And the assignments of linear
+# steps, done as they are printed, come to where the closed form is.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 only=${3:-}
 . "$root/tests/tap.sh"
 
+cases=$root/tests/program/cases.list
+sed -n 's/^=== //p' "$cases" >names
 while read -r name options; do
-	if [ "$name" = '#' ] || { [ -n "$only" ] && [ "$only" != "$name" ]; }; then
+	if [ -n "$only" ] && [ "$only" != "$name" ]; then
 		continue
 	fi
+	awk -v name="$name" '/^=== / { on = $2 == name; next } on' "$cases" >expected
 	# shellcheck disable=SC2086
 	(cd "$root" && "$plgen" --explain=program $options) >found 2>complaint </dev/null
 	status=$?
-	diff -U 1 "$root/tests/program/$name.expect" found >log || status=1
+	diff -U 1 expected found >log || status=1
 	result $status "$name"
-done <"$root/tests/program/cases.list"
+done <names
 
 # steps SPEC N [OPTION ...]: the states after N steps done as the program says, against the closed form's. States may be
 # named with primes; of loads only the constant 1 is known here.
