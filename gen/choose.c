@@ -10,11 +10,11 @@
 #include "command.h"
 #include "measuring.h"
 #include "model/checks.h"
-#include "model/shortening.h"
+#include "model/linear/shortening.h"
 #include "report/report.h"
-#include "step/certificates.h"
+#include "step/certify/certificates.h"
 #include "step/cost.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <stdlib.h>

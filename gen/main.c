@@ -4,11 +4,11 @@
 #include "command.h"
 #include "emit/emit.h"
 #include "model/checks.h"
-#include "model/elsewhere.h"
-#include "model/shortening.h"
-#include "model/tuning.h"
+#include "model/tunable/elsewhere.h"
+#include "model/linear/shortening.h"
+#include "model/tunable/tuning.h"
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>

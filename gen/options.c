@@ -4,7 +4,7 @@
 #include "command.h"
 #include "command.h"
 #include "report/report.h"
-#include "step/forms.h"
+#include "step/linear/forms.h"
 
 #include <getopt.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
  * and Shannon ask for; and a hundred until the first need ends. */
 #include "command.h"
 #include "command.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 

@@ -3,9 +3,9 @@
 #include "measuring.h"
 #include "measuring.h"
 #include "model/checks.h"
-#include "model/shortening.h"
-#include "step/certificates.h"
-#include "step/images.h"
+#include "model/linear/shortening.h"
+#include "step/certify/certificates.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <stdlib.h>

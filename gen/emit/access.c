@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* init, set, get, time, status, hold: what access.h is told of the model. */
-#include "emit/declarations.h"
-#include "emit/kinds.h"
-#include "emit/steps.h"
-#include "emit/tunable.h"
-#include "step/forms.h"
-#include "step/normal.h"
-#include "step/rows.h"
+#include "declarations.h"
+#include "kinds.h"
+#include "steps.h"
+#include "emit/tunable/tunable.h"
+#include "step/linear/forms.h"
+#include "step/exponential/normal.h"
+#include "step/linear/rows.h"
 
 static void emit_initial(const struct emitter *e, const char *name, const struct model *model)
 {

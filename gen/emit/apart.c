@@ -2,7 +2,7 @@
 /* Locals apart from the model's type: a model called s or tau has functions whose parameters and locals would hide
  * the type's name. In its C they get another name; the C of every other model stays as it is. What reads the C here
  * knows how the emitter writes: `NAME *s`, `NAME s`, `struct NAME` are the type, products have blanks on both sides. */
-#include "emit/printed.h"
+#include "printed.h"
 
 #include <string.h>
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a header has: the struct of the state, the functions. */
-#include "emit/declarations.h"
-#include "emit/kinds.h"
-#include "emit/many.h"
-#include "emit/steps.h"
-#include "emit/tunable.h"
-#include "model/contacts.h"
+#include "declarations.h"
+#include "kinds.h"
+#include "emit/many/many.h"
+#include "steps.h"
+#include "emit/tunable/tunable.h"
+#include "model/contacts/contacts.h"
 
 /* One declaration, its comment at a common column. */
 void announce(const struct emitter *e, const char *text, const char *comment)

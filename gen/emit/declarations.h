@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_DECLARATIONS_H
 #define PLGEN_EMIT_DECLARATIONS_H
 
-#include "emit/state.h"
+#include "state.h"
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
-#include "emit/declarations.h"
-#include "emit/kinds.h"
-#include "model/shortening.h"
-#include "model/tuning.h"
+#include "declarations.h"
+#include "kinds.h"
+#include "model/linear/shortening.h"
+#include "model/tunable/tuning.h"
 
 #include <string.h>
 

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program and its tables as C. Everything printed here is meant to be read. */
-#include "emit/blocks.h"
-#include "emit/declarations.h"
-#include "emit/emit.h"
-#include "emit/kinds.h"
-#include "emit/many.h"
-#include "emit/modes.h"
-#include "emit/series.h"
-#include "emit/steps.h"
-#include "emit/tunable.h"
+#include "emit/linear/blocks.h"
+#include "declarations.h"
+#include "emit.h"
+#include "kinds.h"
+#include "emit/many/many.h"
+#include "emit/linear/modes.h"
+#include "emit/series/series.h"
+#include "steps.h"
+#include "emit/tunable/tunable.h"
 #include "model/reads.h"
-#include "step/certificates.h"
-#include "step/divided.h"
-#include "step/expansion.h"
+#include "step/certify/certificates.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
 
 #include <ctype.h>
 

@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_EMIT_H
 #define PLGEN_EMIT_EMIT_H
 
-#include "emit/state.h"
+#include "state.h"
 
 /* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _rhs: a step as C ---- */
 

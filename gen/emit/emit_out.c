@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
-#include "emit/steps.h"
+#include "steps.h"
 #include "model/reads.h"
 
 /* The output of a row of that table: NULL behind the last */

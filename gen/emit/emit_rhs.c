@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_rhs: the equations as written, for any ODE solver. */
-#include "emit/steps.h"
+#include "steps.h"
 #include "model/building.h"
 #include "model/reads.h"
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_run: what run.h is told; tables and functions of the blocks of rows that it takes at once. */
-#include "emit/declarations.h"
-#include "emit/series.h"
-#include "emit/steps.h"
-#include "step/forms.h"
-#include "step/rows.h"
+#include "declarations.h"
+#include "emit/series/series.h"
+#include "steps.h"
+#include "step/linear/forms.h"
+#include "step/linear/rows.h"
 
 #include <string.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms with atoms as C: a tape of them, its operands under the names of the function that it is printed in. */
-#include "emit/formulas.h"
-#include "emit/steps.h"
-#include "model/friction.h"
+#include "formulas.h"
+#include "steps.h"
+#include "model/contacts/friction.h"
 #include "model/reads.h"
-#include "model/tuning.h"
-#include "step/divided.h"
-#include "step/recipe.h"
+#include "model/tunable/tuning.h"
+#include "step/series/divided.h"
+#include "step/exponential/recipe.h"
 
 struct formulas {
 	const struct emitter *e;

@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_FORMULAS_H
 #define PLGEN_EMIT_FORMULAS_H
 
-#include "emit/state.h"
+#include "state.h"
 #include "step/tapes.h"
 #include "tape/tape.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What symbols of a spec are called in C: a coordinate x is the local x, its velocity x_dot. */
-#include "emit/text.h"
-#include "model/relative.h"
+#include "text.h"
+#include "model/linear/relative.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 /* The runtime's algorithms in the text of a model, in the place of the lines that include them: for what is bundled,
  * what runs inside the generator, and models whose name an algorithm uses. What a compiler's preprocessor would decide
  * by the model alone is decided here: macros are put in, and of #if what holds is left. */
-#include "emit/printed.h"
+#include "printed.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-#include "emit/declarations.h"
-#include "model/tuning.h"
+#include "declarations.h"
+#include "model/tunable/tuning.h"
 
 /* body.x' as BODY_X_DOT; as it is written, body_x_dot, where capitals name something else too. */
 static const char *as_index(const char *name, bool capitals)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the C of each kind of step has: a row for each of what it has of its own, functions and words. */
-#include "emit/declarations.h"
-#include "emit/kinds.h"
-#include "emit/modes.h"
-#include "emit/regions.h"
-#include "emit/series.h"
-#include "emit/steps.h"
-#include "emit/tunable.h"
-#include "model/regions.h"
-#include "step/guards.h"
+#include "declarations.h"
+#include "kinds.h"
+#include "emit/linear/modes.h"
+#include "emit/regions/regions.h"
+#include "emit/series/series.h"
+#include "steps.h"
+#include "emit/tunable/tunable.h"
+#include "model/regions/regions.h"
+#include "step/regions/guards.h"
 
 /* ---- linear ---- */
 

@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_KINDS_H
 #define PLGEN_EMIT_KINDS_H
 
-#include "emit/state.h"
+#include "state.h"
 #include "step/step.h"
 
 /* ---- kinds.c: what the C of a step has that depends on its kind, in the order of the C ---- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* C that was printed, read again: what the rewriters (float, locals apart) have in common. They know how
  * emitters write: strings have no escapes, and a line of the preprocessor begins in its first column. */
-#include "emit/printed.h"
+#include "printed.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_PRINTED_H
 #define PLGEN_EMIT_PRINTED_H
 
-#include "emit/state.h"
+#include "state.h"
 
 /* ---- included.c, single.c, apart.c: C that was printed, printed again, in this order ---- */
 

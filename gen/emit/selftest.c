@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_selftest: states in closed form, for the target to step to, by selftest.h. Inputs follow u = 1 - t/h, which
  * every factor of a sample has a part in; held, u = 1. */
-#include "emit/declarations.h"
-#include "emit/tunable.h"
-#include "step/references.h"
+#include "declarations.h"
+#include "emit/tunable/tunable.h"
+#include "step/certify/references.h"
 
 static void emit_table(const struct emitter *e, const char *note, const char *name, int rows, int columns,
 		       const double *value)

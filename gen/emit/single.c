@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The target float: what is printed for double, with every type, literal and function under its name for float. The
  * numbers are floats already: number.c rounds straight to the target's type. */
-#include "emit/printed.h"
+#include "printed.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state in emitted code: its locals, what is kept of it, how it is stored and read. */
-#include "emit/kinds.h"
-#include "emit/series.h"
-#include "emit/state.h"
-#include "emit/steps.h"
+#include "kinds.h"
+#include "emit/series/series.h"
+#include "state.h"
+#include "steps.h"
 #include "model/reads.h"
-#include "model/regions.h"
-#include "model/tuning.h"
-#include "step/expansion.h"
-#include "step/rows.h"
+#include "model/regions/regions.h"
+#include "model/tunable/tuning.h"
+#include "step/series/expansion.h"
+#include "step/linear/rows.h"
 
 const struct model *speaker(const struct model *model)
 {

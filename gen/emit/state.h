@@ -3,7 +3,7 @@
 #ifndef PLGEN_EMIT_STATE_H
 #define PLGEN_EMIT_STATE_H
 
-#include "emit/text.h"
+#include "text.h"
 #include "step/step.h"
 
 struct reads;

@@ -3,8 +3,8 @@
 #ifndef PLGEN_EMIT_STEPS_H
 #define PLGEN_EMIT_STEPS_H
 
-#include "emit/formulas.h"
-#include "emit/state.h"
+#include "formulas.h"
+#include "state.h"
 
 void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
 void emit_load_members(const struct emitter *e);

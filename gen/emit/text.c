@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What all emitters write with: text laid out as the C it becomes, sums, factors, rows of numbers. */
-#include "emit/text.h"
+#include "text.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files of an FMU and their order. */
 #include "fmu/fmu.h"
-#include "model/tuning.h"
+#include "model/tunable/tuning.h"
 #include "step/step.h"
 
 #include <string.h>

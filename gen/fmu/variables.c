@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names and start values of what the importer sees. */
 #include "fmu/fmu.h"
-#include "model/tuning.h"
+#include "model/tunable/tuning.h"
 #include "step/step.h"
 
 #include <string.h>

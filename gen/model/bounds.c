@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec says of single states: in which range they stay, what a step may add to them. */
-#include "model/building.h"
-#include "model/checks.h"
+#include "building.h"
+#include "checks.h"
 
 typedef void take_bound(struct building *b, const struct state_bound *bound, int state);
 struct bound_work {

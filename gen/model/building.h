@@ -4,7 +4,7 @@
 #define PLGEN_MODEL_BUILDING_H
 
 #include "collect/collect.h"
-#include "model/model.h"
+#include "model.h"
 
 struct expression;
 struct strike;

@@ -3,7 +3,7 @@
 #ifndef PLGEN_MODEL_CHECKS_H
 #define PLGEN_MODEL_CHECKS_H
 
-#include "model/model.h"
+#include "model.h"
 
 /* ---- bounds.c: what a spec says of single states ---- */
 

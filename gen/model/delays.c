@@ -2,7 +2,7 @@
 /* Inputs as they were some time ago, u(t - d). Each is an input of the model, to which a ring of past samples gives
  * what it is. Where a delay is no multiple of the step, the model is stepped by parts of it of which all delays are
  * multiples: in such a part a delayed input is held, or a ramp, like any other, and nothing is approximated. */
-#include "model/building.h"
+#include "building.h"
 
 static const struct symbol *next_delayed(const struct symbol *s)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Written equations and sketches to residuals, one for each coordinate. */
-#include "model/building.h"
-#include "model/friction.h"
-#include "model/relative.h"
+#include "building.h"
+#include "model/contacts/friction.h"
+#include "model/linear/relative.h"
 
 struct indexed {
 	struct building *b;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Jacobian of the equations, where the states and the time are fixed, and its eigenvalues. Nothing here reaches
  * the numbers of the generated code, so eigenvalues in double will do. */
-#include "model/building.h"
-#include "model/checks.h"
+#include "building.h"
+#include "checks.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is no mistake of language, and yet seldom meant: names that nothing reads, and of linear models poles that grow,
  * a step that shows them as slower ones, resonance, drift, forces that belong to no energy. */
-#include "model/building.h"
-#include "model/checks.h"
-#include "model/reads.h"
+#include "building.h"
+#include "checks.h"
+#include "reads.h"
 
 #include <complex.h>
 #include <float.h>

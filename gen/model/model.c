@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a parsed spec to a model: params, scheme, step and initial values here, the rest by the files before it. */
-#include "model/building.h"
-#include "model/checks.h"
-#include "model/contacts.h"
-#include "model/model.h"
-#include "model/relative.h"
-#include "model/tuning.h"
+#include "building.h"
+#include "checks.h"
+#include "model/contacts/contacts.h"
+#include "model.h"
+#include "model/linear/relative.h"
+#include "model/tunable/tuning.h"
 
 #include <string.h>
 

@@ -5,9 +5,9 @@
 
 #include "collect/collect.h"
 #include "math/math.h"
-#include "model/leftover.h"
-#include "model/linear.h"
-#include "model/request.h"
+#include "model/series/leftover.h"
+#include "model/linear/linear.h"
+#include "request.h"
 #include "tape/tape.h"
 
 struct bearing;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How exact outputs have to be, until when, for which inputs; what a step may cost on which target. */
-#include "model/checks.h"
-#include "model/contacts.h"
-#include "model/tuning.h"
+#include "checks.h"
+#include "model/contacts/contacts.h"
+#include "model/tunable/tuning.h"
 
 #include <string.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as rows over states, load states and inputs. */
-#include "model/building.h"
-#include "model/friction.h"
-#include "model/reads.h"
-#include "model/relative.h"
+#include "building.h"
+#include "model/contacts/friction.h"
+#include "reads.h"
+#include "model/linear/relative.h"
 
 #include <string.h>
 

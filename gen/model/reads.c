@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which states, inputs, loads and functions forms read. */
-#include "model/reads.h"
+#include "reads.h"
 
 /* The piecewise-linear functions are comparisons in C. */
 static bool calls_libm(const struct atom *a)

@@ -3,7 +3,7 @@
 #ifndef PLGEN_MODEL_READS_H
 #define PLGEN_MODEL_READS_H
 
-#include "model/model.h"
+#include "model.h"
 
 /* ---- spell.c: loads, forms and equations for a reader ---- */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which scheme the equations allow: exact, exact in regions, or one that leaves something over. */
-#include "model/building.h"
-#include "model/checks.h"
-#include "model/friction.h"
+#include "building.h"
+#include "checks.h"
+#include "model/contacts/friction.h"
 
 struct change {                     /* of formula in time */
 	struct building *b;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads, forms and equations for a reader: what would fill pages is cut short. */
-#include "model/reads.h"
+#include "reads.h"
 
 #include <string.h>
 

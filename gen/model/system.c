@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residuals to M, C, K, loads and inputs. */
-#include "model/building.h"
-#include "model/tuning.h"
+#include "building.h"
+#include "model/tunable/tuning.h"
 
 static void fill_row(struct linear *system, int row, const struct form *form)
 {

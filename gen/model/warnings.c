@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better told about. */
-#include "model/building.h"
-#include "model/checks.h"
-#include "model/friction.h"
-#include "model/reads.h"
+#include "building.h"
+#include "checks.h"
+#include "model/contacts/friction.h"
+#include "reads.h"
 
 #include <string.h>
 

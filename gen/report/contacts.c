@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is held beside a series, and what strikes: in words and as JSON. */
-#include "model/contacts.h"
+#include "model/contacts/contacts.h"
 #include "report/report.h"
-#include "step/divided.h"
-#include "step/expansion.h"
-#include "step/series_contacts.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/contacts/series_contacts.h"
 
 /* The interval of its expression in which it is held */
 static int held_in(const struct step *step, const struct series_hold *hold)

@@ -3,12 +3,12 @@
 #include "model/building.h"
 #include "model/reads.h"
 #include "report/report.h"
-#include "step/collocation.h"
-#include "step/expansion.h"
-#include "step/forms.h"
-#include "step/images.h"
-#include "step/normal.h"
-#include "step/tuned.h"
+#include "step/collocation/collocation.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
+#include "step/linear/images.h"
+#include "step/exponential/normal.h"
+#include "step/tunable/tuned.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frequency responses N(jw)/B(jw) of linear models as numbers: each is enclosed, and rounded once. */
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <string.h>

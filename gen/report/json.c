@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived, as JSON for a program. */
 #include "model/reads.h"
-#include "model/tuning.h"
+#include "model/tunable/tuning.h"
 #include "report/report.h"
-#include "step/collocation.h"
+#include "step/collocation/collocation.h"
 #include "step/cost.h"
-#include "step/expansion.h"
-#include "step/forms.h"
-#include "step/images.h"
-#include "step/rows.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
+#include "step/linear/images.h"
+#include "step/linear/rows.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 /* Of steps in normal modes: modes, operators, which way a step goes, what was found of its stability. */
 #include "model/reads.h"
 #include "report/report.h"
-#include "step/normal.h"
-#include "step/weights.h"
+#include "step/exponential/normal.h"
+#include "step/exponential/weights.h"
 
 const char *operators_of_modes(const struct step *step)
 {

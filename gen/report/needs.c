@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was chosen for the needs of a spec, and from what: accuracy against cost. */
 #include "model/checks.h"
-#include "model/shortening.h"
+#include "model/linear/shortening.h"
 #include "report/report.h"
-#include "step/certificates.h"
+#include "step/certify/certificates.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 /* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how
  * far it may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
 #include "report/report.h"
-#include "step/forms.h"
-#include "step/images.h"
+#include "step/linear/forms.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 

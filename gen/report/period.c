@@ -3,8 +3,8 @@
  * to the next, crossings of breakpoints bracketed to rounding, where the region changes. How the end follows from the
  * start is the product of the exponentials that were passed, and at a crossing where a force jumps of what the jump
  * does to a shift in time (Aizerman and Gantmakher 1958). */
-#include "model/expressions.h"
-#include "model/regions.h"
+#include "model/regions/expressions.h"
+#include "model/regions/regions.h"
 #include "report/report.h"
 
 #include <gsl/gsl_linalg.h>

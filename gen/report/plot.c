@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of a model as scripts for gnuplot: panels below each other, or beside. All numbers are in the script, those
  * of frf as --response prints them, those of response as --solution does. No dates, no paths. */
-#include "model/regions.h"
+#include "model/regions/regions.h"
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program of a step as text: what emitters print as C, before they do. */
 #include "model/reads.h"
-#include "model/regions.h"
+#include "model/regions/regions.h"
 #include "report/report.h"
-#include "step/collocation.h"
-#include "step/divided.h"
-#include "step/expansion.h"
-#include "step/forms.h"
+#include "step/collocation/collocation.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
 #include "step/tapes.h"
-#include "step/tuned.h"
+#include "step/tunable/tuned.h"
 
 #include <string.h>
 

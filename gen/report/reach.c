@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a series costs, and how far it reaches from the start. Estimates are told to two digits. */
 #include "report/report.h"
-#include "step/expansion.h"
+#include "step/series/expansion.h"
 
 #include <math.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
-#include "model/friction.h"
+#include "model/contacts/friction.h"
 #include "report/report.h"
-#include "step/divided.h"
-#include "step/expansion.h"
-#include "step/forms.h"
-#include "step/guards.h"
-#include "step/regions.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
+#include "step/regions/guards.h"
+#include "step/regions/regions.h"
 
 /* ---- bytes and work ---- */
 

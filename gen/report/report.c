@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Poles and polynomials as a reader wants to see them: good to the printed digits, in a fixed order. */
-#include "model/relative.h"
+#include "model/linear/relative.h"
 #include "report/report.h"
-#include "step/divided.h"
-#include "step/images.h"
+#include "step/series/divided.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 

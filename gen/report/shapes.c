@@ -3,7 +3,7 @@
  * complex numbers of SHAPE_BITS bits. Their largest entry is 1. Of a pole of multiplicity m there are m of them, or
  * fewer where the model has not more (a rigid body, which drifts, has one shape for two poles). */
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <mpc.h>
 

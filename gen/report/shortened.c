@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a model of some modes of another: which are kept, and what is lost by the others. */
-#include "model/shortening.h"
+#include "model/linear/shortening.h"
 #include "report/report.h"
 
 #include <math.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. That of a
  * piecewise-linear model goes from crossing to crossing. */
-#include "model/expressions.h"
-#include "model/regions.h"
+#include "model/regions/expressions.h"
+#include "model/regions/regions.h"
 #include "report/report.h"
-#include "step/images.h"
-#include "step/references.h"
+#include "step/linear/images.h"
+#include "step/certify/references.h"
 
 #include <math.h>
 #include <string.h>

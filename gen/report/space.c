@@ -3,7 +3,7 @@
  * state space x' = A x + B u, y = C x + D u: u are the inputs, then the loads, each with its function of time taken as
  * u. */
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
  * harmonic of the excitation's own frequency is told, over the excitation: a describing function (Gelb and Vander Velde
  * 1968, section 3). Motions that repeat are roots of y(T) - y(0), by Newton's method; they are stable where all
  * eigenvalues of its derivative are inside the unit circle (Floquet). */
-#include "model/contacts.h"
+#include "model/contacts/contacts.h"
 #include "report/report.h"
 #include "step/step.h"
 

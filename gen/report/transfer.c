@@ -4,7 +4,7 @@
  * u = t from rest is H(s)/s^2, under a step H(s)/s (Laplace transform of an integral). */
 #include "model/reads.h"
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 

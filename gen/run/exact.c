@@ -3,7 +3,7 @@
  * at every sample, for the run of a step bit by bit beside them. What it is off is the error itself, as long as a
  * compiler rounds each product and each sum as it is written. */
 #include "run/run.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every program of a step keeps to, whichever scheme wrote it: emitters and the report take it as given. Each
  * stage and each leftover is written once, and before it is read; what is named is there. */
-#include "model/regions.h"
-#include "step/collocation.h"
-#include "step/expansion.h"
-#include "step/normal.h"
-#include "step/recipe.h"
+#include "model/regions/regions.h"
+#include "step/collocation/collocation.h"
+#include "step/series/expansion.h"
+#include "step/exponential/normal.h"
+#include "step/exponential/recipe.h"
 
 struct check {
 	const struct step *step;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step costs: evaluations of what is left over, load states, sums. */
 #include "model/checks.h"
-#include "model/contacts.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "step/collocation.h"
-#include "step/cost.h"
-#include "step/expansion.h"
-#include "step/forms.h"
-#include "step/normal.h"
-#include "step/rows.h"
-#include "step/tapes.h"
+#include "step/collocation/collocation.h"
+#include "cost.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
+#include "step/exponential/normal.h"
+#include "step/linear/rows.h"
+#include "tapes.h"
 
 struct cost { int multiplications, additions, calls; };
 

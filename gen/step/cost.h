@@ -3,7 +3,7 @@
 #ifndef PLGEN_STEP_COST_H
 #define PLGEN_STEP_COST_H
 
-#include "step/step.h"
+#include "step.h"
 
 /* ---- cost.c: what a step costs ---- */
 

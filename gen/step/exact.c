@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exact numbers of the equations that stand in the code as they are: the border where each is rounded, once. */
-#include "step/images.h"
+#include "step/linear/images.h"
 
 struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 {

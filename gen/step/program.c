@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program of a step. */
 #include "model/checks.h"
-#include "model/contacts.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "step/forms.h"
+#include "step/linear/forms.h"
 
 enum step_kind kind_of_step(const struct model *model)
 {

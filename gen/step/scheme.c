@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scheme takes the equations apart into what is solved exactly and what is held over a step, and writes the step as
  * a program over the tables of the exact part. */
-#include "model/contacts.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "step/collocation.h"
-#include "step/cost.h"
-#include "step/divided.h"
-#include "step/expansion.h"
-#include "step/forms.h"
-#include "step/images.h"
-#include "step/normal.h"
-#include "step/recipe.h"
-#include "step/regions.h"
-#include "step/rows.h"
-#include "step/tuned.h"
+#include "step/collocation/collocation.h"
+#include "cost.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/linear/forms.h"
+#include "step/linear/images.h"
+#include "step/exponential/normal.h"
+#include "step/exponential/recipe.h"
+#include "step/regions/regions.h"
+#include "step/linear/rows.h"
+#include "step/tunable/tuned.h"
 
 /* A page that a person reads is unrolled; what is larger, has several operators, or loads that change, loops over its
  * tables. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A of x' = A x as the target's numbers: of each operator, of each segment of time, and what a scheme holds. */
-#include "step/forms.h"
-#include "step/slopes.h"
+#include "step/linear/forms.h"
+#include "slopes.h"
 
 #include <math.h>
 

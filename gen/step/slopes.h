@@ -4,7 +4,7 @@
 #define PLGEN_STEP_SLOPES_H
 
 #include "model/model.h"
-#include "step/tables.h"
+#include "step/linear/tables.h"
 
 struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
 	bool emitted;               /* max|pole| h <= 8 */

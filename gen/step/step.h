@@ -4,8 +4,8 @@
 #define PLGEN_STEP_STEP_H
 
 #include "model/model.h"
-#include "step/program.h"
-#include "step/slopes.h"
+#include "program.h"
+#include "slopes.h"
 
 struct anchors;
 struct choice;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* As nodes of a tape: what forms read, what a step assigns to its states, rows of outputs. */
-#include "model/tuning.h"
-#include "step/forms.h"
-#include "step/recipe.h"
-#include "step/tapes.h"
+#include "model/tunable/tuning.h"
+#include "step/linear/forms.h"
+#include "step/exponential/recipe.h"
+#include "tapes.h"
 
 static tape_ref entry(struct tape *t, enum linear_table table, int index, tape_ref x)
 {

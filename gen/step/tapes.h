@@ -3,7 +3,7 @@
 #ifndef PLGEN_STEP_TAPES_H
 #define PLGEN_STEP_TAPES_H
 
-#include "step/step.h"
+#include "step.h"
 #include "tape/tape.h"
 
 /* ---- tapes.c: what forms read, a linear step and rows of outputs as nodes of a tape ---- */

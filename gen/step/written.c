@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The equations as written, for NAME_rhs: residuals without the highest derivatives, and how those follow from them. */
-#include "step/tapes.h"
+#include "tapes.h"
 
 const struct form *without_highest(const struct model *model, const struct form *form)
 {

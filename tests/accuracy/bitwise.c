@@ -17,9 +17,9 @@
 #include "cases.h"
 #include "random_spec.h"
 #include "rationals.h"
-#include "model/shortening.h"
+#include "model/linear/shortening.h"
 #include "report/report.h"
-#include "step/images.h"
+#include "step/linear/images.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -14,7 +14,7 @@
 #include "drawn.h"
 #include "random_spec.h"
 #include "emit/printed.h"
-#include "model/relative.h"
+#include "model/linear/relative.h"
 
 #include <ctype.h>
 #include <float.h>

@@ -7,9 +7,9 @@
 #define JUDGE_H
 
 #include "emit/emit.h"
-#include "model/tuning.h"
-#include "step/forms.h"
-#include "step/tables.h"
+#include "model/tunable/tuning.h"
+#include "step/linear/forms.h"
+#include "step/linear/tables.h"
 
 
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing

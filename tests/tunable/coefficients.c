@@ -17,9 +17,9 @@
 #include "drawn.h"
 #include "../emitted/worse.h"
 #include "emit/steps.h"
-#include "model/relative.h"
-#include "model/shortening.h"
-#include "model/tuning.h"
+#include "model/linear/relative.h"
+#include "model/linear/shortening.h"
+#include "model/tunable/tuning.h"
 
 #include <ctype.h>
 #include <math.h>

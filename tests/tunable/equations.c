@@ -12,7 +12,7 @@
 #include "algebra.h"
 #include "cases.h"
 #include "drawn.h"
-#include "model/tuning.h"
+#include "model/tunable/tuning.h"
 
 #include <stdlib.h>
 #include <string.h>

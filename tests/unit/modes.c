@@ -2,8 +2,8 @@
 /* What steps in normal modes are made of, by other roads: eigenvalues by traces and determinants in rationals, weights
  * by quadrature of the response to an impulse in closed form, nodes by their own closed forms. */
 #include "draw.h"
-#include "step/collocation.h"
-#include "step/weights.h"
+#include "step/collocation/collocation.h"
+#include "step/exponential/weights.h"
 
 enum { BITS = 400, GOOD = 170 };
 

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts, contacts at rest and dry friction beside a series: their tables, and how the search of events makes the
+ * series anew. */
+#include "emit/series/series.h"
+#include "emit/text.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/contacts/series_contacts.h"
+
+#include <string.h>
+
+static const struct contacts *contacts(const struct emitter *e)
+{
+	return e->step->divided->contacts;
+}
+
+bool meets_contacts(const struct emitter *e)
+{
+	return e->step->divided && contacts(e);
+}
+
+/* ---- tables ---- */
+
+static int watch_or_none(int watch)
+{
+	return watch == NONE ? -1 : watch;
+}
+
+static int rank_in(const struct emitter *e, int expression, int breakpoint)
+{
+	return e->step->divided->expression[expression].rank[breakpoint];
+}
+
+/* Their columns in the series, or one behind the other */
+static void emit_watches(const struct emitter *e, const char *name, int first)
+{
+	const struct contacts *c = contacts(e);
+	int *column = ARRAY(int, (size_t)c->watches);
+	for (int i = 0; i < c->watches; i++)
+		column[i] = first == NONE ? c->watch[i].column : first + i;
+	say(e, "\n/* What the search of events watches beside expressions: the column of each */\n");
+	emit_int_list(e, name, c->watches, column);
+}
+
+static void emit_rows(const struct emitter *e, const char *name, const char *note, int rows, int kind)
+{
+	const struct contacts *c = contacts(e);
+	const int size[] = { rows > 0 ? rows : 1, e->system->states };
+	double *value = ARRAY(double, (size_t)(size[0] * size[1]));
+	for (int i = 0; i < rows; i++)
+		memcpy(value + i * size[1], kind ? c->strike[i].back : c->hold[i].back,
+		       (size_t)size[1] * sizeof *value);
+	emit_array(e, note, name, 2, size, value, NULL);
+}
+
+static void emit_holds(const struct emitter *e)
+{
+	const struct contacts *c = contacts(e);
+	const int rows = c->holds > 0 ? c->holds : 1;
+	int *row = ARRAY(int, 6 * (size_t)rows), none[] = { 0, 0, 0, -1, -1, -1 };
+	for (int i = 0; i < c->holds; i++) {
+		const struct series_hold *h = &c->hold[i];
+		const int of[] = { h->expression, rank_in(e, h->expression, h->breakpoint) + 1, h->velocity,
+				   watch_or_none(h->pull[0]), watch_or_none(h->pull[1]), watch_or_none(h->impact) };
+		memcpy(row + 6 * i, of, sizeof of);
+	}
+	say(e, "\n/* What is held: expression, interval; watches: its velocity, what lets it go down, up; impact */\n");
+	emit_integer_rows(e, "pl_hold", format("event_hold[%d]", rows), rows, 6, c->holds ? row : none);
+	emit_rows(e, "event_back", "Of each: what is taken from the states for a velocity of 1", c->holds, 0);
+}
+
+static void emit_strikes(const struct emitter *e)
+{
+	const struct contacts *c = contacts(e);
+	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, "
+	       "without restitution, how many; restitution; of the expression for a guard of 1 */\n"
+	       "static const pl_strike $n_event_strike[%d] = {\n", c->strikes > 0 ? c->strikes : 1);
+	for (int i = 0; i < c->strikes; i++) {
+		const struct series_strike *s = &c->strike[i];
+		int rank = rank_in(e, s->expression, s->breakpoint) + (s->hold != NONE && !s->upward);
+		say(e, "    {%d, %d, %d, %d, %d, %d, %d, %d, %d, %s, %s},\n", s->expression, rank, s->upward,
+		    watch_or_none(s->hold), s->place, s->speed, s->jump, s->still, s->jumps,
+		    shortest(s->restitution), shortest(s->per));
+	}
+	say(e, "%s};\n", c->strikes > 0 ? "" : "    {0, 0, 0, -1, 0, 0, 0, 0, 0, 0.0, 1.0}\n");
+	emit_rows(e, "event_place", "Of each: what is taken from the states for a guard of 1", c->strikes, 1);
+	int *state = ARRAY(int, (size_t)c->assignments), *value = ARRAY(int, (size_t)c->assignments);
+	for (int i = 0; i < c->assignments; i++) {
+		state[i] = c->assignment[i].state;
+		value[i] = c->assignment[i].watch;
+	}
+	emit_int_list(e, "event_jumps", c->assignments, state);
+	emit_int_list(e, "event_after", c->assignments, value);
+}
+
+static void emit_events(const struct emitter *e, const char *name, const char *divided, const char *watch)
+{
+	const struct contacts *c = contacts(e);
+	say(e, "static const pl_events $n_%s = {\n"
+	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
+	       "    $n_event_place[0],\n"
+	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
+	       "};\n", name, divided, watch, c->holds, c->strikes, c->conflicts);
+}
+
+void emit_event_tables(const struct emitter *e)
+{
+	const struct contacts *c = contacts(e);
+	const char *conflict = "";
+	emit_watches(e, "event_watch", NONE);
+	emit_holds(e);
+	emit_strikes(e);
+	for (int i = 0; i < c->conflicts; i++)
+		conflict = format("%s%s{%luu, %d, %d}", conflict, i ? ", " : "", c->conflict[i].set,
+				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);
+	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n",
+	    *conflict ? conflict : "{0u, -1, 0}");
+	emit_events(e, "events", "divided", "event_watch");
+}
+
+void emit_events_along(const struct emitter *e)
+{
+	emit_watches(e, "along_watch", e->step->divided->expressions);
+	emit_events(e, "along", "passing", "along_watch");
+}

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Schemes with a leftover from crossing to crossing: what the runtime's cut.h, which the model's file includes, is told
+ * of the model, and a whole step by the scheme's own tables. */
+#include "emit/series/series.h"
+#include "emit/steps.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+
+static const struct cut *cut_of(const struct emitter *e)
+{
+	return e->step->cut;
+}
+
+/* ---- the header ---- */
+
+void emit_cut_members(const struct emitter *e)
+{
+	int count = cut_of(e)->look->expressions;
+	emit_divided_members(e);
+	if (e->system->inputs == 0 && e->system->segments <= 1)
+		say(e, "    double end[2][%d], terms[%d];  /* of each expression at the end of the last step */\n"
+		       "    int ended;            /* they are there */\n", count, count);
+}
+
+void emit_cut_place(const struct emitter *e)
+{
+	say(e, "\nstatic void $n_place($n *s);  /* what follows from a state that was set */\n");
+}
+
+/* ---- a part of a step ---- */
+
+static int acting_entries(const struct emitter *e)
+{
+	return cut_of(e)->layout.size - e->system->states - CUT_POWERS * e->model->channels;
+}
+
+static void emit_flow_tables(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	int size = layout->size, segments = e->system->segments;
+	const char **name = layout_names(layout, e->system, e->model);
+	double *value = ARRAY(double, (size_t)(segments * size * size));
+	for (int i = 0; i < e->system->states; i++)
+		name[i] = format("%s'", name[i]);
+	for (int i = 0; i < segments * size * size; i++)
+		value[i] = cut_of(e)->slopes[i / (size * size)][i % (size * size)];
+	emit_array(e, "x' = A x in each segment of time; x: y, what acts on it, each force with two derivatives",
+		   "flow", 3, (const int[]){ segments, size, size }, value, name);
+}
+
+static void emit_acting_inputs(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	for (int i = 0; i < e->system->inputs; i++) {
+		int at = layout->input[i] - layout->states;
+		bool ramp = e->system->input[i].hold;
+		say(e, "    acting[%d] = start[%d]%s;\n", at, i, ramp ? format(" + tau * slope[%d]", i) : "");
+		if (ramp)
+			say(e, "    acting[%d] = slope[%d];\n", at + 1, i);
+	}
+}
+
+/* The load states and inputs at a time of the step */
+static void emit_acting(const struct emitter *e)
+{
+	const struct layout *layout = &cut_of(e)->layout;
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads), time = false;
+	for (int l = 0; l < e->system->loads; l++) {
+		wanted[l] = layout->load[l] >= 0;
+		time = time || (wanted[l] && e->system->load[l].powers > 1);
+	}
+	open_function(e, "What acts on the states, tau after now",
+		      "static void $n_acting(const $n *s, const double start[], const double slope[], double tau,\n"
+		      "    double acting[])");
+	if (time)
+		say(e, "    const double t = $n_time(s) + tau;\n");
+	struct emitter here = *e;
+	here.after = "tau";
+	emit_load_states(&here, wanted, true);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && wanted[l]; k++) {
+			const char *value = load_operand(e, l, k);
+			say(e, "    acting[%d] = %s;\n", layout->load[l] + k - layout->states, value ? value : "1.0");
+		}
+	emit_acting_inputs(e);
+	close_function(e, "s start slope tau acting");
+}
+
+/* ---- a whole step ---- */
+
+static void emit_whole(const struct emitter *e)
+{
+	open_function(e, "The scheme's own step, with the formulas of these intervals",
+		      "static void $n_whole($n *s, const double u[], const double start[], const double slope[],\n"
+		      "    double when, const int interval[])");
+	emit_actions_of_step(e);
+	close_function(e, "u start slope when interval");
+}
+
+static void emit_algorithm(const struct emitter *e)
+{
+	const struct expansion *x = cut_of(e)->look;
+	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
+		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carries }, { "ORDER", x->order },
+		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
+		   { "INPUTS", e->system->inputs },
+		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
+		   { "MAX_SPLITS", MAX_SPLITS }, { "SWIFT", cut_of(e)->certain < 1 });
+	emit_divided_macros(looking(e));
+	say(e, "#define PL_FASTEST %s\n"
+	       "#define PL_CERTAIN %s\n"
+	       "#include \"cut.h\"\n", shortest(cut_of(e)->fastest), shortest(cut_of(e)->certain));
+}
+
+void emit_cut_step(const struct emitter *e)
+{
+	enum { CUBIC = 3 };
+	const struct emitter *l = looking(e);
+	emit_force_table(l);
+	emit_frozen_function(forcing(e));
+	emit_ends_function(ending(e));
+	emit_expand_from(l);
+	emit_divided_tables(l);
+	emit_passing_table(e, CUBIC);
+	emit_inputs_now(e);
+	emit_flow_tables(e);
+	emit_acting(e);
+	if (e->step->program->loops)
+		emit_loop_tables(e);
+	emit_whole(e);
+	emit_pass_time(e);
+	emit_algorithm(e);
+	emit_serving_step(e);
+}

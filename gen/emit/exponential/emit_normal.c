@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are told of
+ * them: tables, sums over them, sizes. */
+#include "emit/linear/modes.h"
+#include "emit/series/series.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/exponential/normal.h"
+#include "step/linear/rows.h"
+#include "step/exponential/weights.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- known loads, to which modes respond exactly ---- */
+
+static int wave_values(const struct emitter *e)
+{
+	return 2 * e->model->split->waves;
+}
+
+static bool is_there(const struct emitter *e, int value)
+{
+	return value % 2 == 0 || oscillates(e->model->split->wave[value / 2].wave);
+}
+
+/* NAME_waves: cos and sin of each now, times e^{a t} */
+static void emit_waves(const struct emitter *e)
+{
+	int count = wave_values(e);
+	const struct form **form = ARRAY(const struct form *, (size_t)count + 1);
+	if (count == 0)
+		return;
+	for (int k = 0; k < count; k++)
+		form[k] = form_unit((struct basis){ .kind = BASIS_WAVE, .wave = e->model->split->wave[k / 2].wave,
+						    .sine = k % 2 && is_there(e, k) });
+	struct reads r = reads_of(e->model, count, form);
+	open_function(e, "Known loads now", "static void $n_waves(const $n *s, double wave[%d])", count);
+	emit_load_states(e, r.load, false);
+	for (int k = 0; k < count; k++)
+		say(e, "    wave[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
+	close_function(e, "");
+}
+
+static void add_waves(const struct emitter *e, struct row_sum *s, const char *table, int row)
+{
+	for (int k = 0; k < wave_values(e); k++)
+		if (is_there(e, k))
+			add_summand(s, format("%s[%d][i] * wave[%d]", table, 2 * k + row, k));
+}
+
+/* Of a step by columns of one matrix, theirs from `first` on */
+static void add_waves_of_columns(const struct emitter *e, struct row_sum *s, int first)
+{
+	for (int k = 0; k < wave_values(e); k++)
+		if (is_there(e, k))
+			add_summand(s, spell(e, "$n_settled[%d][i] * wave[%d]", first + k, k));
+}
+
+/* ---- a stage: modes at a node, or after a step ---- */
+
+/* [stage][bank][row][place] */
+static void emit_stage_table(const struct emitter *e, const char *note, const char *name, int stages, int rows,
+			     const double *const *of_stage)
+{
+	const struct normal *m = normal_of_step(e);
+	const size_t each = (size_t)(m->banks * rows * m->width);
+	double *value = ARRAY(double, each * (size_t)stages);
+	if (rows == 0)
+		return;
+	for (int i = 0; i < stages; i++)
+		memcpy(value + (size_t)i * each, of_stage[i], each * sizeof *value);
+	emit_array(e, note, name, 4, (const int[]){ stages, m->banks, rows, m->width }, value, NULL);
+}
+
+static void emit_node_tables(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const size_t stages = (size_t)m->stages;
+	const double **flow = ARRAY(const double *, stages), **weight = ARRAY(const double *, stages);
+	const double **wave = ARRAY(const double *, stages);
+	for (size_t i = 0; i < stages; i++) {
+		flow[i] = m->stage[i].flow;
+		weight[i] = m->stage[i].weight;
+		wave[i] = m->stage[i].wave;
+	}
+	emit_stage_table(e, "Modes at each node from those at the step's start", "flow", m->stages, 4, flow);
+	emit_stage_table(e, "... and from forces at all nodes", "weight", m->stages, 2 * (m->stages + 1), weight);
+	emit_stage_table(e, "... and from known loads at its start", "of_wave", m->stages, 2 * wave_values(e), wave);
+}
+
+/* e eta + s eta', de eta + ds eta', and weights of forces */
+static const char *stage_sum(const struct emitter *e, int row, int forces, const char *force)
+{
+	struct row_sum s = { 0 };
+	add_summand(&s, format("flow[%d][i] * s->eta[i]", 2 * row));
+	add_summand(&s, format("flow[%d][i] * s->rate[i]", 2 * row + 1));
+	for (int k = 0; k < forces; k++)
+		add_summand(&s, format("weight[%d][i] * %s", 2 * k + row, format(force, k)));
+	add_waves(e, &s, "of_wave", row);
+	return tree(s.terms, s.term, 21);
+}
+
+/* Over a whole step, from past forces, rows of the last node serve but for the weights of forces. */
+static void emit_rows_of_node(const struct emitter *e, const char *node, const char *weight)
+{
+	const char *const row[] = { format("flow[%s]", node), weight, format("of_wave[%s]", node) };
+	for (int i = 0; i < 2 + (wave_values(e) > 0); i++)
+		say(e, "    const double (*const %s)[%d] = $n_%s[which];\n",
+		    i == 0 ? "flow" : i == 1 ? "weight" : "of_wave", normal_of_step(e)->width, row[i]);
+}
+
+/* Modes in a loop, and what the force is expected to be; NULL: it is not asked. The end of the function */
+static void emit_stage_sums(const struct emitter *e, int forces, const char *force, const char *expected)
+{
+	say(e, "    int i;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        eta[i] = %s;\n"
+	       "        rate[i] = %s;\n"
+	       "%s"
+	       "    }\n", normal_of_step(e)->width, stage_sum(e, 0, forces, force), stage_sum(e, 1, forces, force),
+	    expected ? format("        expected[i] = %s;\n", expected) : "");
+	close_function(e, "wave");
+}
+
+static void emit_node_modes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	emit_node_tables(e);
+	open_function(e, NULL, "static inline void $n_node_modes(const $n *s, int which, int node,\n"
+		      "    double force[%d][%d], const double wave[], double eta[], double rate[])", m->stages + 1,
+		      m->width);
+	emit_rows_of_node(e, "node - 1", "weight[node - 1]");
+	emit_stage_sums(e, m->stages + 1, "force[%d][i]", NULL);
+}
+
+/* From forces at the nodes of the last step, the last of which is the start of this one */
+static void emit_forces_ahead(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int nodes = m->stages + 1;
+	open_function(e, NULL, "static inline void $n_forces_ahead(const $n *s, double force[%d][%d])", nodes,
+		      m->width);
+	say(e, "    int i;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        force[0][i] = s->force[%d][i];\n", m->width, m->stages);
+	for (int i = 0; i < m->stages; i++) {
+		struct row_sum s = { 0 };
+		for (int k = 0; k < nodes; k++)
+			add_summand(&s, scaled(m->ahead[i * nodes + k], format("s->force[%d][i]", k)));
+		say(e, "        force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 22));
+	}
+	say(e, "    }\n");
+	close_function(e, "");
+}
+
+static void emit_predict(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	struct row_sum extrapolated = { 0 };
+	for (int k = 0; k < m->points; k++)
+		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
+	emit_array(e, "Modes after a step, from past forces, the last first", "past_weight", 3,
+		   (const int[]){ m->banks, 2 * m->points, m->width }, m->step.weight, NULL);
+	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
+		   (const int[]){ m->banks, 2, m->width }, m->correct, NULL);
+	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double wave[],\n"
+		      "    double eta[], double rate[], double expected[])");
+	emit_rows_of_node(e, format("%d", m->stages - 1), "past_weight");
+	for (int k = 0; k < m->points; k++)
+		say(e, "    const double *const force%d = s->force[%s];\n", k, k == 0 ? "s->newest" :
+		    format("s->newest >= %d ? s->newest - %d : s->newest + %d", k, k, m->points - k));
+	emit_stage_sums(e, m->points, "force%d[i]", tree(extrapolated.terms, extrapolated.term, 22));
+}
+
+/* ---- a bank ---- */
+
+static void emit_bank(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int last = m->banks - 1;
+	double *bound = ARRAY(double, (size_t)m->banks);
+	if (!has_bank(e))
+		return;
+	for (int b = 0; b < last; b++)
+		bound[b] = equation_number(e->model, e->model->operator[b].at).value;
+	emit_array(e, "Values up to which the operators serve, but the last", "bound", 1, &last, bound, NULL);
+	emit_array(e, "Modes of the next operator from those of each, beyond what they are themselves", "next", 3,
+		   (const int[]){ last, m->width, m->width }, m->turn, NULL);
+}
+
+/* ---- once all functions of time are constant ---- */
+
+static void emit_still(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int width = m->width;
+	double *omega = ARRAY(double, 2 * (size_t)width);
+	struct row_sum s = { 0 };
+	for (int i = 0; i < width; i++) {
+		omega[i] = m->omega[i];
+		omega[width + i] = m->period[i];
+	}
+	emit_array(e, "Frequencies that amplitudes are scaled by, and 1 over them", "omega", 2,
+		   (const int[]){ 2, width }, omega, NULL);
+	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
+		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->settled, NULL);
+	open_function(e, NULL, "static inline void $n_still(const double x[], const double wave[], double sum[])");
+	say(e, "    int i;\n");
+	for (int j = 0; j < 2 * m->modes; j++)
+		add_summand(&s, spell(e, "$n_settled[%d][i] * x[%d]", j,
+				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	add_summand(&s, spell(e, "$n_settled[%d][i]", 2 * m->modes));
+	add_waves_of_columns(e, &s, 2 * m->modes + 1);
+	say_row_sum(e, "sum[i]", 2 * width, &s);
+	close_function(e, "wave");
+}
+
+/* ---- states inside a step ---- */
+
+/* The next term of known load k, by `by`; `alone`: it has no sin */
+static void emit_next_term(const struct emitter *e, int k, bool alone)
+{
+	const struct wave *wave = e->model->split->wave[k].wave;
+	const char *a = shortest(equation_number(e->model, wave->a).value);
+	const char *w = shortest(equation_number(e->model, wave->w).value);
+	const int c = 2 * k, s = c + 1;
+	if (alone) {
+		say(e, "    swing[%d] *= by * %s;\n"
+		       "    wave[%d] += swing[%d];\n", c, a, c, c);
+		return;
+	}
+	const bool grows = mpq_sgn(wave->a) != 0;
+	say(e, "    before = swing[%d];\n"
+	       "    swing[%d] = by * (%s%s * swing[%d]);\n"
+	       "    swing[%d] = by * (%s%s * before);\n"
+	       "    wave[%d] += swing[%d];\n"
+	       "    wave[%d] += swing[%d];\n", c, c, grows ? format("%s * before - ", a) : "-", w, s, s,
+	    grows ? format("%s * swing[%d] + ", a, s) : "", w, c, c, s, s);
+}
+
+static void emit_swing(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int count = wave_values(e);
+	struct row_sum sum = { 0 };
+	if (count == 0)
+		return;
+	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->banks, count, m->width }, m->wave,
+		   NULL);
+	open_function(e, NULL, "static inline void $n_swing_on(int which, double by, double wave[], double swing[],\n"
+		      "    double force[])");
+	say(e, "    double before = 0.0;\n"
+	       "    int i;\n");
+	for (int k = 0; k < count; k++)
+		if (is_there(e, k))
+			add_summand(&sum, spell(e, "$n_swing[which][%d][i] * swing[%d]", k, k));
+	say(e, "    for (i = 0; i < %d; i++) { force[i] += %s; }\n", m->width, tree(sum.terms, sum.term, 20));
+	for (int k = 0; k < count; k += 2)
+		emit_next_term(e, k / 2, !is_there(e, k + 1));
+	close_function(e, "before");
+}
+
+static void emit_within(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const int nodes = m->stages * m->stages, past = m->points * m->points, size[] = { m->banks, m->width };
+	emit_array(e, "Of polynomials through forces at nodes: powers from what they exceed that at the start by",
+		   "of_nodes", 1, &nodes, m->within.nodes, NULL);
+	if (past)
+		emit_array(e, "... and through past ones and the new one", "of_past", 1, &past, m->within.past, NULL);
+	emit_array(e, "lambda of each mode [1/s^2]", "stiffness", 2, size, m->within.stiffness, NULL);
+	if (m->within.damping)
+		emit_array(e, "2 delta of each mode [1/s]", "damping", 2, size, m->within.damping, NULL);
+	emit_swing(e);
+}
+
+static int turns_within(const struct emitter *e)
+{
+	const double angle = normal_of_step(e)->within.angle;
+	return angle > 1 ? (int)ceil(angle) : 1;
+}
+
+/* ---- the whole ---- */
+
+static void emit_algorithm(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width },
+		   { "POINTS", m->points }, { "TWICE", m->twice }, { "STAGES", m->stages }, { "SWEEPS", m->sweeps },
+		   { "FIRST_SWEEPS", m->first_sweeps }, { "FUNCTIONS", functions_of_time(e) },
+		   { "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
+		   { "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
+		   { "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
+		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL },
+		   { "PEAKS", peak_outputs(e->model) });
+	say(e, "#include \"normal.h\"\n");
+}
+
+void emit_normal_tables(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	emit_to_modes(e);
+	emit_from_modes(e);
+	if (functions_of_time(e))
+		emit_function_values(e);
+	emit_forces(e);
+	emit_waves(e);
+	emit_bank(e);
+	emit_node_modes(e);
+	if (m->points)
+		emit_predict(e);
+	else
+		emit_forces_ahead(e);
+	if (m->settled)
+		emit_still(e);
+	emit_pass_time(e);
+	if (e->step->series.emitted)
+		emit_within(e);
+	emit_algorithm(e);
+}
+
+void emit_normal_members(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const char *where = m->points ? "ends of the last steps" : "nodes of the last step";
+	bool past = m->points || has_bank(e);
+	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
+	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
+	if (past)
+		say(e, "    double past[%d][2][%d];  /* what they were there */\n", m->kept, m->width);
+	if (functions_of_time(e))
+		say(e, "    double f[%d][%d];       /* functions of time there */\n", m->kept, functions_of_time(e));
+	say(e, "    int which;            /* operator whose modes they are */\n");
+	if (m->points)
+		say(e, "    int newest;           /* of those ends the last */\n");
+	say(e, "    int known;            /* how many there are */\n");
+}

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a scheme leaves over as a function of the state: what it reads, how it is called, its text. */
+#include "emit/steps.h"
+#include "emit/tunable/tunable.h"
+#include "model/reads.h"
+#include "step/exponential/weights.h"
+
+#include <string.h>
+
+/* ---- what the leftover reads, and how it is called ---- */
+
+bool many_operators(const struct emitter *e)
+{
+	return e->model->operators > 1;
+}
+
+bool any_of(const bool *flag, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (flag[i])
+			return true;
+	return false;
+}
+
+/* The value of a ramp, which differs from one time in a step to another */
+static bool reads_ramp(const struct emitter *e, const struct reads *r)
+{
+	for (int i = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].hold && r->input[i])
+			return true;
+	return false;
+}
+
+static bool reads_channel(const struct model *model, int channel)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs + model->n; i++) {
+		const struct output *output =
+			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+		any = any || (output && mpq_sgn(output->channel[channel]) != 0);
+	}
+	return any;
+}
+
+bool reads_channels(const struct model *model)
+{
+	bool any = false;
+	for (int c = 0; c < model->channels; c++)
+		any = any || reads_channel(model, c);
+	return any;
+}
+
+/* Beside friction outputs alone ask what is left over, and of equations that have none: its force is no formula. */
+static bool is_asked(const struct emitter *e, int channel)
+{
+	return e->model->drags == 0 || reads_channel(e->model, channel);
+}
+
+static struct reads reads_of_leftover(const struct emitter *e)
+{
+	int channels = e->model->channels, all = channels * e->model->operators, asked = 0;
+	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
+	for (int k = 0; k < e->model->operators; k++)
+		for (int c = 0; c < channels; c++)
+			if (is_asked(e, c))
+				form[asked++] = e->model->operator[k].left[c];
+	return reads_of(e->model, asked, form);
+}
+
+static bool needs_node(const struct emitter *e, const struct reads *r)
+{
+	if (e->step->normal)            /* outputs alone call it */
+		return false;
+	return e->step->program->nodes > 1 && (r->time || any_of(r->load, e->system->loads) || reads_ramp(e, r));
+}
+
+const char *samples_of_step(const struct emitter *e)
+{
+	return e->ramps ? "start, slope" : given_inputs(e) ? "u, NULL" : "NULL, NULL";
+}
+
+const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left)
+{
+	return spell(e, "$n_leftover(s, %s, %d, %s, %s, %s);", many_operators(e) ? "which" : "0", node,
+		     samples_of_step(e), state, left);
+}
+
+const char *leftover_of_outputs(const struct emitter *e)
+{
+	return spell(e, "$n_leftover(s, 0, 0, %s, %s, %s, left);", given_inputs(e) ? "s->u" : "NULL",
+		     e->ramps ? "s->slope" : "NULL", e->step->normal ? "now" : "s->y");
+}
+
+/* ---- a bank: linear terms that differ from operator to operator ---- */
+
+static void emit_excess(const struct emitter *e, const struct bank *bank)
+{
+	const int size[] = { e->model->operators, bank->count };
+	const char **note = ARRAY(const char *, (size_t)e->model->operators);
+	for (int k = 0; k < e->model->operators; k++)
+		note[k] = e->model->operator[k].text;
+	emit_array(e, "What the linear terms of the equations exceed those of each operator by", "excess", 2, size,
+		   bank->factor, note);
+}
+
+/* A channel's form, and what the operator that serves does not have of its linear terms */
+static tape_ref with_excess(struct formulas *f, int channel, tape_ref form, const struct bank *bank)
+{
+	struct tape *t = formulas_tape(f);
+	tape_ref *term = ARRAY(tape_ref, (size_t)bank->count + 1);
+	int terms = 0;
+	for (int i = 0; i < bank->count; i++) {
+		const struct excess *excess = &bank->excess[i];
+		if (excess->channel == channel)
+			term[terms++] = tape_binary(t, TAPE_MUL, tape_operand(t, TAPE_TABLE, i, TABLE_EXCESS),
+						    tape_operand(t, TAPE_COORD, excess->coord, excess->order));
+	}
+	if (terms == 0)
+		return form;
+	tape_ref sum = tape_sum(t, terms, term);
+	return form == tape_number(t, 0) ? sum : tape_binary(t, TAPE_ADD, form, sum);
+}
+
+/* ---- the function ---- */
+
+static void emit_nodes(const struct emitter *e, const struct reads *r)
+{
+	if (r->time || reads_ramp(e, r))
+		emit_node_times(e);
+	if (any_of(r->load, e->system->loads))
+		emit_node_phases(e, r->load);
+}
+
+static void emit_leftover_locals(const struct emitter *e, const struct reads *r, const char *vector, bool node)
+{
+	emit_locals_of(e, r->state, vector);
+	emit_param_locals(e, r->param);
+	if (r->time)
+		say(e, "    const double t = $n_time(s)%s;\n", node ? format(" + %s_node[node]", e->name) : "");
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = node && e->system->input[i].hold;
+		const char *more = ramp ? format(" + %s_node[node] * slope[%d]", e->name, i) : "";
+		if (r->input[i])
+			say(e, "    const double %s = u[%d]%s;\n", input_name(e, i, 0), i, more);
+		if (r->input[e->system->inputs + i])
+			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
+	}
+	struct emitter here = *e;
+	here.at_node = node;
+	emit_load_states(&here, r->load, true);
+}
+
+static const char *name_of_channel(const struct emitter *e, int channel)
+{
+	return e->model->coord_name[coordinate_of_row(e->model, e->model->channel_row[channel])];
+}
+
+static void emit_lefts(const struct emitter *e, const struct bank *bank)
+{
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, e->model->channels, bank->common);
+	struct tape *t = formulas_tape(f);
+	for (int c = 0; c < e->model->channels; c++) {
+		tape_ref form = is_asked(e, c) ? formula(f, bank->common[c]) : tape_number(t, 0);
+		tape_set(t, format("left[%d]", c), with_excess(f, c, form, bank), 15, name_of_channel(e, c));
+	}
+	emit_formulas(f, 4);
+}
+
+/* ---- a bank: which of its operators serves now ---- */
+
+static void emit_selection(const struct emitter *e)
+{
+	const struct form *selector = e->model->selector;
+	const struct operator *operator = e->model->operator;
+	struct reads r = reads_of(e->model, 1, &selector);
+	int last = e->model->operators - 1;
+	open_function(e, "The first operator whose value is not below the current one",
+		      "static int $n_operator(const $n *s, const double u[], const double slope[])");
+	emit_leftover_locals(e, &r, "s->y", false);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 1, &selector);
+	tape_set(formulas_tape(f), "const double now", formula(f, selector), 8, NULL);
+	emit_formulas(f, 4);
+	say(e, "    (void)s;\n"
+	       "    (void)u;\n"
+	       "    (void)slope;\n"
+	       "    return ");
+	for (int k = 0; k < last; k++)
+		say(e, "now <= %s ? %d : ", shortest(equation_number(e->model, operator[k].at).value), k);
+	say(e, "%d;\n"
+	       "}\n", last);
+}
+
+const char *selection_call(const struct emitter *e)
+{
+	return spell(e, "$n_operator(s, %s)", samples_of_step(e));
+}
+
+void emit_leftover(const struct emitter *e)
+{
+	struct reads r = reads_of_leftover(e);
+	struct bank bank = bank_of(e->step);
+	bool node = needs_node(e, &r);
+	if (node)
+		emit_nodes(e, &r);
+	if (bank.count)
+		emit_excess(e, &bank);
+	open_function(e, "What is left over at state y: a force on each equation that has some",
+		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
+		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
+	emit_leftover_locals(e, &r, "y", node);
+	if (bank.count)
+		say(e, "    const double *const excess = $n_excess[which];\n");
+	emit_lefts(e, &bank);
+	close_function(e, "s which node u slope y");
+	if (many_operators(e) && !e->step->normal)
+		emit_selection(e);
+}

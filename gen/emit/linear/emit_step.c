@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step program as C: sums over the old state, or for a large model loops over its tables. */
+#include "blocks.h"
+#include "emit/kinds.h"
+#include "modes.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/linear/forms.h"
+
+bool *loads_of_step(const struct emitter *e)
+{
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0, column = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns; k++, column++)
+			wanted[l] = wanted[l] || (load_operand(e, l, k) && e->step->program->uses[column]);
+	return wanted;
+}
+
+/* The slope at the end of the step of an input that goes through further taps, where something reads it */
+static void emit_tap_slope(const struct emitter *e, int input)
+{
+	int hold = e->system->input[input].hold, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)hold + 1);
+	RATIONAL slope = ZERO;
+	if (!reads_input_slope(e->model, input))
+		return;
+	for (int c = 0; c <= hold; c++) {
+		tap_slope(hold, c, slope);
+		if (mpq_sgn(slope) != 0)
+			term[terms++] = scaled(round_rational(slope), tap_text(e, input, c));
+	}
+	say(e, "    s->slope[%d] = (%s) / %s;\n", input, tree(terms, term, 18), step_length(e));
+}
+
+/* `samples` steps at once: of inputs that are held or ramp */
+void emit_keep_inputs(const struct emitter *e, int samples)
+{
+	int inputs = given_inputs(e), last = (samples - 1) * inputs;
+	for (int i = 0; i < inputs; i++) {
+		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
+		if (e->system->input[i].hold > 1) {
+			emit_tap_slope(e, i);
+			say(e, "    $n_next_sample(s, %d, u[%d]);\n", i, i);
+			continue;
+		}
+		if (e->system->input[i].hold)
+			say(e, "    s->slope[%d] = %s;\n", i, slope_of_samples(e, format("u[%d]", last + i), before));
+		say(e, "    s->u[%d] = u[%d];\n", i, last + i);
+	}
+}
+
+static void emit_load_factors(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	const int size[] = { e->system->segments, table->states, table->columns }, count = size[0] * size[1] * size[2];
+	double *value = ARRAY(double, (size_t)count);
+	for (int i = 0; i < count; i++)
+		value[i] = table->load[i].value;
+	emit_array(e, "Factors of the load states in each segment of time", "load_factor", 3, size, value,
+		   e->model->state_name);
+}
+
+void emit_set_aside(const struct emitter *e)
+{
+	const int *carry = e->step->carry;
+	for (int i = 0; i < e->system->states; i++)
+		if (carry[i] >= 0)
+			say(e, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n",
+			    carry[i], i, e->model->state_name[i]);
+	for (int i = 0; i < e->system->states; i++)
+		if (carry[i] >= 0)
+			say(e, "    s->y[%d] = 0.0;\n", i);
+}
+
+void emit_take_back(const struct emitter *e)
+{
+	const int *carry = e->step->carry;
+	for (int i = 0; i < e->system->states; i++)
+		if (carry[i] >= 0)
+			say(e, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n",
+			    i, carry[i], i, carry[i]);
+}
+
+/* Of the columns of loads, then of inputs */
+static const char **acting_texts(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
+	for (int k = 0; k < table->columns + table->inputs; k++) {
+		text[k] = k < table->columns ? column_operand(e, k) : input_operand(e, k - table->columns);
+		text[k] = text[k] ? text[k] : "1.0";
+	}
+	return text;
+}
+
+struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped)
+{
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
+	tape_of_step(formulas_tape(f), e->step, stepped, "s->y");
+	return f;
+}
+
+/* Of a step that loops over blocks those that have rows of their own; NULL: all */
+static bool *states_in_rows(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	bool *stepped = program->loops ? ARRAY(bool, (size_t)e->system->states) : NULL;
+	for (int k = 0; k < program->groups; k++)
+		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
+			stepped[program->group[k].state[i]] = true;
+	return stepped;
+}
+
+/* The rows of a step: of all states, or of those of small blocks of a large model; the states under their names */
+static void emit_rows_of_step(const struct emitter *e)
+{
+	struct formulas *f = formulas_of_step(e, states_in_rows(e));
+	const struct tape *t = formulas_tape(f);
+	bool *reads = ARRAY(bool, (size_t)e->system->states);
+	tape_mark(t, TAPE_STATE, 0, reads);
+	emit_raw_locals(e, reads);
+	if (!e->step->program->loops)
+		emit_anchored_loads(e, loads_of_step(e));
+	if (tape_reads(t, TAPE_TABLE, -1, TABLE_FACTOR))
+		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
+		    e->step->branch->whole->columns);
+	emit_formulas(f, 4);
+}
+
+static void emit_looped_step(const struct emitter *e)
+{
+	if (e->step->modal) {
+		emit_modal_step(e, acting_texts(e));
+		return;
+	}
+	emit_rows_of_step(e);
+	emit_set_aside(e);
+	emit_group_steps(e, acting_texts(e));
+	emit_take_back(e);
+}
+
+/* A step that no change of the loads interrupts */
+static void emit_plain_step(const struct emitter *e)
+{
+	if (!e->step->program->loops) {
+		emit_rows_of_step(e);
+		return;
+	}
+	emit_load_states(e, loads_of_step(e), false);
+	emit_looped_step(e);
+}
+
+void emit_step_end(const struct emitter *e)
+{
+	emit_keep_inputs(e, 1);
+	if (!e->step->anchors)
+		emit_load_advance(e, NULL);
+	say(e, "    s->k++;\n");
+	if (e->step->anchors)
+		say(e, "    if (++s->since == %d) { $n_drop_anchor(s); }\n",
+		    e->step->anchors->steps);
+	if (e->step->rest && e->step->rest->in_step)
+		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
+	if (has_ranges(e))
+		say(e, "    $n_stay(s);\n");
+}
+
+const char *step_parameters(const struct emitter *e)
+{
+	return format("%s *s%s", e->name, given_inputs(e) ? format(", const double u[%s_INPUTS]", e->upper) : "");
+}
+
+/* Where peaks are looked for it goes by another name. */
+const char *head_of_step(const struct emitter *e)
+{
+	return format(has_peaks(e) ? "static void %s_one_step(%s)" : "void %s_step(%s)", e->name, step_parameters(e));
+}
+
+/* Into y: the state after a step in which the loads change their formula, from pass() */
+static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
+{
+	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->kind->own_factors ? "NULL, " : "";
+	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
+	       "        double y[$N_STATES];\n"
+	       "        %s$n_pass(s, %s%s, %sy);\n"
+	       "        $n_keep_state(s, y);\n"
+	       "    } else {\n"
+	       "        $n_plain_step(s%s);\n"
+	       "    }\n",
+	    segment, e->system->segments - 1, segment, h, result, u, h, whole, given_inputs(e) ? ", u" : "");
+	emit_step_end(e);
+}
+
+/* The forced part changes with the loads; pass() does that for the changes inside the step. */
+static void emit_forced_changes(const struct emitter *e)
+{
+	say(e, "    int segment = s->segment;\n");
+	emit_interrupted_step(e, "segment", "segment = ", "0, ");
+	say(e, "    s->segment = segment;\n"
+	       "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s) {\n",
+	    e->system->segments - 1, step_length(e));
+	if (e->step->forced->changes)
+		say(e, "        $n_rebase(s);\n");
+	say(e, "        s->segment++;\n"
+	       "    }\n");
+}
+
+static void emit_plain_changes(const struct emitter *e)
+{
+	emit_interrupted_step(e, "s->segment", "", "");
+	say(e, "    $n_pass_segments(s);\n");
+}
+
+static void emit_changing_step(const struct emitter *e)
+{
+	struct formulas *f = formulas_of_step(e, states_in_rows(e));
+	if (tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_FACTOR))
+		emit_load_factors(e);
+	say(e, "\n"
+	       "static void $n_plain_step(%s)\n"
+	       "{\n",
+	    step_parameters(e));
+	emit_plain_step(e);
+	if (given_inputs(e))
+		say(e, "    (void)u;\n");
+	say(e, "}\n"
+	       "\n"
+	       "%s\n"
+	       "{\n",
+	    head_of_step(e));
+	if (e->step->forced)
+		emit_forced_changes(e);
+	else
+		emit_plain_changes(e);
+	say(e, "}\n");
+}
+
+void emit_step(const struct emitter *e)
+{
+	emit_groups(e);
+	if (e->step->rest && e->step->rest->in_step)
+		say(e, "\nstatic void $n_rest($n *s);\n");
+	if (e->system->segments > 1) {
+		emit_changing_step(e);
+		return;
+	}
+	say(e, "\n"
+	       "%s\n"
+	       "{\n",
+	    head_of_step(e));
+	emit_plain_step(e);
+	emit_step_end(e);
+	say(e, "}\n");
+}

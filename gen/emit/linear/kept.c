@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of what may move as a whole: states as written, and as they are kept. */
+#include "emit/declarations.h"
+#include "model/linear/relative.h"
+
+/* The rate of a coordinate, over written values y; or what was gained of it, y being gains */
+static const char *rate_text(const struct emitter *e, const struct form *rate, bool whole)
+{
+	const char **term = ARRAY(const char *, (size_t)rate->terms + 1);
+	int terms = 0;
+	for (int i = 0; i < rate->terms; i++) {
+		const struct basis *basis = &rate->term[i].basis;
+		const char *operand = basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL;
+		if (operand || whole)
+			term[terms++] = scaled(finite_number(e, rate->term[i].factor), operand);
+	}
+	if (terms == 0)
+		return "0.0";
+	return terms > 1 || *term[0] == '-' ? format("(%s)", tree(terms, term, 12)) : term[0];
+}
+
+/* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */
+static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at)
+{
+	const struct relative *r = e->model->relative;
+	const char **term = ARRAY(const char *, (size_t)r->written->n + 1), *own = format("y[%d]", at[coord]);
+	int terms = 0;
+	if (link->kind == LINK_PARENT) {
+		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
+		const char *parent = rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]);
+		const char *from = scaled(finite_number(e, link->ratio), parent);
+		if (link->turned)
+			return format("%s - %s", from, own);
+		return format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
+	}
+	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
+		if (mpq_sgn(link->weight[k]) != 0)
+			term[terms++] = scaled(finite_number(e, link->weight[k]), format("y[%d]", at[k]));
+	return link->kind == LINK_CENTRE ? tree(terms, term, 12) : own;
+}
+
+/* What the written one has gained since the last set: d is what was gained of what is kept, y of the others so far */
+static const char *gain_text(const struct emitter *e, const struct link *link, int coord, const int *at,
+			     const int *kept)
+{
+	const struct relative *r = e->model->relative;
+	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
+	int terms = 0;
+	if (link->kind == LINK_PARENT) {
+		bool rate = link->rate && at[coord] >= r->written->n;
+		const char *parent = rate ? rate_text(e, link->rate, false) : format("y[%d]", at[link->from]);
+		const char *from = scaled(finite_number(e, link->ratio), parent);
+		return format("%s %c d[%d]", from, link->turned ? '-' : '+', kept[coord]);
+	}
+	term[terms++] = format("d[%d]", kept[coord]);
+	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
+		if (mpq_sgn(link->shift[k]) != 0)
+			term[terms++] = scaled(finite_number(e, link->shift[k]), format("d[%d]", kept[k]));
+	return tree(terms, term, 12);
+}
+
+/* Places of positions (order 0) and velocities in the vector of states, -1: there is none; of velocities that stand
+ * alone in `kept` too */
+static void find_places(const struct emitter *e, int order, int *at, int *kept)
+{
+	const struct relative *r = e->model->relative;
+	for (int j = 0; j < r->written->n; j++) {
+		at[j] = order ? r->written->system.velocity[j] : j;
+		kept[j] = !order ? j : r->link[j].velocity >= 0 ? r->link[j].velocity : e->system->velocity[j];
+	}
+}
+
+static void emit_keep(const struct emitter *e, int order, const int *at, const int *kept)
+{
+	const struct relative *r = e->model->relative;
+	for (int j = 0; j < r->written->n; j++) {
+		const struct link plain = { .kind = LINK_NONE };
+		const struct link *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
+		if (at[j] >= 0)
+			say(e, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at),
+			       e->model->state_name[kept[j]]);
+	}
+}
+
+/* A coordinate that is measured from another comes after it. */
+static void emit_gains(const struct emitter *e, int order, const int *at, const int *kept)
+{
+	const struct relative *r = e->model->relative;
+	int n = r->written->n;
+	for (int i = 0; i < n + r->links; i++) {
+		int j = i < n ? i : r->sequence[i - n];
+		bool alone = order && r->link[j].velocity >= 0, linked = !alone && r->link[j].kind == LINK_PARENT;
+		if (at[j] >= 0 && !alone && r->link[j].kind != LINK_NONE && linked == (i >= n))
+			say(e, "    y[%d] = %s;\n", at[j], gain_text(e, &r->link[j], j, at, kept));
+	}
+}
+
+/* What is kept as it is written */
+static void emit_unlinked(const struct emitter *e, int order, const int *at, const int *kept, bool gains)
+{
+	const struct relative *r = e->model->relative;
+	for (int j = 0; j < r->written->n; j++)
+		if (at[j] >= 0 && ((order && r->link[j].velocity >= 0) || r->link[j].kind == LINK_NONE))
+			say(e, "    y[%d] = %c[%d];\n", at[j], gains ? 'd' : 'x', kept[j]);
+}
+
+/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
+ * was given. */
+void emit_conversions(const struct emitter *e)
+{
+	int coords = e->model->relative->written->n;
+	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
+	find_places(e, 0, at, kept);
+	find_places(e, 1, at + coords, kept + coords);
+	say(e, "\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written */\n"
+	       "static void $n_keep(const double y[$N_STATES], double x[$N_STATES])\n"
+	       "{\n");
+	for (int order = 0; order < 2; order++)
+		emit_keep(e, order, at + order * coords, kept + order * coords);
+	say(e, "}\n"
+	       "\n/* And back: what they were at the last set, and what was gained since */\n"
+	       "static void $n_written(const $n *s, const double x[$N_STATES], double y[$N_STATES])\n"
+	       "{\n"
+	       "    double d[$N_STATES];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++) { d[i] = x[i] - s->from[i]; }\n");
+	for (int order = 0; order < 2; order++) {
+		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
+		emit_gains(e, order, at + order * coords, kept + order * coords);
+	}
+	say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] += s->set[i]; }\n");
+	for (int order = 0; order < 2 && !e->step->forced; order++)
+		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
+	say(e, "}\n");
+}

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NAME_batch: what the header has of it, and what batch.h is told. */
+#include "emit/declarations.h"
+#include "emit/kinds.h"
+#include "many.h"
+#include "emit/steps.h"
+#include "step/linear/rows.h"
+
+#include <string.h>
+
+/* ---- the header ---- */
+
+/* Rows of an instance's memory, those that its struct begins with: what a step changes, then what only get and set
+ * read */
+struct member { const char *name; int rows; };
+
+static int members_of(const struct emitter *e, struct member member[6])
+{
+	int states = e->system->states, count = 0;
+	bool compensated = e->step->program->compensated;
+	member[count++] = (struct member){ "y", states };
+	if (compensated)
+		member[count++] = (struct member){ "rest", states };
+	if (e->step->carries)
+		member[count++] = (struct member){ "carry", e->step->carries };
+	if (e->step->forced && !compensated && !e->model->relative)
+		member[count++] = (struct member){ "rest", states };
+	if (e->model->relative) {
+		member[count++] = (struct member){ "set", states };
+		member[count++] = (struct member){ "from", states };
+		if (e->step->forced)
+			member[count++] = (struct member){ "start", states };
+	}
+	return count;
+}
+
+static int rows_of(const struct emitter *e)
+{
+	struct member member[6];
+	int count = members_of(e, member), rows = 0;
+	for (int i = 0; i < count; i++)
+		rows += member[i].rows;
+	return rows;
+}
+
+static const char *row_list(const struct emitter *e)
+{
+	struct member member[6];
+	int count = members_of(e, member);
+	const char *list = "";
+	for (int i = 0; i < count; i++)
+		list = format("%s%s%s", list, i ? ", " : "", member[i].name);
+	return list;
+}
+
+/* Of a model with delayed inputs those that are given */
+static int inputs_of(const struct emitter *e)
+{
+	return e->model->delays ? e->model->delays->inputs : given_inputs(e);
+}
+
+/* As lanes, or each by itself */
+static void declare_instances(const struct emitter *e, const struct batch *b)
+{
+	const char *alone = e->step->no_lanes;
+	say(e, "\n"
+	       "/* Many instances in one call, all at one time%s. In each array the instance is the fastest: entry i\n"
+	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init.%s */\n",
+	    inputs_of(e) ? " and under the same inputs" : "",
+	    alone ? format("\n * Each takes its steps by itself: %s.", alone) : "");
+	say(e, "enum { $N_BATCH_ROWS = %s%s };\n",
+	    alone ? spell(e, "(int)((sizeof(struct $n) + sizeof(double) - 1) / sizeof(double))")
+		  : format("%d", rows_of(e)),
+	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
+	say(e, "typedef struct $n_instances {\n"
+	       "    size_t count;\n"
+	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s */\n",
+	    alone ? "the bytes of its struct" : spell(e, "%s, as in struct $n", row_list(e)));
+	if (b->factors)
+		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have "
+		       "those of shared */\n");
+	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
+	       "NULL: not kept */\n"
+	       "    $n shared;        /* %s */\n"
+	       "} $n_instances;\n",
+	    alone ? "a copy of the first"
+		  : format("what all share: time%s%s; its states are not used",
+			   e->system->inputs ? ", the last sample" : "",
+			   e->phases || e->growths ? ", phases of loads" : ""));
+}
+
+void emit_batch_declarations(const struct emitter *e)
+{
+	const struct batch b = e->step->no_lanes ? (struct batch){ .e = e } : plan_batch(e);
+	bool inputs = inputs_of(e) > 0;
+	declare_instances(e, &b);
+	say(e, "void   $n_batch_init($n_instances *b);%31s/* t = 0; of each the spec's initial values%s */\n", "",
+	    b.factors ? " and coefficients" : "");
+	say(e, "void   $n_batch_set($n_instances *b, size_t j, const double y[$N_STATES]);  /* of instance j, now */\n"
+	       "void   $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES]);\n"
+	       "int    $n_batch_status(const $n_instances *b, size_t j);%24s/* of instance j, as $n_status */\n", "");
+	if (b.factors)
+		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
+		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
+	if (e->step->no_lanes)
+		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
+		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
+	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
+	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n\n",
+	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
+}
+
+/* ---- what instances share of a step ---- */
+
+static bool *loads_of_outputs(const struct batch *b)
+{
+	const struct linear *system = b->e->system;
+	bool *wanted = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		wanted[l] = tape_reads(b->out, TAPE_LOAD, l, -1);
+	return wanted;
+}
+
+static void emit_shared(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	open_function(e, "What instances share in a step, which is taken: before it,",
+		      "static void $n_share_step($n *s, const double *u, double *now)");
+	emit_load_states(e, loads_of_step(e), false);
+	for (int i = 0; i < b->after; i++)
+		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
+	emit_step_end(e);
+	close_function(e, "u now");
+	open_function(e, "and in the outputs behind it", "static void $n_share_out(const $n *s, double *now)");
+	emit_load_states(e, loads_of_outputs(b), false);
+	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
+		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
+	if (b->forced >= 0)
+		say(e, "    $n_forced(s, now + %d);\n", b->forced);
+	close_function(e, "s now");
+}
+
+/* ---- what batch.h asks ---- */
+
+static void emit_factor_places(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (!b->factors)
+		return;
+	say(e, "\nstatic const size_t $n_factor_at[$N_BATCH_FACTORS] = {\n");
+	for (int k = 0; k < b->factors; k++)
+		say(e, "    offsetof(struct $n, %s),\n", strchr(b->factor_text[k], '>') + 1);
+	say(e, "};\n");
+}
+
+static void emit_sample_reaches(const struct emitter *e)
+{
+	int inputs = e->system->inputs, columns = most_taps_before(e) + 1;
+	int *degree = ARRAY(int, (size_t)inputs);
+	double *reach = ARRAY(double, (size_t)(inputs * columns));
+	for (int i = 0; i < inputs; i++) {
+		degree[i] = e->system->input[i].hold;
+		for (int m = 0; m <= degree[i]; m++)
+			reach[i * columns + m] = tap_reach(degree[i], m);
+	}
+	emit_int_list(e, "sample_degree", inputs, degree);
+	emit_int_list(e, "sample_column", inputs, e->step->layout.input);
+	emit_array(e, "Of the largest sample in each derivative of the polynomial through samples, times h, h^2, ...",
+		   "sample_reach", 2, (const int[]){ inputs, columns }, reach, names_of_inputs(e));
+}
+
+static bool any_momentum(const struct emitter *e)
+{
+	bool any = false;
+	for (int i = 0; i < e->system->states; i++)
+		any = any || factor_of_momentum(e, i);
+	return any;
+}
+
+static void emit_velocities(const struct emitter *e)
+{
+	open_function(e, NULL, "static void $n_velocities(double *x)");
+	for (int i = 0; i < e->system->states; i++)
+		if (factor_of_momentum(e, i))
+			say(e, "    x[%d] = x[%d] / %s;\n", i, i, factor_of_momentum(e, i));
+	close_function(e, "");
+}
+
+static void emit_peaks_of_batch(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	emit_lanes_bend(b);
+	if (b->sampled)
+		emit_sample_reaches(e);
+	if (any_momentum(e))
+		emit_velocities(e);
+}
+
+static void emit_include(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
+		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
+		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
+		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled });
+	say(e, "#define PL_INSTANCES $n_instances\n");
+	if (has_peaks(e))
+		say_macro(e, "NOMINAL", e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
+	say(e, "#include \"batch.h\"\n");
+}
+
+static void emit_each(const struct emitter *e)
+{
+	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs_of(e) }, { "OUTPUTS", e->model->outputs });
+	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
+	say_macro(e, "INSTANCES", spell(e, "$n_instances"));
+	say_include(e, "each.h");
+}
+
+void emit_batch(const struct emitter *e)
+{
+	if (e->step->no_lanes) {
+		emit_each(e);
+		return;
+	}
+	struct batch b = plan_batch(e);
+	open_algorithm(e, &(struct size){ NULL, 0 });
+	say(e, "#include \"lanes.h\"\n");
+	emit_shared(&b);
+	emit_lanes_step(&b);
+	emit_lanes_out(&b);
+	emit_factor_places(&b);
+	if (has_peaks(e))
+		emit_peaks_of_batch(&b);
+	emit_include(&b);
+}

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
+ * many instances as there are lanes, from the arrays and back. */
+#include "emit/kinds.h"
+#include "many.h"
+#include "emit/steps.h"
+#include "step/exponential/recipe.h"
+#include "step/linear/rows.h"
+
+#include <string.h>
+
+enum { MOST_GROUPS = 4 };
+
+/* ---- what instances share, and what each has ---- */
+
+static int find_text(int count, const char *const *text, int from, const char *wanted)
+{
+	while (from < count && strcmp(text[from], wanted) != 0)
+		from++;
+	return from;
+}
+
+/* Its place among what is shared from `from` on */
+static int share(struct batch *b, int from, const char *text)
+{
+	int place = find_text(b->shared, b->shared_text, from, text);
+	if (place == b->shared) {
+		ENLARGE(b->shared_text, (size_t)b->shared + 1);
+		b->shared_text[b->shared++] = text;
+	}
+	return place;
+}
+
+/* An operand that all instances share: its C */
+static const char *shared_operand(const struct emitter *e, const struct tape_node *n)
+{
+	switch (n->op) {
+	case TAPE_LOAD:   return load_operand(e, n->index, n->part);
+	case TAPE_SAMPLE: return input_operand(e, n->index);
+	case TAPE_INPUT:  return format(n->part ? "s->slope[%d]" : "s->u[%d]", n->index);
+	default:          return NULL;
+	}
+}
+
+static void share_operands(struct batch *b, const struct tape *t, int from)
+{
+	for (int i = 0; i < tape_length(t); i++) {
+		const char *text = shared_operand(b->e, tape_node(t, i));
+		if (text)
+			share(b, from, text);
+	}
+}
+
+/* The name of a factor of the instance's own, in a function over lanes */
+static const char *batch_factor(struct batch *b, const char *text)
+{
+	int k = find_text(b->factors, b->factor_text, 0, text);
+	if (k == b->factors) {
+		ENLARGE(b->factor_text, (size_t)b->factors + 1);
+		b->factor_text[b->factors++] = text;
+	}
+	return format("factor[%d]", k);
+}
+
+static void number_factors(struct batch *b);
+
+/* Is there more in x than the states? */
+static bool acts_beside_states(const struct emitter *e)
+{
+	return e->step->layout.size > e->system->states;
+}
+
+/* ... all of it polynomials through samples, of which the derivatives take long? */
+static bool only_samples_act(const struct emitter *e)
+{
+	int columns = 0;
+	for (int i = 0; i < e->system->inputs; i++)
+		columns += e->system->input[i].hold > 1 ? e->system->input[i].hold + 1 : 0;
+	return e->system->states + columns == e->step->layout.size;
+}
+
+struct batch plan_batch(const struct emitter *e)
+{
+	struct batch b = { .e = e, .forced = -1, .step = tape_new(), .out = tape_new() };
+	struct step now = *e->step;             /* what instances share are load states of now, not an anchor's */
+	now.anchors = NULL;
+	tape_of_step(b.step, &now, NULL, "y");
+	for (int i = 0; i < e->model->outputs; i++) {
+		const struct output *output = &e->model->output[i];
+		tape_set(b.out, format("out[%d]", i), tape_of_row(b.out, e->step, output), 13, output->name);
+	}
+	share_operands(&b, b.step, 0);
+	b.after = b.shared;
+	share_operands(&b, b.out, b.after);
+	if (e->step->forced && !rows_sustained(e->step)) {
+		b.forced = b.shared;
+		b.shared += e->system->states;
+	}
+	b.sampled = has_peaks(e) && acts_beside_states(e) && only_samples_act(e);
+	if (e->kind->own_factors)
+		number_factors(&b);
+	return b;
+}
+
+/* Rows that a step changes of an instance's memory, the first of them */
+int batch_stepped_rows(const struct emitter *e)
+{
+	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carries;
+}
+
+/* Groups of lanes that step in turns, so that sums of one wait for none of their own */
+int batch_groups(const struct emitter *e)
+{
+	int groups = 8 / batch_stepped_rows(e);
+	return groups < 1 ? 1 : groups > MOST_GROUPS ? MOST_GROUPS : groups;
+}
+
+/* ---- tapes over lanes ---- */
+
+struct over_lanes { struct batch *b; int from; }; /* where what is shared stands */
+
+/* Rows of an instance, of what rounding takes from a state */
+static const char *rest_row(const struct emitter *e, const struct tape_node *n)
+{
+	int first = n->part == PLACE_CARRY ? batch_stepped_rows(e) - e->step->carries : e->system->states;
+	return format("y[%d]", first + n->index);
+}
+
+static const char *operand_over_lanes(const void *context, const struct tape_node *n)
+{
+	const struct over_lanes *over = context;
+	const struct emitter *e = over->b->e;
+	if (n->op == TAPE_STATE)
+		return e->local[n->index];
+	if (n->op == TAPE_ACCUMULATE)
+		return rest_row(e, n);
+	if (n->op == TAPE_TABLE)
+		return batch_factor(over->b, linear_entry(e, n));
+	return format("now[%d]", share(over->b, over->from, shared_operand(e, n)));
+}
+
+static bool varies(const void *context, const struct tape_node *n)
+{
+	(void)context;
+	return n->op == TAPE_STATE || n->op == TAPE_TABLE;
+}
+
+static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
+{
+	static const struct tape_lanes lanes = { "pl_lanes", "pl_lanes_all", varies };
+	const struct over_lanes over = { b, from };
+	const struct tape_target to = { .real = "double", .operand = operand_over_lanes,
+					.accumulate = "pl_lanes_accumulate", .context = &over, .indent = 4,
+					.lanes = &lanes };
+	const char *broken = tape_check(t);
+	if (broken)
+		internal_error(b->e->step, broken);
+	tape_print(t, &to, b->e->to);
+	close_function(b->e, "now factor");
+}
+
+static void number_entries(struct batch *b, const struct tape *t)
+{
+	for (int i = 0; i < tape_length(t); i++)
+		if (tape_node(t, i)->op == TAPE_TABLE)
+			batch_factor(b, linear_entry(b->e, tape_node(t, i)));
+}
+
+static void number_factors(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	number_entries(b, b->step);
+	number_entries(b, b->out);
+	for (int p = 0; p < peak_outputs(e->model); p++) {
+		for (int i = 0; i < e->system->states; i++)
+			batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i));
+		if (acts_beside_states(e))
+			batch_factor(b, format("s->coeffs.reach[%d]", p));
+	}
+	b->lanes = b->factors;
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		for (int i = e->system->states; i < e->step->layout.size; i++)
+			batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i));
+	for (int i = 0; i < e->system->states && has_peaks(e); i++)
+		for (int j = 0; j < e->step->layout.size; j++)
+			batch_factor(b, format("s->coeffs.slope[%d][%d]", i, j));
+}
+
+void emit_lanes_step(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	open_function(e, "One step of as many instances as there are lanes; now: what they share",
+		      "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)");
+	for (int i = 0; i < e->system->states; i++)
+		if (tape_reads(b->step, TAPE_STATE, i, 0))
+			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
+	emit_over_lanes(b, b->step, 0);
+}
+
+/* A state as outputs read it: of momenta the velocity, of what is kept less its forced part the whole */
+static const char *state_over_lanes(const struct batch *b, int i)
+{
+	const char *mass = factor_of_momentum(b->e, i), *kept = format("y[%d]", i);
+	if (mass)
+		kept = format("%s / %s", kept, mass);
+	return b->forced >= 0 ? format("%s + now[%d]", kept, b->forced + i) : kept;
+}
+
+void emit_lanes_out(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	open_function(e, NULL,
+		      "PL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, const pl_lanes *factor, "
+		      "const double *now, pl_lanes *out)");
+	for (int i = 0; i < e->system->states; i++)
+		if (tape_reads(b->out, TAPE_STATE, i, 0))
+			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
+	emit_over_lanes(b, b->out, b->after);
+}
+
+/* ---- peaks ---- */
+
+static const char *bend_over_lanes(struct batch *b, int p)
+{
+	const struct emitter *e = b->e;
+	const char **term = ARRAY(const char *, (size_t)e->system->states + 1);
+	const struct peaks peaks = peaks_of(e->step);
+	int terms = 0;
+	for (int i = 0; i < e->system->states; i++) {
+		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), state[%d]%s%s)", i,
+					  factor_of_momentum(e, i) ? " / " : "",
+					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
+		term[terms++] = e->kind->own_factors
+			? format("%s * %s", batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i)), size)
+			: scaled(peaks.bend[p * e->step->layout.size + i], size);
+	}
+	if (acts_beside_states(e) && e->kind->own_factors)
+		term[terms++] = format("%s * reach[%d]", batch_factor(b, format("s->coeffs.reach[%d]", p)), p);
+	else if (acts_beside_states(e))
+		term[terms++] = format("reach[%d]", p);
+	return tree(terms, term, 15);
+}
+
+void emit_lanes_bend(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	open_function(e, "How far outputs are off their chords at most, by |states| and what else acts on them",
+		      "PL_LANES_INLINE void $n_lanes_bend(const pl_lanes *state, const pl_lanes *factor, "
+		      "const double *reach, pl_lanes *bend)");
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		say(e, "    bend[%d] = %s;\n", p, bend_over_lanes(b, p));
+	close_function(e, "factor reach");
+}

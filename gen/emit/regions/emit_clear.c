@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions: a step that stays clear of every breakpoint, as sums with a bound for each expression. */
+#include "regions.h"
+#include "emit/steps.h"
+#include "model/regions/expressions.h"
+#include "model/regions/regions.h"
+#include "step/tunable/tuned.h"
+
+#include <string.h>
+
+/* Of each entry of x, "" of 1; slopes of ramps in locals */
+const char **operands_of_x(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
+	const char **text = entries(e, "x[%d]");
+	for (int i = 0; i < e->system->states; i++)
+		text[i] = e->local[i];
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
+			if (load_operand(e, l, k))
+				text[layout->load[l] + k] = load_operand(e, l, k);
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = e->system->input[i].hold;
+		int of = place_of_input(e, i);
+		text[layout->input[i]] = ramp ? sample_kept(e, of) : sample_now(e, of);
+		if (ramp)
+			text[layout->input[i] + 1] = format("part%d", of);
+	}
+	return text;
+}
+
+/* ---- what a step looks with: numbers, or where params are tunable tables of an instance ---- */
+
+struct look {
+	bool own;                   /* tables of an instance; what stays of x is gathered */
+	int branch;                 /* of one region; -1: `which` */
+	struct region_tables whole, row, off;
+	const char **x, **end, **size; /* of each entry of x: now, at the end; for bounds its size; NULL: gathered */
+};
+
+/* Without what stays */
+static const char **moving(const struct emitter *e, const char *const *x)
+{
+	int stays = 0;
+	const int *column = e->model->retuned ? staying_columns(e->step, &stays) : NULL;
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = x[j];
+	for (int k = 0; k < stays; k++)
+		text[column[k]] = NULL;
+	return text;
+}
+
+static const char **magnitudes(const struct emitter *e, const char *const *x)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = x[j] && *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	return text;
+}
+
+static struct region_tables rows_of_pieces(const struct emitter *e, const struct pieces *p)
+{
+	struct region_tables rows = {
+		"c->row", expressions_of(e), e->step->layout.size, 0, 1, ARRAY(double *, 1), NULL
+	};
+	rows.value[0] = p->row;
+	return rows;
+}
+
+static bool changes(const struct emitter *e, int branch)
+{
+	bool any = false;
+	for (int k = 0; k < e->step->branches; k++)
+		if (branch < 0 || k == branch)
+			any = any || retuned_place(e->model->retuned, RETUNED_SLOPE, k, 0) >= 0;
+	return any;
+}
+
+/* What may be other than 0 for some values of the params is read from the tables; what none of them changes is a
+ * number. */
+static void mark_own(const struct emitter *e, const struct pieces *p, struct look *l)
+{
+	const struct tuning *r = e->model->retuned;
+	int size = e->step->layout.size, n = expressions_of(e);
+	const bool *reached = reached_elsewhere(e->step, l->branch), systems = changes(e, l->branch);
+	bool *whole = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),
+	     *off = ARRAY(bool, (size_t)(n * size));
+	for (int i = 0; i < e->system->states * size && systems; i++)
+		whole[i] = reached[i] || i % (size + 1) == 0;
+	for (int i = 0; i < n; i++) {
+		int place = retuned_place(r, RETUNED_EXPRESSION, 0, i);
+		for (int k = 0; k < size; k++) {
+			int at = i * size + k;
+			row[at] = place >= 0 && r->acts[place * size + k];
+			for (int j = 0; j < size && (row[at] || p->row[at] != 0) && (systems || place >= 0); j++)
+				off[i * size + j] = off[i * size + j] || reached[k * size + j];
+		}
+	}
+	l->whole.own = whole;
+	l->row.own = row;
+	l->off.own = off;
+	for (int j = 0; j < size; j++)
+		l->size[j] = *l->size[j] && !p->bounded[j] ? l->size[j] : NULL;
+}
+
+static struct look look_of(const struct emitter *e, const struct pieces *p, const char *const *x, int branch)
+{
+	const bool own = e->model->retuned;
+	struct look l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
+			  .end = moving(e, entries(e, "end%d")) };
+	l.size = magnitudes(e, l.x);
+	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
+	l.off = tables_of_regions(e, p, own && branch >= 0 ? format("c->chord_off[%d]", branch) : "c->chord_off[which]",
+				  expressions_of(e), OF_PIECE(off));
+	if (branch >= 0) {
+		l.whole = of_branch(l.whole, branch);
+		l.off = of_branch(l.off, branch);
+	}
+	if (own)
+		mark_own(e, p, &l);
+	return l;
+}
+
+static const char *end_text(const struct emitter *e, const struct look *l, int i)
+{
+	const char *added = NULL;
+	if (l->own && any_stays(e->step) && i < e->system->states)
+		added = l->branch < 0 ? format("c->added[which][%d]", i) : format("c->added[%d][%d]", l->branch, i);
+	return row_text(&l->whole, i, l->x, added, 22);
+}
+
+static const char *bound_text(const struct emitter *e, const struct pieces *p, const struct look *l, int i, int indent)
+{
+	const char *still = NULL;
+	if (!l->own)
+		return off_text(e, p, l->branch, i, l->size, indent);
+	if (any_still(e->step))
+		still = l->branch < 0 ? format("c->still[which][%d]", i) : format("c->still[%d][%d]", l->branch, i);
+	return row_text(&l->off, i, l->size, still, indent);
+}
+
+/* Of an instance, gathered, expressions may be one and the same: the first of them */
+static int leader(const struct look *l, int expression)
+{
+	const struct region_tables *t = &l->row;
+	int i = 0;
+	for (; i < expression && l->own; i++) {
+		const double *a = t->value[0] + i * t->columns, *b = t->value[0] + expression * t->columns;
+		bool same = true;
+		for (int j = 0; j < t->columns && same; j++)
+			same = !t->own[i * t->columns + j] && !t->own[expression * t->columns + j] &&
+			       (!l->x[j] || a[j] == b[j]);
+		if (same)
+			return i;
+	}
+	return expression;
+}
+
+static bool is_read_at_end(const struct emitter *e, const struct look *l, int entry)
+{
+	bool read = false;
+	for (int i = 0; i < expressions_of(e); i++)
+		read = read || acts_at(&l->row, i, entry);
+	return read && l->x[entry];
+}
+
+/* ---- by tables of all regions, or region by region ---- */
+
+/* What a row's second words add, and its first ones of what rounding has taken */
+static const char *small_text(const struct emitter *e, const struct region_tables *whole, int row,
+			      const char *const *x, int indent)
+{
+	const char **rest = ARRAY(const char *, (size_t)whole->columns);
+	for (int i = 0; i < e->system->states; i++)
+		rest[i] = format("s->rest[%d]", place_of_state(e, i));
+	const char *of_rest = row_text(whole, row, rest, NULL, indent + 1), *further = NULL;
+	if (strcmp(of_rest, "0.0") != 0)
+		further = format("(%s)", of_rest);
+	return row_text(whole, e->step->layout.size + row, x, further, indent);
+}
+
+static void emit_end(const struct emitter *e, const struct look *l, int row, const char *before, const char *name)
+{
+	int indent = 24 + (int)strlen(before);
+	const struct region_tables *whole = &l->whole;
+	const char **x = l->x;
+	if (!keeps_rest(e))
+		say(e, "    %send%d = %s;  /* %s */\n", before, row, end_text(e, l, row), name);
+	else if (row >= e->system->states)
+		say(e, "    %send%d = %s + (%s);  /* %s */\n", before, row, *x[row] ? x[row] : "1.0",
+		    row_text(whole, row, x, NULL, indent), name);
+	else
+		say(e, "    %send%d = pl_accumulate(%s,  /* %s */\n"
+		       "%*s%s,\n"
+		       "%*s%s, &rest%d);\n", before, row, x[row], name, indent, "",
+		    row_text(whole, row, x, NULL, indent), indent, "", small_text(e, whole, row, x, indent), row);
+}
+
+static void emit_ends(const struct emitter *e, const struct look *l, const char *before)
+{
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
+	for (int i = 0; i < e->step->layout.size; i++)
+		if (i < e->system->states || is_read_at_end(e, l, i))
+			emit_end(e, l, i, before, name[i]);
+}
+
+/* Whether it is between two bounds, with how far it may be off the chord between */
+static void emit_within(const struct emitter *e, const struct look *l)
+{
+	const struct switching *s = e->model->switching;
+	say(e, "    if (");
+	for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks + 2) {
+		int k = leader(l, i);
+		const char *low = l->own ? format("c->edge[%d + span[%d]]", first, i)
+					 : spell(e, "$o_within[s->contact$p.region][%d][0]", i);
+		const char *high = l->own ? format("c->edge[%d + span[%d]]", first + 1, i)
+					  : spell(e, "$o_within[s->contact$p.region][%d][1]", i);
+		say(e, "(from%d < to%d ? from%d : to%d) - off%d > %s &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < %s &&\n"
+		       "        ", k, k, k, k, k, low, k, k, k, k, k, high);
+	}
+}
+
+static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	const struct look l = look_of(e, p, x, -1);
+	say(e, "    const int which = s->contact$p.matrix;\n");
+	if (l.own)
+		say(e, "    const int *const span = $o_span[s->contact$p.region];\n");
+	say(e, "    const double (*const factor)[%d] = %s[which];\n", e->step->layout.size,
+	    l.own ? "c->pieces" : spell(e, "$o_pieces"));
+	emit_ends(e, &l, "const double ");
+	for (int i = 0; i < expressions_of(e); i++) {
+		if (leader(&l, i) != i)
+			continue;
+		say(e, "    const double from%d = %s;\n", i, row_text(&l.row, i, l.x, NULL, 24));
+		say(e, "    const double to%d = %s;\n", i, row_text(&l.row, i, l.end, NULL, 24));
+		say(e, "    const double off%d = %s;\n", i, bound_text(e, p, &l, i, 24));
+	}
+	emit_within(e, &l);
+}
+
+/* Of an expression at the start and at the end: the state itself, or a local */
+static const char *short_text(const char *text, const char *local, int expression)
+{
+	return strchr(text, ' ') ? format("%s%d", local, expression) : text;
+}
+
+/* An end of an interval, with what comes before it in the condition: beyond it is `than` */
+static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int expression, bool upper,
+		      const char *than)
+{
+	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                ", from,
+	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', expression, upper ? '<' : '>', than);
+}
+
+/* Whether all expressions keep inside their intervals */
+static void emit_inside(const struct emitter *e, const struct pieces *p, const struct look *l, int region)
+{
+	const struct switching *s = e->model->switching;
+	bool first = true;
+	say(e, "        clear = ");
+	for (int i = 0, edge = 0; i < s->expressions; edge += s->expression[i++].breaks + 2) {
+		int k = leader(l, i), interval = interval_of(s, region, i), at = region * s->expressions + i;
+		const char *from = short_text(row_text(&l->row, k, l->x, NULL, 0), "from", k),
+			   *to = short_text(row_text(&l->row, k, l->end, NULL, 0), "to", k);
+		if (interval > 0) {
+			emit_side(e, first, from, to, k, false,
+				  l->own ? format("c->edge[%d]", edge + interval) : shortest(p->low[at]));
+			first = false;
+		}
+		if (interval < s->expression[i].breaks) {
+			emit_side(e, first, from, to, k, true,
+				  l->own ? format("c->edge[%d]", edge + interval + 1) : shortest(p->high[at]));
+			first = false;
+		}
+	}
+	say(e, ";\n"
+	       "        break;\n");
+}
+
+static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	const struct look l = look_of(e, p, x, e->model->switching->region[region].system);
+	say(e, "    case %d:\n", region);
+	emit_ends(e, &l, "    ");
+	for (int i = 0; i < expressions_of(e); i++) {
+		const char *from = row_text(&l.row, i, l.x, NULL, 15), *to = row_text(&l.row, i, l.end, NULL, 15);
+		if (leader(&l, i) != i)
+			continue;
+		if (strchr(from, ' '))
+			say(e, "        from%d = %s;\n", i, from);
+		if (strchr(to, ' '))
+			say(e, "        to%d = %s;\n", i, to);
+		say(e, "        off%d = %s;\n", i, bound_text(e, p, &l, i, 15));
+	}
+	emit_inside(e, p, &l, region);
+}
+
+static void emit_case_begin(const struct emitter *e, const char *locals)
+{
+	say(e, "    double %s;\n"
+	       "    int clear = 0;\n"
+	       "    switch (s->contact$p.region) {\n", locals);
+}
+
+static void emit_case_end(const struct emitter *e)
+{
+	say(e, "    default:\n"
+	       "        break;\n"
+	       "    }\n"
+	       "    if (clear && ");
+}
+
+/* ends, and how far expressions may be off their chords: in each region its own numbers */
+static void emit_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	const struct switching *s = e->model->switching;
+	const struct look l = look_of(e, p, x, -1);
+	const char *list = "";
+	for (int i = 0; i < e->step->layout.size; i++)
+		if (i < e->system->states || is_read_at_end(e, &l, i))
+			list = format("%s%send%d = 0.0", list, *list ? ", " : "", i);
+	for (int i = 0; i < s->expressions; i++) {
+		if (leader(&l, i) != i)
+			continue;
+		list = format("%s, off%d", list, i);
+		if (strchr(row_text(&l.row, i, l.x, NULL, 0), ' '))
+			list = format("%s, from%d", list, i);
+		if (strchr(row_text(&l.row, i, l.end, NULL, 0), ' '))
+			list = format("%s, to%d", list, i);
+	}
+	emit_case_begin(e, list);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			emit_region_case(e, p, x, r);
+	emit_case_end(e);
+}
+
+void emit_clear_step(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	const struct layout *layout = &e->step->layout;
+	const char **x = operands_of_x(e);
+	for (int i = 0; i < e->system->inputs; i++) {
+		int of = place_of_input(e, i);
+		if (e->system->input[i].hold)
+			say(e, "    const double part%d = %s;  /* its slope */\n", of,
+			    spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
+	}
+	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
+	if (e->model->retuned)
+		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
+	if (is_cleared_by_tables(e->step))
+		emit_table_step(e, &pieces, x);
+	else
+		emit_cases(e, &pieces, x);
+	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, moving(e, x)), 12),
+	    !e->model->retuned              ? shortest(pieces.large)
+	    : is_cleared_by_tables(e->step) ? "c->large[which]"
+					    : "c->large[s->contact.matrix]");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
+	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+		say(e, "        s->rest[%d] = rest%d;\n", place_of_state(e, i), i);
+	say(e, "        s->contact$p.crossings = 0;\n"
+	       "    } else {\n"
+	       "        double now[%d];\n", size_of_vector(e));
+	for (int j = 0; j < layout->size; j++)
+		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
+	for (int j = 0; j < layout->size && keeps_rest(e); j++)
+		say(e, "        now[%d] = %s;\n", layout->size + j,
+		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
+	say(e, e->step->swift ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
+				"    }\n"
+			      : "        $o_seek(s, now);\n"
+				"    }\n");
+}

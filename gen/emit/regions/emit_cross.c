@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions: what the few crossings of a step are found by, in the runtime (few.h, which the model's file includes): the
+ * expressions, their bounds, x over the whole step and over a part of it. */
+#include "regions.h"
+#include "emit/text.h"
+
+#include <string.h>
+
+/* ---- expressions, bounds ---- */
+
+static void emit_expression(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, n = expressions_of(e);
+	open_function(e, NULL, "static double $o_expression(int i, const double x[%d])", size);
+	if (n == 1) {
+		say(e, "    (void)i;\n"
+		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
+	} else {
+		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL, NULL };
+		const char **term = ARRAY(const char *, (size_t)size);
+		int terms = 0;
+		for (int j = 0; j < size; j++) {
+			bool any = false;
+			for (int i = 0; i < n; i++)
+				any = any || p->row[i * size + j] != 0;
+			if (any)
+				term[terms++] = format("%s[i][%d] * x[%d]", rows.text, j, j);
+		}
+		say(e, "    return %s;\n", terms ? tree(terms, term, 11) : "0.0");
+	}
+	close_function(e, "");
+}
+
+/* `what` of the entries of x that `row` reads, summed */
+static void emit_product(const struct emitter *e, const char *name, const char *const *what, const bool *reads)
+{
+	int size = e->step->layout.size, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)size);
+	bool any = false;
+	for (int j = 0; j < size; j++)
+		if (reads[j]) {
+			term[terms++] = *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j);
+			any = any || *what[j];
+		}
+	open_function(e, NULL, "static double $o_%s(const double row[%d], const double x[%d])", name, size, size);
+	say(e, "%s%s    return %s;\n", terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n",
+	    terms ? tree(terms, term, 11) : "0.0");
+	close_function(e, "");
+}
+
+/* Of tables of slopes; of bounds, in which what is never above 1 stands at the first of that; of other bounds */
+static void emit_products(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size;
+	struct region_tables slopes = tables_of_regions(e, p, "", expressions_of(e), OF_PIECE(turn));
+	bool *reads = ARRAY(bool, (size_t)size), *all = ARRAY(bool, (size_t)size), bounded = false;
+	const char **most = places(e, "pl_magnitude(x[%d])");
+	for (int j = 0; j < size; j++) {
+		all[j] = true;
+		for (int i = 0; i < slopes.rows; i++)
+			reads[j] = reads[j] || acts_at(&slopes, i, j);
+	}
+	emit_product(e, "along", places(e, "x[%d]"), reads);
+	emit_product(e, "sizes", most, all);
+	for (int j = 0; j < size; j++) {
+		all[j] = !p->bounded[j] || !bounded;
+		bounded = bounded || p->bounded[j];
+		if (p->bounded[j])
+			most[j] = "";
+	}
+	emit_product(e, "most", most, all);
+}
+
+/* off[i], from x */
+static void emit_bounds(const struct emitter *e, const struct pieces *p)
+{
+	int n = expressions_of(e), size = e->step->layout.size;
+	const char **magnitude = entries(e, "pl_magnitude(x[%d])");
+	open_function(e, NULL, "static void $o_bounds(int which, const double x[%d], double off[%d])", size, n);
+	for (int i = 0; i < n; i++)
+		say(e, "    off[%d] = %s;\n", i,
+		    any_pieces(e) ? off_text(e, p, -1, i, magnitude, 13)
+				  : spell(e, "$o_sizes($o_sag[which][%d], x)", i));
+	close_function(e, any_pieces(e) ? "which x" : "");
+}
+
+/* ---- x(s) ---- */
+
+/* Into end[]: Phi x over h */
+static void emit_whole(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size;
+	struct region_tables whole = steps_of_regions(e, p, "factor");
+	const char **x = entries(e, "x[%d]");
+	open_function(e, NULL, "static void $o_advance(int which, const double x[%d], double end[%d])", size, size);
+	say(e, "    const double (*const factor)[%d] = $o_pieces[which];\n", size);
+	for (int i = 0; i < size; i++)
+		if (keeps_rest(e))
+			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));
+		else
+			say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
+	close_function(e, is_table(&whole) && !keeps_rest(e) ? "" : "factor");
+}
+
+static bool moves(const struct region_tables *t, int row)
+{
+	bool any = false;
+	for (int j = 0; j < t->columns; j++)
+		any = any || acts_at(t, row, j);
+	return any;
+}
+
+/* Entries of h A that differ from matrix to matrix: locals, and their text */
+static void emit_turns(const struct emitter *e, const struct region_tables *t)
+{
+	bool any = false;
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->columns; j++)
+			if (acts_at(t, i, j) && !agree_at(t, i, j)) {
+				say(e, "    const double h%d_%d = $N_H * $o_slopes[which][%d][%d];\n", i, j, i, j);
+				any = true;
+			}
+	if (!any)
+		say(e, "    (void)which;\n");
+}
+
+static const char *turn_times(const struct region_tables *t, int i, int j, const char *operand)
+{
+	return agree_at(t, i, j) ? scaled(t->value[0][i * t->columns + j], operand)
+				 : format("h%d_%d * %s", i, j, operand);
+}
+
+/* Velocities are added last: positions and loads are there before them, so that a chain has one product and one sum an
+ * order.  From the second derivative on what is constant is 0. */
+static const char *turned_row(const struct emitter *e, const struct region_tables *t, int row, const char *layout,
+			      bool first)
+{
+	const char **early = ARRAY(const char *, (size_t)t->columns), **late = ARRAY(const char *, (size_t)t->columns);
+	int earlies = 0, lates = 0;
+	for (int j = 0; j < t->columns; j++) {
+		if (!acts_at(t, row, j) || !(first || moves(t, j)))
+			continue;
+		const char *text = turn_times(t, row, j, format(layout, j));
+		if (j >= e->system->n && j < e->system->states)
+			late[lates++] = text;
+		else
+			early[earlies++] = text;
+	}
+	if (earlies && lates)
+		return format("(%s)\n%26s+ (%s)", tree(earlies, early, 26), "", tree(lates, late, 28));
+	return earlies ? tree(earlies, early, 25) : lates ? tree(lates, late, 25) : "0.0";
+}
+
+static void emit_turn(const struct emitter *e, const struct region_tables *t)
+{
+	int size = e->step->layout.size;
+	open_function(e, NULL, "static void $o_turn_once(int which, const double x[%d], double d[%d])", size, size);
+	emit_turns(e, t);
+	for (int i = 0; i < size; i++)
+		say(e, "    d[%d] = %s;\n", i, turned_row(e, t, i, "x[%d]", true));
+	close_function(e, "");
+}
+
+static void emit_weights(const struct emitter *e, const struct pieces *p)
+{
+	say(e, "\n"
+	       "static const double $d_weight[%d] = {  /* 1/k! */\n"
+	       "    1.0", p->degree + 1);
+	for (int k = 1; k <= p->degree; k++)
+		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
+	say(e, "\n"
+	       "};\n");
+}
+
+/* What is added to x, so that little of it is lost beside x */
+static void emit_move(const struct emitter *e, const struct pieces *p, const struct region_tables *t)
+{
+	int size = e->step->layout.size;
+	open_function(e, NULL, "static void $o_move(int which, const double x[%d], double s, double gain[%d])",
+		      size, size);
+	say(e, "    double power = s;\n"
+	       "    int k;\n");
+	emit_turns(e, t);
+	for (int i = 0; i < size; i++)
+		if (moves(t, i))
+			say(e, "    double a%d = %s, sum%d = s * a%d;\n", i, turned_row(e, t, i, "x[%d]", true), i, i);
+	say(e, "    for (k = 2; k <= %d; k++) {\n", p->degree);
+	for (int i = 0; i < size; i++)
+		if (moves(t, i))
+			say(e, "        const double b%d = %s;\n", i, turned_row(e, t, i, "a%d", false));
+	say(e, "        double weight;\n"
+	       "        power *= s;\n"
+	       "        weight = power * $d_weight[k];\n");
+	for (int i = 0; i < size; i++)
+		if (moves(t, i))
+			say(e, "        a%d = b%d;\n"
+			       "        sum%d += weight * b%d;\n", i, i, i, i);
+	say(e, "    }\n");
+	for (int i = 0; i < size; i++)
+		say(e, moves(t, i) ? "    gain[%d] = sum%d;\n" : "    gain[%d] = 0.0;\n", i, i);
+	close_function(e, "");
+}
+
+/* ---- what few.h asks beside ---- */
+
+static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
+{
+	open_function(e, NULL, "static double $o_size_of(const double x[%d])", e->step->layout.size);
+	say(e, "    return %s;\n", size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 11));
+	close_function(e, "");
+}
+
+void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
+{
+	const char *whole = any_pieces(e) ? "whole_" : "";
+	say_macro(e, "FEW", whole_text(MOST_SWIFT));
+	say_macro(e, "LOOKS", whole_text(MOST_LOOKS));
+	say_macro(e, "LARGE", shortest(p->large));
+	say_macro(e, "OPEN_END", shortest(OPEN_END));
+	say_macro(e, "MOVES", whole_text(e->step->swift_degree));
+	say_macro(e, "LEAN", format("PL(%slean)", whole));
+	say_macro(e, "SWAY", format("PL(%ssway)", whole));
+}
+
+void emit_crossing(const struct emitter *e, const struct pieces *p)
+{
+	struct region_tables turns = tables_of_regions(e, p, "", e->step->layout.size, OF_PIECE(turns));
+	emit_expression(e, p);
+	emit_products(e, p);
+	emit_bounds(e, p);
+	emit_whole(e, p);
+	emit_turn(e, &turns);
+	if (strcmp(e->degree, e->own) == 0)     /* else they are there already */
+		emit_weights(e, p);
+	emit_move(e, p, &turns);
+	emit_size_of_x(e, p);
+}

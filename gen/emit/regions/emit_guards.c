@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions with dry friction as C: their guards, what holds states in them, and the search that goes from event to
+ * event. */
+#include "regions.h"
+#include "emit/text.h"
+#include "model/contacts/contacts.h"
+#include "model/reads.h"
+#include "step/regions/guards.h"
+
+static void emit_guard_list(const struct emitter *e, const struct guards *g)
+{
+	put_wholes(e, false, "first", "guards of each region", e->model->switching->regions + 1, g->first);
+	say(e, "\n"
+	       "static const pl_guard $o_guard[%d] = {  /* row, expression, breakpoint, upward, leads, impact */\n",
+	    g->guards);
+	for (int i = 0; i < g->guards; i++)
+		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
+		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
+	say(e, "};\n");
+}
+
+static void emit_limits(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	double *limit = ARRAY(double, (size_t)g->guards);
+	for (int i = 0; i < g->guards; i++)
+		limit[i] = g->guard[i].limit;
+	put_numbers(e, "limit", "of each guard", g->guards, limit);
+	put_numbers(e, "play",
+		     regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
+				       : "factors of cos and sin in each expression",
+		     s->segments * s->expressions, g->play);
+	put_numbers(e, "gate_play", "in each row of guards", g->rows, g->row_play);
+}
+
+/* Of each row: an expression, or what it takes to hold one */
+static const char **gate_notes(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	const char **note = ARRAY(const char *, (size_t)g->rows);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = g->first[r]; i < g->first[r + 1]; i++) {
+			int expression = g->guard[i].expression;
+			const char *name = form_text(e->step->shown->model, s->expression[expression].form);
+			bool held = is_stick(&s->expression[expression], interval_of(s, r, expression));
+			note[g->guard[i].row] =
+				format("system %d: %s%s", g->branch[g->guard[i].row],
+				       held                   ? g->guard[i].upward ? "what holds, less what can, back: "
+										   : "what holds, less what can, on: "
+				       : g->guard[i].upward ? ""
+							    : "less ",
+				       name);
+		}
+	return note;
+}
+
+static void emit_gates(const struct emitter *e, const struct guards *g)
+{
+	const char **note = gate_notes(e, g);
+	const struct { const char *name, *note; const double *value; } all[] = {
+		{ "gate", "rows of guards", g->row },
+		{ "gate_lean", "d/3 times the slope of each", g->slope },
+		{ "gate_sag", "d^2/8 times its second derivative, at most", g->second },
+		{ "gate_sway", "d^4/384 times its fourth derivative, at most", g->fourth }
+	};
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		put_matrix(e, all[i].name, all[i].note, g->rows, e->step->layout.size, all[i].value, note);
+}
+
+static void emit_assignments(const struct emitter *e, const struct guards *g)
+{
+	int *state = ARRAY(int, (size_t)g->assignments);
+	for (int i = 0; i < g->assignments; i++)
+		state[i] = g->assignment[i].state;
+	put_wholes(e, false, "holding", "of each region: what holds its states, a set; -1: nothing",
+		    e->model->switching->regions, g->hold);
+	put_wholes(e, false, "sets", "where they begin", g->sets + 1, g->set);
+	put_wholes(e, false, "held", "states", g->assignments, state);
+}
+
+static void emit_values(const struct emitter *e, const struct guards *g)
+{
+	int count = g->assignments > 0 ? g->assignments : 1, size = size_of_vector(e);
+	double *value = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	for (int i = 0; i < g->assignments; i++) {
+		note[i] = e->model->state_name[g->assignment[i].state];
+		for (int j = 0; j < size; j++)
+			value[i * size + j] = g->assignment[i].value[j];
+	}
+	put_matrix(e, "value",
+		    keeps_rest(e) ? "x[held] = value . x; second words behind the first ones" : "x[held] = value . x",
+		    count, size, value, note);
+}
+
+static void emit_impacts(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size, all = s->segments * g->impacts, count = all > 0 ? all : 1;
+	double *speed = ARRAY(double, (size_t)count * (size_t)size);
+	double *back = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	open_table(e, "pl_impact", "impact", format("[%d]", count),
+		   "expression, breakpoint, upward, rest, jump, still, restitution, play");
+	for (int i = 0; i < all; i++) {
+		const struct struck *impact = &g->impact[i];
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
+		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
+		    shortest(impact->play));
+		note[i] = impact->rest < 0 ? "none"
+					   : form_text(e->step->shown->model,
+						       s->impact[i % s->impacts].in[i / s->impacts].speed);
+		for (int j = 0; j < size; j++) {
+			speed[i * size + j] = impact->speed[j];
+			back[i * size + j] = impact->back[j];
+		}
+	}
+	if (!all)
+		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
+	close_table(e);
+	put_matrix(e, "speed", "of what bounces", count, size, speed, note);
+	put_matrix(e, "back", "times how far its expression is beyond: onto the guard", count, size, back, note);
+}
+
+void emit_guards(const struct emitter *e, const struct guards *g)
+{
+	emit_guard_list(e, g);
+	emit_assignments(e, g);
+}
+
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
+{
+	emit_limits(e, g);
+	emit_gates(e, g);
+	emit_values(e, g);
+	emit_impacts(e, g);
+	if (e->model->retuned && e->model->switching->felts > 0)
+		emit_grips(e);
+}
+
+void emit_grips(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size;
+	double *grip = grips_of(e->step), **row = ARRAY(double *, (size_t)s->regions);
+	const char **name = ARRAY(const char *, (size_t)s->felts);
+	for (int i = 0; i < s->felts; i++) {
+		const struct node *node = s->felt[i]->node;
+		const char *text = text_between(node->start, node->end);
+		name[i] = s->felt[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
+	}
+	for (int r = 0; r < s->regions; r++)
+		row[r] = grip + r * s->felts * size;
+	put_matrices(e, "grips", "of each region: what friction carries", s->regions, s->felts, size, row, name);
+}

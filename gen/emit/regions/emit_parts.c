@@ -1,0 +1,401 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A piecewise-linear model of independent parts as C: each part's tables and functions as if it were alone, and what
+ * makes one model of them. */
+#include "regions.h"
+#include "emit/steps.h"
+#include "model/regions/regions.h"
+
+#include <string.h>
+
+static const struct switching *regions_of(const struct emitter *part)
+{
+	return part->model->switching;
+}
+
+static bool is_linear_step(const struct step *part)
+{
+	return part->model->switching->expressions == 0;
+}
+
+static bool is_linear_part(const struct emitter *part)
+{
+	return is_linear_step(part->step);
+}
+
+static int first_of_degree(const struct emitter *e, int index)
+{
+	int first = 0;
+	while (is_linear_step(e->step->part[first]) || !e->step->part[first]->swift ||
+	       e->step->part[first]->swift_degree != e->step->part[index]->swift_degree)
+		if (first++ == index)
+			return index;
+	return first;
+}
+
+static struct emitter part_of(const struct emitter *e, int index)
+{
+	struct emitter part = *e;
+	part.part = &e->model->switching->part[index];
+	part.model = part.part->model;
+	part.step = e->step->part[index];
+	part.system = &part.step->branch->system;
+	part.own = format("%s_part%d", e->name, index);
+	part.place = format("[%d]", index);
+	part.degree = format("%s_part%d", e->name, first_of_degree(e, index));
+	part.local = ARRAY(const char *, (size_t)part.system->states);
+	for (int i = 0; i < part.system->states; i++)
+		part.local[i] = e->local[part.part->state[i]];
+	return part;
+}
+
+/* The linear part, the last, has none. */
+static int divided_parts(const struct emitter *e)
+{
+	int parts = e->step->parts;
+	return parts - is_linear_step(e->step->part[parts - 1]);
+}
+
+static void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part))
+{
+	for (int p = 0; p < count; p++) {
+		const struct emitter part = part_of(e, p);
+		emit(&part);
+	}
+}
+
+/* ---- tables ---- */
+
+/* What each region of the part adds to the number of the model's */
+static void emit_shares(const struct emitter *part, const struct switching *whole)
+{
+	const struct switching *s = regions_of(part);
+	int *share = ARRAY(int, (size_t)s->regions);
+	for (int r = 0; r < s->regions; r++)
+		share[r] = share_of_region(part->part, whole, r);
+	put_wholes(part, false, "share", "of each region in the number of the model's region", s->regions, share);
+	put_wholes(part, false, "number", "of its expressions", s->expressions, part->part->expression);
+}
+
+/* Of a state in two words each matrix has second ones behind the first */
+static const char **names_of_rows(const struct emitter *part)
+{
+	const char **name = layout_names(&part->step->layout, part->system, part->model);
+	return keeps_rest(part) ? listed_twice(part->step->layout.size, name) : name;
+}
+
+static const char *note_of_slopes(const struct emitter *part)
+{
+	return keeps_rest(part) ? "x' = A x in two words; x = states, load states, inputs"
+				: "x' = A x; x = states, load states, inputs";
+}
+
+/* Regions without expressions, one in each segment of time: what the search has of those is not read. */
+static void emit_linear_tables(const struct emitter *part)
+{
+	const struct switching *s = regions_of(part);
+	struct pieces pieces = pieces_of(part->step);
+	int branches = part->step->branches, size = part->step->layout.size, rows = size_of_vector(part);
+	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)branches);
+	for (int k = 0; k < s->segments; k++)
+		matrix[k] = s->region[k].system;
+	for (int k = 0; k < branches; k++)
+		halvings[k] = part->step->branch[k].halvings;
+	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
+		     of_branches(part, &pieces, OF_PIECE(slopes)), names_of_rows(part));
+	put_matrices(part, "pieces", keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}", branches, rows, size,
+		     of_branches(part, &pieces, keeps_rest(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
+		     names_of_rows(part));
+	put_wholes(part, false, "matrix", "in each segment of time", s->segments, matrix);
+	put_wholes(part, false, "halvings", "log2 of the pieces of a step", branches, halvings);
+	emit_ladder_places(part, NULL);
+	emit_spacing(part);
+	emit_ladder(part, &pieces, NULL);
+	emit_search(part, ladder_text(part, NULL));
+	say_include(part, "search.h");
+}
+
+static const char *names_of_part(const struct emitter *part)
+{
+	const char *list = "";
+	for (int i = 0; i < part->model->n; i++)
+		list = format("%s%s%s", list, i ? ", " : "", part->model->coord_name[i]);
+	return list;
+}
+
+static void emit_tables_of_part(const struct emitter *part)
+{
+	say(part, "\n/* ---- part %d: %s ---- */\n\n", (int)(part->part - part->step->shown->model->switching->part),
+	    names_of_part(part));
+	put_wholes(part, false, "state", "where its states are in y", part->system->states, part->part->state);
+	if (is_linear_part(part)) {
+		emit_linear_tables(part);
+		return;
+	}
+	emit_shares(part, part->step->shown->model->switching);
+	emit_regions(part);
+}
+
+void emit_part_tables(const struct emitter *e)
+{
+	for_parts(e, e->step->parts, emit_tables_of_part);
+}
+
+/* ---- what functions of a part are given: inputs, and the load states that it reads ---- */
+
+/* `as_parameters`, or as arguments */
+static const char *loads_text(const struct emitter *part, bool as_parameters)
+{
+	const char *text = "";
+	for (int l = 0; l < part->system->loads; l++) {
+		const struct load *load = &part->system->load[l];
+		bool polynomial = is_polynomial(load->wave);
+		if (part->step->layout.load[l] < 0)
+			continue;
+		if (polynomial && load->powers > 1)
+			text = format("%s, %st", text, as_parameters ? "double " : "");
+		if (!polynomial || load->powers > 2)
+			text = as_parameters ? format("%s, const double load%d[%d]", text, l + 1, load->columns)
+					     : format("%s, load%d", text, l + 1);
+	}
+	return text;
+}
+
+static const char *given_text(const struct emitter *part, bool as_parameters)
+{
+	const char *u = given_inputs(part) == 0   ? ""
+			: as_parameters           ? spell(part, ", const double u[$N_INPUTS]")
+						  : ", u";
+	return format("%s%s", u, loads_text(part, as_parameters));
+}
+
+static bool *needed_loads(const struct emitter *e, bool linear_too)
+{
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	for (int p = 0; p < (linear_too ? e->step->parts : divided_parts(e)); p++)
+		for (int l = 0; l < e->system->loads; l++)
+			needed[l] = needed[l] || e->step->part[p]->layout.load[l] >= 0;
+	return needed;
+}
+
+/* ---- in the model's own functions ---- */
+
+void emit_part_members(const struct emitter *e)
+{
+	say(e, "    pl_contact contact[%d];   /* of each part: region, crossings */\n"
+	       "    pl_crossing crossing[%d][%d];  /* of each, in the last step */\n",
+	    divided_parts(e), divided_parts(e), MAX_EVENTS);
+}
+
+static void emit_place_of_part(const struct emitter *part)
+{
+	open_function(part, NULL, "static void $o_place($n *s%s)", loads_text(part, true));
+	declare_region_room(part);
+	emit_region_vector(part, false);
+	emit_region_start_call(part);
+	close_function(part, "");
+}
+
+static void emit_place_call(const struct emitter *part)
+{
+	say(part, "    $o_place(s%s);\n", loads_text(part, false));
+}
+
+void emit_part_start(const struct emitter *e)
+{
+	for_parts(e, divided_parts(e), emit_place_of_part);
+	open_function(e, "The regions of a state", "static void $n_place($n *s)");
+	emit_turned_loads(e, needed_loads(e, false), false);
+	for_parts(e, divided_parts(e), emit_place_call);
+	close_function(e, "");
+}
+
+/* ---- questions ---- */
+
+static void emit_list_of_parts(const struct emitter *e, const char *name, const char *table)
+{
+	const char *list = "";
+	for (int p = 0; p < divided_parts(e); p++)
+		list = format("%s%s%s_part%d_%s", list, p == 0 ? "" : p % 4 ? ", " : ",\n    ", e->name, p, table);
+	say(e, "static const int *const $n_%s[] = {\n    %s\n};\n", name, list);
+}
+
+static void emit_questions(const struct emitter *e)
+{
+	say(e, "\n");
+	emit_list_of_parts(e, "shares", "share");
+	emit_list_of_parts(e, "numbers", "number");
+	begin_macros(e, e->name);
+	say_macro(e, "PARTS", whole_text(divided_parts(e)));
+	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
+	say_include(e, "parts.h");
+}
+
+/* ---- a step ---- */
+
+static void begin_step(const struct emitter *part)
+{
+	open_function(part, NULL, "static void $o_step($n *s%s)", given_text(part, true));
+}
+
+static int acting_entries(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size, count = 0;
+	for (int i = 0; i < part->system->states * size; i++)
+		count += whole[i] != 0;
+	return count;
+}
+
+static void emit_linear_loop(const struct emitter *part, const double *whole)
+{
+	put_matrix(part, "whole", "e^{A h}", size_of_vector(part), part->step->layout.size, whole, names_of_rows(part));
+	begin_step(part);
+	say(part, "    double end[%d];\n", part->system->states);
+	declare_region_vector(part);
+	emit_region_vector(part, true);
+	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
+		  "    for (i = 0; i < %d; i++) { s->y[$o_state[i]] = end[i]; }\n", part->system->states,
+	    part->step->layout.size, part->system->states);
+}
+
+/* What a function of a part is given; not all of it may be read. */
+static const char *given_names(const struct emitter *part)
+{
+	const char *text = given_inputs(part) ? "u" : "";
+	for (int l = 0; l < part->system->loads; l++) {
+		const struct load *load = &part->system->load[l];
+		const bool polynomial = is_polynomial(load->wave);
+		if (part->step->layout.load[l] < 0)
+			continue;
+		if (polynomial && load->powers > 1)
+			text = format("%s t", text);
+		if (!polynomial || load->powers > 2)
+			text = format("%s load%d", text, l + 1);
+	}
+	return text + strspn(text, " ");
+}
+
+static void emit_linear_rows(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size, states = part->system->states;
+	const char **x = operands_of_x(part), **term = ARRAY(const char *, (size_t)size);
+	begin_step(part);
+	emit_raw_locals(part, NULL);
+	for (int i = 0; i < part->system->inputs; i++)
+		if (part->system->input[i].hold)
+			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
+			    ramp_slope(part, place_of_input(part, i)));
+	for (int i = 0; i < states; i++) {
+		int terms = 0;
+		for (int j = 0; j < size; j++)
+			if (whole[i * size + j] != 0)
+				term[terms++] = scaled(whole[i * size + j], *x[j] ? x[j] : NULL);
+		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i),
+		    terms ? tree(terms, term, 14) : "0.0", part->model->state_name[i]);
+	}
+}
+
+/* That of a step that leaves no trace; of the linear part, which has none: in a segment of time */
+static void declare_contact(const struct emitter *part)
+{
+	const char *contact = !is_linear_part(part)  ? spell(part, "s->contact$p")
+			      : regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0, 0}")
+						     : "{0, 0, 0, 0, 0, 0}";
+	say(part, "    pl_contact contact = %s;\n"
+		  "    pl_crossing crossing[%d];\n", contact, is_linear_part(part) ? 1 : MAX_EVENTS);
+}
+
+/* By the pieces of the search, which has nothing to look for */
+static void emit_linear_by_pieces(const struct emitter *part)
+{
+	begin_step(part);
+	declare_contact(part);
+	declare_region_vector(part);
+	emit_region_vector(part, true);
+	say(part, "    $o_search_step(s, $N_H, x, &contact, crossing);\n");
+	emit_state_of_x(part);
+}
+
+static void emit_linear_step(const struct emitter *part)
+{
+	enum { TERMS = 400 };
+	const double *whole = whole_step_of(part->step, 0);
+	const char **size = ARRAY(const char *, (size_t)part->system->states);
+	if (regions_change(part) || keeps_rest(part))
+		emit_linear_by_pieces(part);
+	else
+		(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
+	for (int i = 0; i < part->system->states; i++)
+		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
+	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
+	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
+	close_function(part, given_names(part));
+}
+
+static void emit_divided_step(const struct emitter *part)
+{
+	begin_step(part);
+	if (part->step->swift) {
+		emit_raw_locals(part, NULL);
+		emit_clear_step(part);
+	} else {
+		declare_region_vector(part);
+		emit_region_vector(part, true);
+		say(part, "    $o_seek(s, x);\n");
+	}
+	close_function(part, "");
+}
+
+static void emit_step_of_part(const struct emitter *part)
+{
+	(is_linear_part(part) ? emit_linear_step : emit_divided_step)(part);
+}
+
+static void emit_step_call(const struct emitter *part)
+{
+	say(part, "    $o_step(s%s);\n", given_text(part, false));
+}
+
+void emit_parts_step(const struct emitter *e)
+{
+	for_parts(e, e->step->parts, emit_step_of_part);
+	open_function(e, NULL, "%s", head_of_step(e));
+	emit_set_aside(e);
+	emit_turned_loads(e, needed_loads(e, true), false);
+	for_parts(e, e->step->parts, emit_step_call);
+	emit_take_back(e);
+	emit_step_end(e);
+	emit_segment_end(e);
+	if (e->step->carries)           /* what was set aside is in no bound */
+		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
+	close_function(e, "");
+	emit_questions(e);
+}
+
+/* ---- between steps ---- */
+
+static void emit_at_of_part(const struct emitter *part)
+{
+	open_function(part, NULL, "static void $o_at(const $n *s%s, double tau, double y[$N_STATES])",
+		      given_text(part, true));
+	declare_contact(part);
+	declare_region_vector(part);
+	emit_region_vector(part, true);
+	say(part, "    $o_search_step(s, tau, x, &contact, crossing);\n");
+	say(part, "    for (i = 0; i < %d; i++) { y[$o_state[i]] = x[i]; }\n", part->system->states);
+	close_function(part, "");
+}
+
+static void emit_at_call(const struct emitter *part)
+{
+	say(part, "    $o_at(s%s, tau, y);\n", given_text(part, false));
+}
+
+void emit_parts_at(const struct emitter *e)
+{
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	for_parts(e, e->step->parts, emit_at_of_part);
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
+	emit_load_states(e, needed_loads(e, true), false);
+	for_parts(e, e->step->parts, emit_at_call);
+	close_function(e, given_inputs(e) ? "u" : "");
+}

@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A piecewise-linear model as C: tables of its regions, and a step that leaves finding crossings to the runtime. */
+#include "regions.h"
+#include "emit/steps.h"
+#include "model/contacts/contacts.h"
+#include "model/reads.h"
+#include "step/regions/guards.h"
+
+static const struct switching *regions_of(const struct emitter *e)
+{
+	return e->model->switching;
+}
+
+/* Regions have events of their own: friction, impacts */
+static bool has_guards(const struct emitter *e)
+{
+	return has_events(regions_of(e));
+}
+
+/* ---- tables: of the file, or where params are tunable of an instance ---- */
+
+static const char **expression_names(const struct emitter *e)
+{
+	const struct switching *s = regions_of(e), *shown = e->step->shown->model->switching;
+	const char **name = ARRAY(const char *, (size_t)s->expressions);
+	for (int i = 0; i < s->expressions; i++)
+		name[i] = form_text(e->step->shown->model,
+				    shown->expression[e->part ? e->part->expression[i] : i].form);
+	return name;
+}
+
+/* A matrix of each region */
+struct matrices {
+	const char *name, *note;
+	int rows;
+	const char **row_name;
+	size_t of;
+};
+
+static void emit_rows(const struct emitter *e, const struct pieces *pieces)
+{
+	const struct switching *s = regions_of(e);
+	int size = e->step->layout.size;
+	if (regions_change(e))
+		put_matrices(e, "row", "expressions that breakpoints divide, in each segment of time", s->segments,
+			      s->expressions, size, pieces->rows, expression_names(e));
+	else
+		put_matrix(e, "row", "expressions that breakpoints divide", s->expressions, size, pieces->row,
+			    expression_names(e));
+}
+
+static int breaks_of(const struct emitter *e, int *breaks)
+{
+	const struct switching *s = regions_of(e);
+	int all = 0;
+	for (int i = 0; i < s->expressions; i++)
+		all += breaks[i] = s->expression[i].breaks;
+	return all;
+}
+
+static void emit_breaks(const struct emitter *e, const struct pieces *pieces, bool own)
+{
+	int *breaks = ARRAY(int, (size_t)expressions_of(e)), all = breaks_of(e, breaks);
+	if (!own)
+		put_wholes(e, false, "breaks", "breakpoints of each expression", expressions_of(e), breaks);
+	if (own || !e->model->retuned)
+		put_numbers(e, "breakpoint", "those of each expression", all, pieces->breakpoint);
+}
+
+static void emit_halvings(const struct emitter *e)
+{
+	int *halvings = ARRAY(int, (size_t)e->step->branches);
+	for (int k = 0; k < e->step->branches; k++)
+		halvings[k] = e->step->branch[k].halvings;
+	put_wholes(e, e->model->retuned, "halvings", "of h, to a piece", e->step->branches, halvings);
+}
+
+static void emit_region_numbers(const struct emitter *e)
+{
+	const struct switching *s = regions_of(e);
+	int *matrix = ARRAY(int, (size_t)s->regions);
+	for (int r = 0; r < s->regions; r++)
+		matrix[r] = s->region[r].possible ? s->region[r].system : -1;
+	put_wholes(e, false, "matrix", "of each region; -1: its inequalities cannot hold together", s->regions, matrix);
+}
+
+/* By which a step sees over the whole of h that it stays clear */
+static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **expression)
+{
+	int n = expressions_of(e);
+	double *large = ARRAY(double, (size_t)e->step->branches);
+	for (int k = 0; k < e->step->branches; k++)
+		large[k] = pieces->large;
+	put_matrices(e, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
+		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, OF_PIECE(off)), expression);
+	if (any_stays(e->step))
+		emit_of_branches(e, pieces, "added", "over h to each state, by what stays of x", e->system->states,
+				 OF_PIECE(added));
+	if (any_still(e->step))
+		emit_of_branches(e, pieces, "still", "to chord_off, by that and by what is never above 1", n,
+				 OF_PIECE(still));
+	put_numbers(e, "edge", "breakpoints of each expression less what stays of x, between open ends",
+		     edges_of_regions(regions_of(e)), pieces->edge);
+	put_numbers(e, "large", "|x| that it has to be below", e->step->branches, large);
+}
+
+/* All that an instance has where params are tunable, in the order of its struct; else each a table */
+static void emit_numbers_of_regions(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
+{
+	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
+	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
+	const bool rest = keeps_rest(e);
+	const char *words = rest ? " in two words" : "";
+	if (rest)
+		entry = listed_twice(size, entry);
+	const struct matrices all[] = {
+		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
+		  OF_PIECE(slopes) },
+		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
+		  rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
+		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
+		  OF_PIECE(slope) },
+		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, OF_PIECE(second) },
+		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, OF_PIECE(fourth) }
+	};
+	emit_halvings(e);
+	emit_spacing(e);
+	if (e->model->retuned) {
+		emit_rows(e, pieces);
+		emit_breaks(e, pieces, true);
+	}
+	for (size_t i = 0; i < sizeof all / sizeof *all - (g ? 2 : 0); i++)
+		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
+			      of_branches(e, pieces, all[i].of), all[i].row_name);
+	emit_ladder(e, pieces, g);
+	if (e->model->retuned && e->step->clears)
+		emit_own_look(e, pieces, expression);
+	if (g)
+		emit_numbers_of_guards(e, g);
+}
+
+void emit_retuned_numbers(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	const struct guards g = has_guards(e) ? guards_of(e->step, &pieces) : (struct guards){ 0 };
+	emit_nominal_params(e);
+	emit_numbers_of_regions(e, &pieces, has_guards(e) ? &g : NULL);
+}
+
+void emit_regions(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	struct guards *g = has_guards(e) ? NEW(struct guards) : NULL;
+	if (g)
+		*g = guards_of(e->step, &pieces);
+	if (!e->model->retuned)
+		emit_rows(e, &pieces);
+	emit_breaks(e, &pieces, false);
+	emit_region_numbers(e);
+	emit_ladder_places(e, g);
+	if (g && e->model->retuned)
+		emit_guards(e, g);
+	if (e->model->retuned)
+		emit_nominal_of(e, emit_retuned_numbers);
+	else
+		emit_numbers_of_regions(e, &pieces, g);
+	if (g && !e->model->retuned)
+		emit_guards(e, g);
+	if (e->step->swift) {
+		emit_swift_tables(e, &pieces, expression_names(e));
+		emit_crossing(e, &pieces);
+	} else if (e->step->clears && !g && is_cleared_by_tables(e->step)) {
+		emit_spans(e);
+	}
+	emit_search(e, ladder_text(e, g));
+	if (e->step->swift)
+		emit_crossing_macros(e, &pieces);
+	say_include(e, "search.h");
+}
+
+/* ---- in the model's own functions ---- */
+
+void emit_region_members(const struct emitter *e)
+{
+	say(e, "    pl_contact contact;   /* region, crossings */\n"
+	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n");
+}
+
+static bool *needed_loads(const struct emitter *e)
+{
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		needed[l] = e->step->layout.load[l] >= 0;
+	return needed;
+}
+
+/* The inputs in x: in a step the samples that it is given, and the slopes of ramps */
+static void emit_inputs_in_x(const struct emitter *e, bool step)
+{
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = e->system->input[i].hold;
+		int at = e->step->layout.input[i], of = place_of_input(e, i);
+		say(e, "    x[%d] = %s;\n", at, step && !ramp ? sample_now(e, of) : sample_kept(e, of));
+		if (ramp && step)
+			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, of));
+		else if (ramp)
+			say(e, "    x[%d] = 0.0;\n", at + 1);
+	}
+}
+
+/* Behind x what rounding has taken from it */
+static void emit_rests_in_x(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	say(e, "    for (i = 0; i < %s; i++) { x[%d + i] = s->rest[%s]; }\n", own_states(e), size, place_in_loop(e));
+	if (size > e->system->states)
+		say(e, "    for (i = %d; i < %d; i++) { x[%d + i] = 0.0; }\n", e->system->states, size, size);
+}
+
+void emit_region_vector(const struct emitter *e, bool step)
+{
+	const struct layout *layout = &e->step->layout;
+	say(e, "    for (i = 0; i < %s; i++) { x[i] = s->y[%s]; }\n", own_states(e), place_in_loop(e));
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++) {
+			const char *operand = load_operand(e, l, k);
+			say(e, "    x[%d] = %s;\n", layout->load[l] + k, operand ? operand : "1.0");
+		}
+	emit_inputs_in_x(e, step);
+	if (keeps_rest(e))
+		emit_rests_in_x(e);
+}
+
+/* How much the search has to have for work */
+static const char *room_text(const struct emitter *e)
+{
+	int size = e->step->layout.size, degree = e->step->series.degree, n = regions_of(e)->expressions;
+	const char *kept = keeps_rest(e) ? "KEPT_" : "";
+	return has_guards(e) ? format("PL_GUARDS_%sWORK(%d, %d)", kept, size, degree)
+			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, n, degree);
+}
+
+/* Whether a region can occur before a change and, by its inequalities, not after it */
+static bool any_lost(const struct emitter *e)
+{
+	const struct switching *s = regions_of(e);
+	int in_one = regions_at_once(s);
+	bool any = false;
+	for (int r = 0; r + in_one < s->regions; r++)
+		any = any || !s->region[r + in_one].possible;
+	return any;
+}
+
+void begin_macros(const struct emitter *e, const char *own)
+{
+	say(e, "\n#define PL(name) %s_##name\n", own);
+	say_macro(e, "TYPE", e->name);
+	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
+}
+
+/* Bit i where entry i of x is never above 1; none in a long x, whose sums are loops */
+static int capped_entries(const struct emitter *e)
+{
+	int bits = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && is_bounded_load(e->step, l); k++)
+			bits |= e->step->layout.size <= 16 ? 1 << (e->step->layout.load[l] + k) : 0;
+	return bits;
+}
+
+/* What search.h and few.h have in common, as numbers */
+static void emit_search_sizes(const struct emitter *e)
+{
+	const struct switching *s = regions_of(e);
+	const bool divided = s->expressions > 0;
+	const struct size all[] = {
+		{ "KEPT", keeps_rest(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
+		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
+		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
+		{ "GUARDS", has_guards(e) }, { "OWN", e->model->retuned != NULL }, { "SEGMENTS", s->segments },
+		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
+		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->clears },
+		{ "CAPPED", capped_entries(e) }
+	};
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		say_macro(e, all[i].name, whole_text(all[i].value));
+}
+
+void emit_search(const struct emitter *e, const char *ladder)
+{
+	const char *search = format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", keeps_rest(e) ? "_kept" : "");
+	begin_macros(e, e->own);
+	emit_search_sizes(e);
+	say_macro(e, "STATES", own_states(e));
+	say_macro(e, "ALL", spell(e, "$N_STATES"));
+	say_macro(e, "WORK", room_text(e));
+	say_macro(e, "H", spell(e, "$N_H"));
+	say_macro(e, "MAX_EVENTS", expressions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
+	say_macro(e, "PLACE(i)", place_in_loop(e));
+	say_macro(e, "PART", e->place);
+	say_macro(e, "LADDER", ladder);
+	say_macro(e, "SEARCH", has_guards(e) ? "pl_guards" : "pl_switching");
+	say_macro(e, "START", format("%s_start", search));
+	say_macro(e, "ADVANCE", format("%s_advance", search));
+	if (!regions_change(e))
+		return;
+	say_macro(e, "CHANGE", format("%s_change", search));
+	say_macro(e, "UNTIL(s, k)", spell(e, "$n_until(s, k)"));
+}
+
+void declare_region_vector(const struct emitter *e)
+{
+	say(e, "    double x[%d];\n"
+	       "    int i;\n", size_of_vector(e));
+}
+
+/* What friction carries now */
+static void emit_grip(const struct emitter *e)
+{
+	if (!e->model->retuned)
+		emit_grips(e);
+	open_function(e, NULL, "static double $n_grip(const $n *s, int which)");
+	say(e, "    double force;\n");
+	declare_region_vector(e);
+	emit_load_states(e, needed_loads(e), false);
+	emit_region_vector(e, false);
+	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"
+	       "    return force;\n", e->step->layout.size,
+	    e->model->retuned ? "s->coeffs.grips" : spell(e, "$o_grips"));
+	close_function(e, "");
+}
+
+void declare_region_room(const struct emitter *e)
+{
+	declare_region_vector(e);
+	say(e, "    double work[%s];\n", room_text(e));
+}
+
+void emit_region_start_call(const struct emitter *e)
+{
+	say(e, "    $o_begin_contact(s, %s, x, &s->contact$p, work);\n", regions_change(e) ? "s->segment" : "0");
+}
+
+void emit_region_start(const struct emitter *e)
+{
+	open_function(e, "The region of a state", "static void $n_place($n *s)");
+	declare_region_room(e);
+	emit_turned_loads(e, needed_loads(e), false);
+	emit_region_vector(e, false);
+	emit_region_start_call(e);
+	close_function(e, "");
+	if (regions_of(e)->felts > 0)
+		emit_grip(e);
+}
+
+static void emit_region_status(const struct emitter *e)
+{
+	say(e, "    s->status |= s->contact$p.status | pl_not_finite(s->y, $N_STATES);\n");
+}
+
+/* After a step's end: the segment of time that outputs are in. What sticks and bounces is decided in it already. */
+void emit_segment_end(const struct emitter *e)
+{
+	if (!e->step->parts && has_guards(e) && regions_change(e))
+		say(e, "    s->segment = s->contact.region / %d;\n", regions_at_once(regions_of(e)));
+	else if (e->system->segments > 1)
+		say(e, "    $n_pass_segments(s);\n");
+}
+
+static void emit_searched_step(const struct emitter *e)
+{
+	declare_region_vector(e);
+	emit_set_aside(e);
+	emit_turned_loads(e, needed_loads(e), false);
+	emit_region_vector(e, true);
+	say(e, "    $o_seek(s, x);\n");
+	emit_take_back(e);
+	emit_step_end(e);
+	emit_segment_end(e);
+}
+
+static void emit_whole_step(const struct emitter *e)
+{
+	emit_set_aside(e);
+	emit_raw_locals(e, NULL);
+	emit_turned_loads(e, needed_loads(e), false);
+	emit_clear_step(e);
+	emit_take_back(e);
+	emit_step_end(e);
+	emit_segment_end(e);
+}
+
+void emit_region_step(const struct emitter *e)
+{
+	open_function(e, NULL, "%s", head_of_step(e));
+	if (e->step->clears && !has_guards(e))
+		emit_whole_step(e);
+	else
+		emit_searched_step(e);
+	if (e->step->carries)           /* what was set aside is in no bound */
+		emit_region_status(e);
+	close_function(e, "");
+}
+
+void emit_region_at(const struct emitter *e)
+{
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
+	say(e, "    pl_contact contact = s->contact;\n"
+	       "    pl_crossing crossing[$N_MAX_EVENTS];\n");
+	declare_region_vector(e);
+	if (has_guards(e))              /* what is held is put back to its place, off by rounding, in no time too */
+		emit_at_start(e);
+	emit_load_states(e, needed_loads(e), false);
+	emit_region_vector(e, true);
+	say(e, "    $o_search_step(s, tau, x, &contact, crossing);\n");
+	emit_hand_over(e);
+	close_function(e, "");
+}

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of regions: tables that there is one of for each matrix, and sums over their rows as text. */
+#include "regions.h"
+#include "emit/steps.h"
+#include "model/regions/expressions.h"
+#include "model/regions/regions.h"
+
+int expressions_of(const struct emitter *e)
+{
+	return e->model->switching->expressions;
+}
+
+/* ---- tables: of the file, or where params are tunable of an instance ---- */
+
+static void open_as(const struct emitter *e, bool own, const char *type, const char *name, const char *shape,
+		    const char *note)
+{
+	if (own)
+		open_member(e, type, name, shape, note);
+	else
+		say(e, "\nstatic const %s $o_%s%s = {  /* %s */\n", type, name, shape, note);
+}
+
+static void close_as(const struct emitter *e, bool own)
+{
+	if (own)
+		close_member(e);
+	else
+		say(e, "};\n");
+}
+
+void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)
+{
+	open_as(e, e->model->retuned, type, name, shape, note);
+}
+
+void close_table(const struct emitter *e)
+{
+	close_as(e, e->model->retuned);
+}
+
+static void put_items(const struct emitter *e, int count, int in_line, const char *const *item)
+{
+	for (int i = 0; i < count; i++)
+		say(e, "%s%s%s", i == 0 ? "    " : i % in_line ? ", " : ",\n    ", item[i], i == count - 1 ? "\n" : "");
+}
+
+void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number)
+{
+	const char **item = ARRAY(const char *, (size_t)count + 1);
+	item[0] = "0";
+	for (int i = 0; i < count; i++)
+		item[i] = whole_text(number[i]);
+	count = count > 0 ? count : 1;
+	open_as(e, own, "int", name, format("[%d]", count), note);
+	put_items(e, count, 20, item);
+	close_as(e, own);
+}
+
+void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number)
+{
+	const char **item = ARRAY(const char *, (size_t)count + 1);
+	for (int i = 0; i < count; i++)
+		item[i] = shortest(number[i]);
+	open_table(e, "double", name, format("[%d]", count), note);
+	put_items(e, count, 8, item);
+	close_table(e);
+}
+
+void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
+		 const double *value, const char *const *row_name)
+{
+	open_table(e, "double", name, format("[%d][%d]", rows, columns), note);
+	emit_number_rows(e, rows, columns, value, row_name);
+	close_table(e);
+}
+
+void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
+		   double *const *value, const char *const *row_name)
+{
+	open_table(e, "double", name, format("[%d][%d][%d]", count, rows, columns), note);
+	for (int k = 0; k < count; k++) {
+		say(e, "  {\n");
+		emit_number_rows(e, rows, columns, value[k], row_name);
+		say(e, "  },\n");
+	}
+	close_table(e);
+}
+
+double **of_branches(const struct emitter *e, const struct pieces *p, size_t of)
+{
+	double **value = ARRAY(double *, (size_t)e->step->branches);
+	for (int k = 0; k < e->step->branches; k++)
+		value[k] = *(double *const *)((const char *)&p->piece[k] + of);
+	return value;
+}
+
+void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
+		      size_t of)
+{
+	const char **row = ARRAY(const char *, (size_t)e->step->branches);
+	double **value = of_branches(e, p, of), *all = ARRAY(double, (size_t)(e->step->branches * columns));
+	for (int k = 0; k < e->step->branches; k++) {
+		row[k] = format("system %d", k);
+		for (int i = 0; i < columns; i++)
+			all[k * columns + i] = value[k][i];
+	}
+	put_matrix(e, name, note, e->step->branches, columns, all, row);
+}
+
+/* ---- what stands at an entry of tables that there are one of for each matrix ---- */
+
+bool acts_at(const struct region_tables *t, int row, int column)
+{
+	bool any = t->own && t->own[row * t->columns + column];
+	for (int k = t->from; k < t->to; k++)
+		any = any || t->value[k][row * t->columns + column] != 0;
+	return any;
+}
+
+bool agree_at(const struct region_tables *t, int row, int column)
+{
+	int at = row * t->columns + column;
+	bool same = !t->own || !t->own[at];
+	for (int k = t->from; k < t->to; k++)
+		same = same && t->value[k][at] == t->value[t->from][at];
+	return same;
+}
+
+/* A number where all agree */
+static const char *entry_times(const struct region_tables *t, int row, int column, const char *operand)
+{
+	if (agree_at(t, row, column))
+		return scaled(t->value[t->from][row * t->columns + column], operand);
+	const char *text = format("%s[%d][%d]", t->text, row, column);
+	return operand ? format("%s * %s", text, operand) : text;
+}
+
+const char *row_text(const struct region_tables *t, int row, const char *const *operand,
+			    const char *further, int indent)
+{
+	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
+	int terms = 0;
+	for (int j = 0; j < t->columns; j++)
+		if (operand[j] && acts_at(t, row, j))
+			term[terms++] = entry_times(t, row, j, *operand[j] ? operand[j] : NULL);
+	if (further)
+		term[terms++] = further;
+	return terms ? tree(terms, term, indent) : "0.0";
+}
+
+struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
+		      size_t of)
+{
+	return (struct region_tables){ text, rows, e->step->layout.size, 0, e->step->branches, of_branches(e, p, of),
+				       NULL };
+}
+
+struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text)
+{
+	int size = e->step->layout.size;
+	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, OF_PIECE(gain))
+			     : tables_of_regions(e, p, text, size, OF_PIECE(Phi));
+}
+
+bool is_table(const struct region_tables *t)
+{
+	bool differs = false;
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->columns; j++)
+			differs = differs || !agree_at(t, i, j);
+	return differs;
+}
+
+struct region_tables of_branch(struct region_tables t, int branch)
+{
+	t.from = branch;
+	t.to = branch + 1;
+	return t;
+}
+
+const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+			    const char *const *size, int indent)
+{
+	int n = expressions_of(e);
+	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, OF_PIECE(off)),
+		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, OF_PIECE(still));
+	still.columns = n;
+	if (branch >= 0) {
+		off = of_branch(off, branch);
+		still = of_branch(still, branch);
+	}
+	const char *further = NULL;
+	if (acts_at(&still, 0, expression))
+		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
+							  : spell(e, "$o_still[which][%d]", expression);
+	return row_text(&off, expression, size, further, indent);
+}
+
+/* ---- of a step that clears ---- */
+
+static void emit_of_each(const struct emitter *e, const struct region_tables *t, const char *name, const char *note,
+			 const char *const *row_name)
+{
+	put_matrices(e, name, note, e->step->branches, t->rows, t->columns, t->value, row_name);
+}
+
+bool any_pieces(const struct emitter *e)
+{
+	bool any = false;
+	for (int k = 0; k < e->step->branches; k++)
+		any = any || e->step->branch[k].halvings > 0;
+	return any;
+}
+
+/* Of each region and expression */
+typedef const char *entry_text(const struct emitter *e, const struct pieces *p, int region, int expression);
+
+static void emit_of_regions(const struct emitter *e, const char *type, const char *name, const char *note,
+			    const char *inner, entry_text *text, const struct pieces *p)
+{
+	int regions = e->model->switching->regions, n = expressions_of(e);
+	open_as(e, false, type, name, format("[%d][%d]%s", regions, n, inner), note);
+	for (int r = 0; r < regions; r++)
+		for (int i = 0; i < n; i++)
+			say(e, "%s%s%s", i == 0 ? "    {" : ", ", text(e, p, r, i), i == n - 1 ? "},\n" : "");
+	close_as(e, false);
+}
+
+static const char *span_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	(void)p;
+	return whole_text(interval_of(e->model->switching, region, expression));
+}
+
+static const char *within_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	int at = region * expressions_of(e) + expression;
+	return format("{%s, %s}", shortest(p->low[at]), shortest(p->high[at]));
+}
+
+static const char *beyond_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+{
+	const struct switching *s = e->model->switching;
+	int interval = interval_of(s, region, expression), stride = s->expression[expression].stride;
+	bool below = interval > 0 && s->region[region - stride].possible,
+	     above = interval < s->expression[expression].breaks && s->region[region + stride].possible;
+	(void)p;
+	return format("{%d, %d}", below ? region - stride : -1, above ? region + stride : -1);
+}
+
+void emit_spans(const struct emitter *e)
+{
+	emit_of_regions(e, "int", "span", "of each expression, from the lowest one", "", span_text, NULL);
+}
+
+/* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
+static void emit_neighbours(const struct emitter *e, const struct pieces *p)
+{
+	emit_of_regions(e, "double", "within", "what each expression is between in each region", "[2]", within_text, p);
+	emit_of_regions(e, "int", "beyond", "regions below and above; -1: none that can occur", "[2]", beyond_text, p);
+	emit_spans(e);
+}
+
+void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
+{
+	int n = expressions_of(e);
+	struct region_tables off = tables_of_regions(e, p, "", n, OF_PIECE(off)),
+			     slack = tables_of_regions(e, p, "", n, OF_PIECE(slack)),
+			     third = tables_of_regions(e, p, "", n, OF_PIECE(third)),
+		      still = tables_of_regions(e, p, "", 1, OF_PIECE(still));
+	still.columns = n;
+	if (any_pieces(e)) {
+		struct region_tables turn = tables_of_regions(e, p, "", n, OF_PIECE(turn)),
+			      bend = tables_of_regions(e, p, "", n, OF_PIECE(bend));
+		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
+		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
+	}
+	bool reads = any_pieces(e) || is_cleared_by_tables(e->step);    /* what they are off their chords */
+	if (reads && is_table(&off))
+		emit_of_each(e, &off, "chord_off",
+			     "times |x|: how far each expression is off its chord over h, at most", expression);
+	if (reads && is_table(&still))
+		emit_of_branches(e, p, "still", "what 1, cos and sin add to that, at most", n, OF_PIECE(still));
+	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
+	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
+	emit_neighbours(e, p);
+}
+
+/* ---- sums as text ---- */
+
+const char **places(const struct emitter *e, const char *layout)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = format(layout, j);
+	return text;
+}
+
+const char **entries(const struct emitter *e, const char *layout)
+{
+	const char **text = places(e, layout);
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->step->layout.load[l] >= 0 && !load_operand(e, l, 0))
+			text[e->step->layout.load[l]] = "";
+	return text;
+}
+
+const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+				   const char *const *operand, int indent)
+{
+	int size = e->step->layout.size, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)size);
+	for (int j = 0; j < size; j++) {
+		double factor = p->row[expression * size + j];
+		if (factor != 0)
+			term[terms++] = scaled(factor, *operand[j] ? operand[j] : NULL);
+	}
+	return terms ? tree(terms, term, indent) : "0.0";
+}
+
+const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent)
+{
+	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
+	int terms = 0;
+	for (int j = 0; j < e->step->layout.size; j++)
+		if (!p->bounded[j] && *size[j])         /* 1 counts for nothing */
+			term[terms++] = size[j];
+	return tree(terms, term, indent);
+}
+
+bool keeps_rest(const struct emitter *e)
+{
+	return e->step->program->compensated;
+}
+
+int size_of_vector(const struct emitter *e)
+{
+	return e->step->layout.size * (keeps_rest(e) ? 2 : 1);
+}
+
+void emit_state_of_x(const struct emitter *e)
+{
+	say(e, "    for (i = 0; i < %s; i++) {\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
+	if (keeps_rest(e))
+		say(e, "        s->rest[%s] = x[%d + i];\n", place_in_loop(e), e->step->layout.size);
+	say(e, "    }\n");
+}
+
+const char **listed_twice(int count, const char *const *text)
+{
+	const char **both = ARRAY(const char *, 2 * (size_t)count);
+	for (int i = 0; i < 2 * count; i++)
+		both[i] = text[i % count];
+	return both;
+}
+
+bool regions_change(const struct emitter *e)
+{
+	return e->model->switching->segments > 1;
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How far a Taylor series holds, what its coefficients may not show (functions that are all but constant over most of
+ * their range, loads that may cancel): what reach.h, measure.h and unseen.h of the runtime are told. */
+#include "series.h"
+#include "emit/state.h"
+#include "step/collocation/collocation.h"
+#include "step/series/expansion.h"
+#include "step/series/unseen.h"
+
+#include <math.h>
+
+bool looks_at_tolerance(const struct emitter *e)
+{
+	return mpq_sgn(truncation_of(e)->tolerance) != 0;
+}
+
+void emit_floors(const struct emitter *e)
+{
+	if (!has_floors(e))
+		return;
+	const int size = e->system->states + (e->step->expansion ? e->step->expansion->columns : 0);
+	double *value = ARRAY(double, (size_t)size);
+	RATIONAL floor = ZERO;
+	for (int i = 0; i < e->system->states; i++) {
+		mpq_div(floor, truncation_of(e)->absolute[i], truncation_of(e)->tolerance);
+		value[i] = round_rational(floor);
+	}
+	emit_array(e, "Of each state its absolute tolerance over the relative one: it counts beside its size; 0: none",
+		   "floor", 1, &size, value, NULL);
+}
+
+bool watches(const struct emitter *e)
+{
+	return looks_at_tolerance(e) && !truncation_of(e)->adaptive;
+}
+
+int most_served(const struct emitter *e)
+{
+	return e->system->inputs ? 1 : EXPANSION_SERVES;
+}
+
+/* Do several states share a kind? Else each is measured by itself. */
+bool shares_kinds(const struct emitter *e)
+{
+	int count[3] = { 0 };
+	for (int i = 0; i < e->system->states; i++) {
+		bool moved = i < e->system->n && e->system->velocity[i] >= 0;
+		count[moved ? 0 : i < e->system->n ? 2 : 1]++;
+	}
+	return truncation_of(e)->adaptive && (count[0] > 1 || count[1] > 1 || count[2] > 1);
+}
+
+/* ---- the last terms ---- */
+
+void emit_reach_tables(const struct emitter *e)
+{
+	if (!truncation_of(e)->adaptive || e->system->inputs)
+		return;
+	int order = e->step->expansion->order, most = most_served(e);
+	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
+	RATIONAL bound = ZERO, steps = ZERO;
+	for (int m = 1; m <= most; m++) {
+		mpq_set(bound, truncation_of(e)->tolerance);
+		mpq_set_ui(steps, (unsigned long)m, 1);
+		for (int k = 1; k < order; k++)
+			mpq_div(bound, bound, steps);
+		before[m - 1] = round_rational(bound);
+		mpq_div(bound, bound, steps);
+		last[m - 1] = round_rational(bound);
+	}
+	emit_array(e, format("The tolerance over m^%d and m^%d: what the last coefficients may be for m steps", order,
+			     order - 1), "last", 1, &most, last, NULL);
+	emit_array(e, NULL, "before_last", 1, &most, before, NULL);
+}
+
+/* ---- what the runtime is told ---- */
+
+void emit_reach_sizes(const struct emitter *e)
+{
+	say(e, "#define PL_TOLERANCE %s\n"
+	       "#define PL_NOW y\n", shortest(round_rational(truncation_of(e)->tolerance)));
+	if (shares_kinds(e))
+		say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
+	if (truncation_of(e)->adaptive && has_unseen(e))
+		emit_unseen_sizes(e);
+}
+
+/* ---- what coefficients may not show ---- */
+
+static const struct expansion *unseens(const struct emitter *e)
+{
+	return e->step->unseen;
+}
+
+/* How many h of loads that may cancel each other are followed: so much of the phase of the fastest */
+static double crowded_length(const struct emitter *e, double phase)
+{
+	return phase / (unseens(e)->crowded * mpq_get_d(e->model->h));
+}
+
+/* The argument of each, by its kind */
+static void emit_unseen_table(const struct emitter *e, const char *name, bool columns)
+{
+	const struct expansion *x = unseens(e);
+	int *row = ARRAY(int, 3 * (size_t)x->unseens);
+	for (int i = 0; i < x->unseens; i++) {
+		row[3 * i] = columns ? x->unseen[i].column : i;
+		row[3 * i + 1] = (int)x->unseen[i].kind;
+		row[3 * i + 2] = x->unseen[i].power;
+	}
+	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, the kind, a power */\n");
+	emit_integer_rows(e, "int", format("%s[%d][3]", name, x->unseens), x->unseens, 3, row);
+}
+
+/* ---- what reach.h is told ---- */
+
+void emit_unseen_sizes(const struct emitter *e)
+{
+	const double rise = 0.5 * unseens(e)->order;
+	say(e, "#define PL_HIDDEN %d\n"
+	       "#define PL_BEATS %s\n"
+	       "#define PL_RISES %s\n"
+	       "#define PL_RISES_FACTOR %s\n", traces(e) ? unseens(e)->unseens : 0,
+	    shortest(crowds(e) ? crowded_length(e, rise) : 0), shortest(rise), shortest(exp(rise)));
+}
+
+void emit_hidden_table(const struct emitter *e)
+{
+	if (traces(e))
+		emit_unseen_table(e, "hidden", true);
+}
+
+/* ---- along a step of the collocation ---- */
+
+double crowded_steps(const struct emitter *e)
+{
+	return crowded_length(e, 2 * e->step->collocation->stages);
+}
+
+void emit_arguments(const struct emitter *e)
+{
+	if (traces(e))
+		emit_unseen_table(e, "argument", false);
+}

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Functions of a series: what they are handed, what of loads and inputs they read, its coefficients. */
+#include "series.h"
+#include "emit/steps.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+#include "step/contacts/series_contacts.h"
+
+#include <string.h>
+
+/* ---- one of several series ---- */
+
+struct view {
+	struct step step;
+	struct emitter e;
+};
+
+/* The same emitter, whose series is this one */
+static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
+{
+	struct view *view = NEW(struct view);
+	view->step = *e->step;
+	view->step.expansion = x;
+	view->e = *e;
+	view->e.step = &view->step;
+	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
+	return &view->e;
+}
+
+const struct emitter *looking(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->look);
+}
+
+const struct emitter *ending(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->ends);
+}
+
+const struct emitter *forcing(const struct emitter *e)
+{
+	return look_by(e, e->step->cut->forces);
+}
+
+const struct emitter *sloping(const struct emitter *e)
+{
+	return look_by(e, e->step->slopes);
+}
+
+const struct emitter *meeting(const struct emitter *e)
+{
+	return look_by(e, e->step->divided);
+}
+
+/* ---- what is asked of it ---- */
+
+bool is_divided(const struct emitter *e)
+{
+	return e->step->divided != NULL;
+}
+
+bool has_offset(const struct emitter *e)
+{
+	return e->model->truncation.adaptive || e->system->segments > 1 || is_divided(e);
+}
+
+bool spans_steps(const struct emitter *e)
+{
+	return e->step->expansion && !e->step->collocation && e->model->truncation.over > 1;
+}
+
+bool has_choices(const struct emitter *e)
+{
+	for (int i = 0; i < own_expansion(e)->count; i++)
+		if (own_expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
+		    own_expansion(e)->sequence[i].choice == CHOICE_BY_TIME && own_expansion(e)->sequence[i].top >= 0)
+			return true;
+	return false;
+}
+
+/* ---- the expansion ---- */
+
+const char *driven_parameter(const struct emitter *e)
+{
+	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+}
+
+void emit_inputs_now(const struct emitter *e)
+{
+	int inputs = e->system->inputs;
+	open_function(e, "Samples at the start of this step, their slopes in h",
+		      "static inline void $n_inputs_now(const $n *s, const double u[], double start[], "
+		      "double slope[])");
+	for (int i = 0; i < inputs; i++) {
+		bool ramp = e->system->input[i].hold;
+		say(e, "    start[%d] = %s[%d];\n"
+		       "    slope[%d] = %s;\n", i, ramp ? "s->u" : "u", i, i, ramp ? ramp_slope(e, i) : "0.0");
+	}
+	if (!inputs)
+		say(e, "    start[0] = slope[0] = 0.0;  /* there are none */\n");
+	close_function(e, "s u");
+}
+
+static void emit_expansion_locals(const struct emitter *e)
+{
+	const struct expansion *x = own_expansion(e);
+	bool offset = has_offset(e);
+	for (int i = 0; i < e->system->inputs; i++) {
+		if (x->input[i])
+			say(e, "    const double %s = u[%d]%s;\n", input_name(e, i, 0), i,
+			    e->system->input[i].hold && offset ? format(" + tau * slope[%d]", i) : "");
+		if (x->slope[i])
+			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
+	}
+	bool time = x->time;
+	for (int l = 0; l < e->system->loads; l++)
+		time = time || (x->load[l] && e->system->load[l].powers > 1);
+	if (time)
+		say(e, "    const double t = $n_time(s)%s;\n", offset ? " + tau" : "");
+	struct emitter here = *e;
+	here.after = offset ? "tau" : NULL;
+	emit_load_states(&here, x->load, true);
+	if (x->slots)
+		say(e, "    const double (*const force)[%d] = $n_force[segment];\n", x->slots);
+}
+
+void emit_force_table(const struct emitter *e)
+{
+	const struct expansion *x = own_expansion(e);
+	int segments = e->system->segments, stride = x->order + 1;
+	int rows = x->contacts ? stride : x->order;     /* slopes are sequences of their own there */
+	if (!x->slots)
+		return;
+	const char **note = ARRAY(const char *, (size_t)rows);
+	for (int k = 0; k < rows; k++)
+		note[k] = format("of coefficient %d", k + 1);
+	double *value = ARRAY(double, (size_t)(segments * rows * x->slots)), *to = value;
+	for (int s = 0; s < segments; s++)
+		for (int k = 0; k < rows; k++)
+			for (int j = 0; j < x->slots; j++)
+				*to++ = x->changing[(j * segments + s) * stride + k];
+	emit_array(e, "What the load states add to each coefficient, in each segment of time", "force", 3,
+		   (const int[]){ segments, rows, x->slots }, value, note);
+}
+
+void emit_coefficients(const struct emitter *e)
+{
+	emit_expansion_locals(e);
+	emit_series_locals(e);
+}
+
+bool expands_in_step(const struct emitter *e)
+{
+	enum { MOST = 1000 };           /* multiplications, which then stand twice: NAME_at makes the series too */
+	return !has_offset(e) && !has_choices(e) && !e->ramps && own_expansion(e)->multiplications <= MOST;
+}
+
+void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target)
+{
+	struct tape *t = tape_of_recurrences(r);
+	for (int i = 0; i < x->expressions; i++)
+		tape_set(t, format("%s[%d]", target, i), recurrence_size(r, x->expression[i].sequence), 10, NULL);
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++)
+		tape_set(t, format("%s[%d]", target, x->expressions + i),
+			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
+}
+
+/* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
+static void set_kept_coefficients(const struct emitter *e, struct recurrences *r)
+{
+	const struct expansion *x = own_expansion(e);
+	struct tape *t = tape_of_recurrences(r);
+	int states = e->system->states;
+	for (int k = 0; k <= x->order; k++)
+		for (int i = 0; i < states + x->columns; i++) {
+			const char *target = format("c[%d][%d]", k, i);
+			if (i < states || k <= x->column_top[i - states])
+				series_set(r, target, i < states ? i : x->column[i - states], k);
+			else
+				tape_set(t, target, tape_number(t, 0), 10, NULL);
+		}
+	series_set_sizes(r, x, "terms");
+}
+
+/* ---- functions of them: the series of the solution, or some sequences alone ---- */
+
+/* Whatever they read, they are handed the same: samples at the start of the step, their slopes in h; the time after
+ * now; a time by which conditions on t are decided; the segment of the loads; intervals; the state then. */
+static void begin_function(const struct emitter *e, const char *note, const char *name, const char *result)
+{
+	open_function(e, note, "static void $n_%s(const $n *s, const double u[], const double slope[], double tau,\n"
+			       "    double when, int segment, const int interval[], const double y[$N_STATES],\n"
+			       "    %s)", name, result);
+	emit_expansion_locals(e);
+}
+
+static void end_function(const struct emitter *e, const struct recurrences *r)
+{
+	emit_series_tape(e, r);
+	close_function(e, "s u slope tau when segment interval y");
+}
+
+void emit_expand_from(const struct emitter *e)
+{
+	struct recurrences *r = series_new(e);
+	begin_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y",
+				 has_offset(e) ? "tau after now" : "now",
+				 spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
+		       "expand_from", spell(e, "double c[%d][$c], double terms[]", own_expansion(e)->order + 1));
+	set_kept_coefficients(e, r);
+	emit_series_tape(e, r);
+	close_function(e, "s u slope tau when segment interval terms");
+}
+
+void emit_slopes_function(const struct emitter *e)
+{
+	struct recurrences *r = series_new(e);
+	begin_function(e, "h times the slopes", "slopes_at", spell(e, "double left[$N_STATES]"));
+	for (int i = 0; i < e->system->states; i++)
+		series_set(r, format("left[%d]", i), i, 1);
+	end_function(e, r);
+}
+
+void emit_frozen_function(const struct emitter *e)
+{
+	const struct expansion *x = own_expansion(e);
+	struct recurrences *r = series_new(e);
+	begin_function(e, "What is left over: a force on each equation that has some", "forces_at",
+		       format("double left[%d]", x->columns));
+	for (int c = 0; c < x->columns; c++)
+		series_set(r, format("left[%d]", c), x->column[c], 0);
+	end_function(e, r);
+}
+
+void emit_ends_function(const struct emitter *e)
+{
+	const struct expansion *x = own_expansion(e);
+	struct recurrences *r = series_new(e);
+	begin_function(e, "Of each expression its value and h times its slope; the sizes of the terms of the value",
+		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
+	for (int k = 0; k <= 1; k++)
+		for (int c = 0; c < x->columns; c++)
+			series_set(r, format("e[%d][%d]", k, c), x->column[c], k);
+	for (int c = 0; c < x->columns; c++)
+		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
+	end_function(e, r);
+}
+
+/* ---- its sum ---- */
+
+enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
+
+bool is_written_out(const struct emitter *e, int degree)
+{
+	return e->system->states * degree <= WRITTEN_OUT;
+}
+
+const char *plus(const char *sum, const char *term)
+{
+	return !term ? sum : *sum ? format("(%s + %s)", sum, term) : term;
+}
+
+/* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
+const char *whole_gain(const struct emitter *e, int state, gain_term *term)
+{
+	enum { LATE = 3 };
+	int order = own_expansion(e)->order;
+	const char *text = "", *late = "";
+	for (int k = order; k > order - LATE; k--)
+		late = plus(late, term(e, state, k));
+	for (int k = order - LATE; k > 0; k--)
+		text = plus(text, term(e, state, k));
+	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
+}
+
+void emit_series_ends(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->states; i++)
+		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &rest%d);\n", i,
+				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
+}
+
+/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
+const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
+{
+	const char *sum = "";
+	for (int i = 0; i < e->system->states; i++)
+		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
+	return format("%s != 0.0", sum);
+}
+
+int terms_of_events(const struct emitter *e)
+{
+	const struct expansion *x = e->step->divided;
+	return x->expressions + (x->contacts ? x->contacts->watches : 0);
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a model has of params that an instance holds: types, retune. */
+#include "emit/formulas.h"
+#include "emit/kinds.h"
+#include "emit/regions/regions.h"
+#include "tunable.h"
+#include "model/reads.h"
+#include "step/exponential/normal.h"
+#include "step/tunable/tuned.h"
+
+static const struct tuning *held(const struct emitter *e)
+{
+	return e->model->held;
+}
+
+int held_leads(const struct emitter *e)
+{
+	return e->model->held ? e->model->leads.count : 0;
+}
+
+/* What an instance has */
+static void emit_members(const struct emitter *e)
+{
+	if (e->kind->own_factors)
+		emit_tuned_members(e);
+	else
+		(e->model->retuned ? emit_retuned_numbers : emit_nominal_params)(e);
+}
+
+void emit_held_types(const struct emitter *e)
+{
+	if (!tunables_of(e->model))
+		return;
+	const char *what = e->model->held ? "what the equations and outputs read"
+			   : format("what a step multiplies with: z is the states, load states%s, inputs%s",
+				    e->system->segments > 1 ? " in each segment of time" : "",
+				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
+	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
+	       "typedef struct $n_coeffs $n_coeffs;  /* %s */\n"
+	       "struct $n_coeffs {\n", tunables_of(e->model)->given, param_list(e), what);
+	declare_members(e, emit_members);
+	say(e, "};\n"
+	       "\n");
+}
+
+void emit_held_member(const struct emitter *e)
+{
+	if (held(e))
+		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+	if (held_leads(e))
+		say(e, "    pl_lead lead[%d];     /* what phases have gained where $n_use changed frequencies */\n",
+		    held_leads(e));
+}
+
+void emit_nominal_factors(const struct emitter *e)
+{
+	if (tunables_of(e->model))
+		say(e, "    s->coeffs = $n_nominal;\n");
+}
+
+void emit_held_declarations(const struct emitter *e)
+{
+	if (!tunables_of(e->model))
+		return;
+	const bool own = e->kind->own_factors, any = own && e->step->blocks->whole;
+	const char *more = own ? e->model->tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
+			       : e->model->retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
+	say(e, "\n/* Sets c to params (%s), for steps of h [s]%s. 0, or c is as it was and, as plrt.h\n"
+	       " * says, PL_NO_STEP%s, PL_NOT_FINITE */\n", param_list(e), any ? "" : ", the spec's", more);
+	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
+	       "void   $n_use($n *s, const $n_coeffs *c);  /* from now on; state and time stay%s%s */\n"
+	       "extern const $n_coeffs $n_nominal;         /* of the spec's values: what $n_init starts with */\n\n",
+	    held_leads(e) || e->phases ? ", and phases go on" : "", has_place(e) ? "; the scheme starts anew" : "");
+}
+
+static void banner_blocks(const struct emitter *e)
+{
+	const struct tuned_blocks *p = e->step->blocks;
+	if (!p->solved)
+		say(e, "They touch %s independent blocks, and factors of the others stay.\n"
+		       " * ",
+		    p->touched == p->all ? format("all %d", p->all) : format("%d of %d", p->touched, p->all));
+	say(e, "$n_retune computes factors from other values%s on the\n"
+	       " * target; of the spec's they are these, correctly rounded. It needs some %d KB of stack.\n",
+	    p->whole ? " and another h" : "", p->kilobytes);
+}
+
+void banner_held(const struct emitter *e)
+{
+	const bool acts = e->system->inputs > e->model->spec->inputs;
+	if (!tunables_of(e->model))
+		return;
+	say(e, " * Tunable: %s. ", param_list(e));
+	if (e->kind->own_factors)
+		banner_blocks(e);
+	else if (e->model->retuned)
+		say(e, "An instance has the tables of its regions, %d numbers of matrices, which\n"
+		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
+		       "correctly rounded. It\n"
+		       " * needs as much stack as they take, and some %d KB.\n", retuned_numbers(e),
+		    retuned_kilobytes(e));
+	else
+		say(e, "%s\n",
+		    acts ? "They act like held inputs, with the instance's own values."
+			 : "Expressions read the instance's own values; operators, orders and choices are those of the "
+			   "spec's.");
+}
+
+void emit_nominal(const struct emitter *e)
+{
+	if (tunables_of(e->model))
+		emit_nominal_of(e, emit_members);
+}
+
+/* Angular frequencies of the sines that have a lead */
+static void emit_frequencies(const struct emitter *e)
+{
+	const struct form **rate = ARRAY(const struct form *, (size_t)held_leads(e));
+	for (int k = 0; k < held_leads(e); k++)
+		rate[k] = e->model->leads.lead[k].rate;
+	const struct reads reads = reads_of(e->model, held_leads(e), rate);
+	open_function(e, "Of sines, as params have them [rad/s]",
+		      "static void $n_frequencies(const $n *s, double slope[%d])", held_leads(e));
+	emit_param_locals(e, reads.param);
+	for (int i = 0; i < e->system->inputs; i++)
+		if (reads.input[i])
+			say(e, "    const double %s = %s;\n", input_name(e, i, 0), sample_kept(e, i));
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, held_leads(e), rate);
+	for (int k = 0; k < held_leads(e); k++)
+		tape_set(formulas_tape(f), format("slope[%d]", k), formula(f, rate[k]), 15, NULL);
+	emit_formulas(f, 4);
+	close_function(e, "");
+}
+
+static void emit_held(const struct emitter *e)
+{
+	if (e->model->retuned)
+		emit_retuned(e);
+	if (held_leads(e))
+		emit_frequencies(e);
+	emit_sizes(e, { "PARAMS", held(e)->params }, { "DERIVED", e->model->spec->derived },
+		   { "RETUNED", e->model->retuned != NULL },
+		   { "LEADS", held_leads(e) },
+		   { "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
+	say(e, "#include \"held.h\"\n");
+}
+
+/* NAME_retune of the params that are given, by that of all */
+static void emit_derived(const struct emitter *e)
+{
+	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
+	const struct reads reads = reads_of(e->model, derived, e->model->derived);
+	open_function(e, "What follows from params", "static void $n_derive(const double y[], double out[])");
+	for (int k = 0; k < given; k++)
+		if (reads.param[k])
+			say(e, "    const double %s = y[%d];\n", param_local(e, k), k);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, derived, e->model->derived);
+	for (int k = 0; k < derived; k++)
+		tape_set(formulas_tape(f), format("out[%d]", k), formula(f, e->model->derived[k]), 13, NULL);
+	emit_formulas(f, 4);
+	close_function(e, "");
+	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
+	       "{\n"
+	       "    double all[$N_PARAMS + %d];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_PARAMS; i++) {\n"
+	       "        all[i] = params[i];\n"
+	       "    }\n"
+	       "    $n_derive(params, all + $N_PARAMS);\n"
+	       "    return $n_retune_all(c, all, h);\n"
+	       "}\n", derived);
+}
+
+void emit_held_retune(const struct emitter *e)
+{
+	if (e->kind->own_factors)
+		emit_retune(e);
+	if (held(e))
+		emit_held(e);
+	if (tunables_of(e->model) && e->model->spec->derived)
+		emit_derived(e);
+}

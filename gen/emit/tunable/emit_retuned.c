@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions whose matrices tunable params change: an instance has the tables of its search, which NAME_retune, of
+ * retuned.h, computes anew. Here is what both hold. */
+#include "emit/regions/regions.h"
+#include "tunable.h"
+#include "model/contacts/contacts.h"
+#include "step/regions/guards.h"
+#include "step/tunable/tuned.h"
+
+static const struct tuning *retuned_of(const struct emitter *e)
+{
+	return e->model->retuned;
+}
+
+static bool has_guards(const struct emitter *e)
+{
+	return has_events(e->model->switching);
+}
+
+static struct guards own_guards(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	return guards_of(e->step, &pieces);
+}
+
+/* ---- the equations ---- */
+
+/* All rows but what the target solves for, and behind it that, block by block */
+static void emit_numbers(const struct emitter *e)
+{
+	const struct tuning *r = retuned_of(e);
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)r->blocks + 1);
+	int *row = ARRAY(int, (size_t)r->blocks + 1);
+	list[0] = &r->all;
+	for (int b = 0; b < r->blocks; b++) {
+		list[b + 1] = &r->block[b].all;
+		row[b + 1] = r->block[b].place;
+	}
+	const char **text = emit_equations(e, r, r->blocks + 1, list);
+	say(e, "\nstatic const pl_equations $n_equations[%d] = {\n", r->blocks + 1);
+	for (int b = 0; b <= r->blocks; b++)
+		say(e, "    %s,\n", text[b]);
+	say(e, "};\n");
+	if (r->blocks)
+		emit_integers(e, "short", "block_row", r->blocks + 1, row);
+}
+
+static int widest_block(const struct emitter *e)
+{
+	const struct tuning *r = retuned_of(e);
+	int most = 0;
+	for (int b = 0; b < r->blocks; b++) {
+		const int cells = r->block[b].all.rows * width_of_equations(&r->block[b].all);
+		most = cells > most ? cells : most;
+	}
+	return most;
+}
+
+/* ---- which of them go where ---- */
+
+struct list { int count, *number; };
+
+static void add(struct list *l, int number)
+{
+	ENLARGE(l->number, (size_t)l->count + 1);
+	l->number[l->count++] = number;
+}
+
+/* Whether a number may have any value, as retuned.h says it */
+static int kind_of_check(const struct emitter *e, const struct retuned_row *row)
+{
+	switch (row->kind) {
+	case RETUNED_LEAST: return 0;
+	case RETUNED_RESTITUTION: return e->model->impact[row->of % e->model->impacts].when->restitution ? 1 : 0;
+	case RETUNED_SIGN: return row->positive ? 2 : 3;
+	default: return -1;
+	}
+}
+
+static int emit_checks(const struct emitter *e)
+{
+	const struct tuning *r = retuned_of(e);
+	struct list check = { 0 };
+	for (int i = 0; i < r->rows; i++) {
+		const int kind = kind_of_check(e, &r->row[i]);
+		if (r->row[i].place < 0 || kind < 0)
+			continue;
+		add(&check, r->row[i].place);
+		add(&check, kind);
+	}
+	if (check.count)
+		emit_integers(e, "short", "check", check.count, check.number);
+	return check.count / 2;
+}
+
+static void from(const struct emitter *e, struct list *l, enum retuned_kind kind, int of, int index, bool turned)
+{
+	const int number = retuned_place(retuned_of(e), kind, of, index) + 1;
+	add(l, turned ? -number : number);
+}
+
+static void list_gates(const struct emitter *e, struct list *l, const struct guards *g)
+{
+	for (int i = 0; i < g->rows; i++) {
+		const struct gate_key *gate = &g->gate[i];
+		if (gate->expression >= 0)
+			from(e, l, RETUNED_EXPRESSION, gate->segment, gate->expression, !gate->upward);
+		else
+			from(e, l, RETUNED_RELEASE, gate->region, gate->release, false);
+	}
+	for (int i = 0; i < g->guards; i++) {
+		const struct guard *guard = &g->guard[i];
+		if (g->gate[guard->row].expression >= 0)
+			from(e, l, RETUNED_BREAK, guard->expression, guard->breakpoint, !guard->upward);
+		else
+			add(l, 0);
+	}
+}
+
+static void list_jumps(const struct emitter *e, struct list *l, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	for (int i = 0; i < g->assignments; i++)
+		from(e, l, g->assignment[i].kind, g->assignment[i].of, g->assignment[i].index, false);
+	for (int i = 0; i < s->segments * g->impacts; i++) {
+		from(e, l, RETUNED_RESTITUTION, i, 0, false);
+		from(e, l, RETUNED_SPEED, i, 0, false);
+		from(e, l, RETUNED_BACK, i, 0, false);
+	}
+	for (int k = 0; k < s->regions; k++)
+		for (int i = 0; i < s->felts; i++)
+			from(e, l, RETUNED_GRIP, k, i, false);
+}
+
+static int emit_from(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	struct list l = { 0 };
+	for (int segment = 0; segment < s->segments; segment++)
+		for (int i = 0; i < s->expressions; i++)
+			from(e, &l, RETUNED_EXPRESSION, segment, i, false);
+	for (int i = 0; i < s->expressions; i++)
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			from(e, &l, RETUNED_BREAK, i, k, false);
+	if (has_guards(e)) {
+		list_gates(e, &l, g);
+		list_jumps(e, &l, g);
+	}
+	bool any = false;
+	for (int i = 0; i < l.count; i++)
+		any = any || l.number[i] != 0;
+	if (any)
+		emit_integers(e, "short", "from", l.count, l.number);
+	return any ? l.count : 0;
+}
+
+/* ---- matrices ---- */
+
+static bool rows_change(const struct emitter *e)
+{
+	const struct tuning *r = retuned_of(e);
+	bool change = false;
+	for (int i = 0; i < r->rows; i++)
+		change = change || (r->row[i].place >= 0 &&
+				    (r->row[i].kind == RETUNED_EXPRESSION || r->row[i].kind == RETUNED_RELEASE));
+	return change;
+}
+
+/* Of each linear system; what of x' = A x is highest derivatives, and what no param changes: how many of that */
+static int emit_systems(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	int *first = ARRAY(int, (size_t)e->step->branches), *highest = ARRAY(int, (size_t)system->n);
+	struct fixed_slope *entry;
+	const int entries = fixed_slopes(e->step, &entry), stays = rows_change(e) ? -1 : -2;
+	for (int k = 0; k < e->step->branches; k++) {
+		const int place = retuned_place(retuned_of(e), RETUNED_SLOPE, k, 0);
+		first[k] = place >= 0 ? place : stays;
+	}
+	for (int i = 0; i < system->n; i++)
+		highest[i] = highest_state(system, i);
+	emit_integers(e, "short", "slope_row", e->step->branches, first);
+	emit_integers(e, "short", "highest", system->n, highest);
+	if (e->model->switching->segments > 1)
+		emit_integers(e, "short", "segment", e->step->branches, e->model->switching->system_segment);
+	emit_entries(e, entries, entry);
+	return entries;
+}
+
+static int emit_bounded(const struct emitter *e)
+{
+	struct list l = { 0 };
+	for (int m = 0; m < e->system->loads; m++)
+		for (int k = 0; k < e->system->load[m].columns && is_bounded_load(e->step, m); k++)
+			add(&l, e->step->layout.load[m] + k);
+	if (l.count)
+		emit_integers(e, "short", "bounded", l.count, l.number);
+	return l.count;
+}
+
+/* ---- steps that stay clear ---- */
+
+static void emit_gathering(const struct emitter *e)
+{
+	int stays, *column = staying_columns(e->step, &stays), *param = ARRAY(int, (size_t)stays);
+	struct list pair = { 0 };
+	for (int l = 0; l < e->system->loads; l++)
+		if (is_bounded_load(e->step, l) && e->system->load[l].columns == 2)
+			add(&pair, e->step->layout.load[l]);
+	for (int k = 0; k < stays; k++)
+		param[k] = param_of_column(e->step, column[k]);
+	emit_int_list(e, "stays", stays, column);
+	emit_int_list(e, "stay_param", stays, param);
+	if (any_still(e->step))
+		emit_int_list(e, "pair", pair.count, pair.number);
+	say_macro(e, "STAYS", whole_text(stays));
+	say_macro(e, "PAIRS", whole_text(pair.count));
+	say_macro(e, "STILL", whole_text(any_still(e->step)));
+	say_macro(e, "LARGE", shortest(LARGE_ENOUGH));
+	say_macro(e, "FOLDED", shortest(FOLDED));
+	say_macro(e, "OPEN_END", shortest(OPEN_END));
+}
+
+/* ---- retune ---- */
+
+void emit_retuned(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
+	emit_numbers(e);
+	const int taken = emit_from(e, &g), products = retuned_of(e)->monomials + 1;
+	const int work = PL_REGION_WORK(e->step->layout.size);
+	if (has_guards(e))
+		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
+	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
+	emit_sizes(e, { "PARAMS", e->model->held->params }, { "DERIVED", e->model->spec->derived },
+		   { "SIZE", e->step->layout.size },
+		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
+		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
+		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
+		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
+		   { "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
+		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
+		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
+		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
+		   { "CLEARS", e->step->clears });
+	if (e->step->clears)
+		emit_gathering(e);
+	say_include(e, "retuned.h");
+}
+
+int retuned_numbers(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	return 2 * e->step->branches * size * size + rungs_of_all(e) * (size + 1) * size;
+}
+
+int retuned_kilobytes(const struct emitter *e)
+{
+	int size = e->step->layout.size, cells = size * size, real = e->model->asked.single ? 4 : 8;
+	int twos = retuned_of(e)->all.rows * size + 8 * cells + widest_block(e);
+	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
+}

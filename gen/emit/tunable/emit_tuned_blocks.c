@@ -1,0 +1,477 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Linear models with tunable params: an instance holds its own factors, of a large model those of independent blocks
+ * that params touch, and NAME_retune, of retune.h, computes them anew on the target. What it is told: equations,
+ * blocks, which it takes together in groups, sizes. */
+#include "emit/linear/blocks.h"
+#include "emit/declarations.h"
+#include "emit/steps.h"
+#include "tunable.h"
+#include "model/reads.h"
+#include "step/linear/rows.h"
+#include "step/tunable/tuned.h"
+
+static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
+{
+	return e->step->blocks;
+}
+
+/* ---- what an instance has: declared, or the generator's own ---- */
+
+static const char *first_state(const struct emitter *e, const struct group *g)
+{
+	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
+}
+
+/* Of a group's factors in NAME_coeffs: "rows0" */
+static const char *tuned_table(const struct emitter *e, const struct tuned_block *first)
+{
+	const char *name = shape_of_group(e, first->group).name;
+	return blocks_of_step(e)->solved ? "step" : format("%s%d", name, first->index);
+}
+
+/* Calls print(e, the first of its blocks) for each group whose factors the instance has */
+static void each_tuned_group(const struct emitter *e,
+			     void (*print)(const struct emitter *e, const struct tuned_block *first))
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
+		if (p->block[b].group->tuned)
+			print(e, &p->block[b]);
+}
+
+static void emit_outputs(const struct emitter *e)
+{
+	const struct tuning *t = e->model->tuning;
+	const char **name = ARRAY(const char *, (size_t)t->outputs);
+	for (int o = 0; o < e->model->outputs; o++)
+		if (t->output[o] >= 0)
+			name[t->output[o] - e->model->n] = e->model->output[o].name;
+	open_member(e, "double", "out", format("[%d][%d]", t->outputs, t->x.size),
+		    format("out z, where outputs depend on params%s",
+			   e->ramps ? "; of a ramp its value and its slope" : ""));
+	emit_number_rows(e, t->outputs, t->x.size, nominal_outputs(e->step), name);
+	close_member(e);
+}
+
+/* What of each load moves on in a step: its phase, or its growth */
+static void emit_loads(const struct emitter *e, const char *type, const char *name, int count, const int *index,
+		       const char *(*step_text)(const struct emitter *, int))
+{
+	if (count == 0)
+		return;
+	open_member(e, type, name, format("[%d]", count), "of the loads, in one step");
+	for (int l = 0; l < e->system->loads; l++)
+		if (index[l] >= 0)
+			say(e, "    %s,  /* %s */\n", step_text(e, l), column_text(&e->system->load[l], 0));
+	close_member(e);
+}
+
+static void emit_group(const struct emitter *e, const struct tuned_block *first)
+{
+	const struct group_shape shape = shape_of_group(e, first->group);
+	const char *whole = e->step->form == FORM_DELTA ? "y += step z" : "y = step z";
+	if (shape.rows) {
+		open_member(e, "double", tuned_table(e, first), format("[%d][%d]", shape.rows, shape.columns),
+			    blocks_of_step(e)->solved ? whole : format("%s: %s", first_state(e, first->group),
+								       group_note(e, first->group)));
+		emit_group_numbers(e, first->group, false);
+		close_member(e);
+	}
+	if (shape.changing) {
+		open_member(e, "double", format("loads%d", first->index),
+			    format("[%d][%d][%d]", e->system->segments, shape.changing, shape.columns),
+			    "in each segment of time");
+		emit_group_numbers(e, first->group, true);
+		close_member(e);
+	}
+}
+
+void emit_tuned_members(const struct emitter *e)
+{
+	number_member(e, "h", spell(e, "$N_H"), "[s]");
+	if (e->system->segments > 1)
+		number_member(e, "h_low", low_text(e->model->h), "of the spec's step: what h leaves out; else 0");
+	emit_nominal_params(e);
+	each_tuned_group(e, emit_group);
+	if (e->model->tuning->outputs)
+		emit_outputs(e);
+	emit_nominal_peaks(e);
+	emit_loads(e, "pl_turn", "phase_step", e->phases, e->phase, phase_step_text);
+	if (e->phases && e->model->tuning->frequencies) {
+		open_member(e, "pl_rate", "phase_rate", format("[%d]", e->phases), "in turns per second");
+		emit_phase_rates(e);
+		close_member(e);
+	}
+	emit_loads(e, "pl_growth", "growth_step", e->growths, e->growth, growth_step_text);
+}
+
+/* ---- the equations on the target ---- */
+
+static const char *monomial_text(const struct tuning *t, int number)
+{
+	if (number == 0)
+		return "1";
+	const struct tuned_monomial *m = &t->monomial[number - 1];
+	const char *param = t->param[m->param].symbol->name, *from = monomial_text(t, m->from);
+	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
+}
+
+static void emit_monomials(const struct emitter *e, const struct tuning *t)
+{
+	if (t->monomials == 0)
+		return;
+	say(e, "\nstatic const pl_monomial $n_monomial[%d] = {\n", t->monomials);
+	for (int m = 0; m < t->monomials; m++) {
+		const struct tuned_monomial *made = &t->monomial[m];
+		const char *text = monomial_text(t, m + 1);
+		say(e, "    {%d, %d, %d},  /* %s */\n", made->from, made->param, made->divides, text);
+	}
+	say(e, "};\n");
+}
+
+static const char *two_words(struct coefficient number)
+{
+	return format("{%s, %s}", shortest(number.value), shortest(number.low));
+}
+
+/* Values of an array, some a line */
+static const char *next_value(int number)
+{
+	return number == 0 ? "\n    " : number % 5 ? ", " : ",\n    ";
+}
+
+static void emit_terms(const struct emitter *e, int terms, int count, const struct tuned_equations *const *list)
+{
+	int number = 0;
+	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */", terms);
+	for (int k = 0; k < count; k++)
+		for (const struct tuned_term *term = list[k]->term; term < list[k]->term + list[k]->terms; term++)
+			say(e, "%s{%d, %d, %d, %s}", next_value(number++), term->row, term->column, term->monomial,
+			    two_words(equation_number(e->model, term->factor)));
+	say(e, "\n};\n");
+}
+
+const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
+			    const struct tuned_equations *const *list)
+{
+	const char **text = ARRAY(const char *, (size_t)count);
+	int terms = 0;
+	for (int k = 0; k < count; terms += list[k++]->terms)
+		text[k] = format("{%d, %d, %d, %d, %d, %d, %s, %s}", list[k]->rows, list[k]->columns,
+				 list[k]->solves, t->params, t->monomials, list[k]->terms,
+				 t->monomials ? format("%s_monomial", e->name) : "NULL",
+				 list[k]->terms ? format("%s_term + %d", e->name, terms) : "NULL");
+	emit_monomials(e, t);
+	if (terms)
+		emit_terms(e, terms, count, list);
+	return text;
+}
+
+/* Outputs and frequencies that the equations of no block have */
+static bool has_others(const struct emitter *e)
+{
+	return !blocks_of_step(e)->solved && blocks_of_step(e)->others.all.rows > 0;
+}
+
+/* Of the blocks, then, where there are some, of what belongs to none */
+static const char **emit_all_equations(const struct emitter *e)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)p->blocks + 1);
+	for (int b = 0; b < p->blocks; b++)
+		list[b] = &p->block[b].part.all;
+	list[p->blocks] = &p->others.all;
+	return emit_equations(e, e->model->tuning, p->blocks + has_others(e), list);
+}
+
+/* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
+ * further samples; factors of blocks alike; parts of derivatives in samples */
+struct lists {
+	int count, *place;
+};
+struct listed {
+	struct lists place, entry;
+	int taps;
+	const char *tap;
+};
+
+static int add_place(struct lists *l, int place)
+{
+	ENLARGE(l->place, (size_t)l->count + 1);
+	l->place[l->count] = place;
+	return l->count++;
+}
+
+static int add_places(struct lists *l, int count, const int *place)
+{
+	const int first = l->count;
+	for (int i = 0; i < count; i++)
+		add_place(l, place[i]);
+	return first;
+}
+
+static const char *list_text(const struct emitter *e, int count, int first)
+{
+	return count ? format("%s_places + %d", e->name, first) : "NULL";
+}
+
+void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed)
+{
+	if (count == 0)
+		return;
+	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */", count);
+	for (int i = 0; i < count; i++)
+		say(e, "%s{%d, %d, %s}", next_value(i), fixed[i].row, fixed[i].column, two_words(fixed[i].value));
+	say(e, "\n};\n");
+}
+
+static void emit_all_entries(const struct emitter *e)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	struct fixed_slope *all = NULL;
+	int count = 0;
+	for (int b = 0; b < p->blocks; b++)
+		for (int i = 0; i < p->block[b].slopes; i++)
+			*MORE(all, count) = p->block[b].slope[i];
+	emit_entries(e, count, all);
+}
+
+static void emit_lists(const struct emitter *e, const struct listed *l)
+{
+	if (l->place.count)
+		emit_integers(e, "unsigned short", "places", l->place.count, l->place.place);
+	if (l->entry.count)
+		emit_integers(e, "unsigned char", "alike_entry", l->entry.count, l->entry.place);
+	if (l->taps)
+		say(e, "\nstatic const double $n_tap[%d] = {%s};\n", l->taps, l->tap);
+}
+
+static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l,
+			      const char *equations, int entry)
+{
+	const struct group *g = b->group;
+	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
+	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
+	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
+	const char *places = placed ? list_text(e, 1, add_places(l, b->size, b->from)) : "NULL";
+	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations,
+		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
+		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
+}
+
+static void emit_blocks(const struct emitter *e, const char *const *text)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	say(e, "\n/* Independent blocks%s */\n"
+	       "static const pl_block $n_block[%d] = {\n", p->blocks < p->all ? " that params touch" : "", p->blocks);
+	for (int b = 0; b < p->blocks; b++)
+		say(e, "    %s,  /* %s */\n", text[b], e->model->state_name[p->block[b].from[0]]);
+	say(e, "};\n");
+}
+
+/* ---- groups of blocks ---- */
+
+/* What each of its samples gets of an input's derivatives, in units of the step */
+static void add_taps(struct listed *l, int hold)
+{
+	RATIONAL weight = ZERO, one = RATIO(1, 1);
+	for (int i = 0; i < (hold + 1) * (hold + 1); i++) {
+		tap_derivative(hold, i % (hold + 1), i / (hold + 1), one, weight);
+		l->tap = format("%s%s%s", l->taps ? l->tap : "", l->taps ? ", " : "", shortest(round_rational(weight)));
+		l->taps++;
+	}
+}
+
+/* Inputs with further samples: places in x, derivatives; how many there are */
+static int add_samples(struct listed *l, const struct emitter *e, const struct group *g)
+{
+	int samples = 0;
+	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1) {
+		const int hold = e->system->input[i].hold, place = place_in(g->inputs, g->input, column);
+		if (hold == 0 || place == g->inputs)
+			continue;
+		add_place(&l->place, g->states + g->loads + place);
+		add_place(&l->place, hold);
+		if (hold > 1)
+			add_taps(l, hold);
+		samples++;
+	}
+	return samples;
+}
+
+static const char *add_alike(struct listed *l, const struct emitter *e, const struct group *g, bool changing, int count)
+{
+	const int first = l->entry.count;
+	for (int k = 0; k < count; k++) {
+		int column, row = alike_entry(e, g, changing, k, &column);
+		add_place(&l->entry, row);
+		add_place(&l->entry, column);
+	}
+	return count ? format("%s_alike_entry + %d", e->name, first) : "NULL";
+}
+
+static const char *group_text(const struct emitter *e, const struct tuned_block *first, struct listed *l)
+{
+	const struct group *g = first->group;
+	const struct group_shape shape = shape_of_group(e, g);
+	const bool alike = g->kind == GROUP_ALIKE, by_columns = g->kind == GROUP_COLUMNS;
+	const int number = (int)(first - blocks_of_step(e)->block), taps = l->taps;
+	const int from = l->place.count, samples = add_samples(l, e, g);
+	const char *entry = alike ? add_alike(l, e, g, false, shape.rows) : "NULL";
+	const char *load = alike ? add_alike(l, e, g, true, shape.changing) : "NULL";
+	return format("{%d, %s_block + %d, %s, %d, %s, %s, %d, %d, %d, %d, %s, %s}", g->blocks, e->name, number,
+		      blocks_of_step(e)->solved ? "NULL" : format("%s_reads + %d", e->name, number), samples,
+		      list_text(e, samples, from), l->taps > taps ? format("%s_tap + %d", e->name, taps) : "NULL",
+		      alike ? 0 : by_columns ? 1 : shape.columns, alike ? 0 : by_columns ? shape.columns : 1,
+		      alike ? shape.rows : 0, shape.changing, entry, load);
+}
+
+static void emit_groups_of(const struct emitter *e, int groups, const char *const *text)
+{
+	say(e, "\n/* Those of one shape together */\n"
+	       "static const pl_group $n_block_group[%d] = {\n", groups);
+	for (int k = 0; k < groups; k++)
+		say(e, "    %s%s", text[k], k < groups - 1 ? ",\n" : "\n};\n");
+}
+
+static void emit_reads(const struct emitter *e)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	int *reads = ARRAY(int, (size_t)p->blocks);
+	for (int b = 0; b < p->blocks; b++)
+		reads[b] = (int)p->block[b].part.params;
+	emit_integers(e, "unsigned short", "reads", p->blocks, reads);
+}
+
+static void emit_block_tables(const struct emitter *e, const char *const *equations)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	const char **block = ARRAY(const char *, (size_t)p->blocks), **group = ARRAY(const char *, (size_t)p->blocks);
+	struct listed lists = { 0 };
+	int entry = 0, groups = 0;
+	for (int b = 0; b < p->blocks; entry += p->block[b++].slopes)
+		block[b] = block_text(e, &p->block[b], &lists.place, equations[b], entry);
+	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
+		if (p->block[b].group->tuned)
+			group[groups++] = group_text(e, &p->block[b], &lists);
+	emit_all_entries(e);
+	emit_lists(e, &lists);
+	if (p->blocks)
+		emit_blocks(e, block);
+	if (groups && !p->solved)
+		emit_reads(e);
+	if (groups)
+		emit_groups_of(e, groups, group);
+}
+
+/* ---- beside the blocks ---- */
+
+static void emit_others(const struct emitter *e, const char *equations)
+{
+	const struct tuning *t = e->model->tuning;
+	const struct tuned_blocks *p = blocks_of_step(e);
+	say(e, "\n/* %s%s */\n"
+	       "static const pl_equations $n_equations = %s;\n",
+	    !t->outputs         ? "Frequencies of loads"
+	    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
+				: "Outputs, over x",
+	    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
+	    equations);
+}
+
+/* By phases: which row of the equations its frequency is; by growths: whether a load decays */
+static void emit_rows_of_loads(const struct emitter *e)
+{
+	const int loads = e->system->loads;
+	int *row = ARRAY(int, (size_t)loads + 1), *decays = ARRAY(int, (size_t)loads + 1);
+	for (int l = 0; l < loads; l++) {
+		if (e->phase[l] >= 0)
+			row[e->phase[l]] = blocks_of_step(e)->frequency[l];
+		if (e->growth[l] >= 0)
+			decays[e->growth[l]] = mpq_sgn(e->system->load[l].wave->a) < 0;
+	}
+	if (e->model->tuning->frequencies)
+		emit_integers(e, "short", "rate_row", e->phases, row);
+	if (e->growths && blocks_of_step(e)->whole)
+		emit_integers(e, "unsigned char", "decays", e->growths, decays);
+}
+
+/* ---- what retune.h is told ---- */
+
+static int most_derivatives(const struct emitter *e)
+{
+	int most = 0;
+	for (int i = 0; i < e->system->inputs; i++)
+		most = e->system->input[i].hold > most ? e->system->input[i].hold : most;
+	return most;
+}
+
+static bool has_kind(const struct emitter *e, bool alike)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	bool any = false;
+	for (int b = 0; b < p->blocks; b++)
+		any = any || (p->block[b].group->tuned && (p->block[b].group->kind == GROUP_ALIKE) == alike);
+	return any;
+}
+
+static void emit_sizes_of_tuning(const struct emitter *e)
+{
+	const struct tuning *t = e->model->tuning;
+	const struct tuned_blocks *p = blocks_of_step(e);
+	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "DERIVED", e->model->spec->derived },
+		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
+		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
+		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
+		   { "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },
+		   { "SOLVED", p->solved },
+		   { "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
+		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
+		   { "PEAKS", has_peak_rows(e) ? peak_outputs(e->model) : 0 },
+		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
+		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 }, { "JUMPS", has_jump(e) });
+}
+
+static void emit_group_call(const struct emitter *e, const struct tuned_block *first)
+{
+	const struct tuned_blocks *p = blocks_of_step(e);
+	const struct group_shape shape = shape_of_group(e, first->group);
+	int number = 0;
+	for (int b = 0; &p->block[b] != first; b += p->block[b].group->blocks)
+		number += p->block[b].group->tuned;
+	const char *to = shape.rows ? format("c->%s[0]", tuned_table(e, first)) : "NULL";
+	const char *apart = shape.changing ? format("c->loads%d[0][0]", first->index) : "NULL";
+	say(e, "    if (status == 0) {\n"
+	       "        status = $n_retune_group(&$n_block_group[%d], params, h, value, %s, %s, work);\n"
+	       "    }\n",
+	    number, to, apart);
+}
+
+void emit_retune(const struct emitter *e)
+{
+	const char **equations = emit_all_equations(e);
+	emit_block_tables(e, equations);
+	if (has_others(e))
+		emit_others(e, equations[blocks_of_step(e)->blocks]);
+	emit_rows_of_loads(e);
+	if (e->step->series.emitted)
+		emit_vector_now(e);
+	say(e, blocks_of_step(e)->solved ? "\n#define PL_EQUATIONS $n_block[0].equations\n"
+					 : "\n#define PL_EQUATIONS $n_equations\n");
+	emit_sizes_of_tuning(e);
+	say(e, "#include \"retune.h\"\n");
+	if (!has_kind(e, false) && !has_kind(e, true))
+		return;
+	say(e, "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *value, "
+	       "pl_two *work)\n"
+	       "{\n"
+	       "    int status = 0;\n");
+	each_tuned_group(e, emit_group_call);
+	say(e, "    return status;\n"
+	       "}\n");
+}
+
+void emit_tuned_at(const struct emitter *e)
+{
+	emit_at_by(e, "pass");
+}

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts and dry friction beside what is not piecewise linear, which a Taylor series is made of: no regions, but what
+ * holds something and what lets it go as forms. */
+#include "model/building.h"
+#include "contacts.h"
+#include "friction.h"
+
+/* Its index; -1: it is none */
+static int drag_of(const struct model *model, const struct atom *atom)
+{
+	int index = model->drags - 1;
+	while (index >= 0 && model->drag[index].atom != atom)
+		index--;
+	return index;
+}
+
+static void add_drag(struct building *b, const struct atom *a)
+{
+	struct model *model = b->model;
+	const struct form *v = a->operand[0];
+	if (drag_of(model, a) >= 0)
+		return;
+	for (int i = 0; i < v->terms; i++) {
+		const struct basis *basis = &v->term[i].basis;
+		if (basis->kind == BASIS_ATOM && model->system.segments > 1)
+			error(a->node->child[0]->start, "scheme exact takes others beside what is piecewise linear",
+			      "beside a series the velocity of friction has one formula for all time");
+		if (basis->kind == BASIS_ATOM || is_highest(&b->model->frame, basis))
+			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
+			      "the velocity of friction is linear in velocities");
+	}
+	RATIONAL start = ZERO;
+	for (int i = 1; i < a->operands; i++)
+		check_force(a->node->child[i], a->operand[i], start, NULL);
+	*MORE(model->drag, model->drags) =
+		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1] };
+}
+
+/* Friction that a function, a product or other friction has for an argument */
+static void refuse_inside(const struct atom *a, bool *seen)
+{
+	for (int k = 0; k < a->operands; k++)
+		for (int i = 0; i < a->operand[k]->terms; i++) {
+			const struct atom *inner = a->operand[k]->term[i].basis.atom;
+			if (!inner || seen[inner->index])
+				continue;
+			if (is_friction(inner))
+				error(inner->node->at, "it stands alone in a sum: k*x + friction(x', F)",
+				      "what is not piecewise linear has friction for an argument");
+			seen[inner->index] = true;
+			refuse_inside(inner, seen);
+		}
+}
+
+static void find_drags(struct building *b)
+{
+	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (int i = 0; i < b->model->n; i++) {
+		const struct form *form = b->whole->residual[i].form;
+		for (int k = 0; k < form->terms; k++) {
+			const struct atom *a = form->term[k].basis.atom;
+			if (!a)
+				continue;
+			refuse_inside(a, seen);
+			if (is_friction(a))
+				add_drag(b, a);
+		}
+	}
+}
+
+/* What an output reads of it, an acceleration by its equation too, would differ where it is held. */
+static void refuse_in_output(const struct output *output, const struct form *form, bool *seen)
+{
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.atom && is_friction((*term)->basis.atom))
+			error(output->value->start, "a piecewise-linear model gives it",
+			      "what friction carries beside what is not piecewise linear is no output");
+}
+
+/* What rests has another acceleration than its equations say. */
+static void refuse_acceleration(const struct building *b, const struct output *output, const struct form *form,
+				bool *seen)
+{
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if (is_highest(&b->model->frame, &(*term)->basis))
+			error(output->value->start, "a piecewise-linear model gives it",
+			      "an acceleration that a contact may hold beside what is not piecewise linear is no "
+			      "output");
+}
+
+struct asking {
+	const struct building *b;
+	const struct output *output;
+};
+
+static void check_output(void *context)
+{
+	const struct asking *work = context;
+	const struct building *b = work->b;
+	const struct model *model = b->model;
+	size_t atoms = (size_t)atoms_count(b->collector.atoms);
+	bool *seen = ARRAY(bool, atoms), *read = ARRAY(bool, atoms);
+	const struct form *form = work->output->form ? work->output->form : work->output->left;
+	if (form && has_bounces(model))
+		refuse_acceleration(b, work->output, form, read);
+	if (work->output->left)
+		refuse_in_output(work->output, work->output->left, seen);
+	for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
+		if (mpq_sgn(work->output->channel[c]) != 0)
+			refuse_in_output(work->output, model->operator[0].left[c], seen);
+}
+
+void check_contact_outputs(struct building *b)
+{
+	for (int i = 0; i < b->model->outputs; i++)
+		statement_guard(check_output, &(struct asking){ b, &b->model->output[i] });
+}
+
+void find_contacts(struct building *b)
+{
+	for (int i = 0; i < b->model->impacts; i++) {
+		struct impact *impact = &b->model->impact[i];
+		if (impact->bounces)
+			impact->in->press = rate_of_form(b, impact->in->speed);
+	}
+	find_drags(b);
+}
+
+void place_contact_loads(struct building *b)
+{
+	const struct model *model = b->model;
+	for (int i = 0; i < model->impacts; i++) {
+		const struct strike *strike = model->impact[i].in;
+		const bool bounces = model->impact[i].bounces;
+		place_loads(b, strike->guard);
+		place_loads(b, strike->speed);
+		if (bounces)
+			place_loads(b, strike->press);
+		for (int k = 0; k < strike->jumps; k++)
+			place_loads(b, strike->jump[k].form);
+		for (int k = 0; k < strike->jumps && bounces; k++)
+			place_loads(b, strike->still[k].form);
+	}
+	for (int i = 0; i < model->drags; i++) {
+		place_loads(b, model->drag[i].velocity);
+		place_loads(b, model->drag[i].rate);
+		place_loads(b, model->drag[i].force);
+		place_loads(b, model->drag[i].rest);
+	}
+}
+
+bool has_contacts(const struct model *model)
+{
+	return model->drags > 0 || (model->impacts > 0 && !model->switching);
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts and dry friction. */
+#ifndef PLGEN_MODEL_CONTACTS_H
+#define PLGEN_MODEL_CONTACTS_H
+
+#include "model/regions/expressions.h"
+#include "model/model.h"
+#include "model/regions/regions.h"
+
+struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */
+	int state;
+	struct form *form;
+	struct output *row;
+};
+struct strike {                     /* what an impact is in one segment of time */
+	struct form *guard, *speed; /* turned so that it rises where it comes true, through 0; its derivative */
+	struct form *press;         /* of a bounce: that of the speed; it may have highest derivatives */
+	int jumps;
+	struct jump *jump;
+	mpq_t restitution;          /* of a bounce: e */
+	mpq_t gap, answer;          /* of a stop, as numbers; answer: of its speed to a force of contact */
+	mpq_t *direction;           /* d, per coordinate */
+	struct jump *still;         /* its jumps if e were 0 */
+	struct output *speed_row;
+	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
+	mpq_t at, factor;           /* guard = factor (expression - at) */
+	bool upward;                /* which it passes this way */
+};
+struct impact {                     /* of `when`, or of a stop */
+	const struct when *when;
+	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
+	bool bounces;
+	struct strike *in;          /* per segment of time of the model */
+};
+
+/* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
+struct friction {                   /* in one segment of time */
+	const struct atom *atom;
+	int segment, expression;
+	mpq_t at;                   /* that breakpoint */
+	mpq_t factor;               /* v = factor (expression - at) */
+	bool negative;              /* F may fall below 0, and counts as 0 there */
+	bool low;                   /* S may fall below F, and counts as F there */
+};
+struct bearing { const struct atom *atom; const struct form *borne; };
+/* Of FN_SLIDE: friction of what has no mass, by what it bears */
+struct slider {
+	const struct atom *atom;
+	bool negative;              /* F may fall below 0 */
+};
+/* It slides beyond a breakpoint of q - F or of -q - F; F may be another one in each region */
+struct slide {
+	int way;                    /* 1 or -1 where it slides */
+	int expression[2];          /* that of either */
+	mpq_t at[2];                /* its breakpoint, */
+	bool upward[2];             /* which is passed upward where the sliding begins */
+};
+/* Friction beside what is not piecewise linear, where there are no regions */
+struct drag {
+	const struct atom *atom;
+	const struct form *velocity, *rate; /* v, and its derivative; that has highest derivatives */
+	const struct form *force, *rest;    /* F, and up to what it sticks */
+};
+struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
+	int state;
+	struct form *form;          /* of states, loads and inputs, none of them held */
+	struct output *row;
+};
+struct release {                    /* of what sticks: the interval is left where the form becomes greater than 0 */
+	int expression;
+	bool upward;
+	struct form *form;          /* it may have highest derivatives */
+	struct output *row;         /* over states, loads and inputs alone */
+};
+
+/* ---- impacts.c: state jumps, and what bounces ---- */
+
+void collect_impacts(struct building *b, struct snapshot *snapshot); /* in one interval of time */
+void gather_impacts(struct building *b);                    /* of all of them */
+void build_impacts(struct building *b);                     /* once the masses are known */
+bool strikes_change(const struct building *b);              /* from interval to interval */
+/* At the start of this segment of time a load takes the guard up, so that it may come true by no crossing. */
+bool closes_by_jump(struct building *b, const struct impact *impact, int segment);
+void place_impact_loads(struct building *b, const struct switching *s);
+void build_impact_rows(struct building *b, struct switching *s);
+/* Why a scheme cannot treat friction or impacts */
+_Noreturn void tell_no_events(const struct building *b, struct place at);
+
+/* ---- events.c: what is held in regions, and what begins there ---- */
+
+bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
+/* In one segment of time: which begins where an expression passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int segment, int expression, int interval); /* there; -1: none does */
+/* the interval in which it rests; -1: it is no bounce */
+int  rest_of(const struct switching *s, int segment, const struct impact *impact);
+bool has_bounces(const struct model *model);
+const char *restitution_text(const struct model *model, const struct impact *impact); /* of a bounce, at all times */
+bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
+bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
+
+/* ---- contacts.c: impacts and friction beside what is not piecewise linear ---- */
+
+void find_contacts(struct building *b);                     /* of the equations for all time */
+void place_contact_loads(struct building *b);
+void check_contact_outputs(struct building *b);             /* says what they cannot read */
+bool has_contacts(const struct model *model);               /* without regions */
+
+#endif

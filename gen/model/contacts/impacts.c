@@ -1,0 +1,488 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts: where a guard comes true by crossing, the state jumps, linearly. One that turns the speed of its guard, s to
+ * -e s, along one direction, v -> v - (1 + e) d s, is a bounce; after infinitely many of them in finite time, or after
+ * one where e is 0, its contact rests. */
+#include "model/building.h"
+#include "friction.h"
+#include "model/tunable/tuning.h"
+
+/* ---- guards and jumps as forms ---- */
+
+static struct form *scalar_form(struct building *b, struct node *node)
+{
+	struct value *value = collect(&b->collector, node);
+	if (value->rows != 1 || value->columns != 1)
+		error(node->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+	return value->cell[0];
+}
+
+static void check_linear(const struct building *b, const struct node *node, const struct form *form, const char *what)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct node *tuned = form->term[i].basis.kind == BASIS_ATOM ? first_tuned(node) : NULL;
+		if (tuned)
+			error(tuned->at, "beside a series it may stand in forces, loads and the force of friction",
+			      "%s takes no tunable param beside what is left over: '%s'", what, tuned->symbol->name);
+		if (form->term[i].basis.kind == BASIS_ATOM)
+			error(node->start, NULL, "%s is linear in states, loads and inputs, and '%s' is not", what,
+			      text_between(node->start, node->end));
+		if (is_highest(&b->model->frame, &form->term[i].basis))
+			error(node->start, "it follows from the equations, which change there",
+			      "%s cannot read the highest derivative of %s", what,
+			      b->model->coord_name[form->term[i].basis.index]);
+	}
+}
+
+static bool is_rising(const struct when *when)
+{
+	return when->guard->comparison == CMP_GT || when->guard->comparison == CMP_GE;
+}
+
+/* The gap of a stop is a length, and what comes back of the speed a part of it. */
+static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution, mpq_ptr gap)
+{
+	collect_constant(&b->collector, when->restitution, restitution);
+	if (mpq_sgn(restitution) < 0 || mpq_cmp_ui(restitution, 1, 1) > 0)
+		error(when->restitution->start, "the part of the speed that comes back, 0 to 1",
+		      "restitution %s is not within 0 and 1", readable_text(restitution));
+	struct form *form = scalar_form(b, when->gap);
+	if (is_constant(form))
+		constant_value(&b->collector, form, gap);
+	if (mpq_sgn(gap) < 0)
+		error(when->gap->start, "a gap is 0 or more: what stands first comes up to the second",
+		      "a gap of %s is below 0", readable_text(gap));
+}
+
+struct collecting {
+	struct building *b;
+	const struct when *when;
+	struct strike *strike;
+};
+
+static int state_at(const struct building *b, const struct node *target)
+{
+	const struct symbol *s = target->symbol;
+	int coord = s->index + (target->component ? target->component - 1 : 0);
+	if (target->primes >= s->highest)
+		error(target->at, NULL, "'%s' follows from the equations: it cannot jump",
+		      text_between(target->start, target->end));
+	return target->primes ? b->model->system.velocity[coord] : coord;
+}
+
+static void collect_jumps(struct building *b, const struct when *when, struct strike *strike)
+{
+	strike->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
+	for (int i = 0; i < when->jumps; i++) {
+		struct jump *jump = &strike->jump[strike->jumps++];
+		jump->state = state_at(b, when->jump[i].target);
+		jump->form = scalar_form(b, when->jump[i].value);
+		check_linear(b, when->jump[i].value, jump->form, "a jump");
+	}
+}
+
+static void collect_impact(void *context)
+{
+	struct collecting *work = context;
+	struct building *b = work->b;
+	const struct when *when = work->when;
+	struct strike *strike = work->strike;
+	struct node *const *side = when->guard->child;
+	mpq_inits(strike->restitution, strike->gap, strike->answer, strike->at, strike->factor, NULL);
+	if (when->restitution)
+		check_stop(b, when, strike->restitution, strike->gap);
+	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
+	check_linear(b, side[0], left, "a guard");
+	check_linear(b, side[1], right, "a guard");
+	strike->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
+	if (is_constant(strike->guard))
+		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
+		      "this guard never changes");
+	for (int i = 0; i < strike->guard->terms; i++) {
+		const struct basis *basis = &strike->guard->term[i].basis;
+		if (basis->kind == BASIS_INPUT && !input_hold(b, basis->index))
+			error(when->guard->start, "as a ramp it moves: input ... hold first",
+			      "this guard jumps with an input that is held");
+	}
+	collect_jumps(b, when, strike);
+}
+
+void collect_impacts(struct building *b, struct snapshot *snapshot)
+{
+	const struct spec *spec = b->spec;
+	snapshot->strike = ARRAY(struct strike *, spec->whens);
+	for (int i = 0; i < spec->whens; i++) {
+		struct strike *strike = NEW(struct strike);
+		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], strike }))
+			snapshot->strike[i] = strike;
+	}
+}
+
+static struct strike copied(const struct building *b, const struct when *when, const struct strike *from)
+{
+	struct strike copy = *from;
+	mpq_inits(copy.restitution, copy.gap, copy.answer, copy.at, copy.factor, NULL);
+	mpq_set(copy.gap, from->gap);
+	mpq_set(copy.answer, from->answer);
+	mpq_set(copy.restitution, from->restitution);
+	copy.jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
+	for (int k = 0; k < copy.jumps; k++)
+		copy.jump[k] = from->jump[k];
+	return copy;
+}
+
+void gather_impacts(struct building *b)
+{
+	struct model *model = b->model;
+	const struct spec *spec = b->spec;
+	const int segments = model->system.segments;
+	if (spec->whens > LIMIT_IMPACTS)
+		error(spec->when[LIMIT_IMPACTS].at, NULL, "more impacts than the limit of %d", LIMIT_IMPACTS);
+	model->impact = ARRAY(struct impact, spec->whens);
+	if (diagnostics_errors())
+		return;
+	model->impacts = spec->whens;
+	for (int i = 0; i < spec->whens; i++) {
+		struct impact *impact = &model->impact[i];
+		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, segments) };
+		for (int s = 0; s < segments; s++)
+			impact->in[s] = copied(b, impact->when, b->snapshot[s].strike[i]);
+	}
+}
+
+static bool same_strike(const struct strike *a, const struct strike *b)
+{
+	bool same = a->jumps == b->jumps && same_form(a->guard, b->guard);
+	for (int k = 0; k < a->jumps && same; k++)
+		same = same_form(a->jump[k].form, b->jump[k].form);
+	return same;
+}
+
+bool strikes_change(const struct building *b)
+{
+	bool changes = false;
+	for (int i = 0; i < b->model->impacts; i++)
+		for (int s = 1; s < b->model->system.segments; s++)
+			changes = changes || !same_strike(b->model->impact[i].in, &b->model->impact[i].in[s]);
+	return changes;
+}
+
+void tell_no_events(const struct building *b, struct place at)
+{
+	const enum scheme scheme = b->model->scheme;
+	if ((scheme_row(scheme)->expands || scheme == SCHEME_EXACT) && strikes_change(b))
+		error(at, "scheme exact takes them beside what is piecewise linear",
+		      "beside a series a guard and its jumps have one formula for all time");
+	error(at, format("scheme exact, of what is piecewise linear, and schemes taylor, radau and auto go from event "
+			 "to event: %s does not", scheme_name(scheme)),
+	      "friction and impacts are events inside steps, at which the scheme does not stop");
+}
+
+/* ---- what a jump does to a form ---- */
+
+static const struct jump *jump_of(const struct building *b, const struct strike *strike, const struct basis *basis)
+{
+	for (int i = 0; i < strike->jumps && basis->kind == BASIS_COORD; i++) {
+		int state = basis->order ? b->model->system.velocity[basis->index] : basis->index;
+		if (strike->jump[i].state == state)
+			return &strike->jump[i];
+	}
+	return NULL;
+}
+
+/* The form of the state behind the jump, over the state before it */
+static struct form *behind(const struct building *b, const struct strike *strike, const struct form *form)
+{
+	struct form *sum = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct jump *jump = jump_of(b, strike, &form->term[i].basis);
+		if (jump)
+			form_add_to(sum, jump->form, form->term[i].factor);
+		else
+			form_add_basis(sum, form->term[i].basis, form->term[i].factor);
+	}
+	return sum;
+}
+
+/* a = ratio b + rest, rest constant; b has terms that are not */
+static bool is_along(struct building *b, const struct form *a, const struct form *along, mpq_ptr ratio, mpq_ptr rest)
+{
+	const struct form_term *last = &along->term[along->terms - 1], *same = form_find(a, &last->basis);
+	mpq_set_ui(ratio, 0, 1);
+	if (same)
+		mpq_div(ratio, same->factor, last->factor);
+	const struct form *off = form_difference(a, form_scale(along, ratio));
+	if (!is_constant(off))
+		return false;
+	constant_value(&b->collector, off, rest);
+	return true;
+}
+
+static bool reads_highest(const struct building *b, const struct form *form)
+{
+	bool any = false;
+	for (int i = 0; i < form->terms; i++)
+		any = any || is_highest(&b->model->frame, &form->term[i].basis);
+	return any;
+}
+
+static _Noreturn void tell_again(const struct when *when, const char *why)
+{
+	error(when->guard->start, "x' = -0.8*x' turns back what x >= 0.1 has met",
+	      "its own jump triggers this 'when' again at once: %s", why);
+}
+
+/* Behind its own jump a guard may not stand where it is true, nor go on to there. */
+static void check_jump(struct building *b, const struct when *when, const struct strike *strike)
+{
+	RATIONAL ratio = ZERO, rest = ZERO;
+	bool known = is_along(b, behind(b, strike, strike->guard), strike->guard, ratio, rest);
+	if (known && mpq_sgn(rest) > 0)
+		tell_again(when, "behind it the guard is true, by a constant");
+	bool stays = known && mpq_sgn(rest) == 0;
+	if (stays && !reads_highest(b, strike->speed) && !is_constant(strike->speed) &&
+	    is_along(b, behind(b, strike, strike->speed), strike->speed, ratio, rest) && mpq_sgn(rest) == 0 &&
+	    mpq_sgn(ratio) > 0)
+		tell_again(when, "behind it the guard goes on as it came");
+}
+
+/* ---- bounces ---- */
+
+/* Whether each jump is v -> v - (1 + e) d s of velocities v, s the speed of the guard; then e and d */
+static bool find_bounce(struct building *b, struct strike *strike)
+{
+	const struct linear *system = &b->model->system;
+	mpq_t *part = rationals(b->model->n);
+	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
+	RATIONAL turned = ZERO, product = ZERO, rest = ZERO;
+	for (int i = 0; i < strike->jumps && bounce; i++) {
+		int state = strike->jump[i].state, coord = system->coord[state];
+		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
+		bounce = state >= b->model->n &&
+			 is_along(b, form_difference(form_unit(basis), strike->jump[i].form), strike->speed,
+				  part[coord], rest) &&
+			 mpq_sgn(rest) == 0;
+		const struct form_term *term = bounce ? form_find(strike->speed, &basis) : NULL;
+		if (term)
+			mpq_mul(product, term->factor, part[coord]);
+		if (term)
+			mpq_add(turned, turned, product);
+	}
+	mpq_set_ui(rest, 1, 1);
+	bounce = bounce && mpq_cmp(turned, rest) >= 0;
+	for (int j = 0; j < b->model->n && bounce; j++)
+		mpq_div(part[j], part[j], turned);
+	if (bounce)
+		mpq_sub(strike->restitution, turned, rest);
+	strike->direction = bounce ? part : NULL;
+	return bounce;
+}
+
+/* ---- stops: the force between two coordinates does it, by the equations' masses ---- */
+
+static void add_row(const struct building *b, const struct node *end, int sign, mpq_t *force)
+{
+	if (!end)
+		return;
+	int coord = end->symbol->index + (end->component ? end->component - 1 : 0);
+	if (b->model->system.velocity[coord] < 0)
+		error(end->at, "a mass, or an equation with its second derivative",
+		      "an impact needs a mass: %s is of first order", b->model->coord_name[coord]);
+	mpq_set_si(force[b->owner[coord]], sign, 1);
+}
+
+/* v -> v - (1 + e) d s; returns how many */
+static int velocity_jumps(const struct building *b, const struct strike *strike, mpq_srcptr e, struct jump *jump)
+{
+	int jumps = 0;
+	RATIONAL factor = ZERO;
+	for (int j = 0; j < b->model->n; j++) {
+		if (mpq_sgn(strike->direction[j]) == 0)
+			continue;
+		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 1 };
+		mpq_set_si(factor, -1, 1);
+		mpq_sub(factor, factor, e);
+		mpq_mul(factor, factor, strike->direction[j]);
+		jump[jumps++] = (struct jump){
+			.state = b->model->system.velocity[j],
+			.form = form_sum(form_unit(basis), form_scale(strike->speed, factor), false)
+		};
+	}
+	return jumps;
+}
+
+/* Of highest derivatives, as the equations have them */
+static mpq_t *inverse_masses(const struct building *b)
+{
+	struct linear shape = linear_like(&b->model->system);
+	int n = shape.n, column;
+	mpq_t *inverse = rationals((size_t)(n * n));
+	for (int i = 0; i < n; i++) {
+		const struct form *form = b->snapshot->residual[i].form;
+		for (int k = 0; k < form->terms; k++) {
+			const struct basis *basis = &form->term[k].basis;
+			mpq_t *matrix[] = { shape.K, shape.C, shape.M };
+			if (basis->kind == BASIS_COORD)
+				mpq_set(matrix[basis->order][i * n + basis->index], form->term[k].factor);
+		}
+	}
+	if (!leading_inverse(&shape, inverse, &column))
+		abandon();                      /* told with the equations */
+	return inverse;
+}
+
+/* d = M^-1 f/(s M^-1 f), f the force of contact on the equations of the two */
+static void find_jumps(struct building *b, const struct when *when, struct strike *strike)
+{
+	int n = b->model->n;
+	mpq_t *inverse = inverse_masses(b), *force = rationals(n), *d = rationals(n);
+	RATIONAL speed = ZERO, factor = ZERO;
+	add_row(b, when->from, 1, force);
+	add_row(b, when->to, -1, force);
+	rational_product(n, n, 1, inverse, force, d);
+	for (int i = 0; i < strike->speed->terms; i++) {
+		const struct basis *basis = &strike->speed->term[i].basis;
+		if (basis->kind != BASIS_COORD)
+			continue;
+		mpq_mul(factor, strike->speed->term[i].factor, d[basis->index]);
+		mpq_add(speed, speed, factor);
+	}
+	if (mpq_sgn(speed) <= 0)
+		error(when->at, NULL, "the masses at this stop do not make a force part them");
+	for (int j = 0; j < n; j++)
+		mpq_div(d[j], d[j], speed);
+	mpq_set(strike->answer, speed);
+	strike->direction = d;
+	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
+}
+
+/* What is left where nothing comes back */
+static void still_jumps(struct building *b, struct strike *strike)
+{
+	RATIONAL none = ZERO;
+	strike->still = ARRAY(struct jump, b->model->n);
+	strike->jump = ARRAY(struct jump, b->model->n);
+	velocity_jumps(b, strike, none, strike->still);
+	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
+}
+
+struct indexed {
+	struct building *b;
+	int index;
+};
+
+/* Two that one crossing starts would leave open which of them acts. */
+static void check_alike(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	const struct impact *all = b->model->impact, *impact = &all[work->index];
+	RATIONAL ratio = ZERO, rest = ZERO;
+	for (int i = 0; i < work->index; i++)
+		for (int s = 0; s < b->model->system.segments; s++)
+			if (is_along(b, impact->in[s].guard, all[i].in[s].guard, ratio, rest) && mpq_sgn(rest) == 0)
+				error(impact->when->guard->start,
+				      "all that jumps there belongs into one 'when', with commas",
+				      "another 'when' or stop has this guard already");
+}
+
+/* A contact that rests stays what it is when a load changes its formula. */
+static void tell_bounce_changes(const struct building *b, const struct when *when, int segment, bool bounces)
+{
+	error(when->at, "one that turns the speed of its guard does so at all times, or at none",
+	      "what jumps here is a bounce %s t = %s and none %s it", bounces ? "from" : "before",
+	      readable_text(b->model->system.change[segment - 1]), bounces ? "before" : "from");
+}
+
+static void build_impact(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	struct impact *impact = &b->model->impact[work->index];
+	const struct when *when = impact->when;
+	for (int s = 0; s < b->model->system.segments; s++) {
+		struct strike *strike = &impact->in[s];
+		bool bounces = when->restitution != NULL;
+		strike->speed = rate_of_form(b, strike->guard);
+		if (when->restitution)
+			find_jumps(b, when, strike);
+		else
+			bounces = find_bounce(b, strike);
+		if (s > 0 && bounces != impact->bounces)
+			tell_bounce_changes(b, when, s, bounces);
+		impact->bounces = bounces;
+		check_jump(b, when, strike);
+		if (bounces)
+			still_jumps(b, strike);
+	}
+}
+
+/* Once masses are known: which guards bounce, and how */
+void build_impacts(struct building *b)
+{
+	for (int i = 0; i < b->model->impacts; i++)
+		statement_guard(build_impact, &(struct indexed){ b, i });
+	for (int i = 1; i < b->model->impacts; i++)
+		statement_guard(check_alike, &(struct indexed){ b, i });
+}
+
+/* ---- guards that jump with a load ---- */
+
+struct jumping {
+	struct building *b;
+	const struct form *by;
+	int segment;                /* behind the change */
+	mpq_t value;
+};
+
+static void find_value(void *context)
+{
+	struct jumping *work = context;
+	struct collector *c = &work->b->collector;
+	mpq_srcptr change = work->b->model->system.change[work->segment - 1];
+	struct fixing t = { .form = form_constant(change) };
+	mpq_init(t.value);
+	mpq_set(t.value, change);
+	constant_value(c, form_at(point_new(c, 1, &t), work->by), work->value);
+}
+
+bool closes_by_jump(struct building *b, const struct impact *impact, int segment)
+{
+	struct jumping work = { .b = b, .segment = segment };
+	work.by = form_difference(impact->in[segment].guard, impact->in[segment - 1].guard);
+	mpq_init(work.value);
+	for (int i = 0; i < work.by->terms; i++)
+		if (work.by->term[i].basis.kind >= BASIS_INPUT)
+			return false;
+	bool known = silent_guard(find_value, &work);
+	bool closes = known && nearest_double(work.value) > 1e-30;      /* but for irrationals of 256 bits */
+	mpq_clear(work.value);
+	return closes;
+}
+
+/* ---- in regions ---- */
+
+void place_impact_loads(struct building *b, const struct switching *s)
+{
+	for (int i = 0; i < s->impacts; i++)
+		for (int segment = 0; segment < s->segments; segment++) {
+			const struct strike *strike = &s->impact[i].in[segment];
+			place_loads(b, strike->speed);
+			for (int k = 0; k < strike->jumps; k++)
+				place_loads(b, strike->jump[k].form);
+		}
+}
+
+void build_impact_rows(struct building *b, struct switching *s)
+{
+	for (int i = 0; i < s->impacts; i++)
+		for (int segment = 0; segment < s->segments; segment++) {
+			struct strike *strike = &s->impact[i].in[segment];
+			bool bounces = s->impact[i].bounces;
+			for (int k = 0; k < strike->jumps; k++)
+				strike->jump[k].row = row_of_form(b, strike->jump[k].form);
+			for (int k = 0; k < strike->jumps && bounces; k++)
+				strike->still[k].row = row_of_form(b, strike->still[k].form);
+			if (bounces)
+				strike->speed_row = row_of_form(b, strike->speed);
+		}
+}

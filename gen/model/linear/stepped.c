@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which model is stepped: that of the equations, or one over coordinates that part what moves as a whole. */
+#include "model/regions/regions.h"
+#include "relative.h"
+#include "model/tunable/tuning.h"
+
+/* The coordinate from which all of its group are measured */
+static int root_of(const struct relative *r, int coord)
+{
+	while (r->link[coord].kind == LINK_PARENT)
+		coord = r->link[coord].from;
+	return coord;
+}
+
+/* The coordinates kept from `first` on that move as a whole with it; NULL: there are no others */
+static const char *kept_with(const struct model *model, const struct relative *r, int first)
+{
+	const char *names = model->written->coord_name[first];
+	int count = 1;
+	for (int j = first + 1; j < model->written->n; j++)
+		if (model->reduction.place[first] >= 0 && model->reduction.place[j] >= 0 &&
+		    root_of(r, first) == root_of(r, j)) {
+			names = format("%s, %s", names, model->written->coord_name[j]);
+			count++;
+		}
+	return count > 1 ? names : NULL;
+}
+
+/* Positions that a reduced model keeps as they are written, though they may move as a whole */
+static void warn_of_kept(const struct model *model)
+{
+	const struct relative *r = relative_of(model->written);
+	const char *names = NULL;
+	for (int i = 0; r && i < model->written->n && !names; i++)
+		names = kept_with(model, r, i);
+	if (names)
+		say_warning(model->spec->name_at, "without --reduce differences are states of their own",
+			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences "
+			    "lose digits",
+			    names);
+}
+
+/* The model again, its regions those of all coordinates together: over differences independent parts are not told
+ * apart. NULL: it was said why not */
+static struct model *undivided(struct model *model, struct spec *spec, struct request *again)
+{
+	if (!model->switching || !model->switching->parts)
+		return model;
+	again->undivided = true;
+	struct model *whole = model_build(spec, again);
+	if (whole)
+		whole->switching->sharing = model->switching->parts;
+	return whole;
+}
+
+static struct model *model_over_differences(struct model *model, struct spec *spec, struct request *again)
+{
+	model = undivided(model, spec, again);
+	again->relative = model ? relative_of(model) : NULL;
+	struct model *relative = again->relative ? model_build(spec, again) : NULL;
+	relative = relative ? find_tuning(relative, again) : NULL;
+	if (!relative)
+		return NULL;
+	relative->reduction.irreducible = model->reduction.irreducible;
+	if (relative->switching)
+		relative->switching->sharing = model->switching->sharing;
+	return relative;
+}
+
+/* The model over coordinates that part what moves as a whole from what moves in it; itself, where nothing does */
+struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
+{
+	struct request again = *request;
+	if (model->written != model) {
+		warn_of_kept(model);
+		return model;
+	}
+	if (!relative_of(model))
+		return model;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	if (row->holds_coupling || row->modes) {
+		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at,
+			    row->modes ? "exact and etdrk4 step differences as states of their own"
+				       : "any other scheme steps differences as states of their own",
+			    "%s keeps coordinates as they are written, and some may move as a whole: where they grow, "
+			    "their differences lose digits", scheme_name(model->scheme));
+		return model;
+	}
+	again.reduce = again.reduce && !model->reduction.irreducible;
+	return model_over_differences(model, spec, &again);
+}

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which regions can be: inequalities of their expressions that hold together, by elimination (Fourier and Motzkin).
+ * Whether forces jump with a velocity from one to the next. */
+#include "model/building.h"
+#include "model/contacts/contacts.h"
+#include "model/reads.h"
+
+static const struct node *last_term(const struct switching *s)
+{
+	return s->expression[s->expressions - 1].node;
+}
+
+_Noreturn void too_many_in_time(const struct switching *s)
+{
+	error(last_term(s)->at,
+	      "a load that is sampled can be an input; a scheme with a leftover, such as etdrk4, needs no regions",
+	      "more regions than the limit of %d, in %d segments of time together", LIMIT_REGIONS_IN_TIME, s->segments);
+}
+
+_Noreturn void too_many(const struct building *b, const struct switching *s)
+{
+	bool together = b->model->relative || b->request->undivided;
+	const char *hint = "a scheme with a leftover, such as etdrk4, needs no regions";
+	if (has_events(s))
+		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
+	else if (together)
+		hint = "some coordinates move as a whole, and then independent parts have their regions together; a "
+		       "scheme with a leftover, such as etdrk4, needs no regions";
+	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
+}
+
+struct inequality { mpq_t *a; };    /* a[0] v0 + a[1] v1 + ... < a[count] */
+
+struct inequalities {
+	int variables, count;
+	struct inequality *row;
+};
+
+static void add_inequality(struct inequalities *set, mpq_t *a)
+{
+	MORE(set->row, set->count)->a = a;
+}
+
+/* upper and lower bound on variable v combined, so that it drops out */
+static mpq_t *combined(int size, int v, const mpq_t *upper, const mpq_t *lower)
+{
+	mpq_t *a = rationals(size + 1);
+	RATIONAL product = ZERO, factor = ZERO;
+	for (int i = 0; i <= size; i++) {
+		mpq_div(product, upper[i], upper[v]);
+		mpq_div(factor, lower[i], lower[v]);
+		mpq_sub(a[i], product, factor); /* v + ... < ., and -v - ... < -. */
+	}
+	return a;
+}
+
+static bool can_hold(struct inequalities set)
+{
+	for (int v = 0; v < set.variables; v++) {
+		struct inequalities rest = { set.variables, 0, NULL };
+		for (int i = 0; i < set.count; i++) {
+			int sign = mpq_sgn(set.row[i].a[v]);
+			if (sign == 0)
+				add_inequality(&rest, set.row[i].a);
+			for (int j = 0; j < set.count && sign > 0; j++)
+				if (mpq_sgn(set.row[j].a[v]) < 0)
+					add_inequality(&rest, combined(set.variables, v, set.row[i].a, set.row[j].a));
+		}
+		set = rest;
+	}
+	for (int i = 0; i < set.count; i++)
+		if (mpq_sgn(set.row[i].a[set.variables]) <= 0)
+			return false;           /* 0 < what is not above 0 */
+	return true;
+}
+
+/* The bases that expressions are made of, as variables */
+static int find_bases(const struct switching *s, int segment, struct basis **basis)
+{
+	int count = 0;
+	*basis = NULL;
+	for (int i = 0; i < s->expressions; i++)
+		for (int k = 0; k < s->expression[i].in[segment]->terms; k++) {
+			const struct basis *found = &s->expression[i].in[segment]->term[k].basis;
+			bool known = false;
+			for (int j = 0; j < count; j++)
+				known = known || basis_order(&(*basis)[j], found) == 0;
+			if (known)
+				continue;
+			*MORE(*basis, count) = *found;
+		}
+	return count;
+}
+
+static mpq_t *bound_row(const struct expression *e, int segment, int bases, const struct basis *basis, mpq_srcptr at,
+			bool below)
+{
+	mpq_t *a = rationals(bases + 1);
+	const struct form *form = e->in[segment];
+	for (int k = 0; k < form->terms; k++)
+		for (int j = 0; j < bases; j++)
+			if (basis_order(&basis[j], &form->term[k].basis) == 0)
+				mpq_set(a[j], form->term[k].factor);
+	mpq_sub(a[bases], at, e->shift[segment]);
+	for (int j = 0; j <= bases && !below; j++)
+		mpq_neg(a[j], a[j]);
+	return a;
+}
+
+static bool is_possible(const struct switching *s, int region, int bases, const struct basis *basis)
+{
+	struct inequalities set = { bases, 0, NULL };
+	for (int i = 0; i < s->expressions; i++) {
+		const struct expression *e = &s->expression[i];
+		int interval = interval_of(s, region, i), segment = segment_of_region(s, region);
+		if (is_stick(e, interval))
+			continue;
+		if (interval < e->breaks)
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval], true));
+		if (interval > 0)
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval - 1], false));
+	}
+	return can_hold(set);
+}
+
+/* Expressions of which each has a basis of its own are independent: then every region can be. */
+static bool independent(const struct switching *s, int segment)
+{
+	for (int i = 0; i < s->expressions; i++) {
+		bool own = false;
+		const struct form *form = s->expression[i].in[segment];
+		for (int k = 0; k < form->terms && !own; k++) {
+			own = true;
+			for (int j = 0; j < s->expressions; j++)
+				for (int m = 0; m < s->expression[j].in[segment]->terms; m++)
+					own = own &&
+					      (i == j ||
+					       basis_order(&form->term[k].basis,
+							   &s->expression[j].in[segment]->term[m].basis) != 0);
+		}
+		if (!own)
+			return false;
+	}
+	return true;
+}
+
+void mark_possible(const struct building *b, struct switching *s)
+{
+	int in_one = regions_at_once(s), in_all = 0;
+	for (int segment = 0; segment < s->segments; segment++) {
+		struct basis *basis;
+		int bases = find_bases(s, segment, &basis), count = 0;
+		bool all = b->factor || independent(s, segment); /* by other values others are */
+		for (int r = segment * in_one; r < (segment + 1) * in_one; r++) {
+			s->region[r].possible = all || is_possible(s, r, bases, basis);
+			count += s->region[r].possible;
+		}
+		in_all += count;
+		if (count > LIMIT_REGIONS)
+			too_many(b, s);
+		if (s->segments > 1 && s->expressions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
+			too_many_in_time(s);
+	}
+}
+
+/* ---- what cannot be treated: forces that jump with a velocity ---- */
+
+/* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
+static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, int segment,
+			mpq_srcptr at)
+{
+	const struct form *here = e->in[segment];
+	RATIONAL factor = ZERO, constant = ZERO;
+	for (int i = 0; i < form->terms; i++)
+		if (basis_order(&form->term[i].basis, &here->term[0].basis) == 0)
+			mpq_div(factor, form->term[i].factor, here->term[0].factor);
+	mpq_sub(constant, at, e->shift[segment]);
+	const struct form *rest =
+		form_sum(form, form_scale(form_sum(here, form_constant(constant), true), factor), true);
+	bool gone = is_constant(rest);
+	if (gone)
+		constant_value(c, rest, constant);
+	gone = gone && mpq_sgn(constant) == 0;
+	return gone;
+}
+
+static void check_face(struct building *b, const struct switching *s, int below, int expression)
+{
+	const struct expression *e = &s->expression[expression];
+	const struct region *low = &s->region[below], *high = &s->region[below + e->stride];
+	mpq_srcptr at = e->at[interval_of(s, below, expression)];
+	for (int k = 0; k < s->rows; k++) {
+		int i = s->row[k];
+		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
+		if (vanishes_on(&b->collector, jump, e, segment_of_region(s, below), at))
+			continue;
+		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
+	}
+}
+
+void check_jumps(struct building *b, const struct switching *s)
+{
+	for (int e = 0; e < s->expressions; e++)
+		for (int r = 0; r < s->regions && reads_velocity(b->model, s->expression[e].form); r++)
+			if (interval_of(s, r, e) < s->expression[e].breaks && s->region[r].possible &&
+			    s->region[r + s->expression[e].stride].possible)
+				check_face(b, s, r, e);
+}

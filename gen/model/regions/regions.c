@@ -1,0 +1,567 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of expressions that are linear
+ * in states, known loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an
+ * expression divide it into intervals; a region is one interval for each expression, and in it every equation is
+ * linear. Expressions are found by looking at one region after the other, as breakpoints in time are. */
+#include "model/building.h"
+#include "model/contacts/friction.h"
+#include "regions.h"
+
+enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cannot be are left out */
+
+/* ---- is it? ---- */
+
+/* In every segment of time; where there are several, somewhere with a breakpoint: factors of what is linear may not
+ * change alone. */
+bool is_piecewise_linear(const struct building *b)
+{
+	int segments = b->model->system.segments;
+	bool divided = segments == 1 || b->model->impacts > 0;
+	for (int s = 0; s < segments; s++)
+		for (int i = 0; i < b->model->n; i++) {
+			const struct form *form = b->snapshot[s].residual[i].form;
+			if (!is_piecewise_form(form))
+				return false;
+			divided = divided || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
+		}
+	return divided;
+}
+
+/* ---- a form in one region ---- */
+
+struct looking {
+	struct building *b;
+	struct switching *s;
+	const int *interval;        /* per expression */
+	struct form **known;        /* per atom */
+	int count;
+	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	int region, row;            /* where it looks */
+	int segment;                /* of time */
+	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
+};
+
+int possible_regions(const struct switching *s)
+{
+	int count = s->parts > 0;
+	for (int p = 0; p < s->parts; p++)
+		count *= possible_regions(s->part[p].model->switching);
+	for (int r = 0; r < s->regions && !s->parts; r++)
+		count += s->region[r].possible;
+	return count;
+}
+
+static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
+{
+	mpq_t *breaks = rationals(e->breaks + 1);
+	int below = 0;
+	while (below < e->breaks && mpq_cmp(e->at[below], at) < 0)
+		below++;
+	for (int i = 0; i < e->breaks; i++)
+		mpq_set(breaks[i < below ? i : i + 1], e->at[i]);
+	mpq_set(breaks[below], at);
+	e->at = breaks;
+	e->breaks++;
+	l->grown = true;
+	l->lowest = below < l->lowest ? below : l->lowest;
+}
+
+/* Is e above `at` here? What is not known yet is noted. Where the breakpoint stands twice, what sticks or rests between
+ * counts as below it. */
+static bool is_above(struct looking *l, int index, mpq_srcptr at)
+{
+	struct expression *e = &l->s->expression[index];
+	for (int i = e->breaks - 1; i >= 0; i--)
+		if (mpq_equal(e->at[i], at))
+			return !l->grown && l->interval[index] > i;
+	add_break(l, e, at);
+	return false;
+}
+
+/* What is decided by the sign of a number that params may change, or by its being at least 0; equal ones are one. */
+static void note_sign(const struct building *b, struct switching *s, mpq_srcptr number, bool least)
+{
+	if (!b->factor)
+		return;
+	for (int i = 0; i < s->signs; i++)
+		if (mpq_equal(s->sign[i].number, number) && s->sign[i].least == least)
+			return;
+	struct sign *sign = MORE(s->sign, s->signs);
+	sign->least = least;
+	mpq_init(sign->number);
+	mpq_set(sign->number, number);
+}
+
+/* In the order in which the equations show expressions */
+static int order_met(const struct looking *l)
+{
+	return l->row + (l->region > 0 ? l->b->model->n : 0);
+}
+
+static void refuse_force(const struct node *node, const struct form *form)
+{
+	if (form->terms && form->term[form->terms - 1].basis.kind == BASIS_ATOM)
+		error(node->at, "a state, a load or an input can decide",
+		      "the force of friction cannot decide a function or a condition");
+}
+
+/* A form, and the constant in it apart */
+static struct compared compared_here(struct looking *l, const struct node *node, const struct form *form,
+				     mpq_ptr constant)
+{
+	const struct form plain = constant_terms(form);
+	constant_value(&l->b->collector, &plain, constant);
+	return (struct compared){ node, form_sum(form, &plain, true), constant, order_met(l) };
+}
+
+/* The expression of which a form is factor (expression - at); -1: it is a constant, then in `at` */
+static int expression_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
+			   mpq_ptr at)
+{
+	RATIONAL constant = ZERO;
+	struct compared what = compared_here(l, node, form, constant);
+	if (what.form->terms == 0) {
+		mpq_set(at, constant);
+		note_sign(l->b, l->s, at, false);
+		return -1;
+	}
+	int e = find_expression(l->s, l->segment, &what, factor, at);
+	note_sign(l->b, l->s, factor, false);
+	return e;
+}
+
+/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple
+ * of. What is compared with a constant is written as it is, on whichever side it stands. */
+static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
+{
+	bool turned = is_constant(a) && !is_constant(b);
+	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
+	RATIONAL factor = ZERO, at = ZERO;
+	refuse_force(node, form);
+	int e = expression_here(l, node, form, factor, at), sign = mpq_sgn(at);
+	if (e >= 0)
+		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
+	form_free(form);
+	return turned ? -sign : sign;
+}
+
+static struct form *form_here(struct looking *l, const struct form *form);
+
+static struct form *table_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	int piece = 1;
+	RATIONAL slope = ZERO, width = ZERO;
+	for (int k = 3; k + 2 < a->operands; k += 2)
+		if (sign_here(l, a->node, x[0], x[k]) > 0)
+			piece = k;
+	struct collector *c = &l->b->collector;
+	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
+	constant_value(c, form_difference(x[piece + 2], x[piece]), width);
+	mpq_div(slope, slope, width);
+	return form_sum(x[piece + 1], form_scale(form_difference(x[0], x[piece]), slope), false);
+}
+
+static struct form *extreme_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct form *best = x[0];
+	for (int i = 1; i < a->operands; i++)
+		if ((sign_here(l, a->node, best, x[i]) > 0) == (a->function == FN_MIN))
+			best = x[i];
+	return best;
+}
+
+/* ---- friction: a breakpoint that stands twice, with the interval of sticking between ---- */
+
+static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
+{
+	int known = 0;
+	for (int i = 0; i < e->breaks; i++)
+		known += mpq_equal(e->at[i], at) != 0;
+	for (; known < 2; known++)
+		add_break(l, e, at);
+}
+
+/* From the start of this segment of time on; t = 0 of the first */
+static mpq_srcptr segment_start(const struct looking *l, mpq_srcptr zero)
+{
+	return l->segment > 0 ? l->b->model->system.change[l->segment - 1] : zero;
+}
+
+static mpq_srcptr segment_end(const struct looking *l)
+{
+	const struct linear *system = &l->b->model->system;
+	return l->segment < system->segments - 1 ? system->change[l->segment] : NULL;
+}
+
+/* As far as its size tells, which params may change; *least: by what it was decided; *bounded: that is known */
+static bool is_positive_by_size(const struct form *form, mpq_ptr least, bool *bounded)
+{
+	RATIONAL size = ZERO;
+	*bounded = true;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		mpq_abs(size, form->term[i].factor);
+		if (basis->kind == BASIS_ONE)
+			mpq_add(least, least, form->term[i].factor);
+		else
+			mpq_sub(least, least, size);
+		*bounded = *bounded && (basis->kind == BASIS_ONE || (basis->kind == BASIS_WAVE && !basis->power &&
+								     mpq_sgn(basis->wave->a) <= 0));
+	}
+	return *bounded && mpq_sgn(least) >= 0;
+}
+
+/* Never below 0 in this segment of time: it needs no breakpoint there */
+static bool is_positive_here(struct looking *l, const struct form *form)
+{
+	bool bounded;
+	RATIONAL least = ZERO, zero = ZERO;
+	bool positive = is_positive_by_size(form, least, &bounded);
+	if (bounded)
+		note_sign(l->b, l->s, least, positive);
+	if (!positive && !l->b->factor)
+		positive = stays_above_zero(form, segment_start(l, zero), segment_end(l));
+	return positive;
+}
+
+/* Below 0 no force is left */
+static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
+{
+	if (is_positive_here(l, force) || sign_here(l, node, force, form_number(0)) >= 0)
+		return force;
+	*negative = *negative || !l->grown;
+	return form_number(0);
+}
+
+/* What it can hold while it sticks: no less than its force. It is that of the regions next to where it sticks. */
+static struct form *rest_here(struct looking *l, struct friction *f, struct form *const *x, struct form *force)
+{
+	int side = l->grown ? 0 : l->interval[f->expression] - stick_of(l->s, f);
+	if (side != 1 && side != -1)
+		return x[2];
+	struct form *more = less_in_velocity(x[2], force, x[0]);
+	if (is_positive_here(l, more) || sign_here(l, f->atom->node, more, form_number(0)) >= 0)
+		return x[2];
+	f->low = f->low || !l->grown;
+	return force;
+}
+
+static int add_friction(struct looking *l, const struct atom *a)
+{
+	struct switching *s = l->s;
+	int known = friction_of(s, l->segment, a);
+	if (known >= 0)
+		return known;
+	struct friction *f = MORE(s->friction, s->frictions);
+	*f = (struct friction){ .atom = a, .segment = l->segment };
+	mpq_inits(f->at, f->factor, NULL);
+	return s->frictions - 1;
+}
+
+/* As written, in this segment of time */
+static void check_forces_here(const struct looking *l, const struct atom *a)
+{
+	if (l->b->factor)
+		return;
+	RATIONAL zero = ZERO;
+	for (int i = 1; i < a->operands; i++)
+		check_force(a->node->child[i], a->operand[i], segment_start(l, zero), segment_end(l));
+}
+
+/* It stands for itself: what it is depends on the whole region */
+static struct form *friction_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	int index = add_friction(l, a);
+	struct friction *f = &l->s->friction[index];
+	f->expression = expression_here(l, a->node, x[0], f->factor, f->at);
+	check_forces_here(l, a);
+	add_stick(l, &l->s->expression[f->expression], f->at);
+	for (int i = 1; i < a->operands; i++)
+		refuse_force(a->node, x[i]);
+	struct region *region = &l->s->region[l->region];
+	bool negative = false;
+	region->force[a->index] = force_here(l, a->node, x[1], &negative);
+	f->negative = f->negative || negative;
+	region->rest[a->index] = a->operands > 2 ? rest_here(l, f, x, region->force[a->index])
+						 : region->force[a->index];
+	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
+}
+
+/* Whether a > b, by which expression and which way that is passed */
+static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
+		    struct slide *slide, int side)
+{
+	struct form *form = form_difference(a, b);
+	RATIONAL factor = ZERO;
+	refuse_force(node, form);
+	int e = expression_here(l, node, form, factor, slide->at[side]);
+	if (e < 0)
+		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
+	slide->expression[side] = e;
+	slide->upward[side] = mpq_sgn(factor) > 0;
+	return is_above(l, e, slide->at[side]) == slide->upward[side];
+}
+
+static struct slider *slider_of(struct switching *s, const struct atom *a)
+{
+	for (int i = 0; i < s->sliders; i++)
+		if (s->slider[i].atom == a)
+			return &s->slider[i];
+	struct slider *slider = MORE(s->slider, s->sliders);
+	*slider = (struct slider){ .atom = a };
+	return slider;
+}
+
+/* 0 where it sticks; where it slides its equation is another one, which stands once all regions are known */
+static struct form *slider_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct region *region = &l->s->region[l->region];
+	bool negative = false;
+	check_forces_here(l, a);
+	struct form *force = force_here(l, a->node, x[1], &negative);
+	struct slider *slider = slider_of(l->s, a);
+	struct slide *slide = &region->slide[a->index];
+	mpq_inits(slide->at[0], slide->at[1], NULL);
+	bool above = exceeds(l, a->node, x[0], force, slide, 0),
+	     below = exceeds(l, a->node, form_difference(NEW(struct form), x[0]), force, slide, 1);
+	slider->negative = slider->negative || negative;
+	region->force[a->index] = force;
+	region->rest[a->index] = x[0];
+	slide->way = above ? 1 : below ? -1 : 0;
+	return form_number(0);
+}
+
+static struct form *call_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	int side;
+	switch (a->function) {
+	case FN_ABS:
+		return sign_here(l, a->node, x[0], form_number(0)) < 0 ? form_difference(form_number(0), x[0]) : x[0];
+	case FN_SGN:   return form_number(sign_here(l, a->node, x[0], form_number(0)));
+	case FN_MIN:
+	case FN_MAX:   return extreme_here(l, a, x);
+	case FN_TABLE: return table_here(l, a, x);
+	case FN_FRICTION: return friction_here(l, a, x);
+	case FN_SLIDE: return slider_here(l, a, x);
+	default:
+		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
+		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
+	}
+}
+
+/* <= and < differ on the breakpoint alone, where the motion decides */
+static bool comparison_here(struct looking *l, const struct atom *a)
+{
+	int sign = sign_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
+	return a->comparison <= CMP_LE ? sign < 0 : sign > 0;
+}
+
+static struct form *atom_here(struct looking *l, const struct atom *a)
+{
+	if (a->kind == ATOM_COMPARE)
+		return form_number(comparison_here(l, a));
+	if (a->kind == ATOM_CHOOSE)
+		return form_here(l, a->operand[comparison_here(l, a->operand[0]->term[0].basis.atom) ? 1 : 2]);
+	struct form **x = ARRAY(struct form *, a->operands);
+	for (int i = 0; i < a->operands; i++)
+		x[i] = form_here(l, a->operand[i]);
+	return call_here(l, a, x);
+}
+
+/* Not to be changed: it may share the terms of the form, or be what an atom is */
+static struct form *form_here(struct looking *l, const struct form *form)
+{
+	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
+		return form_alias(form);
+	struct form *total = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		const struct atom *atom = term->basis.atom;
+		if (atom && !l->known[atom->index]) {
+			work_at(atom->node->start);
+			l->known[atom->index] = atom_here(l, atom);
+		}
+		if (atom)
+			form_add_to(total, l->known[atom->index], term->factor);
+		else
+			form_add_basis(total, term->basis, term->factor);
+	}
+	return total;
+}
+
+/* ---- all regions: in each segment of time those of all intervals ---- */
+
+static int *intervals_of(const struct switching *s, int region)
+{
+	int *interval = ARRAY(int, s->expressions + 1);
+	for (int i = 0; i < s->expressions; i++)
+		interval[i] = interval_of(s, region, i);
+	return interval;
+}
+
+int count_candidates(struct switching *s)
+{
+	int count = 1;
+	for (int i = 0; i < s->expressions; i++) {
+		s->expression[i].stride = count;
+		if (count > LIMIT_CANDIDATES / (s->expression[i].breaks + 1))
+			return LIMIT_CANDIDATES + 1;
+		count *= s->expression[i].breaks + 1;
+	}
+	return count;
+}
+
+/* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
+{
+	struct strike *strike = &impact->in[l->segment];
+	const struct node *node = impact->when->guard;
+	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
+	const struct form *guard = rising ? strike->guard : form_difference(NEW(struct form), strike->guard);
+	struct compared what = compared_here(l, node, guard, constant);
+	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
+	note_sign(l->b, l->s, strike->factor, false);
+	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
+	if (!rising)
+		mpq_neg(strike->factor, strike->factor);
+	if (impact->bounces)
+		add_stick(l, &l->s->expression[strike->expression], strike->at);
+	else
+		(void)is_above(l, strike->expression, strike->at);
+}
+
+static void meet_impacts(struct looking *l)
+{
+	const struct model *model = l->b->model;
+	RATIONAL constant = ZERO;
+	for (int i = 0; i < model->impacts; i++)
+		meet_impact(l, &model->impact[i], constant);
+}
+
+/* What a look has left that was not the last */
+static void forget_region(const struct region *region)
+{
+	discard(region->residual);
+	discard(region->force);
+	discard(region->rest);
+	discard(region->carried);
+	discard(region->slide);
+}
+
+/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
+ * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
+ * are. */
+static bool look(struct building *b, struct switching *s, int *known)
+{
+	struct region *before = s->region;
+	for (int r = *known; r < s->regions; r++)
+		forget_region(&before[r]);
+	bool single = s->expressions == 1 && s->segments == 1;
+	int in_one = count_candidates(s);
+	if (in_one > LIMIT_CANDIDATES)
+		too_many(b, s);
+	s->regions = in_one * s->segments;
+	s->region = ARRAY(struct region, s->regions);
+	for (int r = 0; r < *known; r++)
+		s->region[r] = before[r];
+	for (int r = *known; r < s->regions; r++) {
+		int atoms = atoms_count(b->collector.atoms), *interval = intervals_of(s, r);
+		struct looking l = { .b = b,
+				     .s = s,
+				     .interval = interval,
+				     .known = ARRAY(struct form *, atoms),
+				     .count = atoms,
+				     .region = r,
+				     .segment = segment_of_region(s, r),
+				     .lowest = r };
+		s->region[r].residual = ARRAY(struct form *, b->model->n);
+		s->region[r].force = ARRAY(struct form *, atoms);
+		s->region[r].rest = ARRAY(struct form *, atoms);
+		s->region[r].carried = ARRAY(struct form *, atoms);
+		s->region[r].slide = ARRAY(struct slide, atoms);
+		for (int k = 0; k < s->rows; k++) {
+			l.row = s->row[k];
+			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
+		}
+		meet_impacts(&l);
+		discard(l.known);
+		discard(interval);
+		*known = single && s->expressions == 1 ? l.lowest : 0;
+		if (s->torn)
+			s->expressions = *known = 0;
+		s->torn = false;
+		if (l.grown)
+			return false;
+	}
+	return true;
+}
+
+/* ---- all of it ---- */
+
+static bool rows_change(const struct building *b, int rows, const int *row)
+{
+	bool changes = false;
+	for (int s = 1; s < b->model->system.segments; s++)
+		for (int k = 0; k < rows; k++)
+			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
+							b->snapshot->residual[row[k]].form);
+	return changes || strikes_change(b);
+}
+
+/* Highest derivatives cannot decide on their own equations; the collector has refused them. */
+struct switching *regions_of_rows(struct building *b, int rows, int *row)
+{
+	struct switching *s = NEW(struct switching);
+	int known = 0;
+	s->impacts = b->model->impacts;
+	s->impact = b->model->impact;
+	s->rows = rows;
+	s->row = row;
+	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
+	while (!look(b, s, &known))
+		;
+	complete_expressions(s);
+	mark_possible(b, s);
+	if (!b->model->relative)                /* else it has been told */
+		check_jumps(b, s);
+	if (has_events(s))
+		resolve_friction(b, s);
+	return s;
+}
+
+/* ---- their systems ---- */
+
+static bool same_system(const struct linear *a, const struct linear *b)
+{
+	size_t n = (size_t)a->n, cells = n * n;
+	bool same = rationals_equal(cells, a->M, b->M) && rationals_equal(cells, a->C, b->C) &&
+		    rationals_equal(cells, a->K, b->K);
+	for (int l = 0; l < a->loads && same; l++)
+		for (int k = 0; k < a->load[l].columns && same; k++)
+			same = rationals_equal(n, a->load[l].force[k], b->load[l].force[k]);
+	for (int i = 0; i < a->inputs && same; i++)
+		for (int k = 0; k < 2 && same; k++)
+			same = rationals_equal(n, a->input[i].force[k], b->input[i].force[k]);
+	return same;
+}
+
+static bool same_rows(const struct switching *s, int a, int b)
+{
+	bool same = true;
+	for (int e = 0; e < s->expressions && a != b; e++)
+		same = same && mpq_equal(s->expression[e].shift[a], s->expression[e].shift[b]) &&
+		       same_form(s->expression[e].in[a], s->expression[e].in[b]);
+	return same;
+}
+
+int add_system(struct switching *s, const struct linear *system, int segment, bool apart)
+{
+	for (int i = 0; i < s->systems && !apart; i++)
+		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
+			return i;
+	ENLARGE(s->system, (size_t)s->systems + 1);
+	ENLARGE(s->system_segment, (size_t)s->systems + 1);
+	s->system[s->systems] = *system;
+	s->system_segment[s->systems] = segment;
+	return s->systems++;
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Params that are made of tunable ones in another way than as sums of products: sin(p), sqrt(k/m), the 1 + p of
+ * x/(1 + p), p > 1 ? a : b; where an entry has too many products, all sums. Each is a tunable param of its own, behind
+ * those of the spec, which the target finds from these by its expression. */
+#include "tuning.h"
+
+/* ---- what a sum of products is not ---- */
+
+struct exponent {
+	struct node *node;
+	mpq_ptr value;
+};
+
+static void find_exponent(void *context)
+{
+	const struct exponent *e = context;
+	struct collector collector = { .scheme = "exact", .constant_only = true };
+	collect_constant(&collector, e->node, e->value);
+}
+
+/* One that a product of powers may have; 0: it is none */
+static long whole_exponent(struct node *node)
+{
+	RATIONAL value = ZERO;
+	const bool whole = !first_tuned(node) && silent_guard(find_exponent, &(struct exponent){ node, value }) &&
+			   mpz_cmp_ui(mpq_denref(value), 1) == 0 &&
+			   mpz_cmpabs_ui(mpq_numref(value), FIT_DEGREE) <= 0;
+	return whole ? mpz_get_si(mpq_numref(value)) : 0;
+}
+
+/* One product of powers, by which a sum of them can be divided */
+static bool is_product(const struct node *node)
+{
+	bool product = node->kind == NODE_PRODUCT || (node->kind == NODE_SUM && node->children == 1);
+	if (!first_tuned(node))
+		return true;
+	if (node->kind == NODE_NAME)
+		return node->symbol->tunable || is_product(node->symbol->value);
+	if (node->kind == NODE_POWER)
+		return whole_exponent(node->child[1]) != 0 && is_product(node->child[0]);
+	for (int i = 0; i < node->children && product; i++)
+		product = is_product(node->child[i]);
+	return product;
+}
+
+/* One number, of params and numbers */
+static bool is_number(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool number = node->kind != NODE_TIME && node->kind != NODE_MATRIX && node->kind != NODE_FILE &&
+		      node->function != FN_FRICTION;
+	if (s)
+		number = s->kind == SYMBOL_PARAM;
+	for (int i = 0; i < node->children && number; i++)
+		number = is_number(node->child[i]);
+	return number;
+}
+
+static bool is_other(const struct spec *spec, const struct node *node, bool divides)
+{
+	return node->kind == NODE_CALL || node->kind == NODE_CHOOSE || node->kind == NODE_COMPARE ||
+	       (node->kind == NODE_POWER && whole_exponent(node->child[1]) == 0) ||
+	       ((divides || spec->derives_sums) && !is_product(node));
+}
+
+/* ---- in its place ---- */
+
+static bool same_node(const struct node *a, const struct node *b)
+{
+	bool same = a->kind == b->kind && a->symbol == b->symbol && a->function == b->function &&
+		    a->comparison == b->comparison && a->children == b->children &&
+		    (a->kind != NODE_NUMBER || mpq_equal(a->number, b->number));
+	for (int i = 0; i < a->children && same; i++)
+		same = same_node(a->child[i], b->child[i]) && (!a->inverse || a->inverse[i] == b->inverse[i]);
+	return same;
+}
+
+/* That of the same expression, where there is one */
+static struct symbol *derived_symbol(struct spec *spec, struct node *node)
+{
+	for (int k = spec->tunables - spec->derived; k < spec->tunables; k++)
+		if (same_node(spec->tunable[k].symbol->value, node))
+			return spec->tunable[k].symbol;
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){ .kind = SYMBOL_PARAM, .name = format("derived%d", ++spec->derived),
+				   .at = node->at, .value = node, .used = true, .tuned = true, .derived = true,
+				   .tunable = spec->tunables + 1 };
+	add_symbol(spec, symbol);
+	*MORE(spec->tunable, spec->tunables) = (struct tunable){ node->start, symbol };
+	return symbol;
+}
+
+static struct node *derived_name(struct spec *spec, struct node *node)
+{
+	struct node *name = NEW(struct node);
+	*name = (struct node){ .kind = NODE_NAME, .at = node->at, .start = node->start, .end = node->end,
+			       .symbol = derived_symbol(spec, node) };
+	return name;
+}
+
+static void derive_in(struct spec *spec, struct node **place, bool divides)
+{
+	struct node *node = *place;
+	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	if (!first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
+		return;
+	if (is_number(node) && is_other(spec, node, divides)) {
+		*place = derived_name(spec, node);
+		return;
+	}
+	if (s && s->value && !s->derived) {
+		s->derived = true;
+		derive_in(spec, &s->value, false);
+	}
+	for (int i = 0; i < node->children; i++) {
+		const bool inverse = node->kind == NODE_PRODUCT && node->inverse[i];
+		const bool power = node->kind == NODE_POWER && i == 0 && whole_exponent(node->child[1]) < 0;
+		derive_in(spec, &node->child[i], inverse || power);
+	}
+}
+
+/* ---- what the target reads ---- */
+
+/* All expressions of the spec but values of params, initial values and what holds for plgen alone */
+static void each_expression(struct spec *spec, void (*visit)(void *context, struct node **place), void *context)
+{
+	for (int i = 0; i < spec->equations; i++) {
+		visit(context, &spec->equation[i].left);
+		visit(context, &spec->equation[i].right);
+	}
+	for (int i = 0; i < spec->elements; i++)
+		visit(context, &spec->element[i].value);
+	for (int i = 0; i < spec->whens; i++) {
+		struct when *when = &spec->when[i];
+		struct node **place[] = { &when->guard, &when->gap, &when->restitution };
+		for (int k = 0; k < 3; k++)
+			if (*place[k])
+				visit(context, place[k]);
+		for (int k = 0; k < when->jumps; k++)
+			visit(context, &when->jump[k].value);
+	}
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_OUTPUT && s->value)
+			visit(context, &s->value);
+}
+
+static void derive_here(void *context, struct node **place)
+{
+	derive_in(context, place, false);
+}
+
+void derive_params(struct spec *spec)
+{
+	spread_tuned(spec);
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->derived = s->derived && s->tunable;  /* -D gives it another value */
+	each_expression(spec, derive_here, spec);
+}
+
+struct spec *spec_again(const struct spec *spec)
+{
+	struct spec *again = parse_spec(spec->source);
+	again->derives_sums = spec->derives_sums;
+	return again;
+}
+
+static void add_read(void *context, struct node **place)
+{
+	*(unsigned *)context |= params_read(*place);
+}
+
+void warn_of_unread(const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	unsigned read = 0;
+	each_expression(model->spec, add_read, &read);
+	for (int k = 0; k < spec->tunables - spec->derived && !model->relative; k++)
+		if (!(read >> k & 1))
+			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
+				    spec->tunable[k].symbol->name);
+}
+
+/* ---- what cannot be found there ---- */
+
+/* What seems to be a sum of products of its i-th operand, and is none. A load's frequency may be tunable, its phase is
+ * looked at with the model. */
+static bool stays_here(const struct node *node, int i)
+{
+	const bool wave = node->function == FN_SIN || node->function == FN_COS;
+	return node->kind == NODE_COMPARE || (node->kind == NODE_CHOOSE && i == 0) ||
+	       (node->kind == NODE_POWER && i == 1) ||
+	       (node->kind == NODE_CALL && (!wave || is_number(node->child[i])));
+}
+
+static _Noreturn void refuse_decided(const struct node *node, const struct node *name)
+{
+	const bool call = node->kind == NODE_CALL, power = node->kind == NODE_POWER;
+	const char *one_more = format("%d expressions that are no sums of products are found on the target, and this "
+				      "is one more", LIMIT_DERIVED);
+	error(name->at,
+	      is_number(node) ? one_more
+	      : call ? "what tunables alone make is found on the target; make what it gives a tunable of its own"
+		     : "which way it goes is decided when plgen runs: where formulas change is fixed",
+	      "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name,
+	      call ? format("%s()", function_name(node->function)) : power ? "an exponent" : "a condition");
+}
+
+/* Of what moves in regions the sign is one of those that have to stay. */
+static void check_in(void *context, struct node **place)
+{
+	const bool *regions = context;
+	struct node *node = *place;
+	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
+	if (symbol && symbol->tuned && !symbol->tunable && symbol->value && !symbol->tuning_checked) {
+		symbol->tuning_checked = true;
+		check_in(context, &symbol->value);
+	}
+	for (int i = 0; i < node->children; i++) {
+		const struct node *name = first_tuned(node->child[i]);
+		if (name && stays_here(node, i) && (!*regions || is_number(node)))
+			refuse_decided(node, name);
+		check_in(context, &node->child[i]);
+	}
+}
+
+void check_tuned(const struct model *model)
+{
+	bool regions = model->switching;
+	each_expression(model->spec, check_in, &regions);
+}

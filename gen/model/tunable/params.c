@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tunable params that the instance has: expressions read them, or they act like inputs. */
+#include "tuning.h"
+
+const struct node *first_tuned(const struct node *node)
+{
+	if (node->kind == NODE_NAME && node->symbol->tuned)
+		return node;
+	for (int i = 0; i < node->children; i++) {
+		const struct node *found = first_tuned(node->child[i]);
+		if (found)
+			return found;
+	}
+	return NULL;
+}
+
+/* Each stands after what it is made of. */
+void spread_tuned(const struct spec *spec)
+{
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->tuned = s->tuned || (s->value && first_tuned(s->value));
+}
+
+int param_of_input(const struct spec *spec, int input)
+{
+	int k = input < spec->inputs ? -1 : 0;
+	while (k >= 0 && (spec->tunable[k].symbol->factor || spec->tunable[k].symbol->acting != input - spec->inputs))
+		k++;
+	return k;
+}
+
+unsigned params_read(const struct node *node)
+{
+	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	unsigned params = 0;
+	if (s && s->tunable && !s->derived)
+		return 1u << (s->tunable - 1);
+	if (s && s->tuned && s->value && !s->made_of)
+		s->made_of = params_read(s->value);
+	for (int i = 0; i < node->children; i++)
+		params |= params_read(node->child[i]);
+	return s ? s->made_of : params;
+}
+
+unsigned params_of_tunable(const struct spec *spec, int tunable)
+{
+	const struct symbol *s = spec->tunable[tunable].symbol;
+	return s->derived ? params_read(s->value) : 1u << tunable;
+}
+
+struct tuning *list_tunables(const struct model *model)
+{
+	struct tuning *t = NEW(struct tuning);
+	t->params = model->spec->tunables;
+	t->given = t->params - model->spec->derived;
+	t->param = model->spec->tunable;
+	t->nominal = rationals(t->params);
+	for (int k = 0; k < t->params; k++)
+		param_value(t->param[k].symbol, t->nominal[k]);
+	return t;
+}
+
+const struct model *model_elsewhere(const struct model *model)
+{
+	return tunables_of(model) ? tunables_of(model)->other : NULL;
+}
+
+const struct tuning *tunables_of(const struct model *model)
+{
+	return model->tuning ? model->tuning : model->held;
+}

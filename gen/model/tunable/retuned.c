@@ -1,0 +1,472 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How a model follows from tunable params: its equations, outputs and frequencies of loads; of regions, the rows that
+ * they have. A param of regions that can be a held input, a gap or a force, stays one (params.c); others are factors,
+ * numbers of the model. It is looked at elsewhere (elsewhere.c), regions close to the spec's values, where breakpoints
+ * keep their order and factors their sign: what decided on the way which region is which has to keep its sign on the
+ * target. */
+#include "model/contacts/contacts.h"
+#include "elsewhere.h"
+#include "model/reads.h"
+#include "model/linear/shortening.h"
+#include "tuning.h"
+
+#include <string.h>
+
+/* ---- the model at other values ---- */
+
+static bool same_shape(const struct model *model, const struct model *other)
+{
+	const struct linear *a = &model->system, *b = &other->system;
+	bool same = a->states == b->states && a->inputs == b->inputs && same_loads(a, b, true);
+	for (int i = 0; i < a->n && same; i++)
+		same = a->velocity[i] == b->velocity[i];
+	return same;
+}
+
+static bool same_loads_there(const struct model *model, const struct model *other)
+{
+	return same_loads(&model->system, &other->system, false);
+}
+
+static bool same_region(const struct region *a, const struct region *b)
+{
+	bool same = a->possible == b->possible && a->holds == b->holds && a->releases == b->releases &&
+		    (!a->possible || a->system == b->system);
+	for (int k = 0; k < a->holds && same; k++)
+		same = a->hold[k].state == b->hold[k].state;
+	return same;
+}
+
+static bool same_impact(const struct impact *whole, const struct impact *other, int segment)
+{
+	const struct strike *a = &whole->in[segment], *b = &other->in[segment];
+	bool same = whole->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
+		    a->expression == b->expression;
+	for (int k = 0; k < a->jumps && same; k++)
+		same = a->jump[k].state == b->jump[k].state;
+	return same;
+}
+
+static bool same_regions(const struct model *model, const struct model *other)
+{
+	const struct switching *a = model->switching, *b = other->switching;
+	if (!b || a->expressions != b->expressions || a->segments != b->segments || a->regions != b->regions ||
+	    a->systems != b->systems || a->impacts != b->impacts || a->frictions != b->frictions)
+		return false;
+	bool same = true;
+	for (int e = 0; e < a->expressions; e++)
+		same = same && a->expression[e].breaks == b->expression[e].breaks;
+	for (int e = 0; e < a->expressions && same; e++)
+		for (int k = 1; k < a->expression[e].breaks; k++)
+			same = same && is_stick(&a->expression[e], k) == is_stick(&b->expression[e], k);
+	for (int r = 0; r < a->regions && same; r++)
+		same = same_region(&a->region[r], &b->region[r]);
+	for (int i = 0; i < a->segments * a->impacts && same; i++)
+		same = same_impact(&a->impact[i % a->impacts], &b->impact[i % a->impacts], i / a->impacts);
+	return same;
+}
+
+/* Formulas of outputs read the instance's own params; what friction without mass bears beside a damper has numbers. */
+static bool same_outputs(const struct model *model, const struct model *other)
+{
+	bool same = true;
+	for (int i = 0; i < model->outputs && same; i++) {
+		const struct form *a = model->output[i].left, *b = other->output[i].left;
+		if (model->output[i].bears && a)
+			same = b && strcmp(form_text(model, a), form_text(other, b)) == 0;
+	}
+	return same;
+}
+
+static const struct difference of_linear[] = {
+	{ same_reduction, "--reduce would leave other states",
+	  "what is left out, and the sums that become states, have to be the same for all values; without --reduce all "
+	  "states are kept" },
+	{ same_shape, "the model has other loads",
+	  "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed" }
+};
+static const struct difference of_regions[] = {
+	{ same_loads_there, "the model has other loads",
+	  "a load is there only where its factor is not 0; its frequency, phase and growth are fixed" },
+	{ same_regions, "the model has other regions",
+	  "what is equal at the spec's values has to stay equal: breakpoints, factors, forces" },
+	{ same_outputs, "an output of friction would be another formula",
+	  "what it holds without mass is no output then; a small mass slides with its own inertia" }
+};
+
+/* Their rows are those of the first. */
+static mpq_t *read_rows(struct elsewhere *s, const struct model *model)
+{
+	struct tuning *t = s->tuning;
+	struct listing l = list_rows(model, &t->x);
+	if (s->points == 0) {
+		t->rows = l.rows;
+		t->row = l.row;
+		s->entries = (ptrdiff_t)l.rows * t->x.size;
+	}
+	if (l.rows != t->rows)
+		tell_difference(s, &of_regions[1]);
+	return l.entry;
+}
+
+/* ---- which rows change, which systems are equal ---- */
+
+static ptrdiff_t index_of(const struct elsewhere *s, int row, int column)
+{
+	return (ptrdiff_t)row * s->tuning->x.size + column;
+}
+
+static bool row_changes(const struct elsewhere *s, int row)
+{
+	bool changes = false;
+	for (int j = 0; j < s->tuning->x.size && !changes; j++)
+		changes = !entry_stays(s, index_of(s, row, j));
+	return changes;
+}
+
+static bool entries_agree(const struct elsewhere *s, ptrdiff_t a, ptrdiff_t b)
+{
+	bool same = true;
+	for (int i = 0; i < s->points && same; i++)
+		same = mpq_equal(entry_seen(s, i, a), entry_seen(s, i, b));
+	return same;
+}
+
+static bool systems_agree(const struct elsewhere *s, int a, int b)
+{
+	const struct switching *w = s->model->switching;
+	const int n = s->model->n, size = s->tuning->x.size;
+	bool same = w->system_segment[a] == w->system_segment[b];
+	for (int j = 0; j < n * size && same; j++)
+		same = entries_agree(s, index_of(s, a * n, j), index_of(s, b * n, j));
+	return same;
+}
+
+/* Systems that are equal for all values are one. They come first among the rows, n of each. */
+static void merge_systems(struct elsewhere *s)
+{
+	struct switching *w = s->model->switching;
+	struct retuned_row *row = s->tuning->row;
+	int kept = 0, *number = ARRAY(int, w->systems), *merged = ARRAY(int, w->systems);
+	for (int k = 0; k < w->systems; k++) {
+		merged[k] = k;
+		for (int i = 0; i < k && merged[k] == k; i++)
+			if (merged[i] == i && systems_agree(s, i, k))
+				merged[k] = i;
+		number[k] = merged[k] == k ? kept : number[merged[k]];
+		if (merged[k] != k)
+			continue;
+		w->system[kept] = w->system[k];
+		w->system_segment[kept++] = w->system_segment[k];
+	}
+	for (int r = 0; r < w->regions; r++)
+		if (w->region[r].possible)
+			w->region[r].system = number[w->region[r].system];
+	for (int i = 0; i < s->tuning->rows; i++)
+		if (row[i].kind <= RETUNED_W)
+			row[i].of = merged[row[i].of] == row[i].of ? number[row[i].of] : -1;
+	w->systems = kept;
+}
+
+/* ---- terms ---- */
+
+/* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
+static bool fit_row(struct elsewhere *s, struct tuned_equations *all, int row, int to, int from, int columns)
+{
+	bool fits = true;
+	for (int j = 0; j < columns && fits; j++)
+		fits = fit_entry(s, index_of(s, row, j), all, to, from + j);
+	return fits;
+}
+
+static void need_fit(const struct elsewhere *s, bool fits)
+{
+	if (!fits && !s->model->spec->derives_sums && !s->model->relative)
+		abandon();              /* it is tried again */
+	if (!fits && s->model->switching)
+		refuse_fit(s, "regions", "only masses in equations may be sums");
+	if (!fits)
+		refuse_fit(s, "equations",
+			   s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
+						   : "multiply an equation by what divides it");
+}
+
+/* Is the row one of a system: its slopes, and what reads them? */
+static bool is_of_system(const struct elsewhere *s, int row, int system)
+{
+	const struct retuned_row *r = &s->tuning->row[row];
+	switch (r->kind) {
+	case RETUNED_SLOPE: return r->of == system;
+	case RETUNED_OUTPUT:
+	case RETUNED_FREQUENCY: return row_changes(s, row);
+	case RETUNED_RELEASE:
+	case RETUNED_GRIP: return s->model->switching->region[r->of].system == system;
+	default: return false;
+	}
+}
+
+/* Slopes have theirs elsewhere, frequencies none; of others they follow */
+static int row_apart(const struct elsewhere *s, int row, bool W)
+{
+	const struct retuned_row *all = s->tuning->row, *of = &all[row];
+	if (of->kind != RETUNED_SLOPE)
+		return of->kind == RETUNED_FREQUENCY ? row : row + (W ? 1 : 2);
+	int i = 0;
+	while (all[i].kind != (W ? RETUNED_W : RETUNED_R) || all[i].of != of->of || all[i].index != of->index)
+		i++;
+	return i;
+}
+
+static struct tuned_equations *new_block(struct tuning *t)
+{
+	struct retuned_block *block = MORE(t->block, t->blocks);
+	*block = (struct retuned_block){ { .columns = t->x.size, .solves = true }, t->all.rows };
+	return &block->all;
+}
+
+/* The next of its rows, which is that of the whole */
+static int add_row(struct tuning *t, struct tuned_equations *all)
+{
+	all->rows++;
+	return t->all.rows++;
+}
+
+/* W a = R x, and what reads a: b - F a = G x */
+static void add_block(struct elsewhere *s, int system)
+{
+	struct tuning *t = s->tuning;
+	const int size = t->x.size;
+	struct tuned_equations *all = new_block(t);
+	for (int i = 0; i < t->rows; i++) {
+		struct retuned_row *row = &t->row[i];
+		if (!is_of_system(s, i, system))
+			continue;
+		need_fit(s, fit_row(s, all, row_apart(s, i, false), all->rows, 0, size));
+		if (row->kind != RETUNED_FREQUENCY)
+			need_fit(s, fit_row(s, all, row_apart(s, i, true), all->rows, size, s->model->n));
+		if (row->kind != RETUNED_SLOPE)
+			add_tuned_unit(all, all->rows, size + all->rows);
+		row->place = add_row(t, all);
+	}
+}
+
+/* As it is; false: it is no sum of products */
+static bool place_row(struct elsewhere *s, int row)
+{
+	struct tuning *t = s->tuning;
+	const int terms = t->all.terms, monomials = t->monomials;
+	if (!fit_row(s, &t->all, row, t->all.rows, 0, t->x.size)) {
+		t->all.terms = terms;
+		t->monomials = monomials;
+		return false;
+	}
+	t->row[row].place = t->all.rows++;
+	t->row[row].positive = mpq_sgn(entry_seen(s, 0, index_of(s, row, 0))) > 0;
+	return true;
+}
+
+/* Of a stop's impact: its answer, a sum of parts that masses divide, divides them. */
+static void add_divided(struct elsewhere *s, int row)
+{
+	struct tuning *t = s->tuning;
+	struct retuned_row *r = &t->row[row];
+	int answer = row;
+	while (t->row[answer].kind != RETUNED_ANSWER || t->row[answer].of != r->of)
+		answer--;
+	struct tuned_equations *all = new_block(t);
+	r->place = add_row(t, all);
+	need_fit(s, fit_row(s, all, row + 1, 0, 0, t->x.size));
+	need_fit(s, fit_row(s, all, answer, 0, t->x.size, 1));
+}
+
+/* All rows of a system or none; of a linear model the slopes are always there */
+static void fit_system(struct elsewhere *s, int system)
+{
+	struct tuning *t = s->tuning;
+	bool changes = !s->model->switching, direct = true;
+	const int rows = t->all.rows, terms = t->all.terms, monomials = t->monomials;
+	for (int i = 0; i < t->rows && !changes; i++)
+		changes = is_of_system(s, i, system) && row_changes(s, i);
+	for (int i = 0; i < t->rows && changes && direct; i++)
+		direct = !is_of_system(s, i, system) || place_row(s, i);
+	if (direct)
+		return;
+	t->all.rows = rows;
+	t->all.terms = terms;
+	t->monomials = monomials;
+	add_block(s, system);
+}
+
+static void fit_rows(struct elsewhere *s)
+{
+	struct tuning *t = s->tuning;
+	t->all.columns = t->x.size;
+	for (int k = 0; k < (s->model->switching ? s->model->switching->systems : 1); k++)
+		fit_system(s, k);
+	for (int i = 0; i < t->rows; i++) {
+		const enum retuned_kind kind = t->row[i].kind;
+		const bool apart = kind <= RETUNED_FREQUENCY || kind == RETUNED_TIMES || kind == RETUNED_ANSWER ||
+				   (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
+		const bool jumps = kind == RETUNED_JUMP || kind == RETUNED_STILL || kind == RETUNED_BACK;
+		if (apart || !row_changes(s, i) || place_row(s, i))
+			continue;
+		need_fit(s, jumps);
+		add_divided(s, i);
+	}
+}
+
+static void mark_acting(struct elsewhere *s)
+{
+	struct tuning *t = s->tuning;
+	t->acts = ARRAY(bool, (size_t)(t->all.rows * t->x.size));
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->x.size && t->row[i].place >= 0; j++)
+			t->acts[t->row[i].place * t->x.size + j] = mpq_sgn(entry_seen(s, 0, index_of(s, i, j))) != 0;
+}
+
+/* Of a linear model, whose rows are all of one system, as they are or solved */
+static void number_rows(struct elsewhere *s)
+{
+	struct tuning *t = s->tuning;
+	if (t->blocks)
+		t->all = t->block[0].all;
+	t->output = ARRAY(int, s->model->outputs);
+	t->frequency = ARRAY(int, s->model->system.loads);
+	for (int i = 0; i < s->model->outputs; i++) {
+		t->output[i] = retuned_place(t, RETUNED_OUTPUT, 0, i);
+		t->outputs += t->output[i] >= 0;
+	}
+	for (int i = 0; i < s->model->system.loads; i++) {
+		t->frequency[i] = retuned_place(t, RETUNED_FREQUENCY, 0, i);
+		t->frequencies += t->frequency[i] >= 0;
+	}
+}
+
+/* ---- what is refused ---- */
+
+static void check_outputs(const struct model *model)
+{
+	for (int i = 0; i < model->outputs; i++) {
+		const struct output *output = &model->output[i];
+		const struct form *form = output->form ? output->form : output->left;
+		struct reads reads = reads_of(model, form != NULL, &form);
+		for (int k = 0; k < model->n; k++)
+			if (reads.highest[k])
+				error(output->value->start, "the program has the masses and forces to divide",
+				      "output '%s' reads a highest derivative, which tunable params change",
+				      output->name);
+	}
+}
+
+static void check_regions(const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	check_tuned(model);
+	check_outputs(model);
+	if (model->switching->sliders > 0)
+		error(spec->tunable[0].at, "a small mass slides with its own inertia",
+		      "tunable params beside what slides without mass are not built yet");
+	if (model->system.states > LIMIT_UNROLLED_STATES)
+		error(spec->tunable[0].at, "gaps and forces alone may be tunable with any number of states",
+		      "tunable params of regions are built for up to %d states: the model has %d",
+		      LIMIT_UNROLLED_STATES, model->system.states);
+}
+
+static void check_linear(const struct model *model)
+{
+	if (scheme_row(model->scheme)->holds_coupling)
+		error(model->spec->tunable[0].at,
+		      "tunable params are for scheme exact, and for what a scheme leaves over",
+		      "scheme %s cannot be retuned", scheme_name(model->scheme));
+	for (int i = 0; i < model->outputs; i++) {
+		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
+		if (name)
+			error(name->at, "read the states, and multiply on the target",
+			      "'%s' is tunable, or made of what is, and output '%s' is not linear", name->symbol->name,
+			      model->output[i].name);
+	}
+	for (int k = 0; model->highest && k < model->n; k++)
+		if (model->highest[k])
+			error(model->highest[k]->value->start,
+			      "an output that is linear may: give the derivative one of its own",
+			      "output '%s' is not linear and reads a derivative that tunable params change",
+			      model->highest[k]->name);
+	check_tuned(model);
+}
+
+/* An instance has A and e^{A d} of each */
+static void check_size(const struct tuning *t, int systems)
+{
+	const int numbers = 2 * systems * t->x.size * t->x.size;
+	if (numbers > LIMIT_TUNED_NUMBERS)
+		error(t->param[0].at, "fewer breakpoints, or gaps and forces alone",
+		      "tunable params of regions are built for up to %d numbers of their matrices in an instance: "
+		      "%d systems of %d take %d",
+		      LIMIT_TUNED_NUMBERS, systems, t->x.size, numbers);
+}
+
+/* ---- all of them ---- */
+
+static struct layout columns_of(const struct model *model)
+{
+	bool *all = ARRAY(bool, model->system.loads + 1);
+	for (int l = 0; l < model->system.loads; l++)
+		all[l] = true;
+	return model->switching ? layout_with(&model->system, 0, all) : layout_of_columns(&model->system);
+}
+
+static void find(void *context)
+{
+	struct elsewhere *s = context;
+	const struct switching *regions = s->model->switching;
+	(regions ? check_regions : check_linear)(s->model);
+	s->tuning->x = columns_of(s->model);
+	look_elsewhere(s);
+	s->tuning->other = s->other;
+	if (regions) {
+		merge_systems(s);
+		check_size(s->tuning, regions->systems);
+	}
+	fit_rows(s);
+	mark_acting(s);
+	if (!regions)
+		number_rows(s);
+}
+
+static struct model *find_by_sums(const struct model *model, const struct request *request)
+{
+	struct spec *spec = spec_again(model->spec);
+	spec->derives_sums = true;
+	struct model *again = model_build(spec, request);
+	again = again ? model_reduce(again) : NULL;
+	return again ? find_tuning(again, request) : NULL;
+}
+
+struct model *find_tuning(struct model *model, const struct request *request)
+{
+	if (model->spec->tunables == 0)
+		return model;
+	struct tuning *t = list_tunables(model);
+	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->factor,
+			       .near = model->factor ? t->nominal : NULL, .read = read_rows };
+	s.difference = model->factor ? of_regions : of_linear;
+	s.differences = model->factor ? sizeof of_regions / sizeof *of_regions : sizeof of_linear / sizeof *of_linear;
+	if (model->keeps_params) {
+		model->held = t;
+		model->retuned = model->factor ? t : NULL;
+	} else {
+		model->tuning = t;
+	}
+	if ((model->factor || !model->keeps_params) && !statement_guard(find, &s))
+		return diagnostics_errors() ? NULL : find_by_sums(model, request);
+	warn_of_unread(model);
+	return model;
+}
+
+int retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index)
+{
+	for (int i = 0; i < t->rows; i++)
+		if (t->row[i].kind == kind && t->row[i].of == of && t->row[i].index == index)
+			return t->row[i].place;
+	return -1;
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All numbers of a model that params may change, row by row over x, in one order for all values of params: what of them
+ * changes is found by comparing such lists. Highest derivatives, outputs of linear models, what regions have. */
+#include "model/contacts/contacts.h"
+#include "elsewhere.h"
+#include "tuning.h"
+
+/* ---- of any model ---- */
+
+/* n x size, 0 before */
+static void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
+{
+	const int size = x->size;
+	RATIONALS *A = augmented_matrix(x, system, 0);
+	for (int i = 0; i < system->n; i++) {
+		mpq_t *from = A + highest_state(system, i) * size;
+		for (int j = 0; j < size; j++)
+			mpq_swap(row[i * size + j], from[j]);
+	}
+}
+
+void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
+		   int segment, mpq_t *row)
+{
+	for (int i = 0; i < system->states; i++)
+		mpq_set(row[i], output->state[i]);
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns && x->load[l] >= 0; k++)
+			for (int s = 0; s < x->segments; s++)
+				mpq_set(row[x->load[l] + s * x->loads + k],
+					output->load[l][k * segments + (x->segments > 1 ? s : segment)]);
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k <= system->input[i].hold && k < 2; k++)
+			mpq_set(row[x->input[i] + k], output->input[k][i]);
+}
+
+static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *row)
+{
+	for (int j = 0; j < size && mpq_sgn(factor) != 0; j++) {
+		if (mpq_sgn(from[j]) == 0)
+			continue;
+		rational_addmul(row[j], factor, from[j]);
+	}
+}
+
+/* R and W of an equation, W a = R x; size and n entries, 0 before. highest: a over x */
+static void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
+{
+	const int n = system->n;
+	for (int k = 0; k < n; k++) {
+		mpq_set(W[k], (system->velocity[k] >= 0 ? system->M : system->C)[equation * n + k]);
+		add_multiple(size, W[k], highest + k * size, R);
+	}
+}
+
+/* Likewise of an output R x - W a: what of it is no highest derivative. form: NULL: it reads none */
+static void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest,
+		     const mpq_t *whole, mpq_t *R, mpq_t *W)
+{
+	for (int j = 0; j < size; j++)
+		mpq_set(R[j], whole[j]);
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind != BASIS_COORD || basis->order < model->frame.coord[basis->index]->highest)
+			continue;
+		mpq_neg(W[basis->index], form->term[i].factor);
+		add_multiple(size, W[basis->index], highest + basis->index * size, R);
+	}
+}
+
+/* ---- a list of them ---- */
+
+static mpq_t *add_row(struct listing *l, enum retuned_kind kind, int of, int index)
+{
+	size_t size = (size_t)l->x->size, cells = (size_t)l->rows * size;
+	ENLARGE(l->row, (size_t)l->rows + 1);
+	ENLARGE(l->entry, cells + size);
+	for (size_t j = 0; j < size; j++)
+		mpq_init(l->entry[cells + j]);
+	l->row[l->rows++] = (struct retuned_row){ .kind = kind, .of = of, .index = index, .place = -1 };
+	return l->entry + cells;
+}
+
+static void add_number(struct listing *l, enum retuned_kind kind, int of, int index, mpq_srcptr value)
+{
+	mpq_set(add_row(l, kind, of, index)[0], value);
+}
+
+static void list_output(struct listing *l, enum retuned_kind kind, int of, int index, const struct output *row,
+			int segment)
+{
+	mpq_t *entry = add_row(l, kind, of, index);
+	row_of_output(l->x, &l->model->system, row, l->model->system.segments, segment, entry);
+}
+
+static const struct linear *system_in(const struct model *model, int index)
+{
+	return model->switching ? &model->switching->system[index] : &model->system;
+}
+
+static void list_system(struct listing *l, int index)
+{
+	const struct linear *system = system_in(l->model, index);
+	const int first = l->rows;
+	for (int i = 0; i < system->n; i++)
+		add_row(l, RETUNED_SLOPE, index, i);
+	rows_of_highest(l->x, system, l->entry + first * l->x->size);
+}
+
+static const mpq_t *highest_of(const struct listing *l, int system)
+{
+	return l->entry + system * l->model->n * l->x->size;
+}
+
+/* W, and R = W times what it was solved to */
+static void list_equations(struct listing *l, int index)
+{
+	const struct linear *system = system_in(l->model, index);
+	for (int i = 0; i < system->n; i++) {
+		add_row(l, RETUNED_W, index, i);
+		mpq_t *R = add_row(l, RETUNED_R, index, i);
+		equation_row(system, i, l->x->size, highest_of(l, index), R, R - l->x->size);
+	}
+}
+
+/* The last row apart */
+static void list_parts(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
+{
+	const struct retuned_row whole = l->row[l->rows - 1];
+	const int size = l->x->size;
+	add_row(l, W, whole.of, whole.index);
+	mpq_t *rest = add_row(l, R, whole.of, whole.index);
+	part_row(l->model, form, size, highest_of(l, system), rest - 2 * size, rest, rest - size);
+}
+
+/* A reduced model has no highest derivatives of what is written. */
+static void list_linear(struct listing *l)
+{
+	const struct linear *system = &l->model->system;
+	for (int o = 0; o < l->model->outputs; o++) {
+		const struct output *output = &l->model->output[o];
+		list_output(l, RETUNED_OUTPUT, 0, o, output, 0);
+		list_parts(l, 0, l->model->reduction.row ? NULL : output->form, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W);
+	}
+	for (int i = 0; i < system->loads; i++)
+		add_number(l, RETUNED_FREQUENCY, 0, i, system->load[i].wave->w);
+}
+
+/* ---- of regions ---- */
+
+static void list_expressions(struct listing *l)
+{
+	const struct switching *s = l->model->switching;
+	for (int segment = 0; segment < s->segments; segment++)
+		for (int e = 0; e < s->expressions; e++)
+			list_output(l, RETUNED_EXPRESSION, segment, e, s->expression[e].row, segment);
+	for (int e = 0; e < s->expressions; e++)
+		for (int k = 0; k < s->expression[e].breaks; k++)
+			add_number(l, RETUNED_BREAK, e, k, s->expression[e].at[k]);
+}
+
+static void list_region(struct listing *l, int index)
+{
+	const struct switching *s = l->model->switching;
+	const struct region *region = &s->region[index];
+	for (int k = 0; k < region->holds; k++)
+		list_output(l, RETUNED_HOLD, index, k, region->hold[k].row, 0);
+	for (int k = 0; k < region->releases; k++) {
+		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
+		list_parts(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
+	}
+	for (int k = 0; k < s->felts && region->grip; k++) {
+		if (!region->grip[k])
+			continue;
+		list_output(l, RETUNED_GRIP, index, k, region->grip[k], 0);
+		list_parts(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
+	}
+}
+
+static void list_times(struct listing *l, mpq_srcptr answer)
+{
+	int size = l->x->size, from = (l->rows - 1) * size;
+	mpq_t *times = add_row(l, RETUNED_TIMES, 0, 0);
+	for (int j = 0; j < size; j++)
+		mpq_mul(times[j], l->entry[from + j], answer);
+}
+
+static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct strike *strike,
+		       const struct jump *jump)
+{
+	for (int k = 0; k < strike->jumps; k++) {
+		list_output(l, kind, index, k, jump[k].row, 0);
+		list_times(l, strike->answer);
+	}
+}
+
+/* One of them in a segment of time; the number of both is `index` */
+static void list_impact(struct listing *l, int index)
+{
+	const struct switching *s = l->model->switching;
+	const struct impact *impact = &s->impact[index % s->impacts];
+	const struct strike *strike = &impact->in[index / s->impacts];
+	add_number(l, RETUNED_ANSWER, index, 0, strike->answer);
+	list_jumps(l, index, RETUNED_JUMP, strike, strike->jump);
+	if (impact->bounces) {
+		list_jumps(l, index, RETUNED_STILL, strike, strike->still);
+		list_output(l, RETUNED_SPEED, index, 0, strike->speed_row, 0);
+		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
+		for (int j = 0; j < l->model->n; j++)
+			mpq_mul(back[j], strike->direction[j], strike->factor);
+		list_times(l, strike->answer);
+		add_number(l, RETUNED_RESTITUTION, index, 0, strike->restitution);
+		add_number(l, RETUNED_LEAST, index, 0, strike->gap);
+	}
+}
+
+/* What has to stay above or below 0; breakpoints their order */
+static void list_signs(struct listing *l)
+{
+	const struct switching *s = l->model->switching;
+	int count = 0;
+	RATIONAL difference = ZERO;
+	for (int e = 0; e < s->expressions; e++)
+		for (int k = 1; k < s->expression[e].breaks; k++) {
+			mpq_sub(difference, s->expression[e].at[k], s->expression[e].at[k - 1]);
+			if (mpq_sgn(difference) != 0)
+				add_number(l, RETUNED_SIGN, count++, 0, difference);
+		}
+	for (int i = 0; i < s->signs; i++)
+		add_number(l, s->sign[i].least ? RETUNED_LEAST : RETUNED_SIGN, count++, 1, s->sign[i].number);
+}
+
+static void list_regions(struct listing *l)
+{
+	const struct switching *s = l->model->switching;
+	list_expressions(l);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			list_region(l, r);
+	for (int i = 0; i < s->segments * s->impacts; i++)
+		list_impact(l, i);
+	list_signs(l);
+}
+
+struct listing list_rows(const struct model *model, const struct layout *x)
+{
+	const int systems = model->switching ? model->switching->systems : 1;
+	struct listing l = { .model = model, .x = x };
+	for (int k = 0; k < systems; k++)
+		list_system(&l, k);
+	for (int k = 0; k < systems; k++)
+		list_equations(&l, k);
+	(model->switching ? list_regions : list_linear)(&l);
+	return l;
+}

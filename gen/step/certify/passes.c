@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of a way through crossings: the first event of a piece, and what is behind it. */
+#include "model/contacts/contacts.h"
+#include "references.h"
+#include "through.h"
+
+#include <math.h>
+
+enum {
+	AT_ONCE = 64,               /* events at one instant, before they count as without end */
+	SPARE_BITS = 64
+};
+
+/* ---- a piece that stays clear ---- */
+
+static void near_of(const struct through *t, const mpfi_t *x, struct near *room)
+{
+	for (int i = 0; i < t->n; i++) {
+		double low = mpfr_get_d(&x[i]->left, MPFR_RNDD), high = mpfr_get_d(&x[i]->right, MPFR_RNDU);
+		room->x[i] = low / 2 + high / 2;
+		room->off[i] = (high - low) * (1 + 1e-9) + 1e-13 * fabs(room->x[i]);
+	}
+}
+
+/* row . x, and by how much it is not known */
+static double value_near(int n, const double *row, const struct near *x, double *off)
+{
+	double sum = 0;
+	for (int i = 0; i < n; i++) {
+		sum += row[i] * x->x[i];
+		*off += fabs(row[i]) * x->off[i];
+	}
+	return sum;
+}
+
+/* A cubic lies within its Bezier points, and the gate is off it by its fourth derivative. */
+static bool is_clear(const struct through *t, const struct gate *g, const struct near *x, const struct near *y,
+		     const double *most, double tau)
+{
+	int n = t->n;
+	double off = 1e-13 * fabs(g->near_limit), bend = 0, slope = 0;
+	double from = value_near(n, g->near_row, x, &off), to = value_near(n, g->near_row, y, &off);
+	double leaves = value_near(n, g->near_slope, x, &slope) * tau / 3;
+	double arrives = value_near(n, g->near_slope, y, &slope) * tau / 3;
+	for (int i = 0; i < n; i++)
+		bend += g->fourth[i] * most[i];
+	off += slope * tau + bend * tau * tau * tau * tau / 384 * (1 + 1e-9);
+	return from + off < g->near_limit && to + off < g->near_limit && from + leaves + off < g->near_limit &&
+	       to - arrives + off < g->near_limit;
+}
+
+bool through_clear(struct through *t, const mpfi_t *y, double tau)
+{
+	const struct near *from = &t->near[0], *to = &t->near[1];
+	near_of(t, (const mpfi_t *)t->x, &t->near[0]);
+	near_of(t, y, &t->near[1]);
+	for (int i = 0; i < t->n; i++) {
+		t->most[i] = 0;
+		for (int j = 0; j < t->n; j++)
+			t->most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
+	}
+	for (int k = 0; k < t->at->gates; k++)
+		if (!t->resting[t->at->gate[k].expression] && !is_clear(t, &t->at->gate[k], from, to, t->most, tau))
+			return false;
+	return true;
+}
+
+/* ---- the first event of a piece ---- */
+
+static void add_room(struct through *t, int degree)
+{
+	if (degree < t->terms)
+		return;
+	ENLARGE(t->value, (size_t)degree + 1);
+	ENLARGE(t->slope, (size_t)degree + 1);
+	for (; t->terms <= degree; t->terms++) {
+		mpfi_init2(t->value[t->terms], t->precision);
+		mpfi_init2(t->slope[t->terms], t->precision);
+	}
+}
+
+/* The gate's polynomial in s, less its limit, and that of its slope */
+static void expand_gate(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau)
+{
+	INTERVAL length = OVER_BITS(t->precision);
+	mpfi_set_q(length, tau);
+	add_room(t, degree);
+	for (int m = 0; m <= degree; m++) {
+		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->room.term[m], t->value[m]);
+		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->room.term[m], t->slope[m]);
+		mpfi_mul(t->slope[m], t->slope[m], length);
+	}
+	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
+}
+
+/* For --solution, what so many bits do not tell apart from 0 is 0. */
+static void clear_none(struct through *t, const struct gate *gate, int degree)
+{
+	double size = fabs(gate->near_limit);
+	if (!t->whole->asked.solution || t->precision < BITS_OF_ONE)
+		return;
+	for (int m = 0; m <= degree; m++)
+		for (int i = 0; i < t->n; i++)
+			size += fabs(gate->near_row[i] * mpfi_get_d(t->room.term[m][i]));
+	for (int m = 0; m <= degree; m++)
+		if (mpfi_has_zero(t->value[m]) && through_is_none(t, t->value[m], size)) {
+			mpfi_set_ui(t->value[m], 0);
+			if (m > 0)
+				mpfi_set_ui(t->slope[m - 1], 0);
+		}
+}
+
+/* How many first coefficients of a polynomial that begins below 0 are exactly 0 */
+static int zeros_of(const struct through *t, int degree)
+{
+	int order = 0;
+	while (order < degree && mpfr_zero_p(&t->value[order]->left) && mpfr_zero_p(&t->value[order]->right))
+		order++;
+	return mpfr_sgn(&t->value[order]->right) < 0 ? order : 0;
+}
+
+/* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that
+ * power of s. */
+static int divide_by_power(struct through *t, int degree, int order, bool fresh, mpq_srcptr tau)
+{
+	INTERVAL wide = OVER_BITS(t->precision);
+	int rest = degree - order;
+	for (int m = 0; m <= degree; m++) {
+		if (m < degree && fresh) {
+			mpfi_set_fr(wide, t->fresh_off);
+			mpfi_div_q(wide, wide, tau);
+			mpfi_mul(wide, wide, t->value[m + 1]);
+			mpfi_mul_ui(wide, wide, 2 * (unsigned long)(m + 1));
+			mpfi_mag(t->most_off, wide);
+			mpfi_increase(t->value[m], t->most_off);
+		}
+		if (m >= order)
+			mpfi_set(t->value[m - order], t->value[m]);
+	}
+	for (int m = 0; m <= rest; m++)
+		mpfi_set_ui(t->slope[m], 0);
+	for (int m = 1; m <= rest; m++)
+		mpfi_mul_ui(t->slope[m - 1], t->value[m], (unsigned long)m);
+	return rest;
+}
+
+static bool is_fresh(const struct through *t, const struct gate *gate)
+{
+	return t->order[gate->expression] > 0 && gate->upward == t->back[gate->expression] && !gate->release;
+}
+
+/* Whether nothing of a polynomial is told apart from 0, or all of it is 0 */
+static bool is_none(const struct through *t, int degree, bool told)
+{
+	for (int m = 0; m <= degree; m++)
+		if (told ? mpfi_is_zero(t->value[m]) <= 0 : !mpfi_has_zero(t->value[m]))
+			return false;
+	return true;
+}
+
+static bool bounces(const struct through *t, const struct gate *gate)
+{
+	return gate->impact >= 0 && t->s->impact[gate->impact].bounces;
+}
+
+/* 1: found; -1: not known; 0: none */
+int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
+{
+	REAL end = WITH_BITS(t->precision);
+	INTERVAL root = OVER_BITS(t->precision);
+	int result = 0;
+	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
+	for (int k = 0; k < t->at->gates && result >= 0; k++) {
+		const struct gate *gate = &t->at->gate[k];
+		if (t->resting[gate->expression] || (result > 0 && through_meets(t, *found, gate)))
+			continue;
+		int terms = degree;
+		expand_gate(t, gate, degree, tau);
+		clear_none(t, gate, degree);
+		bool fresh = is_fresh(t, gate);
+		int order = fresh ? t->order[gate->expression] : zeros_of(t, degree);
+		if (order > 0 && degree > order)
+			terms = divide_by_power(t, degree, order, fresh, tau);
+		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
+		    bounces(t, *found)) /* struck with what was found, where it touches then */
+			continue;
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
+			t->resting[gate->expression] = true;    /* let go by no force */
+			continue;
+		}
+		if (rise == RISE_UNKNOWN) {
+			through_lost(t, gate, "it comes closer than is known");
+			result = -1;
+		} else if (rise == RISE_AT && mpfr_cmp_ui(&root->left, 1) <= 0) {
+			*found = gate;
+			mpfi_set(at, root);
+			result = 1;
+			mpfr_min(end, end, &root->right, MPFR_RNDU);
+		}
+	}
+	return result;
+}
+
+/* ---- an event ---- */
+
+/* How far from base + s tau the event may be [s], rounded up */
+static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off)
+{
+	REAL other = WITH_BITS(64);
+	mpfr_sub(off, &at->right, s, MPFR_RNDU);
+	mpfr_sub(other, s, &at->left, MPFR_RNDU);
+	mpfr_max(off, off, other, MPFR_RNDU);
+	mpfr_mul_q(off, off, tau, MPFR_RNDU);
+}
+
+/* Each event would lengthen the time by all bits of the enclosures: it is kept to little more than these, and x is that
+ * of any time so close. */
+static bool shorten_base(struct through *t, const struct stream *flow, mpfr_ptr off)
+{
+	const mp_bitcnt_t bits = (mp_bitcnt_t)t->precision + SPARE_BITS;
+	if (mpz_sizeinbase(mpq_denref(t->base), 2) <= bits)
+		return true;
+	REAL least = WITH_BITS(2);
+	mpfr_set_ui_2exp(least, 1, -(mpfr_exp_t)bits, MPFR_RNDN);
+	mpz_mul_2exp(mpq_numref(t->base), mpq_numref(t->base), bits);
+	mpz_fdiv_q(mpq_numref(t->base), mpq_numref(t->base), mpq_denref(t->base));
+	mpz_set_ui(mpq_denref(t->base), 1);
+	mpq_div_2exp(t->base, t->base, bits);
+	mpfr_add(off, off, least, MPFR_RNDU);
+	return stream_change(flow, NULL, least, t->x);
+}
+
+/* What sticks and slips behind it */
+static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+{
+	through_hold(t);
+	if (!through_settle(t, gate, off))
+		return false;
+	through_let_go(t, gate);
+	t->list[t->passed - 1].faint = t->order[gate->expression] == 3;
+	mpfr_set(t->fresh_off, off, MPFR_RNDU);
+	return true;
+}
+
+bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at)
+{
+	REAL s = WITH_BITS(t->precision), off = WITH_BITS(64);
+	RATIONAL part = ZERO;
+	const struct stream *before = t->at->flow;
+	mpfi_mid(s, at);
+	if (mpfi_cmp_ui(at, 1) == 0)
+		mpfr_set_ui(s, 1, MPFR_RNDN);
+	if (mpfr_cmp_ui(&at->left, 0) <= 0)
+		mpfr_set_zero(s, 1);
+	width_of(at, s, tau, off);
+	stream_sum(before, &t->room, degree, s, t->x);
+	mpfr_get_q(part, s);
+	mpq_mul(part, part, tau);
+	mpq_add(t->base, t->base, part);
+	bool known = shorten_base(t, before, off);
+	t->at_once = mpq_sgn(part) == 0 ? t->at_once + 1 : 0;
+	through_note(t, gate, off);
+	if (gate->impact >= 0) {
+		mpfi_clear(t->list[--t->passed].at);    /* as what is struck it is noted again */
+		known = known && through_strike(t, gate, off);
+	} else {
+		through_enter(t, t->region + gate->leads);
+		known = known && stream_change(before, t->at->flow, off, t->x);
+		if (has_events(t->s))
+			known = known && settle(t, gate, off);
+	}
+	through_hold(t);
+	through_loads(t);
+	if (!known)
+		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
+	if (t->most_passed > 0 && t->passed >= t->most_passed)
+		return through_lost(t, gate, "that many crossings are not followed");
+	return t->at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A piecewise-linear model through its crossings, enclosed: from event to event by the closed form of each region. The
+ * state is kept at rational times, as the region that it is in would have it there; what an event's time is not known
+ * by becomes a width of the state. Between events it goes by powers of e^{A d} from where the grid of pieces d was met
+ * first, so that widths grow by events and not by steps. */
+#include "model/regions/regions.h"
+#include "model/tunable/tuning.h"
+#include "references.h"
+#include "through.h"
+
+/* ---- a piece ---- */
+
+/* The length of the piece that begins at base, up to `target` at most; whole: it is one of the grid */
+static void piece_at(struct through *t, mpq_srcptr target, mpq_ptr tau, bool *whole)
+{
+	mpq_srcptr d = t->at->flow->piece;
+	RATIONAL pieces = ZERO, end = ZERO;
+	INTEGER next = INTEGER_ZERO;
+	mpq_div(pieces, t->base, d);
+	*whole = mpz_cmp_ui(mpq_denref(pieces), 1) == 0;
+	mpz_fdiv_q(next, mpq_numref(pieces), mpq_denref(pieces));
+	mpz_add_ui(next, next, 1);
+	mpq_set_z(pieces, next);
+	mpq_mul(end, pieces, d);
+	if (mpq_cmp(end, target) > 0) {
+		mpq_set(end, target);
+		*whole = false;
+	}
+	mpq_sub(tau, end, t->base);
+}
+
+static void keep(const struct through *t, const mpfi_t *from, mpfi_t *to)
+{
+	for (int i = 0; i < t->n; i++)
+		mpfi_set(to[i], from[i]);
+}
+
+/* A piece of the grid on: from where the grid was met, by as few products as the number of pieces has ones */
+static void step_on_grid(struct through *t, mpfi_t *y)
+{
+	if (!t->gridded) {
+		t->gridded = true;
+		t->pieces = 0;
+		keep(t, t->x, t->slot[THROUGH_SLOTS]);
+	}
+	unsigned long next = t->pieces + 1;
+	unsigned long from = next & (next - 1);
+	int power = __builtin_ctzl(next);
+	const mpfi_t *x = t->slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
+	stream_pieces(t->at->flow, power, x, y);
+	keep(t, y, t->slot[power]);
+}
+
+static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
+{
+	keep(t, y, t->x);
+	mpq_add(t->base, t->base, tau);
+	t->at_once = 0;
+	t->pieces++;
+	for (int e = 0; e < t->s->expressions; e++)
+		t->order[e] = 0;
+	t->gridded = t->gridded && whole;
+	if (!whole)
+		through_loads(t);
+}
+
+static bool move(struct through *t, mpq_srcptr target)
+{
+	bool whole;
+	const struct gate *gate = NULL;
+	RATIONAL tau = ZERO;
+	piece_at(t, target, tau, &whole);
+	if (whole) {
+		step_on_grid(t, t->y);
+		if (through_clear(t, t->y, mpq_get_d(tau))) {
+			arrive(t, tau, true, t->y);
+			return true;
+		}
+	}
+	INTERVAL at = OVER_BITS(t->precision);
+	int degree = stream_expand(t->at->flow, t->x, tau, &t->room);
+	int found = through_first(t, degree, tau, &gate, at);
+	if (found == 0 && !whole)
+		stream_sum(t->at->flow, &t->room, degree, t->one, t->y);
+	if (found == 0)
+		arrive(t, tau, whole, t->y);
+	return found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
+}
+
+/* ---- changes of formula in time ---- */
+
+static bool next_segment(struct through *t)
+{
+	t->segment++;
+	through_loads(t);
+	t->gridded = false;
+	if (t->s->segments == 1)
+		return true;
+	through_enter(t, t->region + regions_at_once(t->s));
+	t->speed = 0;
+	REAL none = WITH_BITS(64);
+	mpfr_set_zero(none, 1);
+	return through_take_up(t, none);
+}
+
+static bool changes_here(const struct through *t)
+{
+	return t->segment + 1 < t->segments && mpq_cmp(t->change[t->segment], t->base) <= 0;
+}
+
+bool through_reach(struct through *t, mpq_srcptr time)
+{
+	bool known = !t->undecided;
+	while (known && changes_here(t))
+		known = next_segment(t);
+	while (known && mpq_cmp(t->base, time) < 0) {
+		bool changes = t->segment + 1 < t->segments && mpq_cmp(t->change[t->segment], time) < 0;
+		known = move(t, changes ? t->change[t->segment] : time);
+		while (known && changes_here(t))
+			known = next_segment(t);
+	}
+	return known;
+}
+
+/* ---- the beginning and the end ---- */
+
+static void take_start(struct through *t, const mpq_t *initial)
+{
+	bool rational = true;
+	mpq_t *exact = rationals(t->n);
+	for (int l = 0; l < t->system->loads; l++) {
+		const struct load *load = &t->system->load[l];
+		rational = rational && mpq_sgn(load->wave->p) == 0;
+		if (t->layout.load[l] >= 0)     /* t^0 e^0 cos 0 */
+			mpq_set_ui(exact[t->layout.load[l]], 1, 1);
+	}
+	for (int i = 0; i < t->layout.states; i++)
+		mpq_set(exact[i], initial[t->part ? t->part->state[i] : i]);
+	for (int i = 0; i < t->system->inputs; i++) {
+		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->inputs;
+		mpq_set_ui(exact[t->layout.input[i]], 1, 1);
+		if (param >= 0 && t->whole->held)
+			mpq_set(exact[t->layout.input[i]], t->whole->held->nominal[param]);
+		if (t->system->input[i].hold) {
+			mpq_inv(exact[t->layout.input[i] + 1], t->model->h);
+			mpq_neg(exact[t->layout.input[i] + 1], exact[t->layout.input[i] + 1]);
+		}
+	}
+	for (int i = 0; i < t->n; i++)
+		mpfi_set_q(t->x[i], exact[i]);
+	through_loads(t);
+	t->exact = rational ? exact : NULL;
+}
+
+static void make_room(struct through *t)
+{
+	const struct switching *s = t->s;
+	t->area = ARRAY(struct area, s->regions);
+	t->A = ARRAY(mpq_t *, s->systems);
+	t->flow = ARRAY(struct stream *, s->systems);
+	t->growth = ARRAY(double *, s->systems);
+	t->resting = ARRAY(bool, s->expressions);
+	t->order = ARRAY(int, s->expressions);
+	t->back = ARRAY(bool, s->expressions);
+	t->x = enclosures(t->n, t->precision);
+	t->y = enclosures(t->n, t->precision);
+	for (int k = 0; k <= THROUGH_SLOTS; k++)
+		t->slot[k] = enclosures(t->n, t->precision);
+	for (int k = 0; k < 2; k++)
+		t->near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
+	t->most = ARRAY(double, t->n);
+	mpq_init(t->base);
+	t->told = NEW(struct telling);
+	mpfi_init2(t->told->flight, t->precision);
+	mpfr_init2(t->fresh_off, 64);
+	mpfr_init2(t->most_off, 64);
+	mpfr_init2(t->one, 2);
+	mpfr_set_ui(t->one, 1, MPFR_RNDN);
+}
+
+struct through *through_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
+			      int precision)
+{
+	struct through *t = NEW(struct through);
+	t->whole = whole;
+	t->part = part;
+	t->model = part ? part->model : whole;
+	t->s = t->model->switching;
+	t->system = &t->s->system[0];
+	t->precision = precision;
+	t->layout = layout_of_columns(t->system);
+	t->n = t->layout.size;
+	t->segments = whole->system.segments;
+	t->change = whole->system.change;
+	make_room(t);
+	take_start(t, initial);
+	while (t->segment + 1 < t->segments && mpq_sgn(t->change[t->segment]) <= 0)
+		t->segment++;
+	through_place(t);
+	return t;
+}
+
+const char *through_undecided(const struct through *t)
+{
+	return t->undecided;
+}
+
+void through_limit(struct through *t, int most)
+{
+	t->most_passed = most;
+}
+
+int through_passed(const struct through *t, const struct passed **list)
+{
+	*list = t->list;
+	return t->passed;
+}
+
+static void free_room(int n, mpfi_t *x)
+{
+	for (int i = 0; i < n; i++)
+		mpfi_clear(x[i]);
+	discard(x);
+}
+
+void through_free(struct through *t)
+{
+	for (int k = 0; k < t->s->systems; k++)
+		if (t->flow[k])
+			stream_free(t->flow[k]);
+	for (int k = 0; k < t->terms; k++) {
+		mpfi_clear(t->value[k]);
+		mpfi_clear(t->slope[k]);
+	}
+	for (int k = 0; k <= THROUGH_SLOTS; k++)
+		free_room(t->n, t->slot[k]);
+	for (int k = 0; k < t->passed; k++)
+		mpfi_clear(t->list[k].at);
+	free_room(t->n, t->x);
+	free_room(t->n, t->y);
+	series_room_free(&t->room);
+	mpfi_clear(t->told->flight);
+	mpfr_clears(t->one, t->fresh_off, t->most_off, NULL);
+	mpq_clear(t->base);
+	discard(t);
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts, contacts at rest and friction beside a series. */
+#ifndef PLGEN_STEP_SERIES_CONTACTS_H
+#define PLGEN_STEP_SERIES_CONTACTS_H
+
+#include "step/series/sequences.h"
+#include "step/step.h"
+
+/* Impacts and what is held beside a series. Beside dividing expressions the search watches other sequences. */
+struct watch {
+	int sequence, column;
+	bool whole;                 /* all coefficients are read, else the first two */
+};
+struct series_hold {                /* a velocity that is kept at 0: by friction that sticks, by a contact at rest */
+	int expression, breakpoint; /* held between this and its twin */
+	bool above;                 /* the velocity of friction, or the guard, rises with the expression */
+	int impact;                 /* whose contact rests; NONE: it is friction */
+	int velocity, pull[2];      /* watches; beyond 0 it is let go to the interval below, above; NONE: it is not */
+	double *back;               /* per state: what is taken from it for a velocity of 1 */
+	int force, only;            /* a sequence; the only state of the velocity, or NONE */
+	mpq_t *push;                /* per state: what that force, 1, adds to its slope */
+};
+struct series_strike {                     /* an impact */
+	int expression, breakpoint;
+	bool upward;
+	int hold;                   /* in which its contact rests; NONE: it is no bounce */
+	int place, speed;           /* watches: how far its guard is beyond 0; its rate */
+	int jump, still, jumps;     /* assignments, so many from each on */
+	double *back;               /* per state: what is taken from it for a guard of 1 */
+	double restitution;
+	double per;                 /* the expression's for a guard of 1 */
+};
+struct conflict {                   /* holds that cannot be all at once */
+	unsigned long set;          /* as bits */
+	int hold, side;             /* friction of what a contact holds: 1 or -1, where it slips then; NONE: others */
+};
+struct series_jump { int state, watch; }; /* a state takes the value of what is watched */
+struct contacts {
+	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
+	int holds;
+	struct series_hold *hold;
+	int strikes;
+	struct series_strike *strike;
+	int assignments;
+	struct series_jump *assignment;
+	int conflicts;
+	struct conflict *conflict;
+	int watches;
+	struct watch *watch;
+};
+
+/* ---- contacts.c: impacts and friction beside a series ---- */
+
+void hold_contacts(struct sequencing *w);                    /* before the states have their slopes */
+bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
+/* y' with what holds; where its velocity alone is held that is 0, exactly */
+struct sum held_slope(struct sequencing *w, int state);
+
+#endif

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A scheme with a leftover that goes from crossing to crossing: between two of them the formulas are those of given
+ * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
+ * crosses a breakpoint is made again in parts, whose tables the target makes. */
+#include "plrt.h"
+#include "step/cost.h"
+#include "step/series/divided.h"
+#include "step/series/expansion.h"
+
+
+#include <math.h>
+
+/* Two derivatives at the start decide where a state on a breakpoint is heading; the cubic of a whole step is believed
+ * where no pole turns by more than TURN in it. */
+enum { LOOKED = 2, TURN = 2 };
+
+static double *slopes_in(const struct step *step, const struct layout *layout, int segment)
+{
+	size_t cells = (size_t)layout->size * (size_t)layout->size;
+	RATIONALS *exact = augmented_matrix(layout, &step->branch->system, segment);
+	double *A = ARRAY(double, cells);
+	for (size_t i = 0; i < cells; i++) {
+		A[i] = round_rational(exact[i]);
+		if (!isfinite(A[i]))
+			tell_range(step);
+	}
+	return A;
+}
+
+/* Above the size of every pole of |A|, which has no entry below 0: max (|A| v)_i / v_i for any v above 0; a few
+ * products bring v near to that which makes it least. */
+static double fastest_of(int size, const double *A)
+{
+	enum { PRODUCTS = 60 };
+	const double least = 0x1p-80;
+	double *v = ARRAY(double, size), *next = ARRAY(double, size), largest_entry = 0, most = 0;
+	for (int i = 0; i < size * size; i++)
+		largest_entry = fmax(largest_entry, fabs(A[i]));
+	const double shift = largest_entry * 0x1p-20;   /* or it would not settle */
+	for (int i = 0; i < size; i++)
+		v[i] = 1;
+	for (int k = 0; k < PRODUCTS; k++) {
+		double largest = 0;
+		most = 0;
+		for (int i = 0; i < size; i++) {
+			next[i] = shift * v[i];
+			for (int j = 0; j < size; j++)
+				next[i] += fabs(A[i * size + j]) * v[j];
+			largest = fmax(largest, next[i]);
+			most = fmax(most, next[i] / v[i]);
+		}
+		for (int i = 0; i < size; i++)
+			v[i] = fmax(largest > 0 ? next[i] / largest : 1, least);
+	}
+	return most * (1 + 0x1p-20);
+}
+
+static bool *acting_loads(const struct linear *system)
+{
+	bool *acting = ARRAY(bool, system->loads);
+	for (int l = 0; l < system->loads; l++)
+		acting[l] = load_acts(system, &system->load[l]);
+	return acting;
+}
+
+static int *sequences_of_expressions(const struct expansion *x)
+{
+	int *sequence = ARRAY(int, x->expressions);
+	for (int i = 0; i < x->expressions; i++)
+		sequence[i] = x->expression[i].sequence;
+	return sequence;
+}
+
+static void count_looks(const struct step *step, struct cut *cut)
+{
+	const struct linear *system = &step->branch->system;
+	struct program program = { .uses = ARRAY(bool, step->branch->whole->columns) };
+	struct step view = *step;
+	view.expansion = cut->ends;
+	count_expansion(&view, &program);
+	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
+	cut->multiplications = looks * program.multiplications;
+	cut->additions = looks * program.additions;
+	cut->calls = looks * program.calls;
+}
+
+void plan_cut(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct cut *cut = NEW(struct cut);
+	cut->look = expansion_with_forces(step, LOOKED);
+	cut->ends = part_of_expansion(step, cut->look, 1, cut->look->expressions, sequences_of_expressions(cut->look));
+	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->force);
+	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
+	cut->slopes = ARRAY(double *, system->segments);
+	for (int s = 0; s < system->segments; s++) {
+		cut->slopes[s] = slopes_in(step, &cut->layout, s);
+		cut->fastest = fmax(cut->fastest, fastest_of(cut->layout.size, cut->slopes[s]));
+	}
+	double turn = cut->fastest * mpq_get_d(step->model->h);
+	cut->certain = turn > TURN ? 1 / turn : 1;
+	if (step->model->asked.single)
+		cut->fastest = (double)(float)cut->fastest;
+	count_looks(step, cut);
+	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
+	step->cut = cut;
+	step->divided = cut->look;
+	step->series.emitted = true;
+}

@@ -1,0 +1,379 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Normal modes of the operators of a bank: V^T M V = I, V^T K V = diag lambda, V^T C V = diag 2 delta, so that q =
+ * V eta makes of M q'' + C q' + K q = F as many equations eta'' + 2 delta eta' + lambda eta = V^T F.
+ */
+#include "step/collocation/collocation.h"
+#include "normal.h"
+#include "weights.h"
+
+#include <math.h>
+
+enum {
+	SWEEPS = 3,                 /* of collocation: each adds an order to what is extrapolated */
+	FIRST_SWEEPS = 6            /* beside as many as stages, where nothing is */
+};
+
+static struct place scheme_place(const struct step *step)
+{
+	const struct model *model = step->model;
+	return model->asked.scheme_at.source ? model->asked.scheme_at : model->spec->name_at;
+}
+
+/* ---- which models have them ---- */
+
+static const char *name_of(const struct step *step)
+{
+	return scheme_name(step->model->scheme);
+}
+
+void check_mode_orders(const struct step *step)
+{
+	const struct model *model = step->model;
+	if (model->n > LIMIT_MODES)
+		error(scheme_place(step), NULL, "more coordinates than the limit of %d of scheme %s", LIMIT_MODES,
+		      name_of(step));
+	for (int j = 0; j < model->n; j++)
+		if (model->system.velocity[j] < 0)
+			error(scheme_place(step), "etdrk4 and taylor take it",
+			      "scheme %s steps normal modes, which are of second order: %s is of first order",
+			      name_of(step), model->coord_name[j]);
+}
+
+static void check_symmetry(const struct normal_work *w)
+{
+	const struct model *model = w->model;
+	int n = model->n;
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < i; j++)
+			if (!mpq_equal(w->M[i * n + j], w->M[j * n + i]))
+				error(scheme_place(w->step), "Lagrange's equations, one for each coordinate, have one",
+				      "scheme %s needs a symmetric mass matrix: %s'' has the factor %s in the equation "
+				      "of %s, %s'' has %s in that of %s", name_of(w->step), model->coord_name[j],
+				      readable_text(w->M[i * n + j]), model->coord_name[i], model->coord_name[i],
+				      readable_text(w->M[j * n + i]), model->coord_name[j]);
+}
+
+static void check_left(const struct step *step)
+{
+	const struct model *model = step->model;
+	if (model->system.inputs > 0)
+		error(scheme_place(step), "etdrk4 and taylor take it",
+		      "scheme %s needs forces that are smooth from step to step: the model has inputs", name_of(step));
+	if (model->operators > 1 && model->split->selector < 0)
+		error(model->spec->operator_at, "of one operator, or of a bank by time or a let of time",
+		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));
+	const struct node *mixed = model->split->mixed;
+	if (mixed)
+		error(mixed->start, "etdrk4 and taylor take it",
+		      "scheme %s takes products of functions of time and of states: in '%s' both stand in one",
+		      name_of(step), text_between(mixed->start, mixed->end));
+}
+
+/* ---- modes ---- */
+
+
+/* value <- v^T X v of column j */
+static void quadratic(const struct eigenpairs *pairs, const mpq_t *X, int j, mpfr_ptr value)
+{
+	int n = pairs->n;
+	REAL part = WITH_BITS(mpfr_get_prec(value));
+	mpfr_set_zero(value, 1);
+	for (int i = 0; i < n; i++)
+		for (int k = 0; k < n; k++) {
+			if (mpq_sgn(X[i * n + k]) == 0)
+				continue;
+			mpfr_mul_q(part, pairs->vector[i * n + j], X[i * n + k], MPFR_RNDN);
+			mpfr_mul(part, part, pairs->vector[k * n + j], MPFR_RNDN);
+			mpfr_add(value, value, part, MPFR_RNDN);
+		}
+}
+
+/* Modes of K, or with damping those of K + C h 7/5, which are those of both */
+static void find_modes(struct normal_work *w, int bank)
+{
+	int n = w->model->n;
+	size_t cells = (size_t)n * (size_t)n;
+	const struct operator *operator = &w->model->operator[bank];
+	mpq_t *K = by_coordinates(w->model, operator->K);
+	mpq_t *C = by_coordinates(w->model, operator->C), *both = rationals(cells);
+	bool damped = !rationals_zero(cells, C);
+	for (size_t i = 0; i < cells; i++) {
+		mpq_set_ui(both[i], 7, 5);
+		mpq_mul(both[i], both[i], C[i]);
+		mpq_add(both[i], both[i], K[i]);
+	}
+	if (!symmetric_eigenpairs(n, w->M, both, NORMAL_BITS, &w->pairs[bank]))
+		error(scheme_place(w->step), NULL, "scheme %s needs a mass matrix that is positive definite",
+		      name_of(w->step));
+	for (int j = 0; j < n; j++) {
+		struct normal_mode *mode = &w->mode[bank * n + j];
+		mpfr_inits2(mpfr_get_prec(w->pairs[bank].value[j]), mode->lambda, mode->delta, NULL);
+		if (!damped) {
+			mpfr_set(mode->lambda, w->pairs[bank].value[j], MPFR_RNDN);
+			mpfr_set_zero(mode->delta, 1);
+			continue;
+		}
+		quadratic(&w->pairs[bank], K, j, mode->lambda);
+		quadratic(&w->pairs[bank], C, j, mode->delta);
+		mpfr_div_2ui(mode->delta, mode->delta, 1, MPFR_RNDN);
+	}
+}
+
+/* Coordinates that a mode of the block moves, in any bank; else all */
+static int *coordinates_of(const struct normal_work *w, const struct mode_block *own, int first)
+{
+	int n = w->normal->modes, count = 0, *coord = ARRAY(int, n + 1);
+	for (int i = 0; i < n; i++) {
+		bool moves = false;
+		for (int j = first; j < first + own->modes; j++)
+			moves = moves || mpfr_sgn(w->pairs[0].vector[i * n + j]) != 0;
+		if (moves || own->modes == n)
+			coord[count++] = i;
+	}
+	return coord;
+}
+
+/* Blocks are those of all banks alike, or there is one. */
+static void find_blocks(struct normal_work *w)
+{
+	struct normal *normal = w->normal;
+	const int n = normal->modes, *block = w->pairs[0].block;
+	bool alike = true;
+	for (int b = 1; b < normal->banks; b++)
+		for (int j = 0; j < n; j++)
+			alike = alike && w->pairs[b].block[j] == block[j];
+	normal->blocks = alike ? w->pairs[0].blocks : 1;
+	normal->block = ARRAY(struct mode_block, normal->blocks);
+	normal->place = ARRAY(int, n);
+	for (int j = 0; j < n; j++)
+		normal->block[alike ? block[j] : 0].modes++;
+	for (int b = 0, first = 0; b < normal->blocks; first += normal->block[b++].modes) {
+		struct mode_block *own = &normal->block[b];
+		own->place = normal->width;
+		own->coord = coordinates_of(w, own, first);
+		own->rows = (own->modes + 1) / 2 * 2;
+		normal->width += own->rows;
+	}
+	for (int j = 0, b = 0, first = 0; j < n; j++) {
+		if (j - first == normal->block[b].modes)
+			first += normal->block[b++].modes;
+		normal->place[j] = normal->block[b].place + j - first;
+	}
+}
+
+/* ---- weights ---- */
+
+/* Of all banks at theta h; correct: NULL, or the weights of the first of the polynomials, which stage is without */
+static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr theta, const struct lagrange *l)
+{
+	const struct normal *normal = w->normal;
+	int width = normal->width, n = normal->modes;
+	struct normal_stage stage = { .points = l->nodes, .wave = waves_of_stage(w, theta) };
+	stage.flow = ARRAY(double, (size_t)(normal->banks * 4 * width));
+	stage.weight = ARRAY(double, (size_t)(normal->banks * l->nodes * 2 * width));
+	for (int b = 0; b < normal->banks; b++)
+		for (int j = 0; j < n; j++) {
+			struct mode_flow flow = mode_flow_of(&w->mode[b * n + j], w->model->h, theta, l);
+			const mpfr_srcptr own[] = { flow.e, flow.s, flow.de, flow.ds };
+			for (int k = 0; k < 4; k++)
+				stage.flow[(b * 4 + k) * width + normal->place[j]] = round_real(own[k]);
+			for (int k = 0; k < l->nodes; k++) {
+				double *weight = stage.weight + (b * l->nodes + k) * 2 * width + normal->place[j];
+				weight[0] = round_real(flow.position[k]);
+				weight[width] = round_real(flow.rate[k]);
+			}
+			mode_flow_free(&flow);
+		}
+	return stage;
+}
+
+/* The corrector's polynomial through the new force and all others is the predictor's and, times what the new force
+ * exceeds that at h, the one that is 1 at h and 0 at all others. */
+static void find_multistep(struct normal_work *w)
+{
+	struct normal *normal = w->normal;
+	int width = normal->width, points = normal->points;
+	mpq_t *node = past_nodes(points + 1);
+	RATIONAL one = RATIO(1, 1);
+	struct lagrange past = lagrange_of(points, node);
+	REALS *value = reals((size_t)points, NORMAL_BITS);
+	normal->step = stage_of(w, one, &past);
+	lagrange_at(&past, one, value);
+	normal->extrapolate = ARRAY(double, points);
+	for (int k = 0; k < points; k++)
+		normal->extrapolate[k] = round_real(value[k]);
+	mpq_set_ui(node[points], 1, 1);
+	struct lagrange all = lagrange_of(points + 1, node);
+	struct normal_stage corrector = stage_of(w, one, &all);
+	normal->correct = ARRAY(double, (size_t)(normal->banks * 2 * width));
+	for (int b = 0; b < normal->banks; b++)
+		for (int i = 0; i < 2 * width; i++)
+			normal->correct[b * 2 * width + i] =
+				corrector.weight[(b * (points + 1) + points) * 2 * width + i];
+}
+
+static void find_stages(struct normal_work *w)
+{
+	struct normal *normal = w->normal;
+	normal->node = lobatto_nodes(normal->stages);
+	struct lagrange l = lagrange_of(normal->stages + 1, normal->node);
+	normal->stage = ARRAY(struct normal_stage, normal->stages);
+	for (int i = 0; i < normal->stages; i++)
+		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
+	REALS *value = reals((size_t)l.nodes, NORMAL_BITS);
+	RATIONAL later = ZERO;
+	normal->ahead = ARRAY(double, (size_t)(normal->stages * l.nodes));
+	for (int i = 0; i < normal->stages; i++) {
+		mpq_set_ui(later, 1, 1);
+		mpq_add(later, later, normal->node[i + 1]);
+		lagrange_at(&l, later, value);
+		for (int k = 0; k < l.nodes; k++)
+			normal->ahead[i * l.nodes + k] = round_real(value[k]);
+	}
+}
+
+/* ---- the end: all functions of time are constant ---- */
+
+static int last_bank(const struct model *model)
+{
+	const struct splitting *split = model->split;
+	int bank = 0;
+	while (split->selector >= 0 && bank + 1 < model->operators &&
+	       mpq_cmp(split->function[split->selector].last, model->operator[bank].at) > 0)
+		bank++;
+	return bank;
+}
+
+static void find_settled(struct normal_work *w)
+{
+	struct normal *normal = w->normal;
+	const struct model *model = w->model;
+	int n = normal->modes, size = settled_size(model), width = normal->width;
+	int bank = normal->settled_bank = last_bank(model);
+	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
+	normal->omega = ARRAY(double, width);
+	normal->period = ARRAY(double, width);
+	normal->settled = ARRAY(double, (size_t)(size * 2 * width));
+	for (int j = 0; j < n; j++) {
+		mpfr_srcptr lambda = w->mode[bank * n + j].lambda;
+		mpfr_set_ui(omega[j], 1, MPFR_RNDN);
+		if (mpfr_sgn(lambda) > 0)
+			mpfr_sqrt(omega[j], lambda, MPFR_RNDN);
+		normal->omega[normal->place[j]] = round_real(omega[j]);
+		mpfr_set_d(omega[j], normal->omega[normal->place[j]], MPFR_RNDN);       /* as the target has it */
+		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
+		normal->period[normal->place[j]] = round_real(omega[j]);
+		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
+	}
+	Phi = settled_matrix(model, w->M, by_coordinates(model, model->operator[0].C),
+			     by_coordinates(model, model->operator[0].K), &w->pairs[bank], omega);
+	for (int i = 0; i < 2 * n; i++)
+		for (int j = 0; j < size; j++)
+			normal->settled[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
+				round_real(Phi[i * size + j]);
+}
+
+/* ---- changes of formula ---- */
+
+static void check_changes(const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct linear *system = &model->system;
+	RATIONAL steps = ZERO;
+	if (model->split->unknown)
+		error(model->split->unknown->node->start, "etdrk4 and taylor take it",
+		      "scheme %s starts anew where a formula in time changes: of '%s' it is not known when",
+		      name_of(step),
+		      text_between(model->split->unknown->node->start, model->split->unknown->node->end));
+	for (int s = 0; s + 1 < system->segments; s++) {
+		mpq_div(steps, system->change[s], model->h);
+		if (mpq_sgn(steps) > 0 && mpz_cmp_ui(mpq_denref(steps), 1) != 0)
+			error(model->asked.step_at, "a step of which that time is a multiple, or etdrk4 or taylor",
+			      "scheme %s starts anew where a formula in time changes: t = %s is inside a step of %s s",
+			      name_of(step), readable_text(system->change[s]), readable_text(model->h));
+	}
+}
+
+/* ---- which way a multistep method goes ---- */
+
+static const char *growth_text(const struct stability *s)
+{
+	return format("a step by up to %.3g, at t = %.3g s, all steps up to %.4g s by e^%.0f", s->radius, s->time,
+		      s->span, s->growth);
+}
+
+static _Noreturn void tell_growth(const struct step *step, const struct stability *once,
+				  const struct stability *again)
+{
+	const char *twice = again ? format("; with forces evaluated twice %s", growth_text(again)) : "";
+	error(scheme_place(step),
+	      again ? "a shorter step, a lower order, more operators, or scheme etdcol, which bears more, may be stable"
+		    : "a shorter step or more operators may be stable",
+	      "scheme %s is not stable here: with functions of time frozen states may grow: %s%s", name_of(step),
+	      growth_text(once), twice);
+}
+
+/* Forces are evaluated once a step where that holds, else twice, where that does. */
+static void choose_evaluations(struct normal_work *w)
+{
+	enum { CALM = 3, MOST = 7 };    /* ln of what the steps may let grow: without a further look, at all */
+	struct normal *normal = w->normal;
+	struct stability once = stability_of(w->step, false), again;
+	normal->stability = once;
+	if (once.growth <= CALM)
+		return;
+	if (normal->points == 0) {
+		if (!(once.growth <= MOST))
+			tell_growth(w->step, &once, NULL);
+		return;
+	}
+	again = stability_of(w->step, true);
+	if (again.growth < once.growth) {
+		normal->twice = true;
+		normal->stability = again;
+	}
+	if (!(normal->stability.growth <= MOST))
+		tell_growth(w->step, &once, &again);
+}
+
+/* ---- the whole ---- */
+
+struct normal *normal_of(struct step *step)
+{
+	const struct model *model = step->model;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	struct normal *normal = NEW(struct normal);
+	struct normal_work w = { .step = step, .model = model, .normal = normal };
+	check_left(step);
+	check_changes(step);
+	check_turns(step);
+	w.M = by_coordinates(model, model->system.M);
+	check_symmetry(&w);
+	normal->modes = model->n;
+	normal->banks = model->operators;
+	normal->points = row->points;
+	w.pairs = ARRAY(struct eigenpairs, normal->banks);
+	w.mode = ARRAY(struct normal_mode, (size_t)(normal->banks * model->n));
+	for (int b = 0; b < normal->banks; b++)
+		find_modes(&w, b);
+	find_blocks(&w);
+	find_transforms(&w);
+	find_turns(&w);
+	find_matrices(&w);
+	find_forces(&w);
+	find_waves(&w);
+	normal->stages = row->points ? row->points - 1 : model->stages;
+	normal->kept = row->points ? row->points : model->stages + 1;
+	normal->sweeps = SWEEPS;
+	normal->first_sweeps = normal->stages + FIRST_SWEEPS;
+	if (row->points)
+		find_multistep(&w);
+	find_stages(&w);
+	step->normal = normal;
+	choose_evaluations(&w);
+	if (model->split->settles)
+		find_settled(&w);
+	find_within(&w);
+	return normal;
+}

@@ -1,0 +1,404 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its
+ * phase and growth in fixed point. In the steps between, what the load adds to a state is
+ *
+ *   L z(t_a + l h) = (L E_l) z(t_a)
+ *
+ * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a
+ * table of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing
+ * accumulates. A step of regions has many L and asks for z itself: there E_l alone is the table. */
+#include "forms.h"
+#include "images.h"
+
+#include <math.h>
+
+enum {
+	ANCHOR_STEPS = 32,          /* from anchor to anchor, where the table is small */
+	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
+	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
+	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range an anchor leaves it before its load does */
+	FIRST_PRECISION = 128,
+	TAYLOR_PRECISION = 2048     /* beyond, residues */
+};
+
+/* ---- which loads, and how many steps ---- */
+
+/* What stands against anchors; NULL: nothing */
+static const char *objection(const struct step *step)
+{
+	static const char *const of_kind[KINDS] = {
+		[KIND_TUNED] = "the target would have to make the tables of tunable params",
+		[KIND_LEFTOVER] = "the scheme needs the loads between steps",
+		[KIND_CUT] = "the scheme needs the loads between steps",
+		[KIND_EXPANDED] = "steps of a series are no steps of h",
+		[KIND_COLLOCATED] = "steps of a collocation are no steps of h",
+		[KIND_NORMAL] = "loads are forces on normal modes, at the ends of steps"
+	};
+	if (of_kind[step->kind])
+		return of_kind[step->kind];
+	if (step->model->asked.single)
+		return "in float functions are cheap, and memory is short";
+	if (step->branch->system.segments > 1)
+		return "loads change their formula in time";
+	if (!step->model->switching && step->branch->system.states > LIMIT_UNROLLED_STATES)
+		return format("beyond %d states the step loops over its tables", LIMIT_UNROLLED_STATES);
+	return NULL;
+}
+
+static bool moves(const struct step *step, int state, int first, int columns)
+{
+	const struct table *table = step->branch->whole;
+	bool any = false;
+	for (int k = first; k < first + columns; k++)
+		any = any || !table->load[state * table->columns + k].zero;
+	return any;
+}
+
+/* Of the states that a load moves in a step, every column of it */
+static void add_terms(struct anchors *anchors, int state, int first, int columns)
+{
+	ENLARGE(anchors->term, (size_t)(anchors->terms + columns));
+	for (int k = 0; k < columns; k++)
+		anchors->term[anchors->terms++] = (struct anchored_term){ state, first + k };
+}
+
+static void list_terms(struct anchors *anchors, const struct step *step, bool forced_too)
+{
+	const struct linear *system = &step->branch->system;
+	anchors->terms = 0;
+	for (int i = 0; i < system->states && !anchors->turned; i++)
+		for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
+			if (anchors->load[l] && (forced_too || !is_forced(step, first)) &&
+			    moves(step, i, first, system->load[l].columns))
+				add_terms(anchors, i, first, system->load[l].columns);
+}
+
+/* The fastest growth or decay of a load in a step */
+static double growth_in_step(const struct step *step, const struct anchors *anchors)
+{
+	const struct linear *system = &step->branch->system;
+	double most = 0;
+	for (int l = 0; l < system->loads; l++)
+		if (anchors->load[l])
+			most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
+	return most * mpq_get_d(step->model->h);
+}
+
+static bool is_steady(const struct step *step, const struct anchors *anchors, int steps)
+{
+	return (steps - 1) * growth_in_step(step, anchors) <= MOST_GROWTH;
+}
+
+static bool fits(const struct step *step, const struct anchors *anchors, int steps)
+{
+	return steps * anchors->terms * (step->model->asked.compensated ? 2 : 1) <= TABLE_NUMBERS;
+}
+
+/* Where more than 1 was asked for */
+static void note_aside(const struct step *step, const char *why)
+{
+	const char *steps = format("%d", step->model->asked.anchors);
+	if (step->model->asked.anchors > 1 && !step->model->asked.trial)
+		stand_aside((struct place){ source_argument(steps), 0 }, format("--anchors %s", steps), why);
+}
+
+/* As many as were asked for, or as are good; 1: what stands against more is said */
+static int chosen_steps(struct step *step, const struct anchors *anchors)
+{
+	int asked = step->model->asked.anchors;
+	if (asked && !is_steady(step, anchors, asked)) {
+		note_aside(step, format("a load changes by more than e^%d between anchors", MOST_GROWTH));
+		asked = 0;
+	}
+	int steps = asked ? asked : ANCHOR_STEPS;
+	while (!asked && steps >= FEWEST_STEPS && !(fits(step, anchors, steps) && is_steady(step, anchors, steps)))
+		steps /= 2;
+	if (steps >= FEWEST_STEPS || asked)
+		return steps;
+	step->no_anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
+							     : "tables would be large";
+	return 1;
+}
+
+static struct anchors *anchors_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = NEW(struct anchors);
+	anchors->turned = step->model->switching != NULL;
+	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, system->loads);
+	for (int l = 0; l < system->loads; l++)
+		anchors->load[l] = !is_polynomial(system->load[l].wave) &&
+				   (anchors->turned ? anchors->load[l] : load_acts(system, &system->load[l]));
+	return anchors;
+}
+
+static bool any_load(const struct step *step, const struct anchors *anchors)
+{
+	bool any = false;
+	for (int l = 0; l < step->branch->system.loads; l++)
+		any = any || anchors->load[l];
+	return any;
+}
+
+void check_anchors(struct step *step)
+{
+	const char *against = objection(step);
+	if (against)
+		note_aside(step, against);
+	if (any_load(step, anchors_of(step)))
+		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
+}
+
+void drop_anchors(struct step *step, const char *why)
+{
+	note_aside(step, why);
+	step->no_anchors = why;
+	step->anchors = NULL;
+}
+
+void plan_anchors(struct step *step)
+{
+	struct anchors *anchors = anchors_of(step);
+	if (step->no_anchors || step->model->asked.anchors == 1 || objection(step) || !any_load(step, anchors))
+		return;
+	list_terms(anchors, step, true);
+	anchors->steps = chosen_steps(step, anchors);
+	step->anchors = anchors->steps > 1 ? anchors : NULL;
+}
+
+int anchored_term(const struct step *step, int state, int column)
+{
+	for (int k = 0; step->anchors && k < step->anchors->terms; k++)
+		if (step->anchors->term[k].state == state && step->anchors->term[k].column == column)
+			return k;
+	return -1;
+}
+
+/* ---- E_l: how a load's states go on ---- */
+
+struct turn {                       /* e^{a tau} cos(w tau) and sin */
+	mpq_t tau;
+	int precision;              /* 0: not asked for */
+	mpfi_t z[2];
+};
+
+/* e^{a tau} cos(w tau) and sin; kept, since all states that the load moves ask for it */
+static void enclose_turn(const struct wave *wave, struct turn *turn, int precision)
+{
+	if (turn->precision == precision)
+		return;
+	turn->precision = precision;
+	mpfi_set_prec(turn->z[0], precision);
+	mpfi_set_prec(turn->z[1], precision);
+	RATIONAL product = ZERO;
+	INTERVAL x = OVER_BITS(precision);
+	mpq_mul(product, wave->w, turn->tau);
+	mpfi_set_q(x, product);
+	mpfi_cos(turn->z[0], x);
+	mpfi_sin(turn->z[1], x);
+	mpq_mul(product, wave->a, turn->tau);
+	mpfi_set_q(x, product);
+	mpfi_exp(x, x);
+	mpfi_mul(turn->z[0], turn->z[0], x);
+	mpfi_mul(turn->z[1], turn->z[1], x);
+}
+
+/* Over 0, 1, ... steps */
+static struct turn *turns_of(const struct step *step)
+{
+	int steps = step->anchors->steps;
+	struct turn *turn = ARRAY(struct turn, steps);
+	for (int l = 0; l < steps; l++) {
+		mpq_init(turn[l].tau);
+		mpq_set_si(turn[l].tau, l, 1);
+		mpq_mul(turn[l].tau, turn[l].tau, step->model->h);
+		mpfi_init(turn[l].z[0]);
+		mpfi_init(turn[l].z[1]);
+	}
+	return turn;
+}
+
+/* binomial(k, j) tau^(k-j) */
+static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
+{
+	INTEGER binomial = INTEGER_ZERO;
+	mpz_bin_uiui(binomial, (unsigned long)k, (unsigned long)j);
+	mpq_set_z(value, binomial);
+	for (int i = j; i < k; i++)
+		mpq_mul(value, value, tau);
+}
+
+/* ---- L: a load's columns of the step, enclosed ---- */
+
+struct block_source {               /* of a block */
+	const struct linear *system;
+	struct resolvent *resolvent;
+	struct taylor *taylor;      /* NULL: residues */
+	struct layout layout;
+};
+struct column {                     /* of L, in one row */
+	int precision;              /* 0: not asked for */
+	mpfi_t value;
+	struct response *response;
+};
+struct row {                        /* what a load adds to a state */
+	struct block_source *source;
+	int state, load, columns;   /* of the block */
+	struct column *column;
+	mpq_srcptr h;
+};
+
+static struct block_source source_of_block(const struct step *step, const struct linear *system)
+{
+	bool whole = system->states == step->branch->system.states;
+	struct block_source source = { .system = system,
+				       .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
+				       .layout = layout_of(system, 0) };
+	if (system->states > LIMIT_RESIDUE_STATES)
+		source.taylor = taylor_of(source.layout.size,
+					  augmented_matrix(&source.layout, system, 0), step->model->h);
+	return source;
+}
+
+static bool enclose_by_residues(struct row *row, int k, int precision)
+{
+	struct column *column = &row->column[k];
+	RATIONAL exact = ZERO;
+	if (!column->response)
+		column->response = response_of_load(row->source->resolvent, row->source->system, 0, row->state,
+						    row->load, k);
+	bool rational = response_exact(column->response, row->h, exact);
+	if (rational)
+		mpfi_set_q(column->value, exact);
+	return rational || response_enclose(column->response, row->h, precision, column->value);
+}
+
+static bool enclose_column(struct row *row, int k, int precision)
+{
+	const struct block_source *source = row->source;
+	struct column *column = &row->column[k];
+	if (column->precision == precision)
+		return true;
+	column->precision = 0;
+	mpfi_set_prec(column->value, precision);
+	bool good;
+	if (!source->taylor || precision > TAYLOR_PRECISION) {
+		good = enclose_by_residues(row, k, precision);
+	} else {
+		good = taylor_enclose(source->taylor, precision);
+		if (good)
+			taylor_entry(source->taylor, row->state, source->layout.load[row->load] + k, column->value);
+	}
+	column->precision = good ? precision : 0;
+	return good;
+}
+
+/* ---- L E_l, rounded ---- */
+
+/* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
+static bool enclose_turned(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
+{
+	const struct wave *wave = row->source->system->load[row->load].wave;
+	int trig = oscillates(wave) ? 2 : 1;
+	bool good = true;
+	INTERVAL value = OVER_BITS(precision);
+	RATIONAL power = ZERO;
+	enclose_turn(wave, turn, precision);
+	mpfi_set_prec(sum, precision);
+	mpfi_set_ui(sum, 0);
+	for (int to = from / trig * trig; to < row->columns && good; to++) {
+		bool same = to % trig == from % trig;
+		good = enclose_column(row, to, precision);
+		mpfi_mul(value, row->column[to].value, turn->z[!same]);
+		power_of_time(to / trig, from / trig, turn->tau, power);
+		mpfi_mul_q(value, value, power);
+		(same || to % trig ? mpfi_add : mpfi_sub)(sum, sum, value);
+	}
+	return good;
+}
+
+/* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
+static bool round_turned(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
+{
+	INTERVAL x = OVER_BITS(precision);
+	bool decided = enclose_turned(row, turn, from, precision, x) && round_enclosure(x, &c->value);
+	if (decided && isfinite(c->value)) {
+		mpfi_sub_d(x, x, c->value);
+		decided = round_enclosure(x, &c->low);
+	}
+	return decided;
+}
+
+static void fill_term(const struct step *step, struct row *row, struct turn *turn, int from, struct coefficient *c)
+{
+	int precision = FIRST_PRECISION;
+	while (precision <= LIMIT_PRECISION && !round_turned(row, turn, from, precision, c))
+		precision *= 2;
+	bool decided = precision <= LIMIT_PRECISION;
+	if (!decided || !isfinite(c->value))
+		error(step->model->asked.step_at, "--anchors 1 may do",
+		      "what a load adds so many steps after an anchor is %s",
+		      decided ? format("beyond the range of %s", target_name())
+			      : format("not decided with %d bits", LIMIT_PRECISION));
+}
+
+/* The terms of one state and one load, which stand together, after any number of steps */
+static void fill_row(const struct step *step, struct block_source *source, int state, int load, struct turn *turn,
+		     int term)
+{
+	struct anchors *anchors = step->anchors;
+	int columns = source->system->load[load].columns;
+	struct row row = { source, state, load, columns, ARRAY(struct column, columns), step->model->h };
+	for (int k = 0; k < columns; k++)
+		mpfi_init(row.column[k].value);
+	for (int l = 0; l < anchors->steps; l++)
+		for (int k = 0; k < columns; k++)
+			fill_term(step, &row, &turn[l], k, &anchors->factor[l * anchors->terms + term + k]);
+	for (int k = 0; k < columns; k++)
+		mpfi_clear(row.column[k].value);
+}
+
+static void fill_block(const struct step *step, const struct block *block, struct turn *const *turn)
+{
+	const struct linear *system = &step->branch->system;
+	struct block_source source = source_of_block(step, &block->system);
+	int first;
+	for (int i = 0; i < block->system.states; i++)
+		for (int k = 0; k < step->anchors->terms; k++) {
+			const struct anchored_term *term = &step->anchors->term[k];
+			int load = load_of_column(system, term->column, &first);
+			if (term->state == block->state[i] && term->column == first)
+				fill_row(step, &source, i, load, turn[load], k);
+		}
+}
+
+/* What turns the load states of an anchor into those of now */
+static void fill_turn(const struct wave *wave, struct turn *turn, double value[2])
+{
+	bool decided = false;
+	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
+		enclose_turn(wave, turn, precision);
+		decided = round_enclosure(turn->z[0], &value[0]) && round_enclosure(turn->z[1], &value[1]);
+	}
+}
+
+void fill_anchors(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = step->anchors;
+	struct block *block;
+	struct turn **turn = ARRAY(struct turn *, system->loads);
+	if (!anchors)
+		return;
+	list_terms(anchors, step, false);
+	anchors->factor = ARRAY(struct coefficient, (size_t)(anchors->steps * anchors->terms));
+	anchors->turn = ARRAY(double, 2 * (size_t)(anchors->steps * system->loads));
+	for (int l = 0; l < system->loads; l++) {
+		turn[l] = is_anchored(step, l) ? turns_of(step) : NULL;
+		for (int k = 0; turn[l] && k < anchors->steps; k++)
+			fill_turn(system->load[l].wave, &turn[l][k], &anchors->turn[2 * (l * anchors->steps + k)]);
+	}
+	int blocks = blocks_of(system, &block);
+	for (int b = 0; b < blocks; b++)
+		fill_block(step, &block[b], turn);
+}

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of regions with dry friction: what ends each of them, and what holds states there. A guard is a row over x: of an
+ * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
+#include "model/contacts/friction.h"
+#include "guards.h"
+#include "regions.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool same_gate(const struct gate_key *a, const struct gate_key *b)
+{
+	return a->expression == b->expression && a->region == b->region && a->release == b->release &&
+	       a->upward == b->upward && a->segment == b->segment;
+}
+
+/* The index of a row of a branch; equal ones are one, of tunable params those that are the same */
+static int add_row(struct guards *g, int size, int branch, const double *row, struct gate_key gate)
+{
+	size_t bytes = (size_t)size * sizeof *row;
+	for (int i = 0; i < g->rows; i++)
+		if (g->branch[i] == branch && memcmp(g->row + i * size, row, bytes) == 0 &&
+		    (!g->apart || same_gate(&g->gate[i], &gate)))
+			return i;
+	ENLARGE(g->branch, (size_t)g->rows + 1);
+	ENLARGE(g->gate, (size_t)g->rows + 1);
+	g->gate[g->rows] = gate;
+	ENLARGE(g->row, (size_t)(g->rows + 1) * (size_t)size);
+	memcpy(g->row + g->rows * size, row, bytes);
+	g->branch[g->rows] = branch;
+	return g->rows++;
+}
+
+static void add_guard(struct guards *g, int size, int branch, const double *row, struct gate_key gate,
+		      struct guard guard)
+{
+	guard.row = add_row(g, size, branch, row, gate);
+	*MORE(g->guard, g->guards) = guard;
+}
+
+static double *turned(int size, const double *row, bool upward)
+{
+	double *result = ARRAY(double, size);
+	for (int j = 0; j < size; j++)
+		result[j] = upward || row[j] == 0 ? row[j] : -row[j];
+	return result;
+}
+
+/* The ends of an interval of an expression */
+static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
+			   int expression, int first)
+{
+	const struct switching *s = step->model->switching;
+	const struct expression *e = &s->expression[expression];
+	int size = step->layout.size, interval = interval_of(s, region, expression);
+	int segment = segment_of_region(s, region);
+	for (int upward = 0; upward < 2; upward++) {
+		int breakpoint = interval - !upward;
+		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&s->region[region], expression, upward))
+			continue;
+		double at = pieces->breakpoint[first + breakpoint];
+		struct guard guard = { .expression = expression,
+				       .breakpoint = breakpoint,
+				       .upward = upward,
+				       .leads = upward ? e->stride : -e->stride,
+				       .limit = upward || at == 0 ? at : -at,
+				       .impact = impact_at(s, segment, expression, e->at[breakpoint], upward) };
+		if (guard.impact < 0 && impact_resting(s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
+			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
+		add_guard(g, size, s->region[region].system,
+			  turned(size, pieces->rows[segment] + expression * size, upward),
+			  (struct gate_key){ .expression = expression, .upward = upward, .segment = segment }, guard);
+	}
+}
+
+/* What releases an expression that is held */
+static void guard_releases(const struct step *step, struct guards *g, int region, int expression)
+{
+	const struct switching *s = step->model->switching;
+	int stride = s->expression[expression].stride, interval = interval_of(s, region, expression);
+	for (int k = 0; k < s->region[region].releases; k++) {
+		const struct release *release = &s->region[region].release[k];
+		double *row = ARRAY(double, step->layout.size);
+		if (release->expression != expression)
+			continue;
+		row_over_x(step, release->row, 0, row);
+		add_guard(g, step->layout.size, s->region[region].system, row,
+			  (struct gate_key){ .expression = -1, .region = region, .release = k },
+			  (struct guard){ .expression = expression,
+					  .breakpoint = interval - !release->upward,
+					  .upward = release->upward,
+					  .leads = release->upward ? stride : -stride,
+					  .impact = -1 });
+	}
+}
+
+static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row,
+			   enum retuned_kind kind, int of)
+{
+	struct held_state new = { state, ARRAY(double, 2 * (size_t)step->layout.size), kind, of,
+				  g->assignments - g->set[g->sets] };
+	row_in_words(step, row, 0, new.value);
+	*MORE(g->assignment, g->assignments) = new;
+}
+
+static int end_set(struct guards *g)
+{
+	ENLARGE(g->set, (size_t)g->sets + 2);
+	g->set[++g->sets] = g->assignments;
+	return g->sets - 1;
+}
+
+static void hold_region(const struct step *step, struct guards *g, int region)
+{
+	const struct region *r = &step->model->switching->region[region];
+	g->hold[region] = -1;
+	if (!r->possible || r->holds == 0)
+		return;
+	g->hold[region] = g->sets;
+	for (int k = 0; k < r->holds; k++)
+		add_assignment(step, g, r->hold[k].state, r->hold[k].row, RETUNED_HOLD, region);
+	end_set(g);
+}
+
+static int set_of_jumps(const struct step *step, struct guards *g, int jumps, const struct jump *jump,
+			enum retuned_kind kind, int impact)
+{
+	for (int k = 0; k < jumps; k++)
+		add_assignment(step, g, jump[k].state, jump[k].row, kind, impact);
+	return end_set(g);
+}
+
+static struct struck struck_in(const struct step *step, struct guards *g, int number, int segment)
+{
+	const struct switching *s = step->model->switching;
+	const struct impact *impact = &s->impact[number];
+	const struct strike *strike = &impact->in[segment];
+	const struct expression *e = &s->expression[strike->expression];
+	struct struck new = { .expression = strike->expression, .upward = strike->upward,
+			      .rest = rest_of(s, segment, impact),
+			      .still = -1, .restitution = round_rational(strike->restitution) };
+	while (!mpq_equal(e->at[new.breakpoint], strike->at))
+		new.breakpoint++;
+	if (impact->bounces && !strike->upward)
+		new.breakpoint++;               /* the upper of two */
+	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, segment * s->impacts + number);
+	new.speed = ARRAY(double, step->layout.size);
+	new.back = ARRAY(double, step->layout.size);
+	RATIONAL part = ZERO;
+	if (impact->bounces) {
+		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL,
+					 segment * s->impacts + number);
+		row_over_x(step, strike->speed_row, 0, new.speed);
+		for (int j = 0; j < step->model->n; j++) {
+			mpq_mul(part, strike->direction[j], strike->factor);
+			new.back[j] = round_rational(part);
+		}
+	}
+	new.play = size_of_bounded(step, new.speed);
+	return new;
+}
+
+/* In an instance each has as much room as any. */
+static void add_reach(const struct step *step, const struct pieces *pieces, struct guards *g, int row)
+{
+	int branch = g->branch[row], size = step->layout.size, rungs = step->branch[branch].rungs;
+	int room = step->model->retuned ? room_for_rungs(step) : rungs;
+	SCRATCH double *reach = reach_of_rows(step, branch, pieces->piece[branch].slopes, 1, g->row + row * size);
+	ENLARGE(g->reach, (size_t)((g->reaches + room) * size));
+	for (int i = 0; i < room * size; i++)
+		g->reach[g->reaches * size + i] = i < rungs * size ? reach[i] : 0;
+	g->reach_at[row] = g->reaches;
+	g->reaches += room;
+}
+
+static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)
+{
+	size_t size = (size_t)step->layout.size, cells = (size_t)g->rows * size;
+	g->slope = ARRAY(double, cells);
+	g->second = ARRAY(double, cells);
+	g->fourth = ARRAY(double, cells);
+	g->reach_at = ARRAY(int, g->rows);
+	for (int from = 0, to; from < g->rows; from = to) {
+		for (to = from; to < g->rows && g->branch[to] == g->branch[from]; to++)
+			;
+		size_t at = (size_t)from * size;
+		bounds_of_rows(step, pieces, g->branch[from], to - from, g->row + at, g->slope + at, g->second + at,
+			       g->fourth + at);
+		for (int i = from; i < to; i++)
+			add_reach(step, pieces, g, i);
+	}
+}
+
+/* What rounding may hide is 8 units in the last place of all terms, as in the search. */
+static void add_rounding(const struct step *step, struct guards *g)
+{
+	const double rounding = 8 * ldexp(1, -52) * (1 + 1e-9);
+	for (int i = 0; i < g->rows * step->layout.size; i++)
+		g->second[i] += rounding * (fabs(g->row[i]) + 3 * fabs(g->slope[i]));
+}
+
+double *grips_of(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	size_t size = (size_t)step->layout.size, count = (size_t)s->felts;
+	double *grip = ARRAY(double, (size_t)s->regions * count * size);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < s->felts; i++)
+			if (s->region[r].grip[i])
+				row_over_x(step, s->region[r].grip[i], 0,
+					   grip + ((size_t)r * count + (size_t)i) * size);
+	return grip;
+}
+
+struct guards guards_of(const struct step *step, const struct pieces *pieces)
+{
+	const struct switching *s = step->model->switching;
+	struct guards g = { .first = ARRAY(int, s->regions + 1), .hold = ARRAY(int, s->regions),
+			    .set = ARRAY(int, 1), .apart = step->model->retuned };
+	for (int r = 0; r < s->regions; r++) {
+		g.first[r] = g.guards;
+		hold_region(step, &g, r);
+		for (int e = 0, first = 0; e < s->expressions; first += s->expression[e++].breaks)
+			if (!s->region[r].possible)
+				continue;
+			else {
+				guard_releases(step, &g, r, e);
+				if (!is_stick(&s->expression[e], interval_of(s, r, e)))
+					guard_interval(step, pieces, &g, r, e, first);
+			}
+	}
+	g.first[s->regions] = g.guards;
+	g.impacts = s->impacts;
+	g.impact = ARRAY(struct struck, (size_t)(s->segments * s->impacts));
+	for (int k = 0; k < s->segments; k++)
+		for (int i = 0; i < s->impacts; i++)
+			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
+	bound_rows_of_guards(step, pieces, &g);
+	g.play = ARRAY(double, (size_t)(s->segments * s->expressions));
+	g.row_play = ARRAY(double, g.rows);
+	for (int k = 0; k < s->segments; k++)
+		for (int e = 0; e < s->expressions; e++)
+			g.play[k * s->expressions + e] =
+				size_of_bounded(step, pieces->rows[k] + e * step->layout.size);
+	for (int i = 0; i < g.rows; i++)
+		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
+	if (step->clears)
+		add_rounding(step, &g);
+	return g;
+}
+
+/* From h down to 2^-23 h, where they rest, bounces become shorter by e each. Several contacts, which strike each other,
+ * take more. */
+static int bounces_in_step(const struct model *model)
+{
+	enum { MOST = 480, SHORTER = 23 };
+	double sum = 0;
+	for (int i = 0; i < model->impacts; i++) {
+		double most = 0;
+		if (model->retuned && retuned_place(model->retuned, RETUNED_RESTITUTION, i, 0) >= 0)
+			return MOST;            /* it may be anything */
+		for (int s = 0; s < model->system.segments; s++) {
+			double e = mpq_get_d(model->impact[i].in[s].restitution);
+			if (model->impact[i].bounces && e > 0 && e < 1)
+				most = fmax(most, ceil(SHORTER * log(2) / -log(e)));
+		}
+		sum += most;
+	}
+	return (int)fmin(model->impacts > 1 ? 2 * sum : sum, MOST);
+}
+
+int max_events(const struct model *model)
+{
+	return MAX_EVENTS + bounces_in_step(model);
+}
+
+int max_splits(const struct model *model)
+{
+	return MAX_SPLITS + 16 * bounces_in_step(model);
+}

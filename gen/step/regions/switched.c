@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps of piecewise-linear models: e^{A d} of each region for pieces d of the step; of parts that are independent, a
+ * step each. */
+#include "model/contacts/contacts.h"
+#include "step/cost.h"
+#include "step/linear/forms.h"
+#include "step/exponential/recipe.h"
+#include "regions.h"
+
+/* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
+static struct wanted *wanted_piece(const struct step *step, int halvings)
+{
+	struct recipe *r = NEW(struct recipe);
+	r->step = step;
+	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
+	r->table[piece].two_words = step->model->asked.compensated;
+	r->table[piece].increments = step->model->asked.compensated || halvings > 0;
+	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
+	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
+	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
+	return r->table;
+}
+
+/* Why a step of regions does not look over the whole of h first; NULL: it does */
+static const char *no_look(const struct step *step)
+{
+	enum { TERMS = 400, BOUNDS = 1024 };
+	const struct switching *s = step->model->switching;
+	const bool events = has_events(s);
+	bool turns = false;
+	for (int k = 0; k < step->branches; k++)
+		turns = turns || step->branch[k].halvings > !events;
+	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
+	return step->model->asked.single                 ? "it is smaller, for the target float"
+	       : s->segments > 1                         ? "loads change their formula in time"
+	       : events && step->model->retuned          ? "what sticks, slips and bounces has tunable params"
+	       : events && step->model->asked.compensated ? "what sticks, slips and bounces is kept in two words"
+	       : turns ? format("the fastest pole turns by more than %d in a step", events ? 1 : 2)
+	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
+	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
+	       : step->model->retuned && matrices > LIMIT_TUNED_NUMBERS
+		       ? "an instance would have too many numbers, for tunable params"
+		       : NULL;
+}
+
+bool is_cleared_by_tables(const struct step *step)
+{
+	enum { TERMS = 200 };
+	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
+}
+
+/* Over h or a shorter piece */
+static struct table *table_over(const struct step *step, struct branch *b, int halvings)
+{
+	return tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, halvings))[0];
+}
+
+/* How often an entry of e^{A d} is multiplied: of two words the first with x and with its rest, the second with x */
+static int products_of_words(const struct step *step)
+{
+	return step->model->asked.compensated ? 3 : 1;
+}
+
+int products_of_piece(const struct step *step)
+{
+	bool ladder = false;
+	for (int k = 0; k < step->branches; k++)
+		ladder = ladder || step->branch[k].rungs > 0;
+	int size = step->layout.size, expressions = step->model->switching->expressions;
+	return size * (products_of_words(step) * size + (ladder ? 4 * size + 3 * expressions + 1 : 6 * expressions));
+}
+
+/* Where guards end regions: x on, what is held at both ends, each guard there and between; of the region with most */
+long products_of_unmet(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	int most = 0;
+	for (int r = 0; r < s->regions; r++) {
+		int guards = s->region[r].releases;
+		for (int e = 0; e < s->expressions; e++) {
+			const int interval = interval_of(s, r, e);
+			if (!is_stick(&s->expression[e], interval))
+				guards += (interval > 0) + (interval < s->expression[e].breaks);
+		}
+		const int rows = 2 * s->region[r].holds + 3 * guards;
+		most = s->region[r].possible && rows > most ? rows : most;
+	}
+	return (long)(step->layout.size + most) * step->layout.size;
+}
+
+static void plan_look(struct step *step)
+{
+	bool any = false;
+	step->searches = no_look(step);
+	step->clears = !step->searches;
+	/* crossings go by tables of fixed numbers */
+	step->swift = step->clears && !step->model->retuned && !has_events(step->model->switching);
+	for (int k = 0; k < step->branches; k++)
+		any = any || step->branch[k].halvings > 0;
+	if (!step->clears)
+		return;
+	int expressions = step->model->switching->expressions;
+	step->program->multiplications =
+		has_events(step->model->switching)
+			? (int)products_of_unmet(step)
+			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
+	step->program->additions = step->program->multiplications + 2 * expressions;
+	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
+}
+
+static void halve_region(struct step *step, int k)
+{
+	step->branch[k].halvings = series_halvings(step, k);
+	if (step->branch[k].halvings > LIMIT_PIECES)
+		error(step->model->asked.step_at, "a smaller step would do",
+		      "the largest pole times h is above 2^%d: too short pieces of a step to look for crossings in",
+		      LIMIT_PIECES);
+}
+
+static void plan_region(struct step *step, int k)
+{
+	struct branch *b = &step->branch[k];
+	plan_ladder(step, k);
+	b->table = ARRAY(struct table *, b->rungs + 1);
+	b->table[0] = b->whole = k == 0 ? b->whole : table_over(step, b, 0);
+	for (int r = 0; r < b->rungs; r++)
+		b->table[1 + r] = table_over(step, b, rung_halvings(b, r));
+	b->system.channels = 0;
+	int degree = series_degree(step, k, k + 1, b->halvings);
+	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
+}
+
+/* At other values the same |pole| d of 1 at most, but no more is known of the terms. */
+static void plan_retuned(struct step *step)
+{
+	int least = step->model->asked.single ? 10 : 18, size = step->layout.size;
+	least += (size < 16 ? size : 16) / 2;
+	step->series.degree = least > step->series.degree ? least : step->series.degree;
+}
+
+/* e^{A d} of each region for pieces d of the step, and the series that finds crossings. What is counted is without the
+ * load states. */
+static void build_divided(struct step *step)
+{
+	struct branch *first = step->branch;
+	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
+	choose_form_of_regions(step);
+	step->tables = 1;
+	first->whole = table_over(step, first, 0);
+	first->system.channels = 0;
+	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
+	find_carries(step);
+	plan_anchors(step);
+	fill_anchors(step);
+	step->program = linear_program(step);
+	first->system.channels = channels;
+	step->series.degree = 3;
+	step->series.emitted = true;
+	for (int k = 0; k < step->branches; k++)
+		halve_region(step, k);
+	for (int k = 0; k < step->branches; k++)
+		plan_region(step, k);
+	if (step->model->retuned)
+		plan_retuned(step);
+	step->program->additions = step->program->multiplications = products_of_piece(step);
+	plan_look(step);
+}
+
+void build_regions_step(struct step *step)
+{
+	build_divided(step);
+	count_regions(step, step->program->multiplications, step->program->additions);
+}
+
+/* ---- independent parts ---- */
+
+/* Of the part's own model, as if it were alone */
+static struct step *step_of_part(const struct step *whole, const struct region_part *part)
+{
+	struct step *step = NEW(struct step);
+	step->model = part->model;
+	step->shown = whole;
+	step->kind = KIND_REGIONS;
+	step->no_anchors = "a part is given its load states";
+	take_operators(step);
+	step->written = step->branch->resolvent;
+	build_divided(step);
+	return step;
+}
+
+static void carry_of_parts(struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	int states = step->branch->system.states;
+	step->carry = ARRAY(int, states);
+	for (int i = 0; i < states; i++)
+		step->carry[i] = -1;
+	for (int p = 0; p < step->parts; p++)
+		for (int i = 0; i < step->part[p]->layout.states; i++)
+			if (step->part[p]->carry[i] >= 0)
+				step->carry[s->part[p].state[i]] = step->carries++;
+}
+
+/* The load states are those of all. */
+static void count_parts(struct step *step)
+{
+	int multiplications = 0, additions = 0;
+	step->program = linear_program(step);
+	for (int p = 0; p < step->parts; p++) {
+		const struct step *part = step->part[p];
+		multiplications += part->program->multiplications;
+		additions += part->program->additions;
+		step->series.degree =
+			part->series.degree > step->series.degree ? part->series.degree : step->series.degree;
+	}
+	step->series.emitted = true;
+	count_regions(step, multiplications, additions);
+}
+
+/* The table of the whole is that of the first regions, for NAME_Phi and the report. */
+void build_parts_step(struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	struct branch *first = step->branch;
+	choose_form_of_regions(step);
+	step->tables = 1;
+	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
+	first->whole = first->table[0];
+	first->system.channels = 0;
+	step->parts = s->parts;
+	step->part = ARRAY(struct step *, s->parts);
+	for (int p = 0; p < s->parts; p++)
+		step->part[p] = step_of_part(step, &s->part[p]);
+	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
+	carry_of_parts(step);
+	plan_anchors(step);
+	fill_anchors(step);
+	count_parts(step);
+}

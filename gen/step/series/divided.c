@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Formulas that the state chooses: each comparison is of an expression, smooth until the next event, with a breakpoint.
+ * A series, or a step of a collocation, is of the formulas between two events; where an expression passes a breakpoint
+ * it ends. */
+#include "model/reads.h"
+#include "model/regions/regions.h"
+#include "divided.h"
+#include "expansion.h"
+#include "step/contacts/series_contacts.h"
+
+#include <limits.h>
+
+/* ---- expressions and breakpoints ---- */
+
+static int known_expression(const struct expansion *x, const struct form *form, mpq_ptr of)
+{
+	for (int i = 0; i < x->expressions; i++)
+		if (is_form_multiple(form, x->expression[i].form, of))
+			return i;
+	return NONE;
+}
+
+static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr of)
+{
+	struct expansion *x = w->x;
+	int known = known_expression(x, form, of);
+	if (known != NONE)
+		return known;
+	*MORE(x->expression, x->expressions) = (struct divided){ .form = form, .sequence = NONE };
+	mpq_set_ui(of, 1, 1);
+	return x->expressions - 1;
+}
+
+void add_twin(struct divided *d, int breakpoint)
+{
+	mpq_t *all = rationals(d->breaks + 1);
+	for (int i = 0; i < d->breaks; i++)
+		mpq_set(all[i], d->at[i]);
+	mpq_set(all[d->breaks++], d->at[breakpoint]);
+	d->at = all;
+}
+
+static int known_breakpoint(const struct divided *d, mpq_srcptr at)
+{
+	for (int i = 0; i < d->breaks; i++)
+		if (mpq_equal(d->at[i], at))
+			return i;
+	return NONE;
+}
+
+static int find_breakpoint(struct divided *d, mpq_srcptr at)
+{
+	int known = known_breakpoint(d, at);
+	if (known != NONE)
+		return known;
+	mpq_t *all = rationals(d->breaks + 1);
+	for (int i = 0; i < d->breaks; i++)
+		mpq_set(all[i], d->at[i]);
+	mpq_set(all[d->breaks], at);
+	d->at = all;
+	return d->breaks++;
+}
+
+static void value_of_constants(const struct form *plain, mpq_ptr value)
+{
+	RATIONAL part = ZERO, pi = ZERO;
+	constant_pi(pi);
+	mpq_set_ui(value, 0, 1);
+	for (int i = 0; i < plain->terms; i++) {
+		mpq_set(part, plain->term[i].factor);
+		if (plain->term[i].basis.kind == BASIS_PI)
+			mpq_mul(part, part, pi);
+		mpq_add(value, value, part);
+	}
+}
+
+/* What stands beside the constants of a form, and their value */
+static const struct form *beside_constants(const struct form *form, mpq_ptr value)
+{
+	const struct form plain = constant_terms(form);
+	value_of_constants(&plain, value);
+	return form_sum(form, &plain, true);
+}
+
+/* e = (form - constant)/factor passes -constant/factor */
+static void to_breakpoint(mpq_ptr value, mpq_srcptr factor)
+{
+	mpq_div(value, value, factor);
+	mpq_neg(value, value);
+}
+
+/* a - b, or what stands beside a constant as it was written: b - a */
+static const struct form *difference_of(const struct form *a, const struct form *b, bool *turned)
+{
+	*turned = is_constant(a) && !is_constant(b);
+	return *turned ? form_difference(b, a) : form_difference(a, b);
+}
+
+struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
+{
+	struct division division = { .expression = NONE };
+	RATIONAL value = ZERO;
+	division.expression = find_divided(w, beside_constants(form, value), factor);
+	to_breakpoint(value, factor);
+	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
+	division.above = mpq_sgn(factor) > 0;
+	return division;
+}
+
+/* Of constants */
+static struct division decided(const struct form *d)
+{
+	RATIONAL value = ZERO;
+	value_of_constants(d, value);
+	return (struct division){ .expression = NONE, .above = mpq_sgn(value) > 0 };
+}
+
+struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b)
+{
+	bool turned;
+	RATIONAL factor = ZERO;
+	const struct form *d = difference_of(a, b, &turned);
+	struct division division = is_constant(d) ? decided(d) : divide_form(w, d, factor);
+	division.above = division.above != turned;
+	return division;
+}
+
+bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division)
+{
+	bool turned, known = true;
+	RATIONAL value = ZERO, factor = ZERO;
+	const struct form *d = difference_of(a, b, &turned);
+	*division = decided(d);
+	if (!is_constant(d)) {
+		division->expression = known_expression(x, beside_constants(d, value), factor);
+		known = division->expression != NONE;
+	}
+	if (known && !is_constant(d)) {
+		to_breakpoint(value, factor);
+		division->breakpoint = known_breakpoint(&x->expression[division->expression], value);
+		division->above = mpq_sgn(factor) > 0;
+		known = division->breakpoint != NONE;
+	}
+	division->above = division->above != turned;
+	return known;
+}
+
+/* ---- once all are there ---- */
+
+int column_of_sequence(struct expansion *x, int sequence, int top)
+{
+	int i = 0, states = 0;
+	while (states < x->count && x->sequence[states].state != NONE)
+		states++;
+	if (sequence < states)
+		return sequence;
+	while (i < x->columns && x->column[i] != sequence)
+		i++;
+	if (i == x->columns) {
+		ENLARGE(x->column, (size_t)x->columns + 1);
+		ENLARGE(x->column_top, (size_t)x->columns + 1);
+		x->column_top[x->columns] = 0;
+		x->column[x->columns++] = sequence;
+	}
+	x->column_top[i] = top > x->column_top[i] ? top : x->column_top[i];
+	return states + i;
+}
+
+void rank_breakpoints(struct expansion *x)
+{
+	for (int i = 0; i < x->expressions; i++) {
+		struct divided *d = &x->expression[i];
+		d->rank = ARRAY(int, d->breaks);
+		for (int k = 0; k < d->breaks; k++)
+			for (int j = 0; j < d->breaks; j++)
+				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < (j < k);
+		d->column = column_of_sequence(x, d->sequence, x->order);
+	}
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
+		struct watch *watch = &x->contacts->watch[i];
+		watch->column = column_of_sequence(x, watch->sequence, watch->whole ? x->order : 1);
+	}
+}
+
+int breakpoint_rank(const struct expansion *x, int expression, int breakpoint)
+{
+	return x->expression[expression].rank[breakpoint];
+}
+
+int upper_rank(const struct expansion *x, int expression, int breakpoint)
+{
+	const struct divided *d = &x->expression[expression];
+	int rank = d->rank[breakpoint];
+	for (int k = 0; k < d->breaks; k++)
+		if (mpq_equal(d->at[k], d->at[breakpoint]) && d->rank[k] > rank)
+			rank = d->rank[k];
+	return rank;
+}
+
+mpq_t *rising_breakpoints(const struct divided *d)
+{
+	mpq_t *rising = rationals(d->breaks);
+	for (int k = 0; k < d->breaks; k++)
+		mpq_set(rising[d->rank[k]], d->at[k]);
+	return rising;
+}
+
+const char *divided_text(const struct step *step, int expression)
+{
+	const struct step *shown = step->shown;
+	bool same = shown->divided && shown->divided->expressions == step->divided->expressions;
+	shown = same ? shown : step;
+	return form_text(shown->model, shown->divided->expression[expression].form);
+}
+
+int regions_of_series(const struct expansion *x)
+{
+	int regions = 1;
+	for (int i = 0; i < x->expressions; i++) {
+		if (regions > INT_MAX / (x->expression[i].breaks + 1))
+			return 0;
+		regions *= x->expression[i].breaks + 1;
+	}
+	return regions;
+}
+
+void check_divided(const struct step *step)
+{
+	const struct expansion *x = step->divided;
+	const struct model *model = step->model;
+	const struct smoothness *smooth = &model->smooth;
+	if (!x)
+		return;
+	if (smooth->singular)
+		error(smooth->singular->start, "etdrk4 and the schemes like it step across it, of lower order there",
+		      "scheme %s: '%s' has no Taylor series where %s", scheme_name(model->scheme),
+		      text_between(smooth->singular->start, smooth->singular->end), smooth->singular_where);
+}

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The solution as a Taylor series. */
+#ifndef PLGEN_STEP_EXPANSION_H
+#define PLGEN_STEP_EXPANSION_H
+
+#include "sequences.h"
+#include "step/step.h"
+#include "tape/tape.h"
+
+struct contacts;
+struct divided;
+struct unseen;
+
+struct expansion {
+	int order;                  /* of the series in its unit of time, h or several of them */
+	int count;                  /* sequences; the first are the states */
+	struct sequence *sequence;
+	int slots;                  /* factors that change from segment to segment: */
+	double *changing;           /* [segment][k][slot] */
+	int *slot_load;             /* per slot: column of the loads */
+	bool *load;                 /* per load: read */
+	bool *input, *slope;        /* per input: read */
+	bool time, params;          /* t is read; tunable params are */
+	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
+	struct divided *expression;
+	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
+	int *column_top;            /* up to these */
+	int measured;               /* the first of them: their last terms count as those of states do */
+	int unseens;                /* what bounds how far a series serves beside its last terms */
+	struct unseen *unseen;
+	bool looks;                 /* at slopes further on */
+	double crowded;             /* 1/s, of loads that may cancel the highest frequency */
+	struct contacts *contacts;  /* NULL: there are none */
+	/* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	int *force;
+	bool alone;                 /* the states' own coefficients are not wanted */
+	int multiplications;        /* of one expansion, that of its end and of the loads with it */
+};
+
+/* ---- recurrences.c: the coefficients as nodes of a tape ---- */
+
+/* Operands: TAPE_STATE, TAPE_LOAD, TAPE_INPUT, TAPE_PARAM, TAPE_TIME, TAPE_TABLE of slot `index` at the k
+ * `part`; what the state chooses TAPE_ABOVE and TAPE_HELD, where nodes have no names by their numbers. */
+struct series_names {               /* of a sequence's nodes, x of x_3; NULL: they have none */
+	const char *(*name)(const void *context, int sequence);
+	const void *context;
+};
+struct recurrences;
+struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
+struct tape *tape_of_recurrences(const struct recurrences *r);
+tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0 */
+tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
+tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
+
+/* ---- newest.c: how the newest coefficients enter the next ones ---- */
+
+void find_newest(struct expansion *x);
+
+/* ---- expansion.c: the solution as a Taylor series ---- */
+
+struct expansion *expansion_of(const struct step *step, int order);
+/* the same with what is left over as sequences of their own; and some of its sequences alone, up to a lower order */
+struct expansion *expansion_with_forces(const struct step *step, int order);
+struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
+				    int *column);
+struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
+
+/* ---- order.c: the order of a series ---- */
+
+/* The one that was asked for, or that of the tolerance, or a lower one that is cheaper. Leaves step->expansion. */
+int economical_order(struct step *step);
+/* In h, of its scheme where all is smooth */
+int order_of_step(const struct step *step);
+
+/* ---- radius.c: how far a series reaches from the start ---- */
+
+enum { EXPANSION_SERVES = 32 };     /* most steps that one expansion serves */
+struct reach {                      /* estimates, at t = 0 from the initial values, inputs 0 */
+	bool known;                 /* every coefficient is finite */
+	double radius;              /* of convergence [s]; infinite: no singularity is seen */
+	double served;              /* by tolerance: steps that one series serves, below 1 the part of one; else 0 */
+};
+struct reach reach_of_series(const struct step *step);
+
+#endif

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How the newest coefficients enter the next ones. The k-th of a sum, product, quotient or root is linear in the k-th
+ * of what it is made of, with factors that are the same for all k >= 1: the derivatives at the start. So the k-th of
+ * what follows from a few others is an early part, of coefficients before k, and these factors, its gains, times their
+ * k-th. The next coefficient of a state then waits for a multiplication and an addition, however deep the expression
+ * is: latency decides what a series costs. */
+#include "expansion.h"
+
+enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows from; that a sum has anyway */
+
+static bool *state_dependent(const struct expansion *x)
+{
+	bool *depends = ARRAY(bool, x->count);
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (int i = 0; i < x->count; i++) {
+			const struct sequence *s = &x->sequence[i];
+			bool now = s->state != NONE || (s->a != NONE && depends[s->a]) ||
+				   (s->b != NONE && depends[s->b]);
+			for (int k = 0; k < s->terms; k++) {
+				const struct sequence_term *t = &s->term[k];
+				now = now || (t->kind == TERM_SEQUENCE && depends[t->a]) ||
+				      (t->kind == TERM_PRODUCT && (depends[t->a] || depends[t->b]));
+			}
+			changed = changed || now != depends[i];
+			depends[i] = now;
+		}
+	}
+	return depends;
+}
+
+static void include(struct sequence *s, int other)
+{
+	for (int i = 0; i < s->gains; i++)
+		if (s->gain[i] == other)
+			return;
+	*MORE(s->gain, s->gains) = other;
+}
+
+static void include_operand(const struct expansion *x, const bool *depends, struct sequence *s, int operand)
+{
+	const struct sequence *o = &x->sequence[operand];
+	if (!depends[operand])
+		return;
+	if (!o->split)
+		include(s, operand);
+	for (int i = 0; o->split && i < o->gains; i++)
+		include(s, o->gain[i]);
+}
+
+static bool reads_late(const struct expansion *x, const struct sequence *s)
+{
+	bool late = s->late || (s->a != NONE && x->sequence[s->a].late) || (s->b != NONE && x->sequence[s->b].late);
+	for (int k = 0; k < s->terms; k++) {
+		const struct sequence_term *t = &s->term[k];
+		late = late || (t->kind == TERM_SEQUENCE && x->sequence[t->a].late) ||
+		       (t->kind == TERM_PRODUCT && (x->sequence[t->a].late || x->sequence[t->b].late));
+	}
+	return late;
+}
+
+/* Operands whose k-th a sum has, each product both of its */
+static int direct_operands(const struct sequence *s)
+{
+	int count = 0;
+	for (int k = 0; k < s->terms; k++)
+		count += s->term[k].kind == TERM_SEQUENCE ? 1 : s->term[k].kind != TERM_PRODUCT ? 0
+							      : s->term[k].a == s->term[k].b    ? 1
+											 : 2;
+	return count;
+}
+
+static bool has_product(const struct sequence *s)
+{
+	for (int k = 0; k < s->terms; k++)
+		if (s->term[k].kind == TERM_PRODUCT)
+			return true;
+	return false;
+}
+
+static void find_gains(const struct expansion *x, const bool *depends, int index)
+{
+	struct sequence *s = &x->sequence[index];
+	bool sum = s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL;
+	bool made = sum || s->kind == SEQUENCE_QUOTIENT || s->kind == SEQUENCE_ROOT || s->kind == SEQUENCE_POWER;
+	if (!made || !depends[index] || reads_late(x, s))
+		return;
+	for (int k = 0; k < s->terms; k++) {
+		const struct sequence_term *t = &s->term[k];
+		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
+			include_operand(x, depends, s, t->a);
+		if (t->kind == TERM_PRODUCT)
+			include_operand(x, depends, s, t->b);
+	}
+	if (!sum && s->a != NONE)
+		include_operand(x, depends, s, s->a);
+	if (!sum && s->b != NONE)
+		include_operand(x, depends, s, s->b);
+	int direct = direct_operands(s), most = !sum ? FEW : direct > ENOUGH ? direct : ENOUGH;
+	s->split = s->kind != SEQUENCE_INTEGRAL && s->gains > 0 && s->gains <= FEW;
+	if (s->gains > most || (s->kind == SEQUENCE_INTEGRAL && !has_product(s) && s->gains == direct))
+		s->gains = 0;
+}
+
+/* When a coefficient is there, in cycles: 4 for a multiplication, or an addition. What comes last is added last. */
+struct schedule {
+	const struct expansion *x;
+	double *ready;              /* [sequence][k] */
+	int at;
+};
+
+static double *ready_at(const struct schedule *w, int sequence, int k)
+{
+	return &w->ready[sequence * (w->x->order + 2) + k];
+}
+
+static void follow(const struct schedule *w, const struct sequence *s, int index, int k)
+{
+	bool integral = s->kind == SEQUENCE_INTEGRAL;
+	double time = k && s->gains ? 12 : 0, *mine = ready_at(w, index, integral ? k + 1 : k);
+	for (int i = 0; i < s->gains && k; i++)
+		time = *ready_at(w, s->gain[i], k - 1) + 12 > time ? *ready_at(w, s->gain[i], k - 1) + 12 : time;
+	for (int i = 0; i < s->gains; i++) {
+		double term = *ready_at(w, s->gain[i], k) + 4;
+		time = (term > time ? term : time) + 4;
+	}
+	for (int i = 0; i < s->terms && !s->gains; i++) {
+		const struct sequence_term *t = &s->term[i];
+		bool pair = t->kind == TERM_PRODUCT;
+		double first = pair || t->kind == TERM_SEQUENCE ? *ready_at(w, t->a, k) : 0;
+		double second = pair ? *ready_at(w, t->b, k) : 0, term = (first > second ? first : second) + 4;
+		time = term > time ? term : time;
+	}
+	*mine = time;
+}
+
+/* A short list: by insertion, so that equal ones stay in order everywhere */
+static void order_gains(const struct schedule *w, struct sequence *s)
+{
+	for (int i = 1; i < s->gains; i++)
+		for (int j = i; j > 0 && *ready_at(w, s->gain[j - 1], w->at) > *ready_at(w, s->gain[j], w->at); j--) {
+			int other = s->gain[j];
+			s->gain[j] = s->gain[j - 1];
+			s->gain[j - 1] = other;
+		}
+}
+
+static void schedule(const struct expansion *x)
+{
+	enum { STEADY = 3 };
+	struct schedule w = { .x = x, .ready = ARRAY(double, (size_t)(x->count * (x->order + 2))) };
+	for (int k = 0; k < STEADY; k++) {
+		w.at = k;
+		for (int i = 0; i < x->count; i++)
+			if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
+				follow(&w, &x->sequence[i], i, k);
+		for (int i = 0; i < x->count; i++)
+			if (x->sequence[i].kind == SEQUENCE_INTEGRAL)
+				follow(&w, &x->sequence[i], i, k);
+		for (int i = 0; i < x->count; i++)
+			order_gains(&w, &x->sequence[i]);
+	}
+}
+
+/* Sums before what they are in come first: operands are made before what is made of them, but for integrals. */
+void find_newest(struct expansion *x)
+{
+	bool *depends = state_dependent(x);
+	for (int i = 0; i < x->count; i++) {
+		x->sequence[i].known = !depends[i];
+		if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
+			find_gains(x, depends, i);
+	}
+	for (int i = 0; i < x->count; i++)
+		if (x->sequence[i].kind == SEQUENCE_INTEGRAL)
+			find_gains(x, depends, i);
+	schedule(x);
+}

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sums of sequences: what is added up exactly, and its factors as numbers, each rounded once. */
+#include "expansion.h"
+
+void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor)
+{
+	for (int i = 0; i < sum->keys; i++) {
+		struct key *key = &sum->key[i];
+		if (key->kind == kind && key->a == a && key->b == b) {
+			mpq_add(key->factor, key->factor, factor);
+			return;
+		}
+	}
+	struct key *key = MORE(sum->key, sum->keys);
+	*key = (struct key){ .kind = kind, .a = a, .b = b };
+	mpq_init(key->factor);
+	mpq_set(key->factor, factor);
+}
+
+/* ---- numbers of sums ---- */
+
+static double rounded(const struct sequencing *w, mpq_srcptr q)
+{
+	return equation_number(w->step->model, q).value;
+}
+
+/* binomial(m, k) D^k t^{m-k}, k = 0 .. m */
+static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcptr factor, const mpq_t *scale)
+{
+	RATIONAL part = ZERO, binomial = ZERO;
+	mpq_set(part, factor);
+	for (int k = 0; k <= m && k <= w->x->order; k++) {
+		struct sequence_term *term = MORE(s->term, s->terms);
+		*term = (struct sequence_term){ .kind = TERM_TIME, .a = m - k, .slot = -1 };
+		term->factor = ARRAY(double, w->x->order + 1);
+		mpq_mul(binomial, part, scale[k]);
+		term->factor[k] = rounded(w, binomial);
+		mpq_set_ui(binomial, (unsigned long)(m - k), (unsigned long)k + 1);
+		mpq_canonicalize(binomial);
+		mpq_mul(part, part, binomial);
+		mpq_mul(part, part, w->unit);
+	}
+}
+
+/* row (D S)^k / k!, S the load's own slopes: exact, times what the sum scales its k-th with */
+static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
+{
+	const struct load *l = &w->system->load[load];
+	int n = l->columns, at = w->layout.load[load], size = w->layout.size;
+	RATIONALS *next = rationals(n);
+	RATIONAL part = ZERO;
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++) {
+			mpq_mul(part, row[i], w->slopes[0][(at + i) * size + at + j]);
+			mpq_add(next[j], next[j], part);
+		}
+	mpq_set_ui(part, 1, (unsigned long)k + 1);
+	mpq_mul(part, part, w->unit);
+	for (int j = 0; j < n; j++)
+		mpq_mul(row[j], next[j], part);
+}
+
+/* value[k][column] */
+static double *load_numbers(const struct sequencing *w, int load, mpq_t *row, const mpq_t *scale)
+{
+	int n = w->system->load[load].columns, order = w->x->order;
+	double *value = ARRAY(double, (size_t)((order + 1) * n));
+	RATIONAL scaled = ZERO;
+	for (int k = 0; k <= order; k++) {
+		for (int j = 0; j < n; j++) {
+			mpq_mul(scaled, row[j], scale[k]);
+			value[k * n + j] = rounded(w, scaled);
+		}
+		next_row(w, load, k, row);
+	}
+	return value;
+}
+
+static void add_load_numbers(struct sequencing *w, struct sequence *s, int load, mpq_t *row, const mpq_t *scale)
+{
+	int n = w->system->load[load].columns, order = w->x->order, first = column_of_load(w->system, load);
+	const double *value = load_numbers(w, load, row, scale);
+	w->x->load[load] = true;
+	for (int j = 0; j < n; j++) {
+		struct sequence_term *term = MORE(s->term, s->terms);
+		*term = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j, .slot = -1 };
+		term->factor = ARRAY(double, order + 1);
+		for (int k = 0; k <= order; k++)
+			term->factor[k] = value[k * n + j];
+	}
+}
+
+/* All loads of a sum, whose columns change into each other */
+static void add_loads(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale)
+{
+	for (int l = 0; l < w->system->loads; l++) {
+		int first = column_of_load(w->system, l), n = w->system->load[l].columns;
+		RATIONALS *row = rationals(n);
+		bool any = false;
+		for (int i = 0; i < sum->keys; i++) {
+			const struct key *key = &sum->key[i];
+			if (key->kind != TERM_LOAD || key->a < first || key->a >= first + n)
+				continue;
+			mpq_set(row[key->a - first], key->factor);
+			any = any || mpq_sgn(key->factor) != 0;
+		}
+		if (any)
+			add_load_numbers(w, s, l, row, scale);
+	}
+}
+
+/* u = value + slope tau; its slope alone */
+static void add_input(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
+{
+	bool ramps = w->system->input[key->a].hold > 0;
+	if (key->kind == TERM_SLOPE && !ramps)
+		return;
+	RATIONAL number = ZERO;
+	for (int k = 0; k <= (key->kind == TERM_INPUT && ramps); k++) {
+		struct sequence_term *term = MORE(s->term, s->terms);
+		*term = (struct sequence_term){ .kind = k ? TERM_SLOPE : key->kind, .a = key->a, .slot = -1 };
+		term->factor = ARRAY(double, w->x->order + 1);
+		mpq_mul(number, key->factor, scale[k]);
+		if (k)
+			mpq_mul(number, number, w->unit);
+		term->factor[k] = rounded(w, number);
+		(term->kind == TERM_INPUT ? w->x->input : w->x->slope)[key->a] = true;
+	}
+}
+
+static void add_param(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
+{
+	RATIONAL number = ZERO;
+	struct sequence_term *term = MORE(s->term, s->terms);
+	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
+	term->factor = ARRAY(double, w->x->order + 1);
+	mpq_mul(number, key->factor, scale[0]);
+	term->factor[0] = rounded(w, number);
+	w->x->params = true;
+}
+
+static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
+{
+	RATIONAL number = ZERO;
+	struct sequence_term *term = MORE(s->term, s->terms);
+	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .b = key->b, .slot = -1 };
+	term->factor = ARRAY(double, w->x->order + 1);
+	for (int k = 0; k <= w->x->order; k++) {
+		mpq_mul(number, key->factor, scale[k]);
+		term->factor[k] = rounded(w, number);
+	}
+}
+
+/* Its keys as terms, scaled by scale[k] at k */
+void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale)
+{
+	for (int i = 0; i < sum->keys; i++) {
+		const struct key *key = &sum->key[i];
+		if (mpq_sgn(key->factor) == 0 || key->kind == TERM_LOAD)
+			continue;
+		if (key->kind == TERM_TIME)
+			add_powers(w, s, key->a, key->factor, scale);
+		else if (key->kind == TERM_INPUT || key->kind == TERM_SLOPE)
+			add_input(w, s, key, scale);
+		else if (key->kind == TERM_PARAM)
+			add_param(w, s, key, scale);
+		else
+			add_plain(w, s, key, scale);
+	}
+	add_loads(w, s, sum, scale);
+}
+
+mpq_t *plain_scale(const struct sequencing *w)
+{
+	mpq_t *scale = rationals(w->x->order + 1);
+	for (int k = 0; k <= w->x->order; k++)
+		mpq_set_ui(scale[k], 1, 1);
+	return scale;
+}
+
+/* D/(k+1): of a derivative with respect to time; or 1/(k+1), where D is in the factors already */
+mpq_t *integral_scale(const struct sequencing *w, bool times_unit)
+{
+	mpq_t *scale = rationals(w->x->order + 1);
+	for (int k = 0; k <= w->x->order; k++) {
+		mpq_set_ui(scale[k], 1, (unsigned long)k + 1);
+		if (times_unit)
+			mpq_mul(scale[k], scale[k], w->unit);
+	}
+	return scale;
+}
+
+/* ---- loads that change their formula ---- */
+
+/* Loads whose force changes in time have their factors in a table. */
+void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale)
+{
+	struct expansion *x = w->x;
+	int size = w->layout.size, segments = w->system->segments, stride = x->order + 1;
+	for (int l = 0; l < w->system->loads; l++) {
+		int at = w->layout.load[l], n = w->system->load[l].columns, first = column_of_load(w->system, l);
+		bool any = false;
+		for (int k = 0; k < segments && at >= 0; k++)
+			for (int j = 0; j < n; j++)
+				any = any || mpq_sgn(w->slopes[k][state * size + at + j]) != 0;
+		if (!any)
+			continue;
+		x->load[l] = true;
+		for (int j = 0; j < n; j++) {
+			*MORE(s->term, s->terms) = (struct sequence_term){
+				.kind = TERM_LOAD, .a = first + j, .slot = x->slots + j
+			};
+		}
+		ENLARGE(x->slot_load, (size_t)(x->slots + n));
+		ENLARGE(x->changing, (size_t)((x->slots + n) * segments * stride));
+		for (int k = 0; k < segments; k++) {
+			RATIONALS *row = rationals(n);
+			for (int j = 0; j < n; j++)
+				mpq_set(row[j], w->slopes[k][state * size + at + j]);
+			const double *value = load_numbers(w, l, row, scale);
+			for (int j = 0; j < n; j++)
+				for (int m = 0; m < stride; m++)
+					x->changing[((x->slots + j) * segments + k) * stride + m] = value[m * n + j];
+		}
+		for (int j = 0; j < n; j++)
+			x->slot_load[x->slots++] = first + j;
+	}
+}
+
