@@ -40,7 +40,8 @@ before=''
 for room in $rooms; do
 	before="$before $room"
 	[ -f "$root/gen/$room/$room.h" ] || echo "gen/$room/$room.h is missing" >>log
-	for header in $(sed -n 's/^#include "\([a-z_]*\)\/[a-z_]*\.h".*/\1/p' "$root/gen/$room"/*.[ch] | sort -u); do
+	files=$(find "$root/gen/$room" -name '*.[ch]')
+	for header in $(sed -n 's/^#include "\([a-z_]*\)\/[a-z_/]*\.h".*/\1/p' $files | sort -u); do
 		case " host $before " in
 		*" $header "*) ;;
 		*) echo "gen/$room includes a header of gen/$header" >>log ;;
@@ -49,6 +50,28 @@ for room in $rooms; do
 done
 [ ! -s log ]
 result $? 'no header of a later room'
+
+# A folder of a room has what only its own files call in inner.h, which nobody else includes.
+cp listing walled
+(cd "$root" && grep -r '^#include "[a-z]*/[a-z]*/[a-z_]*\.h"' gen tests --include='*.[ch]') |
+	sed 's|:#include "\([^"]*\)".*| \1|' >includes
+: >included
+for header in $(cd "$root/gen" && find . -mindepth 3 -name '*.h' | sed 's/^..//' | LC_ALL=C sort); do
+	case $header in emit/series/* | emit/tunable/* | model/tunable/* | step/series/*) continue ;; esac
+	folder=${header%/*}
+	awk -v header="$header" -v inside="gen/$folder/" '$2 == header && index($1, inside) != 1' includes >outside
+	case $header in
+	*/inner.h) cat outside >>included ;;
+	*) [ ! -s outside ] || grep -o '\<[a-z_0-9]*(' "$root/gen/$header" |
+		sed "s|^\(.*\)($|declares $folder $header \1|" >>walled ;;
+	esac
+done
+judge walled '^wall' 'what a folder alone calls is private to it'
+cp included log
+[ ! -s included ]
+result $? 'no inner header is included from outside'
+{ cat walled; echo 'declares step/linear step/linear/forms.h drop_anchors'; } >wall
+notices wall '^wall: step/linear/forms.h declares drop_anchors' 'what stands before the wall is noticed'
 
 # Numbers are rounded before they are printed.
 grep 'gen_emit_' listing | grep -E ' U (mpfr|mpfi)_' | sed 's/^.*gen_emit_/emit\//' >log

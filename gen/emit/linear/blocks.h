@@ -7,8 +7,6 @@
 
 /* ---- emit_large.c: the step of a large model ---- */
 
-void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
-void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
 struct group_shape {                /* of its numbers, where they are a table or stand in the instance */
 	const char *name;           /* columns */
 	int rows, columns;
@@ -23,8 +21,6 @@ int  alike_entry(const struct emitter *e, const struct group *g, bool changing, 
 /* ---- blockwise.c: the independent blocks of a large model, one after the other between steps and many at once ---- */
 
 bool is_blockwise(const struct emitter *e);
-int  count_blocks(const struct emitter *e);
-int  states_of_largest_block(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
 
 #endif

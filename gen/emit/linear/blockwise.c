@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The independent blocks of a large model, which NAME_at and NAME_jump take one after the other: see changes.h, jump.h.
  */
-#include "blocks.h"
+#include "inner.h"
 
 bool is_blockwise(const struct emitter *e)
 {

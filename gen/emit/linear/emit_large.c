@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The step of a large model by its independent blocks: rows as everywhere; a loop over blocks that are alike; the
  * columns of a large block's matrix, summed in a form that compilers make vectors of. */
-#include "blocks.h"
+#include "inner.h"
 #include "step/linear/forms.h"
 
 enum {

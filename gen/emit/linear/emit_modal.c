@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step of modes: s->y holds the real parts of the pairs, then their imaginary parts, then what is real. */
-#include "modes.h"
+#include "inner.h"
 #include "step/linear/forms.h"
 #include "step/tapes.h"
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
-#include "blocks.h"
+#include "inner.h"
 #include "emit/kinds.h"
-#include "modes.h"
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/linear/forms.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
-#include "blocks.h"
+#include "inner.h"
 #include "emit/kinds.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"

@@ -30,6 +30,5 @@ void emit_normal_tables(const struct emitter *e);
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
-void emit_modal_step(const struct emitter *e, const char *const *acting_text);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_batch: what the header has of it, and what batch.h is told. */
+#include "inner.h"
 #include "emit/declarations.h"
 #include "emit/kinds.h"
-#include "many.h"
 #include "emit/steps.h"
 #include "step/linear/rows.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
  * many instances as there are lanes, from the arrays and back. */
+#include "inner.h"
 #include "emit/kinds.h"
-#include "many.h"
 #include "emit/steps.h"
 #include "step/exponential/recipe.h"
 #include "step/linear/rows.h"

@@ -19,12 +19,6 @@ struct batch {
 	int factors;                    /* of an instance, that its params decide */
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
-struct batch plan_batch(const struct emitter *e);
-int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
-int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */
-void emit_lanes_step(struct batch *b);
-void emit_lanes_out(struct batch *b);
-void emit_lanes_bend(struct batch *b);                            /* how far outputs may be off their chords */
 void emit_batch_declarations(const struct emitter *e);
 void emit_batch(const struct emitter *e);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions: a step that stays clear of every breakpoint, as sums with a bound for each expression. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions: what the few crossings of a step are found by, in the runtime (few.h, which the model's file includes): the
  * expressions, their bounds, x over the whole step and over a part of it. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/text.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions with dry friction as C: their guards, what holds states in them, and the search that goes from event to
  * event. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/text.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"

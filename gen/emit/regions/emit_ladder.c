@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pieces of a step between the shortest and the whole, as C: of regions, and of linear parts, whose fastest pole turns
  * far in it. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/text.h"
 #include "model/regions/regions.h"
 #include "step/regions/guards.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A piecewise-linear model of independent parts as C: each part's tables and functions as if it were alone, and what
  * makes one model of them. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "model/regions/regions.h"
 

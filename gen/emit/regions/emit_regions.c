@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A piecewise-linear model as C: tables of its regions, and a step that leaves finding crossings to the runtime. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"

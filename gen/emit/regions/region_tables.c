@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions: tables that there is one of for each matrix, and sums over their rows as text. */
-#include "regions.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"

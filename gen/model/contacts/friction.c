@@ -4,8 +4,8 @@
  * the force acts on is solved for it and put into the others, and v' = 0 stands in its place; the state whose rate that
  * is follows from the others. Sticking ends where the force would have to be above F, the convention of Filippov
  * (Differential Equations with Discontinuous Righthand Sides, 1988). */
+#include "inner.h"
 #include "model/building.h"
-#include "friction.h"
 
 /* ---- is there any? ---- */
 

@@ -36,9 +36,6 @@ struct holding {                    /* states of a region that follow from the o
 	struct region *region;
 	struct basis *of;
 };
-const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
-void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
-void add_release(struct region *region, int expression, bool upward, struct form *form);
 bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
 
 /* ---- slider.c: friction of what has no mass ---- */
@@ -46,14 +43,9 @@ bool same_friction(const struct region *a, const struct region *b); /* what stic
 /* Whether friction stands in the form whose velocity is of a coordinate of first order: this one; -1: any */
 bool has_slider(const struct building *b, const struct form *form, int coord);
 void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
-/* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
-void slide_sliders(struct building *b, const struct switching *s, int region);
 /* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
 bool is_released(const struct region *region, int expression, bool upward);
-void hold_sliders(struct holding *h, const struct switching *s);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
-/* where it slides, of the slider that is written there; NULL: it sticks */
-struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
 bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
 /* Where it slides: as many as its force differs in regions */
 int slides_of(const struct switching *s, int index, const struct slide ***slide);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* States of a region that follow from the others, and what lets go of them. */
+#include "inner.h"
 #include "model/building.h"
-#include "friction.h"
 
 /* form without the term of a basis, which `by` gives */
 static struct form *replaced(const struct form *form, const struct basis *basis, const struct form *by)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sliders without mass in regions: where they slide, their equations there, the places that follow. */
+#include "inner.h"
 #include "model/building.h"
-#include "friction.h"
 
 bool is_repeated_slider(const struct switching *s, int index)
 {

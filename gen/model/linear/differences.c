@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Coordinates that are differences along a tree, and a centre: what they are called, the written ones as forms of them,
  * and values of either from those of the other. */
+#include "inner.h"
 #include "model/building.h"
-#include "relative.h"
 #include "model/tunable/tuning.h"
 
 #include <string.h>

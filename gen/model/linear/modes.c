@@ -5,9 +5,8 @@
  * force; else they are those of the state matrix. Sizes are sums of |residues| in double precision: to choose by and to
  * tell.
  */
+#include "inner.h"
 #include "model/checks.h"
-#include "modes.h"
-#include "shortening.h"
 
 #include <float.h>
 #include <math.h>

@@ -11,10 +11,10 @@
  *
  * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
  * are derived in them from the start; where the user looks, states are the written ones. */
+#include "inner.h"
 #include "model/building.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "relative.h"
 #include "model/tunable/tuning.h"
 
 #include <string.h>

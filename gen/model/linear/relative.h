@@ -36,9 +36,6 @@ struct relative {
 	mpq_t *solved;
 	                            /* NULL: equations stay as written */
 };
-struct relative *relative_new(const struct model *model);    /* without a link */
-void complete_relative(struct relative *r);                  /* once it is linked: names, orders and forms */
-struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
 /* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
 /* that of what is kept there */

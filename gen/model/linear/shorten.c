@@ -2,7 +2,7 @@
 /* The model of some of its modes: their coordinates are its states, and what the others would follow at once stays as
  * rows from loads and inputs into outputs (static correction: Craig and Kurdila 2006, 11.4, for loads at their own
  * frequencies). Numbers of modes are dyadic rationals of a precision, and exact from here on. */
-#include "shortening.h"
+#include "inner.h"
 
 
 /* ---- the states of a model of modes ---- */

@@ -52,9 +52,6 @@ struct shortening {                 /* of a model of modes */
 };
 /* Of a linear model with declared outputs. NULL: `*why` says what stands against it ("a param is tunable"). */
 struct modes *modes_of(const struct model *model, const char **why);
-/* block, right and left; doing it again costs nothing. False: it does not converge, as of a model whose poles lie too
- * close for double precision. */
-bool mode_refine(struct modes *modes, int index);
 /* by falling share, rigid ones that are seen before all others: indices into `mode` */
 int *modes_by_share(const struct modes *modes);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which model is stepped: that of the equations, or one over coordinates that part what moves as a whole. */
+#include "inner.h"
 #include "model/regions/regions.h"
-#include "relative.h"
 #include "model/tunable/tuning.h"
 
 /* The coordinate from which all of its group are measured */

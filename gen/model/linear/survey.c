@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How large each mode's answer is in each output, in double precision: sums of |residues|, to choose by and to tell. */
-#include "modes.h"
-#include "shortening.h"
+#include "inner.h"
 
 #include <complex.h>
 #include <math.h>

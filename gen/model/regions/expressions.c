@@ -2,8 +2,8 @@
 /* What is compared with breakpoints: terms that compare multiples of one form share an expression. Its loads may have
  * another formula in each segment of time; it is known again there by the terms that compare it, and by what of it is
  * not of time alone. */
+#include "inner.h"
 #include "model/building.h"
-#include "expressions.h"
 #include "model/contacts/friction.h"
 #include "model/reads.h"
 

@@ -29,13 +29,7 @@ struct compared {                   /* form + constant with 0 */
 	mpq_srcptr constant;
 	int met;                    /* of struct expression, where it is one */
 };
-/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
- * and scale in which it was written, and form is its own. form + constant = of (e - at) */
-int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
-/* In segments where nothing depends on it, it is as in the one before, or after. */
-void complete_expressions(struct switching *s);
 struct form *form_in(const struct expression *e, int segment); /* what breakpoints divide, in a segment of time */
-bool share_expression(const struct switching *a, const struct switching *b);
 bool changes_in_time(const struct expression *e);
 const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Breakpoints of regions on which nothing changes: they go, so that regions are no more than they have to be. */
+#include "inner.h"
 #include "model/contacts/friction.h"
 
 /* Whether all regions below it have the equations of those above it */

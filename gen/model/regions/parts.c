@@ -3,6 +3,7 @@
  * regions, so that their numbers add up where they would be multiplied, and crosses breakpoints at its own times. Parts
  * are told apart by what the equations read, in any region; loads and inputs are of all. Coordinates without
  * breakpoints are one part, whatever they read. */
+#include "inner.h"
 #include "model/building.h"
 #include "model/contacts/friction.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which regions can be: inequalities of their expressions that hold together, by elimination (Fourier and Motzkin).
  * Whether forces jump with a velocity from one to the next. */
+#include "inner.h"
 #include "model/building.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"

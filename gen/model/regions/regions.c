@@ -3,9 +3,9 @@
  * in states, known loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an
  * expression divide it into intervals; a region is one interval for each expression, and in it every equation is
  * linear. Expressions are found by looking at one region after the other, as breakpoints in time are. */
+#include "inner.h"
 #include "model/building.h"
 #include "model/contacts/friction.h"
-#include "regions.h"
 
 enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cannot be are left out */
 

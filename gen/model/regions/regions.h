@@ -69,18 +69,9 @@ struct region_part {
 
 bool is_piecewise_linear(const struct building *b);
 int  interval_of(const struct switching *s, int region, int expression);
-/* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
-struct switching *regions_of_rows(struct building *b, int rows, int *row);
-void remove_idle_breaks(struct switching *s);
-/* its index; apart: with no other's, though they are equal */
-int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
-int  count_candidates(struct switching *s);                 /* in one segment of time; strides of expressions */
-void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
-void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
-_Noreturn void too_many(const struct building *b, const struct switching *s);
 _Noreturn void too_many_in_time(const struct switching *s);
 int  breaks_of_all(const struct switching *s);               /* breakpoints of all its expressions */
 int  possible_regions(const struct switching *s);

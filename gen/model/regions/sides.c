@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What decides on the sign of a form, and forms as they are on one side of where it is 0. */
-#include "regions.h"
-#include "sides.h"
+#include "inner.h"
 
 enum { LIMIT_EXTREMES = 32 };       /* of min and max: beyond, pairs are not looked at */
 

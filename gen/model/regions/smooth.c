@@ -7,7 +7,7 @@
  * as h shrinks. The difference is written symbolically and measured at points of the surface, in 320 bits. */
 #include "model/building.h"
 #include "model/reads.h"
-#include "sides.h"
+#include "inner.h"
 
 #include <string.h>
 

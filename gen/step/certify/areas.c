@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: regions as they are met, what ends them, and loads at a time. */
+#include "inner.h"
 #include "model/tunable/elsewhere.h"
 #include "model/contacts/friction.h"
-#include "references.h"
 #include "through.h"
 
 #include <math.h>

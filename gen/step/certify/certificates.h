@@ -25,7 +25,6 @@ double error_told(const struct certificate *c);             /* as walked, or bou
 /* `exact`: the same step with the numbers of double */
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
 double needed_error(const struct requirement *r, double largest);       /* of the output */
-long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
 /* what it surely reaches; `exact` in double; 0: it is not known */
 double largest_of_output(const struct step *exact, const struct requirement *r);
 /* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.

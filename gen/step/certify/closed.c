@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* States of a linear model in closed form, for the target's self-test to step to. */
+#include "inner.h"
 #include "step/linear/images.h"
-#include "references.h"
 
 #include <math.h>
 

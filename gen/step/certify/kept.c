@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step as a map in double: what it keeps, and how large states and an output become by loads and inputs; and the
  * exact course of the model beside it. */
+#include "inner.h"
 #include "model/linear/relative.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
-#include "kept.h"
 
 #include <math.h>
 

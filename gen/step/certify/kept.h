@@ -50,37 +50,12 @@ struct errors {
 
 /* ---- kept.c ---- */
 
-double kept_mass(const struct step *step, int state);       /* momenta: of the coordinate; else 1 */
-bool   is_load_forced(const struct step *step, int column);
-double load_value(const struct wave_of_column *p, double t); /* at t [s] */
-/* what the step of the errors keeps, by the numbers of `exact` */
-struct kept *kept_of(const struct errors *e, const struct step *exact);
-/* from the start, inputs 0; the output is added to `trace`, where there is one, at each sample */
-struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace);
-/* what samples of an input within its bound do to the output at most; it is attained */
-double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first,
-		    double *trace);
-/* what reads slopes of inputs is bounded, not attained */
-double slopes_of_inputs(const struct linear *system, const struct kept *k, double h);
-struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k);
-
 /* Followed in 320 bits, and how far errors reach in it; false: the model is too large, or leaves the range */
 bool make_course(const struct step *step, struct course *c);
 double written_factor(const struct course *c, int states, int written, int kept); /* of a state as written */
 
-/* ---- lasting.c: bounds of the same, of so many samples that they are not walked through ---- */
-
-bool is_lasting(const struct kept *k, long steps);
-double lasting_output(const struct kept *k, const struct spread *spread, double h); /* inputs 0: its largest size */
-void lasting_sizes(const struct spread *spread, struct kept *k, double h);          /* of the states */
-/* what samples of an input in its bound do to the output at most; columns from `first` on are its taps */
-double lasting_input(const struct linear *system, const struct spread *spread, const struct kept *k, int input,
-		     int first);
-
 /* ---- rounding.c ---- */
 
 int levels(int terms);                                        /* additions above each of so many terms, in pairs */
-const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
-struct errors errors_of(const struct step *step, const struct requirement *r);
 
 #endif

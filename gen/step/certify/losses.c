@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What outputs lose with the modes that are dropped, at every sample. */
+#include "inner.h"
 #include "model/linear/shortening.h"
-#include "certificates.h"
-#include "kept.h"
 
 #include <math.h>
 

@@ -2,10 +2,10 @@
 /* States and crossings of a piecewise-linear model in closed form, for the target's self-test to step to. Of several
  * starts one is taken that crosses and that rounding does not lead astray: a second start beside it must pass the same
  * breakpoints and stay close. */
+#include "inner.h"
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"
 #include "step/regions/guards.h"
-#include "references.h"
 
 #include <math.h>
 #include <stdlib.h>

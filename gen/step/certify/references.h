@@ -26,10 +26,8 @@ struct through *through_start(const struct model *model, const struct region_par
 			      int precision);
 bool through_reach(struct through *t, mpq_srcptr time);     /* false: it is not decided what comes before */
 const char *through_undecided(const struct through *t);     /* why */
-void through_state(const struct through *t, int state, mpfi_ptr value);        /* where it has got to */
 void through_value(const struct through *t, const struct output *output, mpfi_ptr value);
 int  through_passed(const struct through *t, const struct passed **list);      /* so far, in order */
-void through_limit(struct through *t, int most);            /* crossings; what comes behind them is not decided */
 void through_free(struct through *t);
 
 /* ---- closed.c: states in closed form for the self-test ---- */
@@ -45,12 +43,5 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
 struct reference reference_of(const struct step *step);
-
-/* ---- passing.c: the same through crossings ---- */
-
-double ulp_of(double value, bool single);
-void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
-struct reference new_reference(const struct step *step);    /* room for its rows */
-struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
 
 #endif

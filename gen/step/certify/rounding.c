@@ -6,9 +6,8 @@
  * output is off by at most sum over m < N of |row Phi^m| d, the rounding of constants included: FiXiF's and Volkova's
  * worst-case gain (ARITH 2015). States are bounded as they are computed, errors counted: a bound of the state that the
  * errors that follow from it do not pass. */
-#include "certificates.h"
+#include "inner.h"
 #include "step/linear/forms.h"
-#include "kept.h"
 
 #include <math.h>
 

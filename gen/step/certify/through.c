@@ -3,9 +3,9 @@
  * state is kept at rational times, as the region that it is in would have it there; what an event's time is not known
  * by becomes a width of the state. Between events it goes by powers of e^{A d} from where the grid of pieces d was met
  * first, so that widths grow by events and not by steps. */
+#include "inner.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
-#include "references.h"
 #include "through.h"
 
 /* ---- a piece ---- */

@@ -87,7 +87,6 @@ struct through {
 	const char *undecided;
 };
 
-
 /* ---- areas.c: regions as they are met, loads at a time ---- */
 
 void through_row(const struct through *t, const struct output *output, mpq_t *row);     /* over x, now */

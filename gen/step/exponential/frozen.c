@@ -6,7 +6,7 @@
  * Undamped modes stand on the circle, and a little beyond it by what a step leaves out: what counts is by how much all
  * steps together may let them grow, operator by operator.
  */
-#include "normal.h"
+#include "inner.h"
 
 #include <math.h>
 

@@ -3,9 +3,8 @@
  * Normal modes of the operators of a bank: V^T M V = I, V^T K V = diag lambda, V^T C V = diag 2 delta, so that q =
  * V eta makes of M q'' + C q' + K q = F as many equations eta'' + 2 delta eta' + lambda eta = V^T F.
  */
+#include "inner.h"
 #include "step/collocation/collocation.h"
-#include "normal.h"
-#include "weights.h"
 
 #include <math.h>
 

@@ -85,21 +85,4 @@ struct normal_work {                /* what its builders share */
 	struct normal_mode *mode;          /* per bank and mode */
 };
 
-/* ---- normal_left.c: what is left over, in modes ---- */
-
-double round_real(mpfr_srcptr x);
-mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */
-void find_transforms(struct normal_work *w);
-void find_turns(struct normal_work *w);
-void find_matrices(struct normal_work *w);
-void find_forces(struct normal_work *w);
-
-/* ---- within.c: states inside a step in normal modes ---- */
-
-void find_within(struct normal_work *w);
-
-/* ---- frozen.c: stability of multistep methods in normal modes ---- */
-
-struct stability stability_of(const struct step *step, bool twice);
-
 #endif

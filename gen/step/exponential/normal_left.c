@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is left over, in normal modes: V^T times matrices times V, times functions of time. Matrices that are multiples
  * of each other are one. */
-#include "normal.h"
-#include "weights.h"
+#include "inner.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, leftovers. A recipe
  * that asks for more than there is room for is told so. */
-#include "recipe.h"
+#include "inner.h"
 
 _Noreturn void internal_error(const struct step *step, const char *what)
 {

@@ -18,18 +18,6 @@ _Noreturn void internal_error(const struct step *step, const char *what); /* a f
 int  add_table(struct recipe *r, const char *name, long p, unsigned long q, bool Phi); /* at p/q of the step */
 /* h (c0 phi1 + c1 phi2 + 2 c2 phi3) of A h as the response to c0 + c1 s/h + c2 (s/h)^2, over p/q of the step */
 int  add_phi(struct recipe *r, int table, const char *name, long p, unsigned long q, int powers, const long *c);
-/* added to that */
-void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c);
-int  add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
-		 unsigned long over); /* e^{A h p/q} h weight/over */
 int  add_node(struct recipe *r, long p, unsigned long q);   /* a time at which leftovers are evaluated */
-void need_loads_at(struct recipe *r, int node);
-int  new_stage(struct recipe *r);
-/* valid until the next is added, as that of add_sum is */
-struct action *add_action(struct recipe *r, struct action action);
-int  add_leftover(struct recipe *r, int node, int stage);
-int  add_combination(struct recipe *r, int plus, int minus, bool added);
-struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);
-void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left); /* one term more of the sum */
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The recipes of the schemes: which numbers they take, and what they do with them. */
-#include "recipe.h"
+#include "inner.h"
 
 /* Cox and Matthews 2002, (4): y+ = E y + p1 r0, p1 = h phi1(A h); also what pl does with terms that are not linear */
 static void recipe_etd1(struct recipe *r)

@@ -4,7 +4,7 @@
  * step is e^{A h} of x = [q, q', 1, cos and sin of each wave]. It is taken over [omega eta, eta', 1, ...], whose matrix
  * has entries of the size of 1, where that over coordinates has frequencies for entries.
  */
-#include "weights.h"
+#include "inner.h"
 
 enum { ENTRY_BITS = 640 };
 

@@ -4,8 +4,7 @@
  * step. Of its values C and S at the step's start, cos(w (t + s) + p) = C cos(w s) - S sin(w s), so the response is C
  * and S times those to cos and sin from rest, which Taylor series give. No quadrature has a part in it.
  */
-#include "normal.h"
-#include "weights.h"
+#include "inner.h"
 
 #include <math.h>
 

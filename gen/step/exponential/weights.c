@@ -6,7 +6,7 @@
  *     Q_(m-1) = h V_m/m,   V_(m-1) = h/m (theta^m - 2 delta V_m - lambda Q_m)
  * and all follow from the highest, which its power series gives. The free response is in Q_0 and V_0.
  */
-#include "weights.h"
+#include "inner.h"
 
 enum { WEIGHT_BITS = 512 };
 

@@ -15,30 +15,15 @@ struct lagrange {                   /* polynomials of s/h, each 1 at one of the 
 	mpfr_t *node;
 	mpfr_t *factor;             /* nodes x nodes: of polynomial i that of (s/h)^j */
 };
-struct lagrange lagrange_of(int nodes, const mpq_t *node);
-void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value); /* each at s = sigma h */
-mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
 struct mode_flow {                  /* of one mode over theta h */
 	/* eta = e eta0 + s eta0' + ..., eta' = de eta0 + ds eta0' + ... */
 	mpfr_t e, s, de, ds;
 	mpfr_t *position, *rate;    /* ... + what a force of each polynomial adds to eta, to eta' */
 };
-struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_srcptr theta, const struct lagrange *l);
-void mode_flow_free(struct mode_flow *flow);
-
-/* ---- waves.c: known loads, to which modes respond exactly ---- */
-
-void check_turns(const struct step *step);
-void find_waves(struct normal_work *w);
-double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta);     /* of all banks; see struct normal_stage */
 
 /* ---- settled.c: a step once all functions of time are constant ---- */
 
 int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
-/* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and
- * K: of the first operator, rows by coordinates */
-mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
-		       const struct eigenpairs *pairs, mpfr_t *omega);
 
 /* ---- bank.c: what the leftovers of a bank's operators have in common ---- */
 

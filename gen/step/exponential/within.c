@@ -6,8 +6,7 @@
  *     eta_(k+1) = tau/(k+1) rate_k,   rate_(k+1) = tau/(k+1) (a_k d^k - lambda eta_k - 2 delta rate_k)
  * each multiplied with tau^k, d = tau/h. Once nothing changes the force of each term is that on the term.
  */
-#include "normal.h"
-#include "weights.h"
+#include "inner.h"
 
 #include <math.h>
 

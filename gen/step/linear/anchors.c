@@ -7,8 +7,7 @@
  * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a
  * table of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing
  * accumulates. A step of regions has many L and asks for z itself: there E_l alone is the table. */
-#include "forms.h"
-#include "images.h"
+#include "inner.h"
 
 #include <math.h>
 
@@ -17,7 +16,6 @@ enum {
 	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
 	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
 	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range an anchor leaves it before its load does */
-	FIRST_PRECISION = 128,
 	TAYLOR_PRECISION = 2048     /* beyond, residues */
 };
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a step turns modes in the place of states: where nothing stands against it, and it costs less than half. */
-#include "forms.h"
-#include "images.h"
+#include "inner.h"
 
 /* ---- what stands against it ---- */
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of a step: which responses, or entries of e^{A tau}, each of their numbers is a sum of. */
+#include "inner.h"
 #include "model/reads.h"
-#include "images.h"
-#include "numbers.h"
 
 #include <math.h>
 

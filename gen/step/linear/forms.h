@@ -38,7 +38,6 @@ struct anchors {                    /* load states at an anchor, and tables for 
 /* ---- anchors.c: functions of loads every so many steps, tables between ---- */
 
 void check_anchors(struct step *step);                      /* says where they are asked for in vain */
-void drop_anchors(struct step *step, const char *why);
 void plan_anchors(struct step *step);                       /* after its table */
 void fill_anchors(struct step *step);                       /* after its forced part is chosen */
 int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
@@ -48,8 +47,6 @@ int anchored_term(const struct step *step, int state, int column);   /* its inde
 const char *step_form_text(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void check_step_form(struct step *step);                         /* before the step: leaves what its kind has not */
-/* The step is built again in another form; where forms are tried in turn, this one is refused. */
-_Noreturn void leave_form(struct step *step, const char *why);
 void need_one_word(const struct step *step);                /* leaves the statement where two are asked for */
 void choose_form_of_regions(struct step *step);             /* the same of a piecewise-linear model */
 /* before its program; none where all of the state is compensated */
@@ -60,7 +57,6 @@ bool is_constant_column(const struct linear *system, int column); /* of the load
 
 /* ---- large.c: a large step by its independent blocks ---- */
 
-void find_groups(struct program *program, const struct step *step);     /* and what they cost */
 /* of a block's row; a state is one of the block */
 const struct coefficient *group_factor(const struct step *step, const struct group *g, int row, int block,
 				       const struct operand *operand, int segment);
@@ -88,7 +84,6 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
-struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
 
 /* ---- by_modes.c: whether it is taken ---- */
 

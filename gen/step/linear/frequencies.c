@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Natural frequencies and damping ratios: the poles as a reader wants to see them, in a fixed order. */
-#include "images.h"
+#include "inner.h"
 
 #include <stdlib.h>
 

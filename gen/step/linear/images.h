@@ -24,27 +24,17 @@ struct question {                   /* row . y(tau) */
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
 struct response *image_of(struct resolvent *r, const struct question *question);
-/* Where the response of this number to a state or load of `system` is kept for who asks again: NULL at first, and for
- * another system than before. Of many states none is. */
-struct response **response_kept(struct resolvent *r, const struct linear *system, int number);
 /* B(s) = det P, as many as its degree + 1 */
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
-struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
 const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
 
 /* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
 
-/* Phi_ij, held terms included */
-struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j);
-struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load,
-				  int column);
 struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column,
 				   mpq_srcptr h);
 /* of one load: z_to(t+tau) from z_from(t) */
 struct response *response_of_load_state(const struct load *load, int to, int from);
 struct kernel_part;
-struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
-				    const struct kernel_part *part, mpq_srcptr h);
 /* what its unit force gives the states' derivatives */
 mpq_t *impulse_of_channel(const struct linear *system, int channel);
 struct started {                    /* a response that starts at a time of its own */
@@ -55,11 +45,6 @@ struct started {                    /* a response that starts at a time of its o
 int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
 			const struct output *output, struct started **list);
 struct output state_as_output(const struct linear *system, int state); /* read alone */
-/* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
- * segment of time; of an input u = value + slope tau, from rest */
-struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);
-struct response *output_of_load(struct resolvent *r, const struct linear *system, const struct output *output, int load,
-				int column, const mpq_t *initial);
 struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
 				 int input, mpq_srcptr value, mpq_srcptr slope);
 /* its value, rational or the nearest of 256 bits */

@@ -2,7 +2,7 @@
 /* A large step by its independent blocks: a few small ones as rows that can be read, many alike in one loop over their
  * numbers, a large one by the columns of its matrix, which compilers vectorise. What is zero between blocks leaves no
  * trace. */
-#include "forms.h"
+#include "inner.h"
 #include "step/tunable/tuned.h"
 
 enum {

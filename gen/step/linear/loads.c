@@ -2,7 +2,7 @@
 /* What acts during a step, as excitations. A load t^k e^{at} cos(wt+p) seen from the step's start t_n is, by the
  * binomial theorem and the addition theorem, a sum over its load states z = t_n^j e^{a t_n} cos or sin(w t_n + p), j <=
  * k: one column per load state. A sampled input is a constant, or a ramp from one sample to the next. */
-#include "images.h"
+#include "inner.h"
 
 /* How much of load state `to` after tau comes from load state `from`, as factors of tau^m cos and tau^m sin:
  * t^k cos(..+wτ) from t_n^j: binomial(k, j) tau^{k-j}; cos(θ+wτ) = cos θ cos wτ - sin θ sin wτ, sin likewise. */

@@ -6,8 +6,7 @@
  *     v = (v, p v),   w = (u^T (M p + C), u^T M) / d,   d = u^T P'(p) v = u^T (2 M p + C) v
  *
  * all enclosed, and each number rounded once. v is scaled to 1 in its largest coordinate, so z is in units of one. */
-#include "forms.h"
-#include "images.h"
+#include "inner.h"
 
 #include <math.h>
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Each number of a step is decided exactly to be rational, or enclosed ever more tightly until both ends of the
  * enclosure round to the same double (Ziv); so each is rounded once, correctly. */
-#include "images.h"
-#include "numbers.h"
+#include "inner.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
  *     P(s) Q(s) = (M s + C) q(0) + M v(0) + F(s),      V(s) = s Q(s) - q(0),      P^-1 = adj P / B
  * Whatever acts during a step is an excitation: a sum of tau^m e^{a tau} cos(w tau) and sin(w tau). With u = s - a
  * their images are m! Re (u + iw)^{m+1} / (u^2 + w^2)^{m+1}, and the same with Im. Everything is scaled into Z[s]. */
-#include "images.h"
+#include "inner.h"
 
 struct resolvent {
 	const struct linear *system;

@@ -3,8 +3,7 @@
  * row waits for the one before it and a compiler takes several at a time. A number of row l is C Phi^l y + its share of
  * the load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to
  * the next block is a step of K h, in the form of the model's own step. */
-#include "forms.h"
-#include "images.h"
+#include "inner.h"
 #include "rows.h"
 
 #include <math.h>

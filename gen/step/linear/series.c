@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Taylor series behind NAME_at: how many terms and halvings of the time it takes.
  * x holds the states, then what a scheme holds, then the load states, then the inputs (with their slopes). */
-#include "images.h"
+#include "inner.h"
 
 enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64, POLE_BITS = 128 };
 

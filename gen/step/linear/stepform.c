@@ -8,11 +8,11 @@
  * rounding
  *
  * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
+#include "inner.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
 #include "step/cost.h"
-#include "forms.h"
 #include "step/tapes.h"
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* e^{A d} - I of a region in two words: what a piece of the step adds to a state that keeps what rounding takes. */
+#include "inner.h"
 #include "model/reads.h"
 #include "step/linear/images.h"
-#include "regions.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions whose tables an instance has: what of x stays from step to step, 1 and held params, and what is never
  * above 1 is gathered beforehand, so that a step that stays clear has sums over the rest alone. */
+#include "inner.h"
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
-#include "regions.h"
 
 #include <math.h>
 

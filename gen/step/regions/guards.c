@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions with dry friction: what ends each of them, and what holds states there. A guard is a row over x: of an
  * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
+#include "inner.h"
 #include "model/contacts/friction.h"
 #include "guards.h"
-#include "regions.h"
 
 #include <math.h>
 #include <string.h>

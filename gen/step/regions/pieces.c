@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a piecewise-linear model finds its crossings with: the expressions that breakpoints divide, and how fast each
  * may change within a piece of the step. */
+#include "inner.h"
 #include "model/tunable/elsewhere.h"
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"
-#include "regions.h"
 
 #include <math.h>
 #include <string.h>

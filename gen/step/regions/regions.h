@@ -53,32 +53,13 @@ struct pieces {
 };
 #define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
-/* Sum of the sizes of a row's factors of loads that are never above 1 */
-double size_of_bounded(const struct step *step, const double *row);
-/* Of rows over x in one branch's system: d/3 times the slope, and bounds as in struct region_piece; rows x size each */
-void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
-		    double *slope, double *second, double *fourth);
 #define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
 #define LARGE_FLOAT (0x1p60)
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
-/* gains.c: e^{A d} - I over d = h 2^-halvings, from its table: 2 size x size, first words, then second ones; NULL: the
- * state has one word */
-double *gain_of(const struct step *step, const struct table *table, int halvings);
-/* e^{A d} of load states among themselves, to Phi, size x size; low: the second words, NULL: none */
-void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double *low);
-/* ladder.c: e^{A d} over h 2^-halvings; the rungs of a branch, as pl_ladder has them; what is off its chord in them, of
- * rows over x: so many for each row as it has rungs; whether any has some, and how many each has room for where an
- * instance has its tables */
-void plan_ladder(struct step *step, int branch);
-double **rungs_of(const struct step *step, int branch);
-double *reach_of_rows(const struct step *step, int branch, const double *A, int rows, const double *row);
 bool has_ladder(const struct step *step);
 int room_for_rungs(const struct step *step);
-int rung_halvings(const struct branch *branch, int rung);   /* of h, to its length */
 double *Phi_over(const struct step *step, const struct table *table, int halvings);
 void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
-/* the same in two words: 2 x size */
-void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
 
@@ -92,7 +73,5 @@ bool any_stays(const struct step *step);
 bool any_still(const struct step *step);                    /* that, or something is never above 1 */
 int param_of_column(const struct step *step, int column);   /* of such a one; -1: it is 1 */
 int edges_of_regions(const struct switching *s);            /* breakpoints, and two open ends of each expression */
-/* Of a step that clears and is not swift: `added` and `still` of each piece, `edge` */
-void gather(const struct step *step, struct pieces *pieces);
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps of piecewise-linear models: e^{A d} of each region for pieces d of the step; of parts that are independent, a
  * step each. */
+#include "inner.h"
 #include "model/contacts/contacts.h"
 #include "step/cost.h"
 #include "step/linear/forms.h"
 #include "step/exponential/recipe.h"
-#include "regions.h"
 
 /* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
 static struct wanted *wanted_piece(const struct step *step, int halvings)

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of emit/regions have from one another, and nobody else. */
+#ifndef PLGEN_EMIT_REGIONS_INNER_H
+#define PLGEN_EMIT_REGIONS_INNER_H
+
+#include "regions.h"
+#include "step/regions/regions.h"
+
+struct guards;
+
+/* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
+
+#define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */
+
+struct region_tables {
+	const char *text;           /* of one of them: [row][column] follows */
+	int rows, columns;
+	int from, to;               /* of branches from .. to - 1 */
+	double **value;             /* per branch */
+	const bool *own;            /* rows x columns: tunable params may change it, an instance has it; NULL: none */
+};
+/* over x, of all branches; and the same of one */
+struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
+				       size_t of);
+struct region_tables of_branch(struct region_tables t, int branch);
+/* e^{A h}; of a state in two words the same less I, second words behind the first */
+struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text);
+bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
+bool agree_at(const struct region_tables *t, int row, int column);
+bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
+/* Sum of a row over the operands of its columns; further: a term more, or NULL */
+const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
+		     int indent);
+/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
+ * all */
+const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+		     const char *const *size, int indent);
+int expressions_of(const struct emitter *e);
+bool any_pieces(const struct emitter *e);                         /* of h: then there are tables of all of it too */
+const char **places(const struct emitter *e, const char *layout); /* of each entry of x: x[%d] */
+const char **entries(const struct emitter *e, const char *layout); /* the same; "" where x is 1 */
+const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+			    const char *const *operand, int indent);
+/* Sum of the sizes of those that are not bounded */
+const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
+/* Of a step that is swift; `expression`: names */
+void emit_spans(const struct emitter *e);                         /* region by region: intervals of expressions */
+void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
+
+/* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */
+
+void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
+/* of dry friction and impacts in regions: their lists, numbers, descriptor */
+void emit_guards(const struct emitter *e, const struct guards *guards);
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
+/* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
+void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
+/* whole numbers; own: of an instance */
+void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number);
+void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number);
+void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
+		 const double *value, const char *const *row_name);
+void put_matrices(const struct emitter *e, const char *name, const char *note, int count, int rows, int columns,
+		   double *const *value, const char *const *row_name);
+double **of_branches(const struct emitter *e, const struct pieces *p, size_t of);
+/* A row of each branch */
+void emit_of_branches(const struct emitter *e, const struct pieces *p, const char *name, const char *note, int columns,
+		      size_t of);
+void close_table(const struct emitter *e);
+/* emit_ladder.c: pieces shorter than h: where those of each matrix begin, their tables, what the descriptor has of
+ * them, where `none` stands for numbers that are not read; how many there are, rows of each, and of what bounds them */
+void emit_ladder_places(const struct emitter *e, const struct guards *guards);
+void emit_spacing(const struct emitter *e);
+void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
+const char *ladder_text(const struct emitter *e, const struct guards *guards);
+/* of a part as of the whole: x from the state, in a step or at its start; its declaration, and room to work in; from
+ * x, into the state; the same apart, where a step is swift */
+void emit_region_vector(const struct emitter *e, bool step);
+void declare_region_room(const struct emitter *e);                /* x, work */
+void declare_region_vector(const struct emitter *e);              /* x, i */
+void begin_macros(const struct emitter *e, const char *own);      /* own: what names of an algorithm begin with */
+/* what search.h asks for; ladder: as ladder_text */
+void emit_search(const struct emitter *e, const char *ladder);
+void emit_region_start_call(const struct emitter *e);
+void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
+bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
+bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
+int size_of_vector(const struct emitter *e);                      /* of x, with them */
+/* A list behind itself: first and second words */
+const char **listed_twice(int count, const char *const *text);
+void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
+/* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
+void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
+void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
+const char **operands_of_x(const struct emitter *e);               /* of a step: locals; "" where x is 1 */
+void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
+
+#endif

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of model/contacts have from one another, and nobody else. */
+#ifndef PLGEN_MODEL_CONTACTS_INNER_H
+#define PLGEN_MODEL_CONTACTS_INNER_H
+
+#include "friction.h"
+
+/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+
+const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
+void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
+void add_release(struct region *region, int expression, bool upward, struct form *form);
+
+/* ---- slider.c: friction of what has no mass ---- */
+
+/* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
+void slide_sliders(struct building *b, const struct switching *s, int region);
+void hold_sliders(struct holding *h, const struct switching *s);
+/* where it slides, of the slider that is written there; NULL: it sticks */
+struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
+
+#endif

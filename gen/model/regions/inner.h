@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of model/regions have from one another, and nobody else. */
+#ifndef PLGEN_MODEL_REGIONS_INNER_H
+#define PLGEN_MODEL_REGIONS_INNER_H
+
+#include "expressions.h"
+#include "regions.h"
+
+/* ---- expressions.c: what is compared with breakpoints ---- */
+
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
+ * and scale in which it was written, and form is its own. form + constant = of (e - at) */
+int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
+/* In segments where nothing depends on it, it is as in the one before, or after. */
+void complete_expressions(struct switching *s);
+bool share_expression(const struct switching *a, const struct switching *b);
+
+/* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
+
+/* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
+struct switching *regions_of_rows(struct building *b, int rows, int *row);
+void remove_idle_breaks(struct switching *s);
+/* its index; apart: with no other's, though they are equal */
+int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
+int  count_candidates(struct switching *s);                 /* in one segment of time; strides of expressions */
+void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
+void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
+_Noreturn void too_many(const struct building *b, const struct switching *s);
+
+/* ---- sides.c: surfaces where a form is 0 that something decides on, and the equations on either side ---- */
+
+struct atom;
+
+struct side {
+	struct collector *c;
+	const struct form *g;
+	int sign;                   /* of g there; 0: on it */
+	int count;
+	/* per atom: whether it decides on g, or what it is made of does; 0 not known yet, else -1 or 1 */
+	signed char *touched;
+	struct form **known;        /* per atom that does */
+};
+
+/* What a decision on the sign of `d` makes of it: a product is decided by its factors of odd power. */
+void visit_surfaces(const struct form *d, void (*visit)(void *context, const struct form *g), void *context);
+/* All forms on whose signs an atom decides itself */
+void visit_decisions(const struct atom *a, void (*visit)(void *context, const struct form *d), void *context);
+struct form *form_on_side(struct side *s, const struct form *form);
+
+#endif
