@@ -9,7 +9,9 @@
 #                             what is wrong goes to ID.wrong; `said` becomes made, refused or broken
 #     batch_build             compiles and links
 #     batch_run ID            the same for its run
+#     batch_coarse ID SPEC    whether that is only further from the truth than a smooth model of a fixed order may be
 #
+# With eighths=yes such a model is added with one by eighths of a step, that the order may be judged.
 # With every=N, and without LONG=1 in the environment, only every Nth model is compiled with sanitizers; by gcc, with
 # MERGE=1 or LONG=1 by gcc and clang by turns.
 # where memory was asked for is not kept, which takes a sixth of a run: ASAN_OPTIONS=malloc_context_size=30 tells it
@@ -27,6 +29,7 @@ level=-O0
 sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
 merging || sanitizers="$sanitizers -fno-sanitize=null,alignment,object-size,pointer-overflow"
 every=1
+eighths=
 # seconds of a processor that plgen or a program may take
 ulimit -S -t 1200
 
@@ -102,23 +105,39 @@ expressions_of() { # ID
 # `real`; `adds`, the additions of a step; `tolerance`, 0 where no lengths of steps are chosen by one; `regions`, how
 # many numbers NAME_region may give, by the breakpoints of each expression, 0: there is none; `ratio`, at least 1: the
 # largest by which its banner measures one coordinate from another, 10*x - y, times the largest by which such states are
-# larger than another in the references of the selftest, since that is the sum of them and a difference as large;
+# larger than another in the references of the selftest, since that is the sum of them and a difference as large; ten
+# times that in form modal: all steps turn modes by the same rounded numbers, and a state may be a difference of modes;
 # `lost`, what outputs lose with the modes that are dropped; `written`: 1 where plgen warns that differences lose digits
+# `sustains`: whether the state is kept as it is written, less what loads sustain
+# `order`: in h, 0 where there is none or steps are chosen by a tolerance
 # `few`: "yes" for 3 stages, which for a small tolerance may want more internal steps within h than it tries
 facts_of() {
 	eval "$(awk -v id="$1" '
-		BEGIN { real = "double"; regions = ratio = adds = 1; may = written = 0 }
+		BEGIN {
+			real = "double"
+			regions = ratio = adds = 1
+			may = written = order = 0
+			for (count = split("first second third fourth", of, " "); count > 0; count--)
+				ordinal[of[count]] = count
+		}
 		FILENAME ~ /said$/ { written += /keeps coordinates as they are written/; next }
 		FILENAME ~ /h$/ {
 			own_region += $0 ~ "^int *" id "_region\\("
 			selftest += index($0, id "_selftest")
 			lanes += index($0, id "_batch(")
+			less += / y\[.*; less their forced part/
+			other += /as they are kept \*\// || index($0, id "_core")
 			inputs += $0 ~ /INPUTS = [1-9]/
 			if (index($0, "pl_modelf " id "_model"))
 				real = "float"
 			next
 		}
-		/^ \* Scheme [a-z0-9]/ && !scheme { scheme = $3; sub(/[^a-z0-9].*/, "", scheme) }
+		/^ \* Scheme [a-z0-9]/ && !scheme {
+			if ($6 == "order")
+				order = ordinal[$5] + $5
+			scheme = $3
+			sub(/[^a-z0-9].*/, "", scheme)
+		}
 		/piecewise linear/ { pieces++ }
 		/kick-drift-kick/ { adds = 3 }
 		/ 3 stages, of order 5/ { few = "yes" }
@@ -157,7 +176,7 @@ facts_of() {
 			for (primes in least)
 				if (most_of[primes] > sizes * least[primes])
 					sizes = most_of[primes] / least[primes]
-			ratio *= sizes
+			ratio *= sizes * (banner ~ /, form modal:/ ? 10 : 1)
 			if (match(banner, /outputs lose at most [^(]*/))
 				lost = substr(banner, RSTART + 20, RLENGTH - 21)
 			match(banner, /(error is|terms are) below [0-9.e-]+ of/)
@@ -166,8 +185,10 @@ facts_of() {
 			printf "scheme=%s tolerance=%s inputs=%s pieces=%s own_region=%s selftest=%s lanes=%s ",
 				scheme, tolerance, inputs ? "yes" : "", pieces ? "yes" : "",
 				own_region ? "yes" : "", selftest ? "yes" : "", lanes ? "yes" : ""
-			printf "few=%s written=%d lost=\"%s,\" may=%s real=%s adds=%d regions=%.17g ratio=%s",
-				few, written, lost, may, real, adds, own_region ? regions : 0, ratio
+			printf "few=%s sustains=%s order=%d written=%d lost=\"%s,\" may=%s real=%s ",
+				few, less && !other ? "yes" : "", order * (tolerance == 0), written, lost, may, real
+			printf "adds=%d regions=%.17g ratio=%s",
+				adds, own_region ? regions : 0, ratio
 		}' "$1.h" "$1.c" "$1.said")"
 }
 
@@ -240,7 +261,9 @@ batch_add() {
 	fi
 	facts_of "$id"
 	fine=
-	if [ "$few" ] || { [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; }; then
+	[ "$eighths" ] || order=0
+	if [ "$few" ] || [ "$order" -gt 0 ] ||
+	    { [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; }; then
 		fine=f$id
 		shorter="$(printf '%s\n' "$given" | sed 's/ --step [^ ]*//') --step $(step_of "$id")/8"
 		if ! make_c "$fine" "$spec" "$shorter"; then
@@ -299,6 +322,10 @@ batch_add() {
 			selftest=${id}_tested
 			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
 		fi
+		if [ "$sustains" ]; then
+			sustains=${id}_sustained
+			echo "SUSTAINED($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real)"
+		fi
 		if [ "$lanes" ]; then
 			lanes=${id}_lanes
 			echo "LANES($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real, ${inputs:+u COMMA})"
@@ -316,7 +343,8 @@ batch_add() {
 			"$solution, ${selftest:-NULL}," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
 			"\"$impact\", $adds, $region, $regions, $other, $ratio, $tolerance," \
-			"$by_eighths, \"$lost\", $written, $may},"
+			"$by_eighths, \"$lost\", $written, $may, $order," \
+			"${sustains:-NULL}},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
@@ -422,4 +450,10 @@ batch_run() {
 			head -n 6 "$id.ran"
 		} >"$id.wrong"
 	fi
+}
+
+batch_coarse() {
+	grep -q 'against CVODE' "$1.wrong" && grep -q '^# class: \(smooth\|linear\)$' "$2" || return
+	facts_of "$1"
+	[ "$order" -gt 0 ]
 }

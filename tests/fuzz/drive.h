@@ -32,10 +32,13 @@ struct subject {
 	double ratio;               /* what is kept of coordinates that move as a whole may be so much larger */
 	double tolerance;           /* to which lengths of steps are chosen; 0: they are not */
 	const pl_model *fine;       /* by eighths of what it steps at once: of a fixed order held against steps to a */
-	const pl_modelf *finef;     /* tolerance, or of few stages that may want too many internal steps; or NULL */
+	const pl_modelf *finef;     /* tolerance, or beyond a bound, or of few stages that may want too many internal
+				     * steps; or NULL */
 	const char *lost;           /* by output, with modes that are dropped: " NAME VALUE, ..." */
 	int written;                /* positions that may move as a whole stay as written: differences round as they */
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
+	int order;                  /* in h: what is beyond a bound has to be of it, by `fine`; 0: nothing may be */
+	double (*sustained)(void);  /* the largest part of a state that is not kept in it, lanes.h; or NULL */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */

@@ -49,6 +49,28 @@ keep_it() {
 	[ -z "$keep" ] || cp "$3" "$keep/$2.spec"
 }
 
+# run_all IDS: the programs of ID.spec, c_ID of the corpus.  What is beyond a bound by steps of a fixed order is made
+# again with one by eighths beside it
+run_all() {
+	late=
+	for id in $1; do
+		[ -f "$id.cc" ] || continue
+		batch_run "$id"
+		! batch_coarse "$id" "${id#c_}.spec" || late="$late $id"
+	done
+	[ -n "$late" ] || return
+	eighths=yes
+	batch_new
+	for id in $late; do
+		add "$id" "${id#c_}.spec"
+	done
+	eighths=
+	batch_build
+	for id in $late; do
+		batch_run "$id"
+	done
+}
+
 cp -R "$source/tests/fuzz/corpus/parts" .
 # the corpus, in one batch
 if [ -n "$corpus" ]; then
@@ -62,11 +84,11 @@ if [ -n "$corpus" ]; then
 		add "c_$name" "$name.spec"
 	done
 	batch_build
+	run_all "$(sed 's/^/c_/' names)"
 	for name in $names; do
 		: >log
 		id=c_$name
 		if [ -f "$id.cc" ]; then
-			batch_run "$id"
 			words=$(cut -d : -f 2- "$id.ran" 2>>log)
 		else
 			words=' refused, with a reason'
@@ -100,10 +122,10 @@ while [ "$seed" -lt $((first + count_of_seeds)) ]; do
 		seed=$((seed + 1))
 	done
 	batch_build
+	run_all "$(seq -f 's%.0f' "$from" $((end - 1)))"
 	seed=$from
 	while [ "$seed" -lt "$end" ]; do
 		id=s$seed
-		[ -f "$id.cc" ] && batch_run "$id"
 		if [ -s "$id.wrong" ]; then
 			bad=$((bad + 1))
 			keep_it "$id" "$seed" "$id.spec"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* LANES(id, ID, real, with): id_lanes(), how far instances of ID_batch are off one that steps alone, in states
- * and in their last outputs, over the largest of these or 1; with: `u COMMA`, or nothing where there are no inputs. */
+ * and in their last outputs, over the largest of these or 1; with: `u COMMA`, or nothing where there are no inputs.
+ * SUSTAINED(id, ID, real): id_sustained(), what loads sustain of a state at the start at most, where it is kept less
+ * that. */
 #ifndef LANES_H
 #define LANES_H
 
@@ -42,6 +44,19 @@
 			}                                                                                              \
 		}                                                                                                      \
 		return most / size;                                                                                    \
+	}
+
+#define SUSTAINED(id, ID, real)                                                                                       \
+	static double id##_sustained(void)                                                                             \
+	{                                                                                                              \
+		real state[ID##_STATES];                                                                               \
+		double most = 0;                                                                                       \
+		id one;                                                                                                \
+		id##_init(&one);                                                                                       \
+		id##_get(&one, state);                                                                                 \
+		for (int i = 0; i < ID##_STATES; i++)                                                                  \
+			most = fmax(most, fabs((double)state[i] - (double)one.y[i]));                                  \
+		return most;                                                                                           \
 	}
 
 #endif
