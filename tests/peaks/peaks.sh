@@ -59,6 +59,8 @@ by_values regions '-300*max(x - 0.01, 0) + 5*cos(9*t)' 0 90
 by_values cubic '-9000*x^3 + 5*cos(9*t)' 0 90
 by_values cubic '-9000*x^3 + 5*cos(9*t)' 0 90 --scheme radau
 by_values cubic '-90*x^3 + 5*cos(9*t)' 0 90 --scheme etd1
+# tops that rise by a thousandth, of steps whose ends are below the one before
+by_values 'swells slowly' '0.32*x'"'"' - 20*y - x^3' '0.53*y'"'"' - 20*x - 0.1*y^3' 90
 by_values kinks '-20*abs(x)*x'"'"' + 5*cos(9*t)' 0 90 --scheme etdrk4
 by_values 'stiffness that moves' '5*cos(9*t) - 9*cos(2*t)*x' 0 90 --scheme etdam5
 
