@@ -370,16 +370,16 @@ static const char *sequence_sum(const struct step *step, const struct sequence *
 	return *text ? text : "0";
 }
 
-/* By what it is chosen */
+/* By what it is chosen; by the state, while it is in or above the breakpoint */
 static const char *chooser_text(const struct step *step, const struct sequence *s)
 {
+	if (s->choice == CHOICE_BY_TIME)
+		return "t";
+	if (s->choice == CHOICE_BY_SEQUENCE)
+		return format("%s not 0", sequence_text(step, s->test));
 	const struct divided *d = &step->divided->expression[s->expression];
-	switch (s->choice) {
-	case CHOICE_BY_STATE:    return format("%s above %s", sequence_text(step, d->sequence),
-					       readable_text(d->at[s->breakpoint]));
-	case CHOICE_BY_SEQUENCE: return format("%s not 0", sequence_text(step, s->test));
-	default:                 return "t";
-	}
+	return format("%s %s %s", sequence_text(step, d->sequence), s->choice == CHOICE_BY_HOLD ? "held at" : "above",
+		      readable_text(d->at[s->breakpoint]));
 }
 
 static const char *sequence_definition(const struct step *step, const struct sequence *s)
@@ -412,8 +412,7 @@ static void print_series(FILE *to, const struct step *step)
 	for (int i = 0; i < x->count; i++)
 		if (x->sequence[i].top >= 0)
 			fprintf(to, "    %s (0 to %d) = %s\n", sequence_text(step, i),
-				x->sequence[i].top < x->sequence[i].degree ? x->sequence[i].top : x->sequence[i].degree,
-				sequence_definition(step, &x->sequence[i]));
+				x->sequence[i].top, sequence_definition(step, &x->sequence[i]));
 }
 
 static void print_expansion(FILE *to, const struct step *step)

@@ -266,38 +266,10 @@ static void check_regions(struct check *c, const struct step *step)
 		check_regions(c, step->part[p]);
 }
 
-/* A sum reads what stands before it, but for the values of an integral, which come one later. */
-static void check_expansion(struct check *c)
-{
-	const struct expansion *x = c->step->expansion;
-	c->where = "the series";
-	need(c, x && x->count >= c->step->branch->system.states, "there is none of each state");
-	for (int i = 0; i < x->count; i++) {
-		const struct sequence *s = &x->sequence[i];
-		c->where = format("sequence %d", i);
-		need(c, (s->state == NONE) == (i >= c->step->branch->system.states),
-		     "it stands among the states, or they do not");
-		need(c, s->a == NONE || among(s->a, x->count), "what it is of is out of range");
-		need(c, s->b == NONE || among(s->b, x->count), "its second operand is out of range");
-		for (int k = 0; k < s->terms; k++) {
-			const struct sequence_term *t = &s->term[k];
-			bool product = t->kind == TERM_PRODUCT, reads = product || t->kind == TERM_SEQUENCE;
-			bool before = s->kind == SEQUENCE_INTEGRAL;
-			need(c, t->factor || among(t->slot, x->slots), "a term without its factors");
-			need(c, !reads || (among(t->a, x->count) && (!product || among(t->b, x->count))),
-			     "a term of a sequence that is out of range");
-			need(c, !reads || before || (t->a < i && (!product || t->b < i)),
-			     "it reads what comes after it");
-		}
-	}
-}
-
 static void check_collocation(struct check *c)
 {
 	const struct motion *m = c->step->motion;
 	int coords = c->step->branch->system.n;
-	if (c->step->expansion)
-		check_expansion(c);
 	c->where = "the collocation";
 	need(c, c->step->collocation && c->step->collocation->modes == (c->step->collocation->stages + 1) / 2,
 	     "there is none, or its modes are not those of its stages");
@@ -317,7 +289,7 @@ void program_check(const struct step *step)
 	if (step->model->switching)
 		check_regions(&c, step);
 	else if (step->kind == KIND_EXPANDED)
-		check_expansion(&c);
+		need(&c, step->expansion, "there is no series");
 	else if (step->kind == KIND_COLLOCATED)
 		check_collocation(&c);
 	else if (step->kind == KIND_NORMAL)

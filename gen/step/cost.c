@@ -343,7 +343,7 @@ static void count_sum(const struct expansion *x, const struct sequence *s, int k
 		if (t->factor && t->factor[k] == 0)
 			continue;
 		int pairs = t->kind == TERM_PRODUCT && k > 0 ? (t->a == t->b ? k / 2 + 1 : k + 1) : 1;
-		if ((t->kind == TERM_SEQUENCE && k > x->sequence[t->a].degree))
+		if ((t->kind == TERM_SEQUENCE && k > x->sequence[t->a].top))
 			continue;
 		p->multiplications += pairs + 1;
 		p->additions += pairs;
@@ -415,7 +415,7 @@ void count_expansion(const struct step *step, struct program *program)
 	const struct expansion *x = step->expansion;
 	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < x->count; i++)
-		for (int k = 0; k <= x->sequence[i].top && k <= x->sequence[i].degree; k++)
+		for (int k = 0; k <= x->sequence[i].top; k++)
 			count_sequence(x, &x->sequence[i], k, program);
 	program->additions += system->states * (x->order + TWO_SUM);
 	for (int l = 0, column = 0; l < system->loads; l++)

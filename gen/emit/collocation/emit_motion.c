@@ -67,7 +67,7 @@ static const struct tape *set_part(const struct emitter *e, struct recurrences *
 		return tape_of_recurrences(r);
 	}
 	for (int i = 0; i < terms_of_events(e); i++)
-		series_set(r, format("left[%d]", i), i < x->expressions ? x->expression[i].sequence
+		recurrence_set(r, format("left[%d]", i), i < x->expressions ? x->expression[i].sequence
 					: x->contacts->watch[i - x->expressions].sequence, 0);
 	series_set_sizes(r, x, "excess");
 	return tape_of_recurrences(r);

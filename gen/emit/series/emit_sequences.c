@@ -71,11 +71,7 @@ bool spans_steps(const struct emitter *e)
 
 bool has_choices(const struct emitter *e)
 {
-	for (int i = 0; i < own_expansion(e)->count; i++)
-		if (own_expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
-		    own_expansion(e)->sequence[i].choice == CHOICE_BY_TIME && own_expansion(e)->sequence[i].top >= 0)
-			return true;
-	return false;
+	return own_expansion(e)->choices;
 }
 
 /* ---- the expansion ---- */
@@ -175,7 +171,7 @@ static void set_kept_coefficients(const struct emitter *e, struct recurrences *r
 		for (int i = 0; i < states + x->columns; i++) {
 			const char *target = format("c[%d][%d]", k, i);
 			if (i < states || k <= x->column_top[i - states])
-				series_set(r, target, i < states ? i : x->column[i - states], k);
+				recurrence_set(r, target, i < states ? i : x->column[i - states], k);
 			else
 				tape_set(t, target, tape_number(t, 0), 10, NULL);
 		}
@@ -217,7 +213,7 @@ void emit_slopes_function(const struct emitter *e)
 	struct recurrences *r = series_new(e);
 	begin_function(e, "h times the slopes", "slopes_at", spell(e, "double left[$N_STATES]"));
 	for (int i = 0; i < e->system->states; i++)
-		series_set(r, format("left[%d]", i), i, 1);
+		recurrence_set(r, format("left[%d]", i), i, 1);
 	end_function(e, r);
 }
 
@@ -228,7 +224,7 @@ void emit_frozen_function(const struct emitter *e)
 	begin_function(e, "What is left over: a force on each equation that has some", "forces_at",
 		       format("double left[%d]", x->columns));
 	for (int c = 0; c < x->columns; c++)
-		series_set(r, format("left[%d]", c), x->column[c], 0);
+		recurrence_set(r, format("left[%d]", c), x->column[c], 0);
 	end_function(e, r);
 }
 
@@ -240,7 +236,7 @@ void emit_ends_function(const struct emitter *e)
 		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)
-			series_set(r, format("e[%d][%d]", k, c), x->column[c], k);
+			recurrence_set(r, format("e[%d][%d]", k, c), x->column[c], k);
 	for (int c = 0; c < x->columns; c++)
 		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
 	end_function(e, r);

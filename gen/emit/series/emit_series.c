@@ -3,7 +3,6 @@
 #include "series.h"
 #include "emit/steps.h"
 #include "step/series/expansion.h"
-#include "step/exponential/recipe.h"
 
 #include <string.h>
 
@@ -32,7 +31,7 @@ static const char *base_name(const void *context, int sequence)
 
 const char *coefficient(const struct emitter *e, int sequence, int k)
 {
-	return k > own_expansion(e)->sequence[sequence].degree ? NULL : format("%s_%d", base_name(e, sequence), k);
+	return k > own_expansion(e)->sequence[sequence].top ? NULL : format("%s_%d", base_name(e, sequence), k);
 }
 
 /* ---- operands ---- */
@@ -56,14 +55,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 
 struct recurrences *series_new(const struct emitter *e)
 {
-	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e });
-}
-
-void series_set(struct recurrences *r, const char *target, int sequence, int k)
-{
-	tape_ref ref = recurrence(r, sequence, k);
-	struct tape *t = tape_of_recurrences(r);
-	tape_set(t, target, ref == TAPE_NONE ? tape_number(t, 0) : ref, 10, NULL);
+	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e, false });
 }
 
 void emit_series_tape(const struct emitter *e, const struct recurrences *r)
@@ -71,9 +63,6 @@ void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 	const struct tape *t = tape_of_recurrences(r);
 	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
 					.context = e, .indent = 4, .locals_first = true };
-	const char *broken = tape_check(t);
-	if (broken)
-		internal_error(e->step, broken);
 	tape_print(t, &to, e->to);
 }
 

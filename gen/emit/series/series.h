@@ -23,7 +23,6 @@ const char *driven_parameter(const struct emitter *e);            /* const doubl
 void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
 struct recurrences *series_new(const struct emitter *e);          /* under the names that they have in C */
-void series_set(struct recurrences *r, const char *target, int sequence, int k);
 /* What the values are summed from of what the search of events looks at, into target[] */
 void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target);
 void emit_series_tape(const struct emitter *e, const struct recurrences *r);

@@ -20,7 +20,7 @@ struct expansion {
 	int *slot_load;             /* per slot: column of the loads */
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
-	bool time, params;          /* t is read; tunable params are */
+	bool time, choices;         /* t is read; formulas are chosen by it */
 	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
 	struct divided *expression;
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
@@ -40,15 +40,18 @@ struct expansion {
 /* ---- recurrences.c: the coefficients as nodes of a tape ---- */
 
 /* Operands: TAPE_STATE, TAPE_LOAD, TAPE_INPUT, TAPE_PARAM, TAPE_TIME, TAPE_TABLE of slot `index` at the k
- * `part`; what the state chooses TAPE_ABOVE and TAPE_HELD, where nodes have no names by their numbers. */
+ * `part`; what the state chooses TAPE_ABOVE and TAPE_HELD. */
 struct series_names {               /* of a sequence's nodes, x of x_3; NULL: they have none */
 	const char *(*name)(const void *context, int sequence);
 	const void *context;
+	bool by_numbers;            /* the state chooses by its numbers, else by intervals */
 };
 struct recurrences;
 struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
 struct tape *tape_of_recurrences(const struct recurrences *r);
-tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0 */
+tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
+void recurrence_set(struct recurrences *r, const char *target, int sequence, int k); /* target: its k-th */
+int sequence_operands(const struct sequence *s, int **operand);
 tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
 tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
 

@@ -8,25 +8,60 @@
 
 enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows from; that a sum has anyway */
 
-static bool *state_dependent(const struct expansion *x)
+/* What its k-th is made of, the terms of a sum first; of an integral that is what its derivative is */
+int sequence_operands(const struct sequence *s, int **operand)
 {
-	bool *depends = ARRAY(bool, x->count);
+	int count = 0;
+	*operand = ARRAY(int, 2 * s->terms + 2);
+	for (int k = 0; k < s->terms; k++) {
+		const struct sequence_term *t = &s->term[k];
+		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
+			(*operand)[count++] = t->a;
+		if (t->kind == TERM_PRODUCT)
+			(*operand)[count++] = t->b;
+	}
+	if (s->kind != SEQUENCE_INTEGRAL && s->a != NONE)
+		(*operand)[count++] = s->a;
+	if (s->kind != SEQUENCE_INTEGRAL && s->b != NONE)
+		(*operand)[count++] = s->b;
+	return count;
+}
+
+static bool is_any(const bool *flag, const struct sequence *s)
+{
+	bool any = false;
+	SCRATCH int *operand = NULL;
+	for (int i = sequence_operands(s, &operand) - 1; i >= 0; i--)
+		any = any || flag[operand[i]];
+	return any;
+}
+
+static bool is_state(const struct sequence *s)
+{
+	return s->state != NONE;
+}
+
+/* Its k-th stands where others have their (k+1)-th. */
+static bool is_late(const struct sequence *s)
+{
+	return s->kind == SEQUENCE_RATE;
+}
+
+/* Those that are so, and those made of them; through integrals or not */
+static bool *made_of(const struct expansion *x, bool (*is_so)(const struct sequence *s), bool through)
+{
+	bool *so = ARRAY(bool, x->count);
 	for (bool changed = true; changed;) {
 		changed = false;
 		for (int i = 0; i < x->count; i++) {
 			const struct sequence *s = &x->sequence[i];
-			bool now = s->state != NONE || (s->a != NONE && depends[s->a]) ||
-				   (s->b != NONE && depends[s->b]);
-			for (int k = 0; k < s->terms; k++) {
-				const struct sequence_term *t = &s->term[k];
-				now = now || (t->kind == TERM_SEQUENCE && depends[t->a]) ||
-				      (t->kind == TERM_PRODUCT && (depends[t->a] || depends[t->b]));
-			}
-			changed = changed || now != depends[i];
-			depends[i] = now;
+			bool enters = through || s->kind != SEQUENCE_INTEGRAL;
+			bool now = is_so(s) || (enters && is_any(so, s));
+			changed = changed || now != so[i];
+			so[i] = now;
 		}
 	}
-	return depends;
+	return so;
 }
 
 static void include(struct sequence *s, int other)
@@ -48,17 +83,6 @@ static void include_operand(const struct expansion *x, const bool *depends, stru
 		include(s, o->gain[i]);
 }
 
-static bool reads_late(const struct expansion *x, const struct sequence *s)
-{
-	bool late = s->late || (s->a != NONE && x->sequence[s->a].late) || (s->b != NONE && x->sequence[s->b].late);
-	for (int k = 0; k < s->terms; k++) {
-		const struct sequence_term *t = &s->term[k];
-		late = late || (t->kind == TERM_SEQUENCE && x->sequence[t->a].late) ||
-		       (t->kind == TERM_PRODUCT && (x->sequence[t->a].late || x->sequence[t->b].late));
-	}
-	return late;
-}
-
 /* Operands whose k-th a sum has, each product both of its */
 static int direct_operands(const struct sequence *s)
 {
@@ -78,24 +102,17 @@ static bool has_product(const struct sequence *s)
 	return false;
 }
 
-static void find_gains(const struct expansion *x, const bool *depends, int index)
+static void find_gains(const struct expansion *x, const bool *depends, const bool *late, int index)
 {
 	struct sequence *s = &x->sequence[index];
+	SCRATCH int *operand = NULL;
 	bool sum = s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL;
 	bool made = sum || s->kind == SEQUENCE_QUOTIENT || s->kind == SEQUENCE_ROOT || s->kind == SEQUENCE_POWER;
-	if (!made || !depends[index] || reads_late(x, s))
+	if (!made || !depends[index] || late[index] || is_any(late, s))
 		return;
-	for (int k = 0; k < s->terms; k++) {
-		const struct sequence_term *t = &s->term[k];
-		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
-			include_operand(x, depends, s, t->a);
-		if (t->kind == TERM_PRODUCT)
-			include_operand(x, depends, s, t->b);
-	}
-	if (!sum && s->a != NONE)
-		include_operand(x, depends, s, s->a);
-	if (!sum && s->b != NONE)
-		include_operand(x, depends, s, s->b);
+	int operands = sequence_operands(s, &operand);
+	for (int i = 0; i < operands; i++)
+		include_operand(x, depends, s, operand[i]);
 	int direct = direct_operands(s), most = !sum ? FEW : direct > ENOUGH ? direct : ENOUGH;
 	s->split = s->kind != SEQUENCE_INTEGRAL && s->gains > 0 && s->gains <= FEW;
 	if (s->gains > most || (s->kind == SEQUENCE_INTEGRAL && !has_product(s) && s->gains == direct))
@@ -165,14 +182,14 @@ static void schedule(const struct expansion *x)
 /* Sums before what they are in come first: operands are made before what is made of them, but for integrals. */
 void find_newest(struct expansion *x)
 {
-	bool *depends = state_dependent(x);
+	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false);
 	for (int i = 0; i < x->count; i++) {
 		x->sequence[i].known = !depends[i];
 		if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
-			find_gains(x, depends, i);
+			find_gains(x, depends, late, i);
 	}
 	for (int i = 0; i < x->count; i++)
 		if (x->sequence[i].kind == SEQUENCE_INTEGRAL)
-			find_gains(x, depends, i);
+			find_gains(x, depends, late, i);
 	schedule(x);
 }

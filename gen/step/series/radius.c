@@ -57,7 +57,7 @@ static struct values evaluate(const struct step *step)
 	struct values v = { .step = step, .system = system, .x = expansion_of(step, LOOKED_AT) };
 	while (v.segment < system->segments - 1 && mpq_sgn(system->change[v.segment]) <= 0)
 		v.segment++;
-	struct recurrences *r = recurrences_new(step, v.x, (struct series_names){ NULL, NULL });
+	struct recurrences *r = recurrences_new(step, v.x, (struct series_names){ .by_numbers = true });
 	int order = v.x->order, states = system->states;
 	tape_ref *ref = ARRAY(tape_ref, (size_t)(states * (order + 1)));
 	for (int k = 0; k <= order; k++)

@@ -75,7 +75,7 @@ static tape_ref times(struct tape *t, tape_ref a, tape_ref b)
 	return tape_binary(t, TAPE_MUL, a, b);
 }
 
-/* Oldest first, the newest added last, in two chains where it is long */
+/* Oldest first, the newest added last, in two chains where it is long; of nothing TAPE_NONE */
 static tape_ref chain(struct tape *t, const struct list *list)
 {
 	tape_ref sum[2] = { TAPE_NONE, TAPE_NONE };
@@ -84,24 +84,22 @@ static tape_ref chain(struct tape *t, const struct list *list)
 		tape_ref *own = &sum[i % chains];
 		*own = plus(t, plus(t, *own, list->term[i].first), list->term[i].then);
 	}
-	return list->terms ? plus(t, sum[0], sum[1]) : tape_number(t, 0);
+	return plus(t, sum[0], sum[1]);
 }
 
 static tape_ref early_and_last(struct tape *t, const struct list *sum, const struct list *last)
 {
-	tape_ref all = sum->terms || !last->terms ? chain(t, sum) : TAPE_NONE;
+	tape_ref all = chain(t, sum);
 	for (int i = 0; i < last->terms; i++)
 		all = plus(t, all, last->term[i].first);
 	return all;
 }
 
-/* a_i b_j; where one is 0 the other is not read */
+/* a_i b_j */
 static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 {
-	if (i > sequence_of(r, a)->degree || j > sequence_of(r, b)->degree)
-		return TAPE_NONE;
-	tape_ref first = recurrence(r, a, i);
-	return times(r->t, first, recurrence(r, b, j));
+	tape_ref first = recurrence(r, a, i), second = first == TAPE_NONE ? TAPE_NONE : recurrence(r, b, j);
+	return second == TAPE_NONE ? TAPE_NONE : times(r->t, first, second);
 }
 
 /* What is new of one sequence, times the first of another with its factor */
@@ -273,8 +271,6 @@ static tape_ref early_ref(struct recurrences *r, int sequence, int k);
 static tape_ref early(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	if (k > s->degree)
-		return TAPE_NONE;
 	if (s->known)
 		return recurrence(r, sequence, k);
 	if (!s->split)
@@ -374,6 +370,11 @@ static void add_power_terms(struct recurrences *r, struct list *sum, int sequenc
 	}
 }
 
+static tape_ref over_base(struct recurrences *r, int sequence, const struct list *sum)
+{
+	return sum->terms ? times(r->t, chain(r->t, sum), helper(r, sequence)) : TAPE_NONE;
+}
+
 static tape_ref early_power(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	struct tape *t = r->t;
@@ -382,7 +383,7 @@ static tape_ref early_power(struct recurrences *r, int sequence, const struct se
 	if (base != TAPE_NONE)
 		add(&sum, tape_scaled(t, rounded_double(s->exponent), times(t, base, recurrence(r, sequence, 0))));
 	add_power_terms(r, &sum, sequence, s, 1, k);
-	return sum.terms ? times(t, chain(t, &sum), helper(r, sequence)) : TAPE_NONE;
+	return over_base(r, sequence, &sum);
 }
 
 static tape_ref early_ref(struct recurrences *r, int sequence, int k)
@@ -396,7 +397,7 @@ static tape_ref early_ref(struct recurrences *r, int sequence, int k)
 	if (s->kind == SEQUENCE_POWER)
 		return early_power(r, sequence, s, k);
 	add_early_terms(r, &sum, s, k);
-	return sum.terms ? chain(r->t, &sum) : TAPE_NONE;
+	return chain(r->t, &sum);
 }
 
 /* ---- gains: derivatives of the k-th by the k-th of another, k >= 1: a number, or what follows from the first
@@ -470,7 +471,7 @@ static tape_ref gain_of_sum(struct recurrences *r, const struct sequence *s, int
 			add(&sum, gain_times(r, b, factor, term->a));
 		}
 	}
-	return chain(r->t, &sum);
+	return sum.terms ? chain(r->t, &sum) : tape_number(r->t, 0);
 }
 
 static tape_ref times_gain(struct recurrences *r, tape_ref gain, tape_ref x)
@@ -576,7 +577,7 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 {
 	struct list sum = { 0 };
 	add_power_terms(r, &sum, sequence, s, 0, k);
-	return times(r->t, chain(r->t, &sum), helper(r, sequence));
+	return over_base(r, sequence, &sum);
 }
 
 /* By interval[], or by the numbers themselves */
@@ -591,7 +592,7 @@ static tape_ref condition(struct recurrences *r, const struct sequence *s)
 		return tape_binary(t, TAPE_UNEQUAL, recurrence(r, s->test, 0), tape_number(t, 0));
 	bool held = s->choice == CHOICE_BY_HOLD;
 	const struct divided *d = &r->x->expression[s->expression];
-	if (!r->names.name) {
+	if (r->names.by_numbers) {
 		tape_ref at = tape_constant(t, d->at[s->breakpoint]);
 		return tape_compare(t, held ? CMP_EQ : CMP_GT, recurrence(r, d->sequence, 0), at);
 	}
@@ -603,12 +604,22 @@ static tape_ref choice(struct recurrences *r, const struct sequence *s, int k)
 {
 	struct tape *t = r->t;
 	tape_ref a = recurrence(r, s->a, k), b = recurrence(r, s->b, k), zero = tape_number(t, 0);
+	if (a == TAPE_NONE && b == TAPE_NONE)
+		return TAPE_NONE;
 	return tape_select(t, condition(r, s), a == TAPE_NONE ? zero : a, b == TAPE_NONE ? zero : b);
+}
+
+static bool is_constant_sequence(struct recurrences *r, int sequence)
+{
+	return sequence == NONE || recurrence(r, sequence, 1) == TAPE_NONE;
 }
 
 static tape_ref made(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	int from = s->kind == SEQUENCE_INTEGRAL ? k - 1 : k;
+	bool function = s->kind == SEQUENCE_INTEGRAL && s->state == NONE;
+	if (function && k > 0 && is_constant_sequence(r, s->a) && is_constant_sequence(r, s->b))
+		return TAPE_NONE;
 	if (s->gains && from > 0)
 		return joined(r, sequence, from);
 	switch (s->kind) {
@@ -620,19 +631,24 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 	case SEQUENCE_CHOICE:   return choice(r, s, k);
 	default:                break;
 	}
-	tape_ref next = recurrence(r, s->a, k + 1);
-	return next == TAPE_NONE ? tape_number(r->t, 0) : tape_scaled(r->t, k + 1, next);
+	return tape_scaled(r->t, k + 1, recurrence(r, s->a, k + 1));
 }
 
 tape_ref recurrence(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	if (k > s->degree)
-		return TAPE_NONE;
-	int place = sequence * (r->x->order + 1) + k;
-	if (r->made[place] == UNKNOWN)
-		r->made[place] = named(r, made(r, sequence, s, k), sequence, format("%d", k));
-	return r->made[place];
+	tape_ref *ref = &r->made[sequence * (r->x->order + 1) + k];
+	if (*ref == UNKNOWN)
+		*ref = named(r, made(r, sequence, s, k), sequence, format("%d", k));
+	if (*ref == TAPE_NONE && k == 0)
+		*ref = tape_number(r->t, 0);
+	return *ref;
+}
+
+void recurrence_set(struct recurrences *r, const char *target, int sequence, int k)
+{
+	tape_ref ref = recurrence(r, sequence, k);
+	tape_set(r->t, target, ref == TAPE_NONE ? tape_number(r->t, 0) : ref, 10, NULL);
 }
 
 static tape_ref *unmade(int count, tape_ref what)

@@ -8,7 +8,6 @@
 int new_sequence(struct sequencing *w, struct sequence sequence)
 {
 	struct expansion *x = w->x;
-	sequence.top = -1;
 	*MORE(x->sequence, x->count) = sequence;
 	return x->count - 1;
 }

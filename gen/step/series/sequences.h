@@ -44,9 +44,7 @@ struct sequence {
 	int test;                   /* or the sequence */
 	int terms;
 	struct sequence_term *term;
-	int degree;                 /* all beyond are 0; order + 1: none need be */
-	int top;                    /* the last that something reads; -1: none */
-	bool late;                  /* the k-th stands where others have their (k+1)-th */
+	int top;                    /* the last that something reads and that is not 0; -1: none is read */
 	bool known;                 /* it depends on time and inputs alone */
 	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their
 	 * k-th */

@@ -80,7 +80,6 @@ static void add_load_numbers(struct sequencing *w, struct sequence *s, int load,
 {
 	int n = w->system->load[load].columns, order = w->x->order, first = column_of_load(w->system, load);
 	const double *value = load_numbers(w, load, row, scale);
-	w->x->load[load] = true;
 	for (int j = 0; j < n; j++) {
 		struct sequence_term *term = MORE(s->term, s->terms);
 		*term = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j, .slot = -1 };
@@ -124,7 +123,6 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 		if (k)
 			mpq_mul(number, number, w->unit);
 		term->factor[k] = rounded(w, number);
-		(term->kind == TERM_INPUT ? w->x->input : w->x->slope)[key->a] = true;
 	}
 }
 
@@ -136,7 +134,6 @@ static void add_param(struct sequencing *w, struct sequence *s, const struct key
 	term->factor = ARRAY(double, w->x->order + 1);
 	mpq_mul(number, key->factor, scale[0]);
 	term->factor[0] = rounded(w, number);
-	w->x->params = true;
 }
 
 static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
@@ -205,7 +202,6 @@ void add_changing_loads(struct sequencing *w, struct sequence *s, int state, con
 				any = any || mpq_sgn(w->slopes[k][state * size + at + j]) != 0;
 		if (!any)
 			continue;
-		x->load[l] = true;
 		for (int j = 0; j < n; j++) {
 			*MORE(s->term, s->terms) = (struct sequence_term){
 				.kind = TERM_LOAD, .a = first + j, .slot = x->slots + j
