@@ -3,7 +3,7 @@
  * by quadrature of the response to an impulse in closed form, nodes by their own closed forms. */
 #include "draw.h"
 #include "step/collocation/collocation.h"
-#include "step/exponential/weights.h"
+#include "step/exponential/inner.h"
 
 enum { BITS = 400, GOOD = 170 };
 

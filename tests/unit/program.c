@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
-#include "step/exponential/recipe.h"
+#include "step/exponential/inner.h"
 
 static const char linear_spec[] = "model m\ncoord x, y\ninput u\ninit x = 1\n"
                                   "x'' + 0.1*x' + 2*x - y = u\ny'' + 2*y - x = cos(3*t)\nstep 0.1\n";
