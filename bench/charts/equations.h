@@ -29,233 +29,83 @@
 /* Those of them whose accelerations depend on time and coordinates alone */
 #define EQUATIONS_WITHOUT_VELOCITY(X) X(pendulum, 1) X(quad2dof, 2) X(henon_heiles, 2)
 
-INLINE void pendulum_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	f[0] = y[1];
-	f[1] = -sin(y[0]);
+/* A model of one coordinate: its acceleration, and that by x and by v */
+#define ONE(NAME, ACCELERATION, BY_X, BY_V) \
+INLINE void NAME##_slopes(NUMBER t, const NUMBER *y, NUMBER *f) \
+{ \
+	const NUMBER x = y[0], v = y[1]; \
+	(void)t, (void)x, (void)v; \
+	f[0] = y[1]; \
+	f[1] = ACCELERATION; \
+} \
+INLINE void NAME##_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv) \
+{ \
+	const NUMBER x = y[0], v = y[1]; \
+	(void)t, (void)x, (void)v; \
+	Jq[0] = BY_X; \
+	Jv[0] = BY_V; \
 }
+/* Of two, x and z with velocities v and w: what both accelerations share, as statements; these; what their derivatives
+ * share beside; Jq, Jv */
+#define TWO(NAME, SHARED, ONE_IS, OTHER_IS, SHARED_BY, XX, XZ, ZX, ZZ, VV, VW, WV, WW) \
+INLINE void NAME##_slopes(NUMBER t, const NUMBER *y, NUMBER *f) \
+{ \
+	const NUMBER x = y[0], z = y[1], v = y[2], w = y[3]; \
+	(void)t, (void)x, (void)z, (void)v, (void)w; \
+	SHARED \
+	f[0] = v; \
+	f[1] = w; \
+	f[2] = ONE_IS; \
+	f[3] = OTHER_IS; \
+} \
+INLINE void NAME##_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv) \
+{ \
+	const NUMBER x = y[0], z = y[1], v = y[2], w = y[3]; \
+	(void)t, (void)x, (void)z, (void)v, (void)w; \
+	SHARED_BY \
+	Jq[0] = XX, Jq[1] = XZ, Jq[2] = ZX, Jq[3] = ZZ; \
+	Jv[0] = VV, Jv[1] = VW, Jv[2] = WV, Jv[3] = WW; \
+}
+#define LET const NUMBER
 
-INLINE void pendulum_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	Jq[0] = -cos(y[0]);
-	Jv[0] = 0.0;
-}
+ONE(pendulum, -sin(x), -cos(x), 0.0)
+#define RELAXATION(NAME, MU) ONE(NAME, MU * (1.0 - x * x) * v - x, -2.0 * MU * x * v - 1.0, MU * (1.0 - x * x))
+RELAXATION(vanderpol, 1.0)
+RELAXATION(vanderpol_stiff, 100.0)
+RELAXATION(vanderpol_stiffer, 1000.0)
+ONE(rayleigh, (1.0 - v * v) * v - x, -1.0, 1.0 - 3.0 * v * v)
+ONE(duffing, EXACTLY(0.5) * cos(EXACTLY(1.4) * t) - EXACTLY(0.2) * v - x * (1.0 + x * x), -1.0 - 3.0 * x * x,
+    -EXACTLY(0.2))
+ONE(mathieu, -EXACTLY(0.1) * v - (1.0 - EXACTLY(0.4) * cos(2.0 * t)) * x, EXACTLY(0.4) * cos(2.0 * t) - 1.0,
+    -EXACTLY(0.1))
 
-INLINE void relaxation(NUMBER mu, const NUMBER *y, NUMBER *f)
-{
-	f[0] = y[1];
-	f[1] = mu * (1.0 - y[0] * y[0]) * y[1] - y[0];
-}
+#define OF_HENON_HEILES(NAME) TWO(NAME, , -x - 2.0 * x * z, -z - x * x + z * z, \
+    , -1.0 - 2.0 * z, -2.0 * x, -2.0 * x, -1.0 + 2.0 * z, 0.0, 0.0, 0.0, 0.0)
+OF_HENON_HEILES(henon_heiles)
+OF_HENON_HEILES(quad2dof)
+TWO(coupled_vanderpol, LET pull = EXACTLY(0.3) * (z - x);,
+    (1.0 - x * x) * v - x + pull, (1.0 - z * z) * w - EXACTLY(1.2) * z - pull,
+    , -2.0 * x * v - 1.3, EXACTLY(0.3), EXACTLY(0.3), -2.0 * z * w - 1.5, 1.0 - x * x, 0.0, 0.0, 1.0 - z * z)
+#define DRAG(V) EXACTLY(0.1) * V * sqrt(V * V + EXACTLY(0.01))
+#define DRAG_BY(V) -EXACTLY(0.1) * (2.0 * (V * V) + EXACTLY(0.01)) / sqrt(V * V + EXACTLY(0.01))
+TWO(duffing_pair, LET pull = EXACTLY(0.5) * (z - x);,
+    EXACTLY(0.5) * cos(EXACTLY(1.2) * t) + pull - DRAG(v) - x * (1.0 + x * x), -pull - DRAG(w) - z * (1.0 + z * z),
+    , -1.5 - 3.0 * x * x, EXACTLY(0.5), EXACTLY(0.5), -1.5 - 3.0 * z * z, DRAG_BY(v), 0.0, 0.0, DRAG_BY(w))
+TWO(spherical_pendulum, LET s = sin(x); LET c = cos(x);, s * (c * w * w - 1.0), -2.0 * v * w * c / s,
+    LET s = sin(x); LET c = cos(x);, (c * c - s * s) * w * w - c, 0.0, 2.0 * v * w / (s * s), 0.0,
+    0.0, 2.0 * s * c * w, -2.0 * w * c / s, -2.0 * v * c / s)
 
-INLINE void relaxation_jacobian(NUMBER mu, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	Jq[0] = -2.0 * mu * y[0] * y[1] - 1.0;
-	Jv[0] = mu * (1.0 - y[0] * y[0]);
-}
-
-INLINE void vanderpol_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	relaxation(1.0, y, f);
-}
-
-INLINE void vanderpol_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	relaxation_jacobian(1.0, y, Jq, Jv);
-}
-
-INLINE void vanderpol_stiff_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	relaxation(100.0, y, f);
-}
-
-INLINE void vanderpol_stiff_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	relaxation_jacobian(100.0, y, Jq, Jv);
-}
-
-INLINE void vanderpol_stiffer_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	relaxation(1000.0, y, f);
-}
-
-INLINE void vanderpol_stiffer_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	relaxation_jacobian(1000.0, y, Jq, Jv);
-}
-
-INLINE void henon_heiles_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	f[0] = y[2];
-	f[1] = y[3];
-	f[2] = -y[0] - 2.0 * y[0] * y[1];
-	f[3] = -y[1] - y[0] * y[0] + y[1] * y[1];
-}
-
-INLINE void henon_heiles_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	Jq[0] = -1.0 - 2.0 * y[1];
-	Jq[1] = Jq[2] = -2.0 * y[0];
-	Jq[3] = -1.0 + 2.0 * y[1];
-	Jv[0] = Jv[1] = Jv[2] = Jv[3] = 0.0;
-}
-
-INLINE void quad2dof_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	henon_heiles_slopes(t, y, f);
-}
-
-INLINE void quad2dof_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	henon_heiles_jacobian(t, y, Jq, Jv);
-}
-
-INLINE void duffing_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	f[0] = y[1];
-	f[1] = EXACTLY(0.5) * cos(EXACTLY(1.4) * t) - EXACTLY(0.2) * y[1] - y[0] * (1.0 + y[0] * y[0]);
-}
-
-INLINE void duffing_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	Jq[0] = -1.0 - 3.0 * y[0] * y[0];
-	Jv[0] = -EXACTLY(0.2);
-}
-
-INLINE void mathieu_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	f[0] = y[1];
-	f[1] = -EXACTLY(0.1) * y[1] - (1.0 - EXACTLY(0.4) * cos(2.0 * t)) * y[0];
-}
-
-INLINE void mathieu_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)y;
-	Jq[0] = EXACTLY(0.4) * cos(2.0 * t) - 1.0;
-	Jv[0] = -EXACTLY(0.1);
-}
-
-INLINE void coupled_vanderpol_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	const NUMBER pull = EXACTLY(0.3) * (y[1] - y[0]);
-	(void)t;
-	f[0] = y[2];
-	f[1] = y[3];
-	f[2] = (1.0 - y[0] * y[0]) * y[2] - y[0] + pull;
-	f[3] = (1.0 - y[1] * y[1]) * y[3] - EXACTLY(1.2) * y[1] - pull;
-}
-
-INLINE void coupled_vanderpol_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	Jq[0] = -2.0 * y[0] * y[2] - 1.3;
-	Jq[1] = Jq[2] = EXACTLY(0.3);
-	Jq[3] = -2.0 * y[1] * y[3] - 1.5;
-	Jv[0] = 1.0 - y[0] * y[0];
-	Jv[1] = Jv[2] = 0.0;
-	Jv[3] = 1.0 - y[1] * y[1];
-}
-
-/* Two angles' functions are enough: those of their difference are products */
-INLINE void double_pendulum_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	const NUMBER sa = sin(y[0]), ca = cos(y[0]), sb = sin(y[1]), cb = cos(y[1]);
-	const NUMBER s = sa * cb - ca * sb, c = ca * cb + sa * sb;
-	const NUMBER push = s * y[3] * y[3] + 2.0 * sa, pull = s * y[2] * y[2] - sb, mass = 1.0 / (2.0 - c * c);
-	(void)t;
-	f[0] = y[2];
-	f[1] = y[3];
-	f[2] = -(push + c * pull) * mass;
-	f[3] = (2.0 * pull + c * push) * mass;
-}
-
-INLINE void double_pendulum_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	const NUMBER sa = sin(y[0]), ca = cos(y[0]), sb = sin(y[1]), cb = cos(y[1]);
-	const NUMBER s = sa * cb - ca * sb, c = ca * cb + sa * sb, mass = 1.0 / (2.0 - c * c);
-	const NUMBER v2 = y[2] * y[2], w2 = y[3] * y[3], push = s * w2 + 2.0 * sa, pull = s * v2 - sb;
-	const NUMBER a = -(push + c * pull) * mass, b = (2.0 * pull + c * push) * mass;
-	/* of the difference of the angles, in what stands over `mass` and in `mass` itself */
-	const NUMBER turn = 2.0 * s * c * mass, a_d = -(c * w2 - s * pull + c * c * v2) * mass - a * turn,
-		b_d = (2.0 * c * v2 - s * push + c * c * w2) * mass - b * turn;
-	(void)t;
-	Jq[0] = a_d - 2.0 * ca * mass;
-	Jq[1] = -a_d + c * cb * mass;
-	Jq[2] = b_d + 2.0 * c * ca * mass;
-	Jq[3] = -b_d - 2.0 * cb * mass;
-	Jv[0] = -2.0 * c * s * y[2] * mass;
-	Jv[1] = -2.0 * s * y[3] * mass;
-	Jv[2] = 4.0 * s * y[2] * mass;
-	Jv[3] = 2.0 * c * s * y[3] * mass;
-}
-
-INLINE void rayleigh_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	(void)t;
-	f[0] = y[1];
-	f[1] = (1.0 - y[1] * y[1]) * y[1] - y[0];
-}
-
-INLINE void rayleigh_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	Jq[0] = -1.0;
-	Jv[0] = 1.0 - 3.0 * y[1] * y[1];
-}
-
-INLINE void duffing_pair_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	const NUMBER pull = EXACTLY(0.5) * (y[1] - y[0]);
-	f[0] = y[2];
-	f[1] = y[3];
-	f[2] = EXACTLY(0.5) * cos(EXACTLY(1.2) * t) + pull - EXACTLY(0.1) * y[2] * sqrt(y[2] * y[2] + EXACTLY(0.01)) -
-	       y[0] * (1.0 + y[0] * y[0]);
-	f[3] = -pull - EXACTLY(0.1) * y[3] * sqrt(y[3] * y[3] + EXACTLY(0.01)) - y[1] * (1.0 + y[1] * y[1]);
-}
-
-INLINE void duffing_pair_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	(void)t;
-	for (int i = 0; i < 2; i++) {
-		const NUMBER v2 = y[2 + i] * y[2 + i];
-		Jq[3 * i] = -1.5 - 3.0 * y[i] * y[i];
-		Jv[3 * i] = -EXACTLY(0.1) * (2.0 * v2 + EXACTLY(0.01)) / sqrt(v2 + EXACTLY(0.01));
-	}
-	Jq[1] = Jq[2] = EXACTLY(0.5);
-	Jv[1] = Jv[2] = 0.0;
-}
-
-INLINE void spherical_pendulum_slopes(NUMBER t, const NUMBER *y, NUMBER *f)
-{
-	const NUMBER s = sin(y[0]), c = cos(y[0]);
-	(void)t;
-	f[0] = y[2];
-	f[1] = y[3];
-	f[2] = s * (c * y[3] * y[3] - 1.0);
-	f[3] = -2.0 * y[2] * y[3] * c / s;
-}
-
-INLINE void spherical_pendulum_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv)
-{
-	const NUMBER s = sin(y[0]), c = cos(y[0]);
-	(void)t;
-	Jq[0] = (c * c - s * s) * y[3] * y[3] - c;
-	Jq[1] = Jq[3] = 0.0;
-	Jq[2] = 2.0 * y[2] * y[3] / (s * s);
-	Jv[0] = 0.0;
-	Jv[1] = 2.0 * s * c * y[3];
-	Jv[2] = -2.0 * y[3] * c / s;
-	Jv[3] = -2.0 * y[2] * c / s;
-}
+/* Two angles' functions are enough: those of their difference are products. turn, by_x, by_z: what the difference does
+ * in what stands over `mass` and in `mass` itself */
+#define TURNED LET sx = sin(x); LET cx = cos(x); LET sz = sin(z); LET cz = cos(z); \
+	LET s = sx * cz - cx * sz; LET c = cx * cz + sx * sz; LET mass = 1.0 / (2.0 - c * c);
+TWO(double_pendulum, TURNED LET push = s * w * w + 2.0 * sx; LET pull = s * v * v - sz;,
+    -(push + c * pull) * mass, (2.0 * pull + c * push) * mass,
+    TURNED LET v2 = v * v; LET w2 = w * w; LET push = s * w2 + 2.0 * sx; LET pull = s * v2 - sz;
+    LET turn = 2.0 * s * c * mass;
+    LET by_x = -(c * w2 - s * pull + c * c * v2) * mass + (push + c * pull) * mass * turn;
+    LET by_z = (2.0 * c * v2 - s * push + c * c * w2) * mass - (2.0 * pull + c * push) * mass * turn;,
+    by_x - 2.0 * cx * mass, -by_x + c * cz * mass, by_z + 2.0 * c * cx * mass, -by_z - 2.0 * cz * mass,
+    -2.0 * c * s * v * mass, -2.0 * s * w * mass, 4.0 * s * v * mass, 2.0 * c * s * w * mass)
 
 #endif
