@@ -119,88 +119,60 @@ headed() {
 	table "$2.csv"
 }
 
+# show ITEM...: NAME, a picture; NAME.csv, a table; +NAME.csv, a link to its numbers
+show() {
+	for item; do
+		case $item in
+			+*) numbers "${item#+}" ;;
+			*.csv) table "$item" ;;
+			*) picture "$item" ;;
+		esac
+	done
+}
+
 stability() {
-	picture hard
+	show hard
 	there hard.csv && caption hard_table && awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
-	numbers hard.csv
-	table hard_methods.csv
-	picture friction
-	table friction_times.csv
-	table friction.csv
-	picture stability_map
-	numbers stability_map.csv
-	table stability_boundary.csv
-	table stability_check.csv
-	picture quality
-	picture quality_small
-	table quality.csv
-	table quality_check.csv
-	picture operator_map
-	numbers operator_map.csv
-	table operator_boundary.csv
-	picture pl_map
-	numbers pl_map.csv
-	table operator_check.csv
+	show +hard.csv hard_methods.csv friction friction_times.csv friction.csv \
+		stability_map +stability_map.csv stability_boundary.csv stability_check.csv \
+		quality quality_small quality.csv quality_check.csv \
+		operator_map +operator_map.csv operator_boundary.csv pl_map +pl_map.csv operator_check.csv
 	headed 'The largest stable step' largest_step
 }
 
 structural() {
-	picture frame
-	table frame.csv
-	table frame_history.csv
-	table frame_record.csv
-	picture integrators
-	table integrators.csv
+	show frame frame.csv frame_history.csv frame_record.csv integrators integrators.csv
 	there integrators_orders.csv && caption integrators_orders
-	table integrators_orders.csv
-	table integrators_check.csv
+	show integrators_orders.csv integrators_check.csv
 }
 
 energy() {
-	picture energy_double
-	picture energy_float
-	picture energy_float_short
-	picture momentum_double
-	numbers energy.csv
+	show energy_double energy_float energy_float_short momentum_double +energy.csv
 	headed 'Light damping' decay
 }
 
 papers() {
 	for source in 000 001 002 004; do
 		headed "Source $source" papers_$source
-		case $source in
-			000)
-				picture papers_times
-				table papers_times.csv
-				picture plmap
-				numbers plmap.csv
-				table plmap_check.csv ;;
-			004)
-				picture papers_beam_tip
-				table papers_beam_tip.csv ;;
-		esac
+		[ $source != 000 ] || show papers_times papers_times.csv plmap +plmap.csv plmap_check.csv
 	done
+	show papers_beam_tip papers_beam_tip.csv
 }
 
 convergence() {
 	for file in "$folder"/convergence_*.svg; do
 		[ -f "$file" ] || continue
 		system=$(basename "$file" .svg)
-		picture "$system"
+		show "$system"
 		table convergence.csv "system=${system#convergence_}"
 	done
-	table convergence_orders.csv
-	picture headline_confluence
-	table headline_confluence.csv
+	show convergence_orders.csv headline_confluence headline_confluence.csv
 }
 
 limits() {
-	picture break_even
-	table break_even.csv
+	show break_even break_even.csv
 	there generation.csv && caption generation
-	table generation.csv
-	picture limits
-	table limits.csv
+	show generation.csv limits limits.csv
 	headed 'How times agree' precision_check
 }
 
