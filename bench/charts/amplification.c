@@ -151,6 +151,15 @@ double largest(int count, const double complex *eigenvalue)
 	return count > 0 ? cabs(eigenvalue[0]) : NAN;
 }
 
+double complex oscillation(int count, const double complex *eigenvalue, double wh)
+{
+	double complex best = NAN;
+	for (int i = 0; i < count; i++)
+		if (cimag(eigenvalue[i]) > 0 && !(cabs(best - cexp(I * wh)) <= cabs(eigenvalue[i] - cexp(I * wh))))
+			best = eigenvalue[i];
+	return best;
+}
+
 /* ---- of a method ---- */
 
 enum { ASKED = 3, MOST_STARTS = MOST_EIGENVALUES };
@@ -302,6 +311,51 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 }
 
 /* ---- what is charted ---- */
+
+int oscillator_eigenvalues(const struct subject *s, double wh, double complex *eigenvalue)
+{
+	struct free_motion m;
+	if (!s->method && strcmp(s->scheme, "flow") == 0)
+		return amplification_by_hand(oscillator_by_hand(s->zeta), "flow", wh, eigenvalue);
+	if (!s->method)
+		return amplification_by_hand(mismatched_by_hand(s->ratio), s->scheme, wh, eigenvalue);
+	free_oscillator(&m, 1, s->zeta);
+	return amplification(&m, s->method, wh, eigenvalue);
+}
+
+double oscillator_growth(const void *subject, double wh)
+{
+	double complex eigenvalue[MOST_EIGENVALUES];
+	return largest(oscillator_eigenvalues(subject, wh, eigenvalue), eigenvalue);
+}
+
+/* From the growth per step */
+static double change_of(double rho, double wh, bool periods)
+{
+	return fabs(rho - 1) <= NOT_GROWING ? 0 : periods ? expm1(2 * M_PI / wh * log(rho)) : rho - 1;
+}
+
+void map_row(const struct map *map, const char *name, growth_function *growth, const void *of, double across)
+{
+	const double limit = 1 + NOT_GROWING;
+	double before = 0, wh_before = 0;
+	int branch = 0;
+	for (int i = 0; i < map->steps; i++) {
+		const double wh = pow(10, -2 + map->decades * i / (map->steps - 1)), rho = growth(of, wh);
+		if (isfinite(rho))
+			fprintf(map->csv, "%s,%.6g,%.6g,%.6g,%.4g\n", name, wh, across, rho,
+			        change_of(rho, wh, map->periods));
+		else
+			fprintf(map->csv, "%s,%.6g,%.6g,failed,failed\n", name, wh, across);
+		const bool in_sight = !map->periods || fmin(before, rho) < 1 - NOT_GROWING;
+		if (i > 0 && in_sight && (before <= limit) != (rho <= limit)) {
+			fprintf(map->ends, map->periods ? "%s," : "%s,%d,", name, ++branch);
+			fprintf(map->ends, "%.6g,%.6g\n", boundary_between(growth, of, wh_before, wh, limit), across);
+		}
+		before = rho;
+		wh_before = wh;
+	}
+}
 
 const struct method *charted_method(int i)
 {

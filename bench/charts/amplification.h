@@ -42,11 +42,29 @@ int amplification_by_hand(const struct system *s, const char *scheme, double h, 
 /* And of generated code, whose step is linear or nearly so about 0: from unit states times `size` */
 int amplification_of_model(const pl_model *model, double size, double complex *eigenvalue);
 double largest(int count, const double complex *eigenvalue);            /* modulus; NAN where there is none */
+/* The oscillation: of those above the real axis the one nearest to e^{i wh}, NAN where there is none */
+double complex oscillation(int count, const double complex *eigenvalue, double wh);
 
 /* The ends of stability between two settings `from` and `to`, from stable to unstable or back; bisection, settings on
  * a log scale */
 typedef double growth_function(const void *of, double setting);         /* per step */
 double boundary_between(growth_function *growth, const void *of, double from, double to, double limit);
+
+/* What is charted of x'' + 2 zeta x' + x = 0: a method; or, where that is NULL, by hand `flow`, which is exact, or a
+ * scheme whose operator has the frequency `ratio`, without damping */
+struct subject {
+	const char *name;
+	const struct method *method;
+	const char *scheme;
+	double zeta, ratio;
+};
+int oscillator_eigenvalues(const struct subject *s, double wh, double complex *eigenvalue);
+double oscillator_growth(const void *subject, double wh);
+/* A row of a map: the growth at `steps` w h from 0.01 to 10^decades times that, and where it passes 1; `across` is what
+ * the rows are over. periods: growth is that within a true period, and an end is none where weak growth has only come
+ * in sight. Branches of the ends are counted where they are not. */
+struct map { FILE *csv, *ends; int steps; double decades; bool periods; };
+void map_row(const struct map *map, const char *name, growth_function *growth, const void *of, double across);
 
 /* what is charted, from i = 0: fixed_methods, dormand_prince_fixed and rk8pd at a fixed step; NULL at the end */
 const struct method *charted_method(int i);

@@ -28,25 +28,6 @@ static const struct method *need(const char *name)
 
 struct quality { double rho, elongation, decay; };      /* the last two in percent, of a period; NAN: no oscillation */
 
-static double complex nearest(int count, const double complex *eigenvalue, double wh)
-{
-	double complex best = NAN;
-	for (int i = 0; i < count; i++)
-		if (cimag(eigenvalue[i]) > 0 && !(cabs(best - cexp(I * wh)) <= cabs(eigenvalue[i] - cexp(I * wh))))
-			best = eigenvalue[i];
-	return best;
-}
-
-/* NULL: exact, by hand */
-static int eigenvalues(const struct method *method, double wh, double complex *eigenvalue)
-{
-	struct free_motion m;
-	if (!method)
-		return amplification_by_hand(oscillator_by_hand(0), "flow", wh, eigenvalue);
-	free_oscillator(&m, 1, 0);
-	return amplification(&m, method, wh, eigenvalue);
-}
-
 static struct quality quality_of(double rho, double complex l, double wh)
 {
 	struct quality q = {rho, NAN, NAN};
@@ -57,11 +38,13 @@ static struct quality quality_of(double rho, double complex l, double wh)
 	return q;
 }
 
+/* NULL: exact, by hand */
 static struct quality asked(const struct method *method, double wh)
 {
+	const struct subject s = {.method = method, .scheme = "flow"};
 	double complex eigenvalue[MOST_EIGENVALUES];
-	const int count = eigenvalues(method, wh, eigenvalue);
-	return quality_of(largest(count, eigenvalue), nearest(count, eigenvalue, wh), wh);
+	const int count = oscillator_eigenvalues(&s, wh, eigenvalue);
+	return quality_of(largest(count, eigenvalue), oscillation(count, eigenvalue, wh), wh);
 }
 
 /* The other road: once what else there is has died away, positions keep x+ = s x - p x-, whose roots are the pair. The

@@ -51,79 +51,49 @@ static double growth_of_pl(double coupling, double wh)
 
 /* ---- maps ---- */
 
-struct subject {
-	const char *scheme;             /* pl: over the coupling */
-	double across;                  /* wA/w, or k2/k1 */
-};
+/* The scheme pl is over the coupling k2/k1, the others over wA/w */
+static struct subject subject_of(const char *scheme, double across)
+{
+	return (struct subject){scheme, NULL, scheme, 0, across};
+}
 
 static double growth(const void *of, double wh)
 {
 	const struct subject *s = of;
-	double complex eigenvalue[MOST_EIGENVALUES];
-	if (strcmp(s->scheme, "pl") == 0)
-		return growth_of_pl(s->across, wh);
-	return largest(amplification_by_hand(mismatched_by_hand(s->across), s->scheme, wh, eigenvalue), eigenvalue);
+	return strcmp(s->scheme, "pl") == 0 ? growth_of_pl(s->ratio, wh) : oscillator_growth(s, wh);
 }
 
-/* From what rho to what within a period */
-static double per_period(double rho, double wh)
+/* Of the second variable the logarithms of the least and the most */
+static void chart(const struct map *map, const char *scheme, int rows, double least, double most)
 {
-	return fabs(rho - 1) <= NOT_GROWING ? 0 : expm1(2 * M_PI / wh * log(rho));
-}
-
-struct grid {
-	int steps, rows;
-	double least, most;             /* of the second variable, its logarithm */
-};
-
-static double step_at(struct grid g, int i)
-{
-	return pow(10, -2 + 3.5 * i / (g.steps - 1));
-}
-
-static void chart(FILE *map, FILE *ends, const char *scheme, struct grid g)
-{
-	const double limit = 1 + NOT_GROWING;
 	say_progress("operator_map: %s", scheme);
-	for (int j = 0; j < g.rows; j++) {
-		const struct subject s = {scheme, pow(10, g.least + (g.most - g.least) * j / (g.rows - 1))};
-		double before = 0;
-		for (int i = 0; i < g.steps; i++) {
-			const double wh = step_at(g, i), rho = growth(&s, wh);
-			if (isfinite(rho))
-				fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", scheme, wh, s.across, rho,
-					per_period(rho, wh));
-			else
-				fprintf(map, "%s,%.6g,%.6g,failed,failed\n", scheme, wh, s.across);
-			/* Else weak growth has only come in sight */
-			const bool real_one = fmin(before, rho) < 1 - NOT_GROWING;
-			if (i > 0 && real_one && (before <= limit) != (rho <= limit))
-				fprintf(ends, "%s,%.6g,%.6g\n", scheme, boundary_between(growth, &s, step_at(g, i - 1),
-					wh, limit), s.across);
-			before = rho;
-		}
+	for (int j = 0; j < rows; j++) {
+		const struct subject s = subject_of(scheme, pow(10, least + (most - least) * j / (rows - 1)));
+		map_row(map, scheme, growth, &s, s.ratio);
 	}
 }
 
 static void charts(const char *folder, bool quick)
 {
 	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
-	FILE *ends = table_open(folder, "operator_boundary.csv", "method,wh,across");
-	FILE *map = table_open(folder, "operator_map_raw.csv", "method,wh,ratio,rho,growth");
+	struct map map = {.ends = table_open(folder, "operator_boundary.csv", "method,wh,across"),
+	                  .csv = table_open(folder, "operator_map_raw.csv", "method,wh,ratio,rho,growth"),
+	                  .steps = quick ? 22 : 71, .decades = 3.5, .periods = true};
 	for (int k = 0; k < 7; k++)
-		chart(map, ends, schemes[k], quick ? (struct grid){22, 13, -1, 1} : (struct grid){71, 41, -1, 1});
-	table_close(map, "operator_map_raw.csv");
-	map = table_open(folder, "pl_map_raw.csv", "method,wh,coupling,rho,growth");
-	chart(map, ends, "pl", quick ? (struct grid){29, 17, -3, 1} : (struct grid){71, 49, -3, 1});
-	table_close(map, "pl_map_raw.csv");
-	table_close(ends, "operator_boundary.csv");
+		chart(&map, schemes[k], quick ? 13 : 41, -1, 1);
+	table_close(map.csv, "operator_map_raw.csv");
+	map.csv = table_open(folder, "pl_map_raw.csv", "method,wh,coupling,rho,growth");
+	map.steps = quick ? 29 : 71;
+	chart(&map, "pl", quick ? 17 : 49, -3, 1);
+	table_close(map.csv, "pl_map_raw.csv");
+	table_close(map.ends, "operator_boundary.csv");
 }
 
 /* ---- what is known, and generated code ---- */
 
 static double rate(const char *scheme, double across, double wh)
 {
-	const struct subject s = {scheme, across};
+	const struct subject s = subject_of(scheme, across);
 	return log(growth(&s, wh)) / wh;
 }
 
@@ -135,7 +105,8 @@ static void check_rates(struct checks *c)
 	for (int k = 0; k < 2; k++) {
 		const double coupling = k == 0 ? 0.01 : 1, k2 = coupling / (1 + coupling), in_phase = 1 - k2,
 			out_of_phase = 1 + k2;
-		const struct subject soft = {"etd1", sqrt(1 / out_of_phase)}, stiff = {"etd1", sqrt(1 / in_phase)};
+		const struct subject soft = subject_of("etd1", sqrt(1 / out_of_phase)),
+			stiff = subject_of("etd1", sqrt(1 / in_phase));
 		const double wh = 0.5, modes = fmax(growth(&soft, wh * sqrt(out_of_phase)),
 		                                    growth(&stiff, wh * sqrt(in_phase)));
 		check(c, k2 * h / 4, rate("pl", coupling, h), 0.01, "pl k2/k1 %g: growth rate kappa h/4, kappa = k2/m",
@@ -144,7 +115,7 @@ static void check_rates(struct checks *c)
 		      "pl k2/k1 %g w h 0.5: as etd1 of its modes, whose operators are too soft and too stiff",
 		      coupling);
 	}
-	const struct subject free = {"etd1", 1e-8};
+	const struct subject free = subject_of("etd1", 1e-8);
 	check(c, sqrt(1 + 0.125), growth(&free, 0.5), 1e-12,
 	      "etd1 wA 0 w h 0.5: the force held over a step, rho = sqrt(1 + (w h)^2/2)");
 }
@@ -160,7 +131,7 @@ static void check_generated(struct checks *c, const char *variants)
 		{"operator_bm3", "bm3", 0.5, 2},
 		{"pl_weak", "pl", 0.01, 0.5}, {"pl_equal", "pl", 1, 1}, {"pl_strong", "pl", 4, 3}};
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
-		const struct subject s = {points[i].scheme, points[i].across};
+		const struct subject s = subject_of(points[i].scheme, points[i].across);
 		const bool pl = strcmp(points[i].scheme, "pl") == 0;
 		double complex eigenvalue[MOST_EIGENVALUES];
 		const int count = pl ? eigenvalues_of(4, variant_symbol(variants, points[i].file, "subject_Phi"),

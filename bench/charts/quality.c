@@ -18,51 +18,27 @@ struct quality {
 	double elongation, decay, damping;      /* relative, per period; xi */
 };
 
-/* The oscillation: of those above the real axis the one nearest to e^{i wh} */
-static double complex principal(int count, const double complex *eigenvalue, double wh)
-{
-	double complex best = NAN;
-	for (int i = 0; i < count; i++)
-		if (cimag(eigenvalue[i]) > 0 && !(cabs(best - cexp(I * wh)) <= cabs(eigenvalue[i] - cexp(I * wh))))
-			best = eigenvalue[i];
-	return best;
-}
-
 /* What is charted: a method; or by hand: exact, or scheme pl in one of the modes of two equal masses with k2/k1 = 0.1,
  * where it is etd1 with an operator of own frequency sqrt(k1 + k2) beside the true sqrt(k1) (in phase) and sqrt(k1 + 2
  * k2) (out of phase) */
-struct subject {
-	const char *name;
-	const struct method *method;
-	double ratio;                   /* pl; 0: exact */
-};
-
 static bool subject_at(int k, struct subject *s)
 {
-	int methods = 0;
-	while (charted_method(methods))
-		methods++;
-	const struct subject ours[] = {{"exact", NULL, 0}, {"pl 0.1 in phase", NULL, sqrt(1.1)},
-	                               {"pl 0.1 out of phase", NULL, sqrt(1.1 / 1.2)}};
-	if (k >= methods + 3)
-		return false;
-	*s = k >= methods ? ours[k - methods] : (struct subject){charted_method(k)->name, charted_method(k), 0};
+	const struct subject ours[] = {{"exact", NULL, "flow", 0, 0}, {"pl 0.1 in phase", NULL, "etd1", 0, sqrt(1.1)},
+	                               {"pl 0.1 out of phase", NULL, "etd1", 0, sqrt(1.1 / 1.2)}};
+	for (int i = 0; i <= k; i++)
+		if (!charted_method(i)) {
+			*s = ours[k - i < 3 ? k - i : 0];
+			return k - i < 3;
+		}
+	*s = (struct subject){charted_method(k)->name, charted_method(k), NULL, 0, 0};
 	return true;
 }
 
 static struct quality quality_of(const struct subject *s, double wh)
 {
 	double complex eigenvalue[MOST_EIGENVALUES];
-	struct free_motion m;
-	int count;
-	free_oscillator(&m, 1, 0);
-	if (s->method)
-		count = amplification(&m, s->method, wh, eigenvalue);
-	else if (s->ratio > 0)
-		count = amplification_by_hand(mismatched_by_hand(s->ratio), "etd1", wh, eigenvalue);
-	else
-		count = amplification_by_hand(oscillator_by_hand(0), "flow", wh, eigenvalue);
-	const double complex l = principal(count, eigenvalue, wh);
+	const int count = oscillator_eigenvalues(s, wh, eigenvalue);
+	const double complex l = oscillation(count, eigenvalue, wh);
 	const double phi = carg(l), xi = -log(cabs(l)) / phi;
 	struct quality q = {.oscillates = cimag(l) > 0};
 	if (q.oscillates)

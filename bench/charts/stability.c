@@ -12,91 +12,53 @@
 #include <math.h>
 #include <string.h>
 
-struct subject {
-	const struct method *method;    /* NULL: exact */
-	double zeta;
-};
-
-/* w = 1 */
-static double growth(const void *of, double wh)
+/* The k-th, and after the methods exact; false: none */
+static bool subject_at(int k, struct subject *s)
 {
-	const struct subject *s = of;
-	double complex eigenvalue[MOST_EIGENVALUES];
-	struct free_motion m;
-	if (!s->method)
-		return largest(amplification_by_hand(oscillator_by_hand(s->zeta), "flow", wh, eigenvalue), eigenvalue);
-	free_oscillator(&m, 1, s->zeta);
-	return largest(amplification(&m, s->method, wh, eigenvalue), eigenvalue);
+	const struct method *method = charted_method(k);
+	*s = (struct subject){method ? method->name : "exact", method, "flow", 0, 0};
+	return k == 0 || charted_method(k - 1);
 }
 
-/* ---- the map ---- */
-
-struct grid { int steps, zetas; };      /* w h from 1e-2 to 1e2, zeta from 0 to 1.5 */
-
-
-static double step_at(struct grid g, int i)
+static struct subject named(const char *name, double zeta)
 {
-	return pow(10, -2 + 4.0 * i / (g.steps - 1));
+	struct subject s;
+	for (int k = 0; subject_at(k, &s) && strcmp(s.name, name) != 0; k++)
+		continue;
+	s.zeta = zeta;
+	return s;
 }
 
-static void row_of_map(FILE *map, FILE *ends, const char *name, const struct subject *s, struct grid g)
+/* w h from 1e-2 to 1e2, `zetas` from 0 to 1.5 */
+static void chart(const char *folder, int steps, int zetas)
 {
-	double before = 0;
-	int branch = 0;
-	for (int i = 0; i < g.steps; i++) {
-		const double wh = step_at(g, i), rho = growth(s, wh), limit = 1 + NOT_GROWING;
-		if (isfinite(rho))
-			fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", name, wh, s->zeta, rho, fabs(rho - 1) <= NOT_GROWING
-				? 0 : rho - 1);
-		else
-			fprintf(map, "%s,%.6g,%.6g,failed,failed\n", name, wh, s->zeta);
-		if (i > 0 && (before <= limit) != (rho <= limit))
-			fprintf(ends, "%s,%d,%.6g,%.6g\n", name, ++branch,
-				boundary_between(growth, s, step_at(g, i - 1), wh, limit), s->zeta);
-		before = rho;
-	}
-}
-
-static void chart(const char *folder, struct grid g)
-{
-	FILE *map = table_open(folder, "stability_map_raw.csv", "method,wh,zeta,rho,growth");
-	FILE *ends = table_open(folder, "stability_boundary.csv", "method,branch,wh,zeta");
-	bool more = true;
-	for (int k = 0; more; k++) {
-		struct subject s = {charted_method(k), 0};
-		const char *name = s.method ? s.method->name : "exact";
-		say_progress("stability: %s", name);
-		for (int j = 0; j < g.zetas; j++) {
-			s.zeta = 1.5 * j / (g.zetas - 1);
-			row_of_map(map, ends, name, &s, g);
+	const struct map map = {table_open(folder, "stability_map_raw.csv", "method,wh,zeta,rho,growth"),
+	                        table_open(folder, "stability_boundary.csv", "method,branch,wh,zeta"), steps, 4, false};
+	struct subject s;
+	for (int k = 0; subject_at(k, &s); k++) {
+		say_progress("stability: %s", s.name);
+		for (int j = 0; j < zetas; j++) {
+			s.zeta = 1.5 * j / (zetas - 1);
+			map_row(&map, s.name, oscillator_growth, &s, s.zeta);
 		}
-		more = s.method;
 	}
-	table_close(map, "stability_map_raw.csv");
-	table_close(ends, "stability_boundary.csv");
+	table_close(map.csv, "stability_map_raw.csv");
+	table_close(map.ends, "stability_boundary.csv");
 }
 
 /* ---- what is known ---- */
-
-static const struct method *named(const char *name)
-{
-	for (int k = 0; charted_method(k); k++)
-		if (strcmp(charted_method(k)->name, name) == 0)
-			return charted_method(k);
-	return NULL;
-}
 
 /* The first end of stability from w h = 0.01 up; 0: not even there; infinite: none up to 100, beyond which rounding
  * alone makes 1e-12 */
 static double first_end(const char *name, double zeta, double limit)
 {
-	const struct subject s = {named(name), zeta};
+	const struct subject s = named(name, zeta);
 	const double apart = pow(10, 0.01);
-	if (!(growth(&s, 0.01) <= limit))
+	if (!(oscillator_growth(&s, 0.01) <= limit))
 		return 0;
 	for (double wh = 0.01; wh < 100; wh *= apart)
-		if (!(growth(&s, wh * apart) <= limit))
-			return boundary_between(growth, &s, wh, wh * apart, limit);
+		if (!(oscillator_growth(&s, wh * apart) <= limit))
+			return boundary_between(oscillator_growth, &s, wh, wh * apart, limit);
 	return INFINITY;
 }
 
@@ -153,24 +115,23 @@ static double alpha_by_hand(double h)
 
 static void check_growth(struct checks *c)
 {
-	const struct subject euler = {named("explicit Euler"), 0}, heun = {named("explicit trapezoid"), 0},
-		rk4 = {named("RK4"), 0};
-	const struct subject rk8pd = {named("GSL rk8pd (fixed step)"), 0}, alpha = {named("generalized-alpha"), 0};
-	check(c, sqrt(1.01), growth(&euler, 0.1), 1e-14, "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
-	check(c, sqrt(1 + 1e-4 / 4), growth(&heun, 0.1), 1e-14,
+	const struct subject euler = named("explicit Euler", 0), heun = named("explicit trapezoid", 0),
+		rk4 = named("RK4", 0), rk8pd = named("GSL rk8pd (fixed step)", 0), alpha = named("generalized-alpha", 0);
+	check(c, sqrt(1.01), oscillator_growth(&euler, 0.1), 1e-14, "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
+	check(c, sqrt(1 + 1e-4 / 4), oscillator_growth(&heun, 0.1), 1e-14,
 	      "explicit trapezoid zeta 0 w h 0.1: rho = sqrt(1 + (w h)^4/4)");
-	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), growth(&rk4, 0.1), 1e-14,
+	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), oscillator_growth(&rk4, 0.1), 1e-14,
 	      "RK4 zeta 0 w h 0.1: rho^2 = 1 - (w h)^6/72 + (w h)^8/576");
-	check(c, alpha_by_hand(0.1), growth(&alpha, 0.1), 1e-12,
+	check(c, alpha_by_hand(0.1), oscillator_growth(&alpha, 0.1), 1e-12,
 	      "generalized-alpha zeta 0 w h 0.1: rho of its matrix by hand");
-	check(c, alpha_by_hand(10), growth(&alpha, 10), 1e-12,
+	check(c, alpha_by_hand(10), oscillator_growth(&alpha, 10), 1e-12,
 	      "generalized-alpha zeta 0 w h 10: rho of its matrix by hand");
-	check(c, 0.8, growth(&alpha, 1e4), 1e-2, "generalized-alpha zeta 0 w h 1e4: rho at infinity as chosen");
+	check(c, 0.8, oscillator_growth(&alpha, 1e4), 1e-2, "generalized-alpha zeta 0 w h 1e4: rho at infinity as chosen");
 	/* Weak growth looks like stability where rounding hides it, so its power is looked at where it shows */
-	check(c, 10, log((growth(&rk8pd, 0.45) - 1) / (growth(&rk8pd, 0.36) - 1)) / log(0.45 / 0.36), 0.03,
+	check(c, 10, log((oscillator_growth(&rk8pd, 0.45) - 1) / (oscillator_growth(&rk8pd, 0.36) - 1)) / log(0.45 / 0.36), 0.03,
 	      "GSL rk8pd zeta 0: growth per step goes as (w h)^10, so it has no end of stability (below 1e-12 for w h "
 	      "< %.3g)",
-	      first_end(rk8pd.method->name, 0, 1 + NOT_GROWING));
+	      first_end(rk8pd.name, 0, 1 + NOT_GROWING));
 }
 
 /* Generated code at three points beside e^{-zeta w h}, e^{A h} by hand beside it on the whole axis */
@@ -179,10 +140,10 @@ static void check_exact(struct checks *c, const char *variants)
 	static const struct { const char *file; double wh, zeta; } points[] = {
 		{"oscillator_undamped", 0.5, 0}, {"oscillator_damped", 5, 0.05},
 		{"oscillator_overdamped", 2, 1.25}};
-	const struct subject undamped = {NULL, 0};
+	const struct subject undamped = named("exact", 0);
 	double worst = 0;
 	for (double wh = 0.01; wh <= 100; wh *= 1.1)
-		worst = fmax(worst, fabs(growth(&undamped, wh) - 1));
+		worst = fmax(worst, fabs(oscillator_growth(&undamped, wh) - 1));
 	check(c, 0, worst, 1e-13, "exact by hand zeta 0 w h 0.01 to 100: largest |rho - 1|");
 	for (int i = 0; i < 3; i++) {
 		const double over = points[i].zeta > 1 ? points[i].zeta - sqrt(points[i].zeta * points[i].zeta - 1)
@@ -199,7 +160,7 @@ int main(int argc, char **argv)
 	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "stability [--quick] OUTDIR VARIANTS");
 	struct checks c;
 	const char *folder = argv[0], *variants = argv[1];
-	chart(folder, quick ? (struct grid){41, 16} : (struct grid){81, 31});
+	chart(folder, quick ? 41 : 81, quick ? 16 : 31);
 	checks_open(&c, folder, "stability_check.csv");
 	check_ends(&c);
 	check_growth(&c);
