@@ -4,26 +4,11 @@
 #include <string.h>
 
 #include <arkode/arkode_arkstep.h>
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "adaptive.h"
 #include "jacobian.h"
-
-struct sundials {
-	struct adaptive adaptive;
-	SUNContext context;
-	void *memory;               /* of CVODE or ARKODE */
-	N_Vector y, tolerances;
-	SUNNonlinearSolver fixed_point;
-	SUNMatrix jacobian;
-	SUNLinearSolver dense;
-	double start;               /* CVODE: time, and has it taken the first step since */
-	bool begun;
-};
+#include "sundials.h"
 
 static int sundials_slope(realtype t, N_Vector y, N_Vector dydt, void *of)
 {
@@ -108,7 +93,7 @@ static bool cvode_iteration(struct sundials *s)
 	return !jacobian_of(a->run.problem) || CVodeSetJacFn(s->memory, sundials_jacobian) == 0;
 }
 
-static bool cvode_make(struct adaptive *a)
+bool cvode_make(struct adaptive *a)
 {
 	struct sundials *s = (struct sundials *)a;
 	if (!sundials_vectors(s) || !(s->memory = CVodeCreate(kind_of(a)->formula, s->context)))
@@ -117,10 +102,10 @@ static bool cvode_make(struct adaptive *a)
 	       CVodeInit(s->memory, sundials_slope, 0.0, s->y) == 0 &&
 	       CVodeSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
 	       CVodeSetUserData(s->memory, a) == 0 && CVodeSetMaxNumSteps(s->memory, MOST_STEPS) == 0 &&
-	       cvode_iteration(s);
+	       cvode_iteration(s) && (s->roots == 0 || CVodeRootInit(s->memory, s->roots, s->distance) == 0);
 }
 
-static bool cvode_begin(struct adaptive *a, double t, const double *y)
+bool cvode_begin(struct adaptive *a, double t, const double *y)
 {
 	struct sundials *s = (struct sundials *)a;
 	memcpy(NV_DATA_S(s->y), y, (size_t)a->size * sizeof *y);
@@ -144,7 +129,24 @@ static bool cvode_reach(struct adaptive *a, double end, double *y)
 	return true;
 }
 
-static void cvode_discard(struct adaptive *a)
+bool roots_reach(struct adaptive *a, double end, double *y)
+{
+	struct sundials *s = (struct sundials *)a;
+	int found[MOST_ROOTS], said = CV_ROOT_RETURN;
+	double t = -HUGE_VAL;
+	for (int roots = 0; roots < MOST_STEPS && said == CV_ROOT_RETURN && t < end; roots++) {
+		said = CVode(s->memory, end, s->y, &t, CV_NORMAL);
+		if (said == CV_ROOT_RETURN && CVodeGetRootInfo(s->memory, found) == 0) {
+			s->crossed(s, t, found);
+			if (CVodeReInit(s->memory, t, s->y) != 0)
+				return false;
+		}
+	}
+	memcpy(y, NV_DATA_S(s->y), (size_t)a->size * sizeof *y);
+	return said >= 0 && (said != CV_ROOT_RETURN || t >= end);
+}
+
+void cvode_discard(struct adaptive *a)
 {
 	CVodeFree(&((struct sundials *)a)->memory);
 	sundials_discard(a);
