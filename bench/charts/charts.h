@@ -31,6 +31,8 @@ struct problem {
 	void (*rhs)(double t, const double y[], double dydt[]);  /* of a model: NAME_rhs */
 	void (*rhs_of)(const void *of, double t, const double y[], double dydt[]); /* or, if not NULL: with a context */
 	const void *of;
+	/* as jacobian.h has it; NULL: by name */
+	void (*jacobian)(const struct problem *p, double t, const double *y, double *Jq, double *Jv);
 	const double *start;        /* 2n, at t = 0 */
 	double unit;                /* [s] */
 	int units;                  /* of the history */

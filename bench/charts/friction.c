@@ -17,17 +17,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+#include "sundials.h"
 
-#include "charts.h"
-
-enum { UNITS = 2400, MOST_PHASES = 1000, MOST_STEPS = 10000000, ROUNDS = 41, FEW = 7 };
+enum { UNITS = 2400, MOST_PHASES = 1000 };
 static const double mass = 2, spring = 50, hold = 4, P = 10, w = 1.5, Q = 3, u = 4.1, unit = 0.05;
 
 /* What acts but friction */
@@ -117,232 +110,174 @@ static void find_truth(struct truth_of_friction *truth)
 
 /* ---- ways ---- */
 
-enum kind { EXACT, ROOTS, SMOOTH, STEPS };
+enum how { EXACT, ROOTS, SMOOTH, STEPS };
 struct way {
 	const char *name;
-	enum kind kind;
-	int lmm;
+	enum how how;
+	const struct method *method;
 	double setting;                 /* step [s], relative tolerance, or eps [m/s] */
-	const struct truth_of_friction *truth;
-	long evaluations;
-	/* generated */
-	void *state;
-	const pl_model *model;
-	/* equations; sign 0: it sticks */
-	double eps, sign;
-	SUNContext context;
-	N_Vector y, tolerances;
-	SUNMatrix matrix;
-	SUNLinearSolver linear;
-	SUNNonlinearSolver fixed_point;
-	void *memory;
+	double eps, sign;               /* eps 0: from phase to phase; sign 0: it sticks */
+	struct problem problem;
+	struct run *run, steps;         /* steps: of RK4 */
+	int units;                      /* gone since its start */
+	double y[2];
 };
 
-static int slope(realtype t, N_Vector y, N_Vector dydt, void *of)
+static void slope_of(const void *of, double t, const double *y, double *f)
 {
-	struct way *way = of;
-	const double *at = NV_DATA_S(y);
-	double *f = NV_DATA_S(dydt);
-	const double rub = hold * (way->eps > 0 ? tanh(at[1] / way->eps) : way->sign);
+	const struct way *way = of;
+	const double rub = hold * (way->eps > 0 ? tanh(y[1] / way->eps) : way->sign);
 	const bool sticks = way->eps == 0 && way->sign == 0;
-	way->evaluations++;
-	f[0] = sticks ? 0 : at[1];
-	f[1] = sticks ? 0 : (push(t, at[0]) - rub) / mass;
-	return 0;
+	f[0] = sticks ? 0 : y[1];
+	f[1] = sticks ? 0 : (push(t, y[0]) - rub) / mass;
 }
 
 /* Of BDF's iteration */
-static int jacobian(realtype t, N_Vector y, N_Vector fy, SUNMatrix J, void *of, N_Vector a, N_Vector b, N_Vector c)
+static void jacobian(const struct problem *p, double t, const double *y, double *Jq, double *Jv)
 {
-	const struct way *way = of;
-	const double flat = way->eps > 0 ? 1 / cosh(fmin(fabs(NV_Ith_S(y, 1)) / way->eps, 300)) : 0;
-	const bool sticks = way->eps == 0 && way->sign == 0;
-	(void)t, (void)fy, (void)a, (void)b, (void)c;
-	SM_ELEMENT_D(J, 0, 0) = 0;
-	SM_ELEMENT_D(J, 0, 1) = sticks ? 0 : 1;
-	SM_ELEMENT_D(J, 1, 0) = sticks ? 0 : -spring / mass;
-	SM_ELEMENT_D(J, 1, 1) = way->eps > 0 ? -hold / (mass * way->eps) * flat * flat : 0;
-	return 0;
+	const struct way *way = p->of;
+	const double flat = way->eps > 0 ? 1 / cosh(fmin(fabs(y[1]) / way->eps, 300)) : 0;
+	(void)t;
+	*Jq = way->eps == 0 && way->sign == 0 ? 0 : -spring / mass;
+	*Jv = way->eps > 0 ? -hold / (mass * way->eps) * flat * flat : 0;
+}
+
+static struct way *way_of(const struct adaptive *a)
+{
+	return (struct way *)a->run.problem->of;
 }
 
 /* What ends a phase */
 static int ends(realtype t, N_Vector y, realtype *g, void *of)
 {
-	const struct way *way = of;
-	const double force = push(t, NV_Ith_S(y, 0));
-	g[0] = way->sign == 0 ? force - hold : NV_Ith_S(y, 1);
-	g[1] = way->sign == 0 ? force + hold : 1;
+	const double force = push(t, NV_Ith_S(y, 0)), sign = way_of(of)->sign;
+	g[0] = sign == 0 ? force - hold : NV_Ith_S(y, 1);
+	g[1] = sign == 0 ? force + hold : 1;
 	return 0;
 }
 
-static void silent(int code, const char *module, const char *function, char *message, void *of)
-{
-	(void)code, (void)module, (void)function, (void)message, (void)of;
-}
-
-static bool cvode_make(struct way *way)
-{
-	const double tolerance = way->kind == ROOTS ? way->setting : fmax(1e-10, way->setting / 100);
-	if (SUNContext_Create(NULL, &way->context) != 0)
-		return false;
-	way->y = N_VNew_Serial(2, way->context);
-	way->tolerances = N_VNew_Serial(2, way->context);
-	way->memory = CVodeCreate(way->lmm, way->context);
-	N_VConst(0, way->y);
-	NV_Ith_S(way->tolerances, 0) = tolerance * way->truth->peak;
-	NV_Ith_S(way->tolerances, 1) = tolerance * way->truth->fastest;
-	if (CVodeSetErrHandlerFn(way->memory, silent, NULL) || CVodeInit(way->memory, slope, 0, way->y) ||
-	    CVodeSVtolerances(way->memory, tolerance, way->tolerances) || CVodeSetUserData(way->memory, way) ||
-	    CVodeSetMaxNumSteps(way->memory, MOST_STEPS) ||
-	    (way->kind == ROOTS && CVodeRootInit(way->memory, 2, ends)))
-		return false;
-	if (way->lmm == CV_ADAMS) {
-		way->fixed_point = SUNNonlinSol_FixedPoint(way->y, 0, way->context);
-		return CVodeSetNonlinearSolver(way->memory, way->fixed_point) == 0;
-	}
-	way->matrix = SUNDenseMatrix(2, 2, way->context);
-	way->linear = SUNLinSol_Dense(way->y, way->matrix, way->context);
-	return CVodeSetLinearSolver(way->memory, way->linear, way->matrix) == 0 &&
-	       CVodeSetJacFn(way->memory, jacobian) == 0;
-}
-
 /* Slip ends in stick where friction holds, else in slip the other way */
-static void next_phase(struct way *way, double t)
+static void next_phase(struct sundials *s, double t, const int *found)
 {
-	double *y = NV_DATA_S(way->y);
+	struct way *way = way_of(&s->adaptive);
+	double *y = NV_DATA_S(s->y);
 	const double force = push(t, y[0]);
 	const bool sticks = way->sign != 0 && fabs(force) <= hold;
+	(void)found;
 	y[1] = 0;
 	way->sign = sticks ? 0 : force > 0 ? 1 : -1;
 }
 
-/* rows: x, x' at the end of each unit, or NULL */
-static bool cvode_pass(struct way *way, double *rows)
+static bool phases_make(struct adaptive *a)
 {
-	double t = 0;
-	N_VConst(0, way->y);
-	way->sign = 1;
-	way->eps = way->kind == SMOOTH ? way->setting : 0;
-	if (CVodeReInit(way->memory, 0, way->y) != 0)
-		return false;
-	for (int k = 0; k < UNITS; k++) {
-		const double end = (k + 1) * unit;
-		for (int said = CV_ROOT_RETURN; said == CV_ROOT_RETURN && t < end;) {
-			said = CVode(way->memory, end, way->y, &t, CV_NORMAL);
-			if (said < 0)
-				return false;
-			if (said != CV_ROOT_RETURN)
-				break;
-			next_phase(way, t);
-			if (CVodeReInit(way->memory, t, way->y) != 0)
-				return false;
-		}
-		if (rows)
-			memcpy(rows + 2 * k, NV_DATA_S(way->y), 2 * sizeof *rows);
-	}
-	return true;
+	struct sundials *s = (struct sundials *)a;
+	s->roots = 2;
+	s->distance = ends;
+	s->crossed = next_phase;
+	return cvode_make(a);
 }
 
-static void rk4_slope(const struct way *way, double t, const double *y, double *f)
+static bool phases_begin(struct adaptive *a, double t, const double *y)
+{
+	way_of(a)->sign = 1;
+	return cvode_begin(a, t, y);
+}
+
+static const struct solver phases = {
+	.bytes = sizeof(struct sundials), .make = phases_make, .begin = phases_begin, .reach = roots_reach,
+	.looks_ahead = true, .discard = cvode_discard,
+};
+static const struct kind adams = {.method = BY_TOLERANCE("CVODE Adams, roots", 0, ""), .solver = &phases,
+                                  .formula = CV_ADAMS};
+static const struct kind bdf = {.method = BY_TOLERANCE("CVODE BDF, roots", 0, ""), .solver = &phases,
+                                .formula = CV_BDF};
+static const struct method exact = {.name = "exact", .family = OURS};
+
+/* RK4 with what is smoothed compiled into it */
+static void smooth(const struct way *way, double t, const double *y, double *f)
 {
 	f[0] = y[1];
 	f[1] = (push(t, y[0]) - hold * tanh(y[1] / way->eps)) / mass;
 }
 
-/* The step: m eps/F, the time of what is smoothed, or an output's */
-static bool rk4_pass(struct way *way, double *rows)
+static void rk4_restart(struct run *run)
 {
-	way->eps = way->setting;
-	const int steps = (int)ceil(unit * hold / (mass * way->eps));
+	struct way *way = (struct way *)run->problem->of;
+	way->units = 0;
+	way->y[0] = way->y[1] = 0;
+}
+
+static bool rk4_advance(struct run *run, int units, double *rows)
+{
+	struct way *way = (struct way *)run->problem->of;
+	const int steps = (int)lround(unit / run->setting);
 	const double h = unit / steps;
-	double y[2] = { 0, 0 };
-	for (int k = 0; k < UNITS; k++) {
+	double *y = way->y;
+	for (int k = 0; k < units; k++, way->units++) {
 		for (int i = 0; i < steps; i++) {
-			const double t = k * unit + i * h;
+			const double t = way->units * unit + i * h;
 			double f[4][2], z[2];
-			rk4_slope(way, t, y, f[0]);
+			smooth(way, t, y, f[0]);
 			for (int stage = 1; stage < 4; stage++) {
 				const double part = stage == 3 ? h : h / 2;
 				for (int j = 0; j < 2; j++)
 					z[j] = y[j] + part * f[stage - 1][j];
-				rk4_slope(way, t + part, z, f[stage]);
+				smooth(way, t + part, z, f[stage]);
 			}
 			for (int j = 0; j < 2; j++)
 				y[j] += h / 6 * (f[0][j] + 2 * f[1][j] + 2 * f[2][j] + f[3][j]);
 		}
-		way->evaluations += 4 * steps;
 		if (rows)
-			memcpy(rows + 2 * k, y, sizeof y);
+			memcpy(rows + 2 * k, y, sizeof way->y);
 	}
 	return true;
 }
 
-static bool exact_pass(struct way *way, double *rows)
+static long rk4_evaluations(const struct run *run)
 {
-	const size_t steps = (size_t)lround(unit / way->setting);
-	double y[2];
-	way->model->init(way->state);
-	for (int k = 0; k < UNITS; k++) {
-		way->model->run(way->state, steps, NULL, NULL);
-		way->model->get(way->state, y);
-		if (rows)
-			memcpy(rows + 2 * k, y, sizeof y);
+	const struct way *way = run->problem->of;
+	return 4 * way->units * lround(unit / run->setting);
+}
+
+static void rk4_close(struct run *run)
+{
+	(void)run;
+}
+
+/* Smoothing's step: m eps/F, the time of what is smoothed, or an output's; its tolerance: a hundredth of eps */
+static void way_open(struct way *way, const char *variants, const struct truth_of_friction *truth)
+{
+	static const double start[2];
+	char file[4096];
+	way->problem = (struct problem){.name = "friction", .n = 1, .rhs_of = slope_of, .of = way, .jacobian = jacobian,
+	                                .start = start, .unit = unit, .units = UNITS, .scale_q = truth->peak,
+	                                .scale_v = truth->fastest};
+	way->eps = way->how == ROOTS ? 0 : way->setting;
+	const double setting = way->how == ROOTS ? way->setting : way->how == SMOOTH ? fmax(1e-10, way->eps / 100)
+	                       : unit / ceil(unit * hold / (mass * way->eps));
+	snprintf(file, sizeof file, "%s/friction-%ld.so", variants, lround(unit / way->setting));
+	way->steps = (struct run){.problem = &way->problem, .setting = setting, .restart = rk4_restart,
+	                          .advance = rk4_advance, .evaluations = rk4_evaluations, .close = rk4_close};
+	way->run = way->how == STEPS ? &way->steps
+		: way->how == EXACT ? generated_open(way->method, &way->problem, file)
+		: way->method->open(way->method, &way->problem, setting);
+	if (!way->run) {
+		fprintf(stderr, "friction: %s cannot be opened\n", way->name);
+		exit(1);
 	}
-	return true;
-}
-
-static bool pass(struct way *way, double *rows)
-{
-	way->evaluations = 0;
-	return way->kind == EXACT ? exact_pass(way, rows) : way->kind == STEPS ? rk4_pass(way, rows)
-		: cvode_pass(way, rows);
-}
-
-static void way_open(struct way *way, const char *variants)
-{
-	char file[40];
-	if (way->kind == ROOTS || way->kind == SMOOTH) {
-		if (!cvode_make(way))
-			exit(1);
-		return;
-	}
-	if (way->kind == STEPS)
-		return;
-	snprintf(file, sizeof file, "friction-%ld", lround(unit / way->setting));
-	way->model = variant_model(variants, file);
-	way->state = calloc(1, way->model->size);
-}
-
-static void way_close(struct way *way)
-{
-	if (way->memory)
-		CVodeFree(&way->memory);
-	if (way->fixed_point)
-		SUNNonlinSolFree(way->fixed_point);
-	if (way->linear)
-		SUNLinSolFree(way->linear);
-	if (way->matrix)
-		SUNMatDestroy(way->matrix);
-	if (way->y)
-		N_VDestroy(way->y);
-	if (way->tolerances)
-		N_VDestroy(way->tolerances);
-	if (way->context)
-		SUNContext_Free(&way->context);
-	free(way->state);
 }
 
 /* ---- what they get wrong ---- */
 
 struct found { bool failed; double largest, at_end; int missed, phases, falsely; };
 
-static struct found compare(struct way *way)
+static struct found compare(struct way *way, const struct truth_of_friction *truth)
 {
 	static double rows[2 * UNITS];
-	const struct truth_of_friction *truth = way->truth;
 	static bool sticks[UNITS + 2];
-	struct found found = { .failed = !pass(way, rows) };
-	const double still = way->kind == EXACT || way->kind == ROOTS ? 1e-12 * truth->fastest : 3 * way->setting;
+	way->run->restart(way->run);
+	struct found found = { .failed = !way->run->advance(way->run, UNITS, rows) };
+	const double still = way->how == EXACT || way->how == ROOTS ? 1e-12 * truth->fastest : 3 * way->setting;
 	for (int k = 0; k < UNITS; k++) {
 		const double error = fabs(rows[2 * k] - truth->x[k]) / truth->peak;
 		if (!(error <= found.largest))
@@ -380,79 +315,62 @@ static struct found compare(struct way *way)
 enum { MOST_WAYS = 64 };
 struct ways { int count; struct way way[MOST_WAYS]; };
 
-static void list(struct ways *ways, const struct truth_of_friction *truth)
+static void list(struct ways *ways)
 {
-	static const struct { const char *name; enum kind kind; int lmm, first, last; } ladder[] = {
-		{ "CVODE Adams, roots", ROOTS, CV_ADAMS, 3, 11 }, { "CVODE BDF, roots", ROOTS, CV_BDF, 3, 9 },
-		{ "tanh, CVODE BDF", SMOOTH, CV_BDF, 1, 6 }, { "tanh, CVODE Adams", SMOOTH, CV_ADAMS, 1, 4 },
-		{ "tanh, RK4", STEPS, 0, 1, 4 },
+	static const struct { const char *name, *method; enum how how; int first, last; } ladder[] = {
+		{ "CVODE Adams, roots", NULL, ROOTS, 3, 11 }, { "CVODE BDF, roots", NULL, ROOTS, 3, 9 },
+		{ "tanh, CVODE BDF", "CVODE BDF", SMOOTH, 1, 6 }, { "tanh, CVODE Adams", "CVODE Adams", SMOOTH, 1, 4 },
+		{ "tanh, RK4", NULL, STEPS, 1, 4 },
 	};
 	for (int parts = 1; parts <= 5; parts += 4)
-		ways->way[ways->count++] = (struct way){ .name = "exact", .setting = unit / parts, .truth = truth };
+		ways->way[ways->count++] = (struct way){ .name = "exact", .method = &exact, .setting = unit / parts };
 	for (size_t i = 0; i < sizeof ladder / sizeof *ladder; i++)
 		for (int e = ladder[i].first; e <= ladder[i].last; e++)
-			ways->way[ways->count++] = (struct way){ .name = ladder[i].name, .kind = ladder[i].kind,
-				.lmm = ladder[i].lmm, .setting = pow(10, -e), .truth = truth };
+			ways->way[ways->count++] = (struct way){ .name = ladder[i].name, .how = ladder[i].how,
+				.setting = pow(10, -e), .method = ladder[i].method ? method_find(ladder[i].method)
+					: i == 0 ? &adams.method : &bdf.method };
 }
 
 static const char *const setting_is[] = { "step_s", "rtol", "eps_m_per_s", "eps_m_per_s" };
 
-static void errors(struct ways *ways, const char *folder)
+static void errors(struct ways *ways, const struct truth_of_friction *truth, const char *folder)
 {
 	FILE *csv = table_open(folder, "friction.csv", "method,setting_kind,setting,largest,at_end,phases,missed,"
 	                                               "false,true_phases,evaluations_per_s");
-	for (int i = 0; i < ways->count; i++) {
-		struct way *way = &ways->way[i];
-		const struct found found = compare(way);
-		fprintf(csv, "\"%s\",%s,%g,", way->name, setting_is[way->kind], way->setting);
+	for (struct way *way = ways->way; way < ways->way + ways->count; way++) {
+		const struct found found = compare(way, truth);
+		fprintf(csv, "\"%s\",%s,%g,", way->name, setting_is[way->how], way->setting);
 		if (found.failed)
 			fprintf(csv, "failed,failed,,,,");
 		else
 			fprintf(csv, "%.4g,%.4g,%d,%d,%d,", found.largest, found.at_end, found.phases, found.missed,
 			        found.falsely);
-		fprintf(csv, "%d,", way->truth->seen);
-		if (way->kind != EXACT)
-			fprintf(csv, "%.4g", (double)way->evaluations / (UNITS * unit));
+		fprintf(csv, "%d,", truth->seen);
+		if (way->how != EXACT)
+			fprintf(csv, "%.4g", (double)way->run->evaluations(way->run) / (UNITS * unit));
 		fprintf(csv, "\n");
 	}
-	fclose(csv);
+	table_close(csv, "friction.csv");
 }
 
-static const double dear = 1e6;         /* ns a simulated second: a few passes do */
-
-/* What the process has used: others may take its place */
-static double own_ns(void)
+/* Of a simulated second */
+static void times(struct ways *ways, const struct truth_of_friction *truth, const char *folder)
 {
-	struct timespec t;
-	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
-/* Passes that take turns */
-static void times(struct ways *ways, const char *folder)
-{
-	static double ns[MOST_WAYS][ROUNDS];
+	struct run *run[MOST_WAYS];
+	struct samples ns[MOST_WAYS];
 	FILE *csv = table_open(folder, "friction_times.csv", "method,setting_kind,setting,largest,ns_min,ns_median,"
 	                                                     "ns_max,ns_min_over_exact");
-	static int count[MOST_WAYS];
-	for (int round = 0; round < ROUNDS; round++)
-		for (int i = 0; i < ways->count; i++) {
-			if (round >= FEW && ns[i][0] > dear)
-				continue;
-			const double begin = own_ns();
-			pass(&ways->way[i], NULL);
-			ns[i][count[i]++] = (own_ns() - begin) / (UNITS * unit);
-		}
-	double exact = 0;
+	for (int i = 0; i < ways->count; i++)
+		run[i] = ways->way[i].run;
+	sample_runs(ways->count, run, 5, ns);
 	for (int i = 0; i < ways->count; i++) {
 		struct way *way = &ways->way[i];
-		const struct samples time = sample_summary(count[i], ns[i]);
-		const struct found found = compare(way);
-		exact = i == 0 ? time.min : exact;
-		fprintf(csv, "\"%s\",%s,%g,%.4g,%.4g,%.4g,%.4g,%.4g\n", way->name, setting_is[way->kind], way->setting,
-		        found.failed ? NAN : found.largest, time.min, time.median, time.max, time.min / exact);
+		const struct found found = compare(way, truth);
+		fprintf(csv, "\"%s\",%s,%g,%.4g,%.4g,%.4g,%.4g,%.4g\n", way->name, setting_is[way->how], way->setting,
+		        found.failed ? NAN : found.largest, ns[i].min / unit, ns[i].median / unit, ns[i].max / unit,
+		        ns[i].min / ns[0].min);
 	}
-	fclose(csv);
+	table_close(csv, "friction_times.csv");
 }
 
 int main(int argc, char **argv)
@@ -462,11 +380,11 @@ int main(int argc, char **argv)
 	const bool timed = flags_of(argc, &argv, "--times", 2, 2, "friction [--times] VARIANTS OUTDIR");
 	say_progress("friction: %s", timed ? "times" : "errors");
 	find_truth(&truth);
-	list(&ways, &truth);
+	list(&ways);
 	for (int i = 0; i < ways.count; i++)
-		way_open(&ways.way[i], argv[0]);
-	(timed ? times : errors)(&ways, argv[1]);
+		way_open(&ways.way[i], argv[0], &truth);
+	(timed ? times : errors)(&ways, &truth, argv[1]);
 	for (int i = 0; i < ways.count; i++)
-		way_close(&ways.way[i]);
+		ways.way[i].run->close(ways.way[i].run);
 	return 0;
 }

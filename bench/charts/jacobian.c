@@ -74,8 +74,8 @@ static const struct { const char *name; jacobian_function *function; } known[] =
 
 jacobian_function *jacobian_of(const struct problem *p)
 {
-	if (p->linear && p->A)
-		return matrix_of;
+	if (p->jacobian || (p->linear && p->A))
+		return p->jacobian ? p->jacobian : matrix_of;
 	for (size_t i = 0; i < sizeof known / sizeof *known && !p->rhs_of; i++)
 		if (strcmp(known[i].name, p->name) == 0)
 			return known[i].function;
