@@ -323,7 +323,7 @@ int oscillator_eigenvalues(const struct subject *s, double wh, double complex *e
 	return amplification(&m, s->method, wh, eigenvalue);
 }
 
-double oscillator_growth(const void *subject, double wh)
+double growth_of(const void *subject, double wh)
 {
 	double complex eigenvalue[MOST_EIGENVALUES];
 	return largest(oscillator_eigenvalues(subject, wh, eigenvalue), eigenvalue);

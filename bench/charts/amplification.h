@@ -59,7 +59,7 @@ struct subject {
 	double zeta, ratio;
 };
 int oscillator_eigenvalues(const struct subject *s, double wh, double complex *eigenvalue);
-double oscillator_growth(const void *subject, double wh);
+double growth_of(const void *subject, double wh);
 /* A row of a map: the growth at `steps` w h from 0.01 to 10^decades times that, and where it passes 1; `across` is what
  * the rows are over. periods: growth is that within a true period, and an end is none where weak growth has only come
  * in sight. Branches of the ends are counted where they are not. */

@@ -7,7 +7,8 @@
 #include "charts.h"
 
 typedef void jacobian_function(const struct problem *p, double t, const double *y, double *Jq, double *Jv);
-/* NULL: none is known in closed form. Of a problem with a right-hand side of its own (rhs_of) its own or a matrix is. */
+/* NULL: none is known in closed form. Of a problem with a right-hand side of its own (rhs_of) its own
+ * or a matrix is. */
 jacobian_function *jacobian_of(const struct problem *p);
 
 /* a = -M^-1 (K + w^2 (D - M) + w' G) q - 2 w M^-1 G q' + loads, w spun up to Om */

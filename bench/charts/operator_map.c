@@ -60,7 +60,7 @@ static struct subject subject_of(const char *scheme, double across)
 static double growth(const void *of, double wh)
 {
 	const struct subject *s = of;
-	return strcmp(s->scheme, "pl") == 0 ? growth_of_pl(s->ratio, wh) : oscillator_growth(s, wh);
+	return strcmp(s->scheme, "pl") == 0 ? growth_of_pl(s->ratio, wh) : growth_of(s, wh);
 }
 
 /* Of the second variable the logarithms of the least and the most */

@@ -39,7 +39,7 @@ static void chart(const char *folder, int steps, int zetas)
 		say_progress("stability: %s", s.name);
 		for (int j = 0; j < zetas; j++) {
 			s.zeta = 1.5 * j / (zetas - 1);
-			map_row(&map, s.name, oscillator_growth, &s, s.zeta);
+			map_row(&map, s.name, growth_of, &s, s.zeta);
 		}
 	}
 	table_close(map.csv, "stability_map_raw.csv");
@@ -54,11 +54,11 @@ static double first_end(const char *name, double zeta, double limit)
 {
 	const struct subject s = named(name, zeta);
 	const double apart = pow(10, 0.01);
-	if (!(oscillator_growth(&s, 0.01) <= limit))
+	if (!(growth_of(&s, 0.01) <= limit))
 		return 0;
 	for (double wh = 0.01; wh < 100; wh *= apart)
-		if (!(oscillator_growth(&s, wh * apart) <= limit))
-			return boundary_between(oscillator_growth, &s, wh, wh * apart, limit);
+		if (!(growth_of(&s, wh * apart) <= limit))
+			return boundary_between(growth_of, &s, wh, wh * apart, limit);
 	return INFINITY;
 }
 
@@ -117,18 +117,20 @@ static void check_growth(struct checks *c)
 {
 	const struct subject euler = named("explicit Euler", 0), heun = named("explicit trapezoid", 0),
 		rk4 = named("RK4", 0), rk8pd = named("GSL rk8pd (fixed step)", 0), alpha = named("generalized-alpha", 0);
-	check(c, sqrt(1.01), oscillator_growth(&euler, 0.1), 1e-14, "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
-	check(c, sqrt(1 + 1e-4 / 4), oscillator_growth(&heun, 0.1), 1e-14,
+	check(c, sqrt(1.01), growth_of(&euler, 0.1), 1e-14,
+	      "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
+	check(c, sqrt(1 + 1e-4 / 4), growth_of(&heun, 0.1), 1e-14,
 	      "explicit trapezoid zeta 0 w h 0.1: rho = sqrt(1 + (w h)^4/4)");
-	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), oscillator_growth(&rk4, 0.1), 1e-14,
+	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), growth_of(&rk4, 0.1), 1e-14,
 	      "RK4 zeta 0 w h 0.1: rho^2 = 1 - (w h)^6/72 + (w h)^8/576");
-	check(c, alpha_by_hand(0.1), oscillator_growth(&alpha, 0.1), 1e-12,
+	check(c, alpha_by_hand(0.1), growth_of(&alpha, 0.1), 1e-12,
 	      "generalized-alpha zeta 0 w h 0.1: rho of its matrix by hand");
-	check(c, alpha_by_hand(10), oscillator_growth(&alpha, 10), 1e-12,
+	check(c, alpha_by_hand(10), growth_of(&alpha, 10), 1e-12,
 	      "generalized-alpha zeta 0 w h 10: rho of its matrix by hand");
-	check(c, 0.8, oscillator_growth(&alpha, 1e4), 1e-2, "generalized-alpha zeta 0 w h 1e4: rho at infinity as chosen");
+	check(c, 0.8, growth_of(&alpha, 1e4), 1e-2, "generalized-alpha zeta 0 w h 1e4: rho at infinity as chosen");
 	/* Weak growth looks like stability where rounding hides it, so its power is looked at where it shows */
-	check(c, 10, log((oscillator_growth(&rk8pd, 0.45) - 1) / (oscillator_growth(&rk8pd, 0.36) - 1)) / log(0.45 / 0.36), 0.03,
+	check(c, 10, log((growth_of(&rk8pd, 0.45) - 1) / (growth_of(&rk8pd, 0.36) - 1)) /
+	      log(0.45 / 0.36), 0.03,
 	      "GSL rk8pd zeta 0: growth per step goes as (w h)^10, so it has no end of stability (below 1e-12 for w h "
 	      "< %.3g)",
 	      first_end(rk8pd.name, 0, 1 + NOT_GROWING));
@@ -143,7 +145,7 @@ static void check_exact(struct checks *c, const char *variants)
 	const struct subject undamped = named("exact", 0);
 	double worst = 0;
 	for (double wh = 0.01; wh <= 100; wh *= 1.1)
-		worst = fmax(worst, fabs(oscillator_growth(&undamped, wh) - 1));
+		worst = fmax(worst, fabs(growth_of(&undamped, wh) - 1));
 	check(c, 0, worst, 1e-13, "exact by hand zeta 0 w h 0.01 to 100: largest |rho - 1|");
 	for (int i = 0; i < 3; i++) {
 		const double over = points[i].zeta > 1 ? points[i].zeta - sqrt(points[i].zeta * points[i].zeta - 1)
