@@ -116,7 +116,8 @@ static double alpha_by_hand(double h)
 static void check_growth(struct checks *c)
 {
 	const struct subject euler = named("explicit Euler", 0), heun = named("explicit trapezoid", 0),
-		rk4 = named("RK4", 0), rk8pd = named("GSL rk8pd (fixed step)", 0), alpha = named("generalized-alpha", 0);
+		rk4 = named("RK4", 0), rk8pd = named("GSL rk8pd (fixed step)", 0),
+		alpha = named("generalized-alpha", 0);
 	check(c, sqrt(1.01), growth_of(&euler, 0.1), 1e-14,
 	      "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
 	check(c, sqrt(1 + 1e-4 / 4), growth_of(&heun, 0.1), 1e-14,
