@@ -8,6 +8,7 @@
  *     PL_EXPRESSIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
  *     PL_REGIONS                 1: the regions are numbered
+ *     PL_WAY                     beside contacts, if what is watched goes by polynomials: their degree, PL(along)
  *     PL_BOUNCES                 1: contacts may come to rest by bouncing: member rested of PL(contact)
  *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
  *     PL(expand_from), PL(inputs_now)   as taylor.h
@@ -117,6 +118,9 @@ static inline void PL(forget)(PL(contact) *contact)
     int i;
     contact->placed = contact->crossings = 0;
     contact->total = 0;
+#if PL_CONTACTS
+    contact->rested = 0;
+#endif
     for (i = 0; i < PL_EXPRESSIONS; i++) {
         contact->interval[i] = 0;
     }
@@ -192,6 +196,22 @@ static inline pl_chain PL(no_impact)(void)
     const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
     return none;
 }
+
+#if defined(PL_WAY)
+/* A guard of a bounce is the integral of its speed, a watch, over a step of dt [s]: beside a place that is rounded the
+ * way of a short flight would not show. */
+static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
+{
+    int i, m;
+    for (i = 0; i < PL(along).impacts; i++) {
+        const pl_strike *const p = &PL(along).impact[i];
+        const real per = (p->upward ? dt : -dt) * p->per;
+        for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
+            c[m + 1][p->expression] = per * c[m][PL_EXPRESSIONS + p->speed] / (real)(m + 1);
+        }
+    }
+}
+#endif
 
 /* An instant at which something is met, but for how the series is made anew there */
 static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], real rest[], real c[], real terms[],

@@ -10,20 +10,23 @@
  *     PL_SWIFT, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
  *     PL_CARRIES                 entries of the member carry, which a step changes
  *     PL_MAX_SPLITS              halvings in the search of a crossing
+ *     PL_TERMS                   what is watched: expressions, and behind them what the search of events looks at
  *
  *     PL(column)[]               of each expression: where it stands in the series, of order 2
  *     PL(passing)                a pl_divided of cubics of each
  *     PL(flow)[][][]             of each segment: A [1/s], x' = A x where no force changes but by its derivatives
  *     PL(acting)(s, start, slope, tau, acting)       what acts, tau [s] after now
  *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      what is left over
- *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of each expression its value and h
- *                                times its slope; the sizes of the terms of the value
+ *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of all that is watched the value and
+ *                                h times the slope; the sizes of the terms of the value
  *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
+ *     PL(events), PL(along)      where there are contacts: a pl_events of the series; of polynomials along a part
  *
  * and members contact, status; and end, terms, ended where there are no inputs and formulas do not change in time. */
 #define PL_AT_BREAKPOINTS 1
 #define PL_IN_PARTS 1
+#define PL_WAY (3 + PL_CONTACTS) /* the degree of polynomials: a guard has one more */
 #include "chosen.h"
 
 #define PL_SIZE (PL_STATES + PL_ACTING + 3 * PL_FORCES)
@@ -46,6 +49,10 @@ typedef struct PL(piece) { /* a part of a step */
     real done, limit;             /* where it begins; where the loads change, or the step ends [h] */
     real longest;                 /* that is tried [h] */
     int segment, splits;
+#if PL_CONTACTS
+    real rest[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_ORDER)];
+    pl_instant at;                /* what happens where it begins; law: the series from there */
+#endif
 } PL(piece);
 
 static inline void PL(begin)(PL(piece) *p, const PL_TYPE *s, const real u[], PL(contact) *contact)
@@ -149,8 +156,8 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
 /* ---- what it meets ---- */
 
 /* The expressions at y, `at` h after now, by the formulas that hold over the part */
-static PL_APART void PL(look)(const PL(piece) *p, real at, const real y[PL_STATES], real e[][PL_EXPRESSIONS],
-                            real terms[PL_EXPRESSIONS])
+static PL_APART void PL(look)(const PL(piece) *p, real at, const real y[PL_STATES], real e[][PL_TERMS],
+                            real terms[PL_TERMS])
 {
     PL(ends_at)(p->s, p->start, p->slope, at * PL_H, PL(when)(p), p->segment, p->contact->interval, y, e, terms);
 }
@@ -172,17 +179,46 @@ static inline int PL(is_above)(real value, real bound)
     return PL_SWIFT ? value >= bound : value > bound;
 }
 
+#if PL_CONTACTS
+/* Whether nothing that is held comes near being let go in a part of this size, as PL(stays) */
+static int PL(is_held_on)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS], const int interval[],
+                          real size)
+{
+    int i, up;
+    for (i = 0; i < PL(along).holds; i++) {
+        const pl_hold *const h = &PL(along).hold[i];
+        for (up = 0; up < 2 && interval[h->expression] == h->interval; up++) {
+            const int watch = up ? h->up : h->down, k = PL_EXPRESSIONS + watch;
+            if (watch >= 0 && !(c[0][k] < 0 && c[0][k] + size * c[1][k] / 3 < 0 && d[0][k] < 0 &&
+                                d[0][k] - size * d[1][k] / 3 < 0)) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+#endif
+
 /* Whether no expression comes near the end of its interval, but for `noise` of its terms, in a part of this size.  c:
  * values and slopes [1/h] at its start, d: at its end: the cubic that has them is as exact as the step, and lies within
  * its Bezier points. */
-static int PL(stays)(const real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS], const int interval[],
-                     real size, const real terms[PL_EXPRESSIONS], real noise)
+static int PL(stays)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS], const int interval[],
+                     real size, const real terms[PL_TERMS], real noise)
 {
     const real *at = PL(breakpoint);
     int i;
+#if PL_CONTACTS
+    if (!PL(is_held_on)(c, d, interval, size)) {
+        return 0;
+    }
+#endif
     for (i = 0; i < PL_EXPRESSIONS; at += PL(breaks)[i++]) {
         const real a = c[0][i], b = a + size * c[1][i] / 3, z = d[0][i], y = z - size * d[1][i] / 3;
         const real slack = PL(slack)(noise, terms[i]);
+        if (PL_CONTACTS && interval[i] > 0 && interval[i] < PL(breaks)[i] &&
+            !(at[interval[i] - 1] < at[interval[i]])) {
+            continue; /* it is held there */
+        }
         if (interval[i] > 0) {
             const real low = at[interval[i] - 1] - slack;
             if (!(PL(is_above)(a, low) && PL(is_above)(b, low) && PL(is_above)(y, low) && PL(is_above)(z, low))) {
@@ -199,36 +235,46 @@ static int PL(stays)(const real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESS
     return 1;
 }
 
-/* When, in a part of this size [h], an expression first leaves its interval; below 0: none does.  c becomes the cubic
- * of each. */
-static real PL(meets)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
-                      const real terms[PL_EXPRESSIONS], real size, pl_crossing *crossing)
+/* c becomes the cubic of each over a part of this size [h]. */
+static void PL(make_cubics)(real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS], real size)
 {
-    real work[PL_DIVIDED_WORK(3)];
     int i;
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_TERMS; i++) {
         const real rise = (d[0][i] - c[0][i]) / size;
         c[2][i] = (3 * rise - 2 * c[1][i] - d[1][i]) / size;
         c[3][i] = (c[1][i] + d[1][i] - 2 * rise) / (size * size);
+        c[PL_WAY][i] = PL_CONTACTS ? 0 : c[PL_WAY][i];
     }
+#if PL_CONTACTS
+    PL(guards_along)(PL_H, c);
+#endif
+}
+
+#if !PL_CONTACTS
+/* When, in a part of this size [h], an expression first leaves its interval; below 0: none does */
+static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+                      const real terms[PL_TERMS], real size, pl_crossing *crossing)
+{
+    real work[PL_DIVIDED_WORK(3)];
+    PL(make_cubics)(c, d, size);
     return pl_divided_next(&PL(passing), c[0], terms, p->contact->interval, size, &p->splits, crossing, work);
 }
 
-/* From `at` onto the breakpoint of `crossing`, back by half of `size` or on by `left` at most; returns by how much,
+#endif
+
+/* From `at` to where column k passes `to`, back by half of `size` or on by `left` at most; returns by how much,
  * all in h.  How far a part ends off the breakpoint that it was to meet is of the size of the error: a Taylor
  * polynomial bridges it. */
-static PL_APART real PL(onto)(const PL(piece) *p, real at, real size, real left, const pl_crossing *crossing,
+static PL_APART real PL(onto)(const PL(piece) *p, real at, real size, real left, int k, real to, int upward,
                               real y[PL_STATES])
 {
-    const int k = PL(column)[crossing->expression];
-    const real to = PL(breakpoint_of)(crossing);
-    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_EXPRESSIONS], moved = 0;
+    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], moved = 0;
     int i, again;
     for (again = 0; again < 4; again++) {
         real theta;
         PL(expand_from)(p->s, p->start, p->slope, (at + moved) * PL_H, PL(when)(p), p->segment, p->contact->interval, y,
                         c, terms);
-        if (!(crossing->upward ? c[1][k] > 0 : c[1][k] < 0)) {
+        if (!(upward ? c[1][k] > 0 : c[1][k] < 0)) {
             break;
         }
         theta = (to - c[0][k]) / c[1][k];
@@ -256,25 +302,29 @@ static inline int PL(halve)(PL(piece) *p, real size)
     return p->longest < PL_LEAST_PART ? PL_NOT_FINITE : PL_SHORTER;
 }
 
+#if PL_CONTACTS
+#include "met.h"
+#else
+
 /* The part up to `to` [h]: next, where it ends; found->time, how long after its start it meets what is found, or below
  * 0: 0, PL_SHORTER, or what went wrong.  What a cubic says of a part that is too long for it is believed where that
  * stays within. */
-static int PL(search_step)(PL(piece) *p, real to, real c[4][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS],
+static int PL(search_step)(PL(piece) *p, real to, real c[PL_WAY + 1][PL_TERMS], const real terms[PL_TERMS],
                       const real y[PL_STATES], real next[PL_STATES], pl_crossing *found)
 {
     const real size = to - p->done;
-    real d[2][PL_EXPRESSIONS], spare[PL_EXPRESSIONS];
+    real d[2][PL_TERMS], spare[PL_TERMS];
     if (PL(advance)(p, size, y, next) != 0) {
         return PL(halve)(p, size);
     }
     PL(look)(p, to, next, d, spare);
-    found->time = PL(meets)(p, c, (const real (*)[PL_EXPRESSIONS])d, terms, size, found);
+    found->time = PL(meets)(p, c, (const real (*)[PL_TERMS])d, terms, size, found);
     if (p->splits < 0) {
         return PL_TOO_MANY_EVENTS;
     }
 #if PL_SWIFT
     if (size > PL_CERTAIN &&
-        (found->time >= 0 || !PL(stays)((const real (*)[PL_EXPRESSIONS])c, (const real (*)[PL_EXPRESSIONS])d,
+        (found->time >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
                                         p->contact->interval, size, terms, PL_NOISE))) {
         p->longest = size / 2;
         return PL_SHORTER;
@@ -291,7 +341,7 @@ static inline int PL(pass_event)(const PL(piece) *p)
 /* The next part, y at its start and then at its end: 0, PL_SHORTER, or what went wrong */
 static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
 {
-    real c[4][PL_EXPRESSIONS], terms[PL_EXPRESSIONS], next[PL_STATES], to, size;
+    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS], next[PL_STATES], to, size;
     pl_crossing found;
     int i;
     PL(look)(p, p->done, y, c, terms);
@@ -315,7 +365,8 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
         if (PL(advance)(p, found.time, y, next) != 0) {
             return PL(halve)(p, found.time);
         }
-        found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, &found, next);
+        found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, PL(column)[found.expression],
+                               PL(breakpoint_of)(&found), found.upward, next);
     }
     p->longest = PL_SWIFT ? 2 * size : 1;
     for (i = 0; i < PL_STATES && found.time != 0; i++) {
@@ -330,24 +381,35 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
     return PL(pass_event)(p);
 }
 
+#endif
+
 /* y, `end` h later: 0, or what went wrong, and y as far as it went */
 static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
 {
     int wrong = 0;
     p->splits = PL_MAX_SPLITS;
+#if PL_CONTACTS
+    PL(watch)(p, y);
+#endif
     while (p->done < end && wrong <= 0) {
         p->limit = PL(limit_of)(p->s, p->done, end, &p->segment);
         wrong = PL(go_on)(p, y);
     }
+#if PL_CONTACTS
+    return (wrong > 0 ? wrong : 0) | p->at.status;
+#else
     return wrong > 0 ? wrong : 0;
+#endif
 }
 
 /* ---- the step ---- */
 
+#if !PL_CONTACTS
+
 /* Where a step comes near a breakpoint: whether it meets none; else *crossing, and its time below 0 where that is not
  * known.  c, d: of both ends of all of h */
-static PL_APART int PL(is_clear)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
-                                 const real terms[PL_EXPRESSIONS], pl_crossing *crossing)
+static PL_APART int PL(is_clear)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+                                 const real terms[PL_TERMS], pl_crossing *crossing)
 {
     *crossing = p->contact->last;
     if (pl_divided_left(&PL(passing), c[0], terms, p->contact->interval, crossing)) {
@@ -356,34 +418,42 @@ static PL_APART int PL(is_clear)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const 
     }
     crossing->time = PL(meets)(p, c, d, terms, 1, crossing);
 #if PL_SWIFT
-    if (!PL(stays)((const real (*)[PL_EXPRESSIONS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
+    if (!PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
         return 0;
     }
 #endif
     return crossing->time < 0 && p->splits >= 0 && pl_not_finite(p->s->y, PL_STATES) == 0;
 }
 
+#endif
+
 /* Whether the step that was made stands, as is_clear: the loads have had one formula in it, too */
-static inline int PL(stands)(PL(piece) *p, real c[4][PL_EXPRESSIONS], const real d[2][PL_EXPRESSIONS],
-                             const real terms[PL_EXPRESSIONS], pl_crossing *crossing)
+static inline int PL(stands)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+                             real terms[PL_TERMS], pl_crossing *crossing)
 {
+    crossing->time = -1;
 #if PL_SEGMENTS > 1
     if (p->segment < PL_SEGMENTS - 1 && PL(until)(p->s, p->segment) < PL_H) {
-        crossing->time = -1;
         return 0;
     }
 #endif
-    return PL(stays)((const real (*)[PL_EXPRESSIONS])c, d, p->contact->interval, 1, terms, 0) ||
-           PL(is_clear)(p, c, d, terms, crossing);
+    if (PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, 0)) {
+        return 1;
+    }
+#if PL_CONTACTS
+    return PL(is_clear)(p, c, d, terms);
+#else
+    return PL(is_clear)(p, c, d, terms, crossing);
+#endif
 }
 
 /* The expressions at the start of the step */
-static inline void PL(look_first)(const PL(piece) *p, real c[4][PL_EXPRESSIONS], real terms[PL_EXPRESSIONS])
+static inline void PL(look_first)(const PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
 {
 #if PL_KEEPS_LOOK
     if (p->s->ended) {
         int i;
-        for (i = 0; i < PL_EXPRESSIONS; i++) {
+        for (i = 0; i < PL_TERMS; i++) {
             c[0][i] = p->s->end[0][i];
             c[1][i] = p->s->end[1][i];
             terms[i] = p->s->terms[i];
@@ -395,12 +465,12 @@ static inline void PL(look_first)(const PL(piece) *p, real c[4][PL_EXPRESSIONS],
 }
 
 /* They are kept for the step that follows; NULL: they are not. */
-static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_EXPRESSIONS], const real terms[PL_EXPRESSIONS])
+static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_TERMS], const real terms[PL_TERMS])
 {
 #if PL_KEEPS_LOOK
     int i;
     s->ended = d != NULL;
-    for (i = 0; i < PL_EXPRESSIONS && d != NULL; i++) {
+    for (i = 0; i < PL_TERMS && d != NULL; i++) {
         s->end[0][i] = d[0][i];
         s->end[1][i] = d[1][i];
         s->terms[i] = terms[i];
@@ -416,7 +486,7 @@ static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_EXPRESSIONS], co
  * one is passed. */
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
-    real c[4][PL_EXPRESSIONS], d[2][PL_EXPRESSIONS], terms[PL_EXPRESSIONS], spare[PL_EXPRESSIONS], y[PL_STATES];
+    real c[PL_WAY + 1][PL_TERMS], d[2][PL_TERMS], terms[PL_TERMS], spare[PL_TERMS], y[PL_STATES];
     real carry[PL_ROOM(PL_CARRIES)];
     PL(piece) p;
     pl_crossing crossing;
@@ -434,9 +504,14 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 #endif
     PL(whole)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
     PL(look)(&p, 1, s->y, d, spare);
-    if (PL(stands)(&p, c, (const real (*)[PL_EXPRESSIONS])d, terms, &crossing)) {
+    if (PL(stands)(&p, c, (const real (*)[PL_TERMS])d, terms, &crossing)) {
         s->contact.last.expression = -1;
-        PL(keep_look)(s, (const real (*)[PL_EXPRESSIONS])d, spare);
+#if PL_CONTACTS
+        if (PL(put_back)(&s->contact, (const real (*)[PL_TERMS])d, s->y)) {
+            PL(look)(&p, 1, s->y, d, spare);
+        }
+#endif
+        PL(keep_look)(s, (const real (*)[PL_TERMS])d, spare);
     } else {
         for (i = 0; i < PL_STATES; i++) {
             s->y[i] = y[i];

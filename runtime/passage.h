@@ -17,9 +17,6 @@
  * and members chain and rested of contact.  placed is 1; 2 where what holds may have changed, 3 where that has just
  * been looked at. */
 
-/* The degree of their polynomials: guards have one more */
-#define PL_WAY (PL_STAGES + PL_CONTACTS)
-
 /* ---- the expressions where the internal step starts, and along it ---- */
 
 /* Where it starts: c[0]; all further coefficients are 0 */
@@ -31,22 +28,6 @@ static void PL(values_here)(const PL_TYPE *s, const real start[], const real slo
     PL(known_at)(s, PL_WATCH_READS, start, slope, 0, (real)1e-9, known);
     PL(watch)(known, s->contact.interval, s->start, c[0], terms);
 }
-
-#if PL_CONTACTS
-/* A guard of a bounce is the integral of its speed, a watch, over a step of dt [s]: beside a place that is rounded the
- * way of a short flight would not show. */
-static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
-{
-    int i, m;
-    for (i = 0; i < PL(along).impacts; i++) {
-        const pl_strike *const p = &PL(along).impact[i];
-        const real per = (p->upward ? dt : -dt) * p->per;
-        for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
-            c[m + 1][p->expression] = per * c[m][PL_EXPRESSIONS + p->speed] / (real)(m + 1);
-        }
-    }
-}
-#endif
 
 /* ... along a step of `size` h: polynomials through their values there and at the nodes */
 static void PL(values_along)(const PL_TYPE *s, const real start[], const real slope[], real size,

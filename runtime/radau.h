@@ -117,6 +117,7 @@ static inline int PL(is_moved)(int i)
 
 #define PL_AT_BREAKPOINTS 1
 #define PL_IN_PARTS 0
+#define PL_WAY (PL_STAGES + PL_CONTACTS) /* the degree of what is watched along a step: guards have one more */
 #include "chosen.h"
 
 /* ---- where an internal step stands ---- */
@@ -154,9 +155,6 @@ static void PL(place)(PL_TYPE *s)
 #endif
 #if PL_EXPRESSIONS > 0
     PL(forget)(&s->contact);
-#endif
-#if PL_CONTACTS
-    s->contact.rested = 0;
 #endif
 }
 

@@ -535,9 +535,6 @@ static void PL(place)(PL_TYPE *s)
 #if PL_EXPRESSIONS > 0
     PL(forget)(&s->contact);
 #endif
-#if PL_CONTACTS
-    s->contact.rested = 0;
-#endif
 }
 #endif
 

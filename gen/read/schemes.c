@@ -63,6 +63,7 @@ enum scheme default_scheme(void)
 
 static bool is_any(const struct scheme_row *row) { return row->name; }
 static bool leaves(const struct scheme_row *row) { return row->leaves && !row->modes; }      /* anything */
+static bool stops(const struct scheme_row *row) { return row->expands || row->cuts; }        /* at events */
 static bool holds(const struct scheme_row *row) { return row->holds_coupling; }
 
 /* a, b<last>c of those that are meant */
@@ -89,6 +90,11 @@ const char *all_schemes(const char *separator)
 const char *leaving_schemes(const char *last)
 {
 	return listed(leaves, ", ", last);
+}
+
+const char *stopping_schemes(void)
+{
+	return listed(stops, ", ", " and ");
 }
 
 const char *holding_schemes(void)

@@ -333,6 +333,15 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 	return made;
 }
 
+/* Friction and impacts are events inside steps. */
+static void check_cuts(const struct model *model)
+{
+	if (has_contacts(model) && !scheme_row(model->scheme)->expands && why_not_cut(model))
+		error(model->asked.scheme_at, "taylor, radau and auto have no part of a step to make",
+		      "scheme %s does not stop at events of friction and impacts here: %s", scheme_name(model->scheme),
+		      why_not_cut(model));
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
@@ -345,6 +354,7 @@ static void build(void *context)
 	};
 	struct step *step = context;
 	const struct model *model = step->model;
+	check_cuts(model);
 	step->kind = kind_of_step(model);
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of_written(model);

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # stacks.sh PLGEN STACKS STANDS.C SOURCE FIRST COUNT VARIANT ...
 #
-# COUNT random scenes from seed FIRST on, or from each of several, the VARIANTs in turn: stacks, walls, wedges. What is
-# emitted keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0. Variants:
-# exact, float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring),
-# float_curved; radau, float_radau (likewise by collocation); solution: --solution beside the step, to 1e-8; solved: the
-# same, where it is not refused.
+# COUNT random scenes from seed FIRST on, or from each of several, the VARIANTs in turn: stacks, walls, wedges. What
+# is emitted keeps to what needs no truth: nothing is penetrated, energy never grows, momentum stays, status 0.
+# Variants: exact, float, compensated, float_compensated, tunable, taylor, curved (by a series, with a cubic spring),
+# float_curved; radau, float_radau (likewise by collocation); etdrk4, float_etdrk4 (without that spring); solution:
+# --solution beside the step, to 1e-8; solved: the same, where it is not refused.
 # $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 stacks=$(realpath "$2")
@@ -48,6 +48,7 @@ stands_up() {
 		*taylor) scheme=taylor ;;
 		*curved) scheme=curved ;;
 		*radau) scheme=curved; options="--scheme radau" ;;
+		*etdrk4) scheme=taylor; options="--scheme etdrk4" ;;
 	esac
 	$stacks $seed $scheme $form $real scene.spec drawn.h || return 1
 	if ! "$plgen" --real $real $options scene.spec -o scene.c >log 2>&1; then

@@ -21,6 +21,7 @@
 #define PL_ORDER 2
 #define PL_COLUMNS 2
 #define PL_EXPRESSIONS 1
+#define PL_TERMS 1
 #define PL_CHANGES 2
 #define PL_MAX_EVENTS 8
 #define PL_MAX_SPLITS 500

@@ -3,6 +3,7 @@
  * of the model, and a whole step by the scheme's own tables. */
 #include "emit/series/series.h"
 #include "emit/steps.h"
+#include "step/regions/guards.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 
@@ -15,10 +16,10 @@ static const struct cut *cut_of(const struct emitter *e)
 
 void emit_cut_members(const struct emitter *e)
 {
-	int count = cut_of(e)->look->expressions;
+	int count = terms_of_events(e);
 	emit_divided_members(e);
 	if (e->system->inputs == 0 && e->system->segments <= 1)
-		say(e, "    double end[2][%d], terms[%d];  /* of each expression at the end of the last step */\n"
+		say(e, "    double end[2][%d], terms[%d];  /* of what is watched at the end of the last step */\n"
 		       "    int ended;            /* they are there */\n", count, count);
 }
 
@@ -103,9 +104,11 @@ static void emit_algorithm(const struct emitter *e)
 	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
 		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carries }, { "ORDER", x->order },
 		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
+		   { "TERMS", terms_of_events(e) }, { "CONTACTS", meets_contacts(e) },
 		   { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
-		   { "MAX_SPLITS", MAX_SPLITS }, { "SWIFT", cut_of(e)->certain < 1 });
+		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
+		   { "SWIFT", cut_of(e)->certain < 1 });
 	emit_divided_macros(looking(e));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
@@ -121,7 +124,11 @@ void emit_cut_step(const struct emitter *e)
 	emit_ends_function(ending(e));
 	emit_expand_from(l);
 	emit_divided_tables(l);
-	emit_passing_table(e, CUBIC);
+	emit_passing_table(e, CUBIC + meets_contacts(e));
+	if (meets_contacts(e)) {
+		emit_event_tables(e);
+		emit_events_along(e);
+	}
 	emit_inputs_now(e);
 	emit_flow_tables(e);
 	emit_acting(e);

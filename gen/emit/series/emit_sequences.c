@@ -232,13 +232,12 @@ void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
-	begin_function(e, "Of each expression its value and h times its slope; the sizes of the terms of the value",
+	begin_function(e, "Of what is watched the value and h times its slope; the sizes of the terms of the value",
 		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)
 			recurrence_set(r, format("e[%d][%d]", k, c), x->column[c], k);
-	for (int c = 0; c < x->columns; c++)
-		tape_set(tape_of_recurrences(r), format("terms[%d]", c), recurrence_size(r, x->column[c]), 10, NULL);
+	series_set_sizes(r, e->step->divided, "terms");
 	end_function(e, r);
 }
 

@@ -169,11 +169,12 @@ bool strikes_change(const struct building *b)
 void tell_no_events(const struct building *b, struct place at)
 {
 	const enum scheme scheme = b->model->scheme;
-	if ((scheme_row(scheme)->expands || scheme == SCHEME_EXACT) && strikes_change(b))
+	const struct scheme_row *row = scheme_row(scheme);
+	if ((row->expands || row->cuts || scheme == SCHEME_EXACT) && strikes_change(b))
 		error(at, "scheme exact takes them beside what is piecewise linear",
 		      "beside a series a guard and its jumps have one formula for all time");
-	error(at, format("scheme exact, of what is piecewise linear, and schemes taylor, radau and auto go from event "
-			 "to event: %s does not", scheme_name(scheme)),
+	error(at, format("scheme exact, of what is piecewise linear, and schemes %s go from event to event: %s does "
+			 "not", stopping_schemes(), scheme_name(scheme)),
 	      "friction and impacts are events inside steps, at which the scheme does not stop");
 }
 

@@ -3,6 +3,7 @@
  * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that
  * still depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
 #include "model/building.h"
+#include "model/contacts/contacts.h"
 #include "model/linear/relative.h"
 
 /* ---- the fixed names ---- */
@@ -334,6 +335,17 @@ static struct form *leftover_of(struct building *b, const struct operator *opera
 	return left;
 }
 
+/* Whether contacts that rest press on a row, where a scheme leaves that over */
+static bool is_pressed(const struct model *model, int row)
+{
+	bool any = false;
+	for (int i = 0; i < model->impacts && scheme_row(model->scheme)->cuts; i++)
+		for (int j = 0; j < model->n && model->impact[i].bounces; j++)
+			any = any || (mpq_sgn(model->impact[i].in->direction[j]) != 0 &&
+				      mpq_sgn(model->system.M[row * model->n + j]) != 0);
+	return any;
+}
+
 static void find_channels(struct building *b)
 {
 	struct model *model = b->model;
@@ -341,7 +353,7 @@ static void find_channels(struct building *b)
 	struct form **all = ARRAY(struct form *, (size_t)(model->operators * n));
 	model->channel_row = ARRAY(int, n);
 	for (int i = 0; i < n; i++) {
-		bool any = false;
+		bool any = is_pressed(model, i);
 		for (int k = 0; k < model->operators; k++) {
 			all[k * n + i] = leftover_of(b, &model->operator[k], i);
 			any = any || all[k * n + i]->terms > 0;

@@ -3,6 +3,7 @@
  * of an expression of the state with a breakpoint, or of times, the formulas on both sides have derivatives there, and
  * the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else it steps
  * across, and is of the order that is left there. */
+#include "model/contacts/contacts.h"
 #include "model/model.h"
 
 struct following {
@@ -115,11 +116,31 @@ static bool has_small_tables(const struct model *model)
 	return layout_of(&system, CUT_POWERS).size <= LIMIT_TUNED_BLOCK;
 }
 
+const char *why_not_cut(const struct model *model)
+{
+	if (!scheme_row(model->scheme)->cuts || model->channels == 0)
+		return "its steps are not cut";
+	if (model->operators > 1)
+		return "its operator changes";
+	if (model->smooth.singular)
+		return format("'%s' has no derivatives where %s",
+			      text_between(model->smooth.singular->start, model->smooth.singular->end),
+			      model->smooth.singular_where);
+	if (goes_through_samples(model))
+		return "inputs go through their samples in curves";
+	if (!has_small_tables(model))
+		return format("states, loads, inputs and what is left over are more than %d, whose tables a target "
+			      "would have to make", LIMIT_TUNED_BLOCK);
+	return NULL;
+}
+
 bool follows_crossings(const struct model *model)
 {
-	if (!scheme_row(model->scheme)->cuts || model->channels == 0 || model->operators > 1 ||
-	    model->smooth.kind == SMOOTH_ALL || model->smooth.singular || goes_through_samples(model) ||
-	    !has_small_tables(model))
+	if (why_not_cut(model))
+		return false;
+	if (has_contacts(model))
+		return true;
+	if (model->smooth.kind == SMOOTH_ALL)
 		return false;
 	struct following f = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
 	for (int c = 0; c < model->channels; c++)

@@ -40,6 +40,7 @@ struct holder {
 	const struct form *velocity, *rate;
 	const struct node *node;    /* of friction */
 	mpq_t *push;                /* per state: what its force, 1, adds to the slope; of a contact it presses off */
+	mpq_t *gives;               /* per channel: what its force, 1, adds */
 	mpq_t *answer;              /* per holder: what the force of that adds to the rate of the velocity here */
 	int bare;                   /* sequences: that rate without any of these forces, */
 	int slips, force;           /* the force while it slips, NONE: there is none; now */
@@ -69,6 +70,8 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
 	for (int e = 0; e < w->system->channels; e++) {
 		const struct form_term *term = form_find(model->operator[0].left[e], &basis);
+		if (term)
+			mpq_set(h->gives[e], term->factor);
 		for (int i = 0; i < w->system->states && term; i++) {
 			rational_addmul(h->push[i], term->factor,
 					w->slopes[0][i * w->layout.size + w->layout.channel + e]);
@@ -78,16 +81,24 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 
 static void push_of_contact(const struct sequencing *w, struct holder *h, const struct impact *impact)
 {
-	for (int j = 0; j < w->system->n; j++)
+	const int n = w->system->n;
+	for (int j = 0; j < n; j++)
 		if (mpq_sgn(impact->in->direction[j]) != 0)
 			mpq_neg(h->push[w->system->velocity[j]], impact->in->direction[j]);
+	for (int e = 0; e < w->system->channels; e++)
+		for (int j = 0; j < n; j++) {
+			mpq_srcptr mass = w->system->M[w->step->model->channel_row[e] * n + j];
+			if (w->system->velocity[j] >= 0)
+				rational_addmul(h->gives[e], mass, h->push[w->system->velocity[j]]);
+		}
 }
 
 static struct holder *add_holder(struct holders *all)
 {
 	struct holder *h = MORE(all->holder, all->holders);
 	*h = (struct holder){ .impact = NONE, .drag = NONE, .slips = NONE,
-			      .push = rationals(all->w->system->states) };
+			      .push = rationals(all->w->system->states),
+			      .gives = rationals(all->w->system->channels) };
 	return h;
 }
 
@@ -539,6 +550,21 @@ struct sum held_slope(struct sequencing *w, int state)
 	return slope;
 }
 
+int held_force(struct sequencing *w, int channel)
+{
+	const struct contacts *c = w->x->contacts;
+	struct sum force = { 0 };
+	if (!c)
+		return w->x->force[channel];
+	RATIONAL one = ZERO;
+	mpq_set_ui(one, 1, 1);
+	sum_add(&force, TERM_SEQUENCE, w->x->force[channel], 0, one);
+	for (int i = 0; i < c->holds; i++)
+		if (mpq_sgn(c->hold[i].gives[channel]) != 0)
+			sum_add(&force, TERM_SEQUENCE, c->hold[i].force, 0, c->hold[i].gives[channel]);
+	return sum_sequence(w, &force);
+}
+
 void hold_contacts(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
@@ -572,6 +598,7 @@ void hold_contacts(struct sequencing *w)
 	for (int i = 0; i < all.holders; i++) {
 		c->hold[i].force = all.holder[i].force;
 		c->hold[i].push = all.holder[i].push;
+		c->hold[i].gives = all.holder[i].gives;
 		c->hold[i].only = only_state(w, all.holder[i].velocity);
 	}
 }

@@ -2,7 +2,9 @@
 /* A scheme with a leftover that goes from crossing to crossing: between two of them the formulas are those of given
  * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
  * crosses a breakpoint is made again in parts, whose tables the target makes. */
+#include "model/contacts/contacts.h"
 #include "plrt.h"
+#include "step/contacts/series_contacts.h"
 #include "step/cost.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
@@ -10,9 +12,9 @@
 
 #include <math.h>
 
-/* Two derivatives at the start decide where a state on a breakpoint is heading; the cubic of a whole step is believed
- * where no pole turns by more than TURN in it. */
-enum { LOOKED = 2, TURN = 2 };
+/* Two derivatives at the start decide where a state on a breakpoint is heading, four what sticks, rests and slips; the
+ * cubic of a whole step is believed where no pole turns by more than TURN in it. */
+enum { LOOKED = 2, AT_EVENTS = 4, TURN = 2 };
 
 static double *slopes_in(const struct step *step, const struct layout *layout, int segment)
 {
@@ -63,11 +65,15 @@ static bool *acting_loads(const struct linear *system)
 	return acting;
 }
 
-static int *sequences_of_expressions(const struct expansion *x)
+/* Expressions and, beside contacts, what is watched there */
+static int *watched_sequences(const struct expansion *x, int *count)
 {
-	int *sequence = ARRAY(int, x->expressions);
-	for (int i = 0; i < x->expressions; i++)
-		sequence[i] = x->expression[i].sequence;
+	const int watches = x->contacts ? x->contacts->watches : 0;
+	*count = x->expressions + watches;
+	int *sequence = ARRAY(int, *count);
+	for (int i = 0; i < *count; i++)
+		sequence[i] = i < x->expressions ? x->expression[i].sequence
+						 : x->contacts->watch[i - x->expressions].sequence;
 	return sequence;
 }
 
@@ -88,9 +94,11 @@ void plan_cut(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct cut *cut = NEW(struct cut);
-	cut->look = expansion_with_forces(step, LOOKED);
-	cut->ends = part_of_expansion(step, cut->look, 1, cut->look->expressions, sequences_of_expressions(cut->look));
-	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->force);
+	int watched;
+	cut->look = expansion_with_forces(step, has_contacts(step->model) ? AT_EVENTS : LOOKED);
+	int *sequence = watched_sequences(cut->look, &watched);
+	cut->ends = part_of_expansion(step, cut->look, 1, watched, sequence);
+	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->held);
 	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
 	cut->slopes = ARRAY(double *, system->segments);
 	for (int s = 0; s < system->segments; s++) {

@@ -135,10 +135,13 @@ static void start_states(struct sequencing *w)
 static void make_forces(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
-	int *force = ARRAY(int, model->channels);
+	int *force = ARRAY(int, model->channels), *held = ARRAY(int, model->channels);
 	for (int e = 0; e < model->channels; e++)
 		force[e] = sequence_of_form(w, model->operator[0].left[e]);
 	w->x->force = force;
+	for (int e = 0; e < model->channels; e++)
+		held[e] = held_force(w, e);
+	w->x->held = held;
 }
 
 /* How often each atom is read */
