@@ -406,7 +406,6 @@ batch_build() {
 		[ -s "compiled_$cc.list" ] || continue
 		{
 			echo '#include "drive.h"'
-			echo '#include "lanes.h"'
 			sed 's/$/.subject/' "compiled_$cc.list" | xargs sed '/^SUBJECT/d'
 			echo 'const struct subject subjects[] = {'
 			sed 's/$/.subject/' "compiled_$cc.list" | xargs sed -n 's/^SUBJECT //p'

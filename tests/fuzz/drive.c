@@ -1021,21 +1021,27 @@ static void judge_restore(void)
 	free(s), free(saved);
 }
 
+/* false: there is none */
+static bool model_jump(void *s, int steps)
+{
+	if (of->model ? !of->model->jump : !of->modelf->jump)
+		return false;
+	if (of->model)
+		of->model->jump(s, (uint64_t)steps);
+	else
+		of->modelf->jump(s, (uint64_t)steps);
+	return true;
+}
+
 static void judge_jump(void)
 {
 	static const int lengths[] = { 0, 1, 7, STEPS };
 	void *const s = fresh();
 	double y[MOST];
-	if (of->model ? !of->model->jump : !of->modelf->jump) {
-		free(s);
-		return;
-	}
 	for (int i = 0; i < 4; i++) {
 		model_init(s);
-		if (of->model)
-			of->model->jump(s, (uint64_t)lengths[i]);
-		else
-			of->modelf->jump(s, (uint64_t)lengths[i]);
+		if (!model_jump(s, lengths[i]))
+			break;
 		model_get(s, y);
                 near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h,
                      "t");
@@ -1188,6 +1194,24 @@ static double retuned_bound(int steps)
 	return equations ? 10 * rounding(steps) + 2 * (steps + 1) * of->tolerance : 2 * bound();
 }
 
+/* With other params too: `stepped` is behind STEPS of their steps, and so far from 0 at most */
+static void judge_tuned_jump(const void *stepped, double largest)
+{
+	void *const s = fresh();
+	double y[MOST], expected[MOST], step;
+	model_init(s);
+	if (retuned(s, of->retune, &step) && model_jump(s, STEPS)) {
+		model_get(s, y);
+		model_get(stepped, expected);
+		near(model_time(s), model_time(stepped), in_float ? 1e-6 : 1e-13, "time after a jump, retuned",
+		     STEPS * step, "t");
+		for (int i = 0; i < states; i++)
+			near(y[i], expected[i], 2 * rounding(STEPS) * largest, "jump against steps, retuned",
+			     STEPS * step, state_name(i));
+	}
+	free(s);
+}
+
 static void judge_retune(void)
 {
 	void *const s = fresh(), *const w = of->tuned ? malloc(of->tuned->size) : NULL;
@@ -1235,8 +1259,10 @@ static void judge_retune(void)
                                     good = near(y[i], expected[i], retuned_bound(k) * fmax(largest, out_size),
                                                 "retuned, outputs", (k + 1) * step, output_name(i)) &&
                                            good;
-                                if (!good)
+				if (!good)
 					break;
+				if (k == STEPS - 1)
+					judge_tuned_jump(s, largest);
 			}
 	}
 	free(s), free(w);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured orders: the largest error of a run when the step is halved three times, against elliptic functions
- * (pendulum) or ARKODE's order 8 at 1e-13 on the equations by hand. */
+ * (pendulum) or ARKODE's order 8 at 1e-13 on the equations by hand; and of values inside a step half a second on. */
 #include "elliptic.h"
 #include "orders_variants.h"
 #include "systems.h"
@@ -55,6 +55,46 @@ static double error_of(const pl_model *m, int rows)
     return worst;
 }
 
+static double error_inside(const struct system *s, const pl_model *m)
+{
+    double y[HAND_MOST], expected[HAND_MOST], scale[HAND_MOST], worst = 0;
+    void *state = calloc(1, m->size);
+    for (int i = 0; i < s->states; i++)
+        scale[i] = 1e-3;
+    struct truth *solver = truth_new(s->states, system_slopes, s, ARKODE_EXPLICIT, 1e-13, scale);
+    memcpy(expected, truth[1], sizeof expected);
+    if (!truth_advance(solver, 0.5, 0.5 + 0.375 * m->h, 0, NULL, expected))
+        worst = INFINITY;
+    truth_free(solver);
+    m->init(state);
+    m->set(state, 0.5, truth[1]);
+    m->at(state, NULL, 0.375 * m->h, y);
+    for (int i = 0; i < m->states; i++)
+        worst = worse(worst, fabs(y[i] - expected[i]));
+    free(state);
+    return worst;
+}
+
+/* Of one step: its error falls at least by one order more than that of many steps, but at most by four; the first
+ * halving may be too coarse to show it. */
+static void judge_inside(const struct system *s, const char *scheme, int order)
+{
+    double error[HALVINGS];
+    const double least = fmin(order + 1, 4) - 0.35;
+    bool good = true;
+    int measured = 0;
+    for (int i = 0; i < HALVINGS; i++)
+        error[i] = error_inside(s, variant_of(orders, "%s_%s_%d", s->name, scheme, i)->model);
+    for (int i = 2; i < HALVINGS; i++) {
+        if (!(error[i] >= 2e-13))
+            continue;
+        good = good && log2(error[i - 1] / error[i]) >= least;
+        measured++;
+    }
+    ok(good && measured >= 1, "%s, %s: order %g inside a step (errors %.3g, %.3g, %.3g, %.3g)", s->name, scheme,
+        least + 0.35, error[0], error[1], error[2], error[3]);
+}
+
 static void judge(const struct system *s, int rows, const char *scheme, int order)
 {
     double error[HALVINGS];
@@ -85,6 +125,8 @@ int main(void)
         ok(solve(s, rows), "%s: a solution to compare with", s->name);
         for (size_t j = 0; j < sizeof schemes / sizeof *schemes; j++)
             judge(s, rows, schemes[j].scheme, schemes[j].order);
+        for (size_t j = 0; j < sizeof schemes / sizeof *schemes; j++)
+            judge_inside(s, schemes[j].scheme, schemes[j].order);
     }
     return tap_end();
 }
