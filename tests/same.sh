@@ -64,6 +64,11 @@ shared() {
 	awk -F , 'NR == FNR { has[$1] = 1; next } $1 in has' "$1" "$2"
 }
 
+# gone NEW OLD: a blank and the name of each table of OLD that NEW no longer tells
+gone() {
+	awk -F , 'NR == FNR { has[$1] = 1; next } !($1 in has) { has[$1] = 1; printf " %s", $1 }' "$1" "$2"
+}
+
 # judge NUMBER WAS IS RUN: counts the run, and tells of one that is not the same
 judge() {
 	new=$work/new/$1.csv
@@ -72,6 +77,8 @@ judge() {
 	elif [ "$2" = "$3" ]; then
 		same=$((same + 1))
 		return
+	elif [ -f "$work/old/$1.csv" ] && [ -n "$(gone "$new" "$work/old/$1.csv")" ]; then
+		words="no longer tells$(gone "$new" "$work/old/$1.csv")"
 	elif [ -f "$work/old/$1.csv" ]; then
 		shared "$new" "$work/old/$1.csv" >"$work/was.csv"
 		shared "$work/old/$1.csv" "$new" >"$work/is.csv"

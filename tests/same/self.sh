@@ -52,6 +52,10 @@ says 0 '^models/linear2dof.spec: differs by .*; a reason$' 'with a reason it may
 spoiled 's/-0.05927083056963416 /-0.05927083056973416 /'
 same "$build" "$PWD/spoiled"
 says 1 '^4 runs, 2 the same, 0 excepted, 2 not$' 'no reason is one for more than two units a step'
+# A descriptor that has no NAME_at
+spoiled 's/^    made_any_at,/    NULL,/'
+same "$build" "$PWD/spoiled"
+says 1 '^models/linear2dof.spec: no longer tells at$' 'a table that is told no longer'
 spoiled 's/int main/int other/; s/made_init(made/made_begin(made/'
 same "$build" "$PWD/spoiled"
 says 1 '^4 runs, 0 the same, 0 excepted, 4 not$' 'what cannot be linked is not the same'
