@@ -3,9 +3,11 @@
  * waves of time is, beside what never is below 0. */
 #include "friction.h"
 
-/* max(5*y + 1, 0), abs(x), x^2 */
+/* max(5*y + 1, 0), abs(x), x^2, t < 1 ? 1 : 2 */
 static bool is_never_negative(const struct atom *a)
 {
+	if (a->kind == ATOM_CHOOSE)
+		return never_falls_below(a->operand[1]) && never_falls_below(a->operand[2]);
 	bool never = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_EXP || a->function == FN_SQRT);
 	for (int i = 0; i < a->operands && a->kind == ATOM_CALL && a->function == FN_MAX; i++)
 		never = never || (is_constant(a->operand[i]) && never_falls_below(a->operand[i]));
