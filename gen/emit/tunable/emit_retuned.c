@@ -233,7 +233,8 @@ void emit_retuned(const struct emitter *e)
 	const int work = PL_REGION_WORK(e->step->layout.size);
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
-	const int checks = emit_checks(e), entries = emit_systems(e), bounded = has_guards(e) ? emit_bounded(e) : 0;
+	const int checks = emit_checks(e), entries = emit_systems(e);
+	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
 	emit_sizes(e, { "PARAMS", e->model->held->params }, { "DERIVED", e->model->spec->derived },
 		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
