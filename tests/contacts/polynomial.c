@@ -19,15 +19,35 @@ static void value_and_slope(mpfr_t *p, mpfr_srcptr s, mpfr_ptr value, mpfr_ptr s
 	}
 }
 
-/* The root of a p that rises from below 0 at `from` to above it at `to`: by Newton's method, and halving where that
- * leaves what is known to hold the root */
+/* About where p is 0, from `at` on, or `at` where doubles do not know: Newton's method in them */
+static double guessed(mpfr_t *p, double at)
+{
+	double c[DEGREE + 1], start = at, step = at;
+	for (int k = 0; k <= DEGREE; k++)
+		c[k] = mpfr_get_d(p[k], MPFR_RNDN);
+	for (int i = 0; i < DEEPEST && fabs(step) > 1e-15 * fabs(at); i++) {
+		double value = c[DEGREE], slope = 0;
+		for (int k = DEGREE - 1; k >= 0; k--) {
+			slope = slope * at + value;
+			value = value * at + c[k];
+		}
+		step = value / slope;
+		at -= step;
+	}
+	return isfinite(at) ? at : start;
+}
+
+/* The root of a p that rises from below 0 at `from` to above it at `to`: by Newton's method from `at`, and halving where
+ * that leaves what is known to hold the root */
 static void close_in(mpfr_t *p, mpfr_srcptr from, mpfr_srcptr to, mpfr_ptr at)
 {
 	mpfr_t low, high, value, slope;
 	mpfr_inits2(BITS, low, high, value, slope, (mpfr_ptr)0);
 	mpfr_set(low, from, MPFR_RNDN);
 	mpfr_set(high, to, MPFR_RNDN);
-	mpfr_set(at, from, MPFR_RNDN);
+	mpfr_set_d(value, guessed(p, mpfr_get_d(at, MPFR_RNDN)), MPFR_RNDN);
+	if (mpfr_cmp(value, low) > 0 && mpfr_cmp(value, high) < 0)
+		mpfr_set(at, value, MPFR_RNDN);
 	for (int i = 0; i < MOST_TRIES; i++) {
 		value_and_slope(p, at, value, slope);
 		mpfr_set(mpfr_sgn(value) > 0 ? high : low, at, MPFR_RNDN);
@@ -72,7 +92,7 @@ static mpfr_t *shifted(const struct sought *f, mpfr_srcptr by)
 	return p;
 }
 
-/* 1, -1: the sign of sum_{k >= from} k^(from) p_k s^(k - from) for all 0 <= s <= width; 0: it is not known */
+/* 1, -1: the sign of p (from 0), p' (1) or p'' (2) for all 0 <= s <= width; 0: it is not known */
 static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 {
 	mpfr_t rest, term, power;
@@ -82,7 +102,8 @@ static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 	for (int k = from + 1; k <= BEYOND; k++) {
 		mpfr_mul(term, p[k], power, MPFR_RNDN);
 		mpfr_abs(term, term, MPFR_RNDN);
-		mpfr_mul_ui(term, term, from ? (unsigned long)k : 1, MPFR_RNDN);
+		const unsigned long factor[] = { 1, (unsigned long)k, (unsigned long)(k * (k - 1) / 2) };
+		mpfr_mul_ui(term, term, factor[from], MPFR_RNDN);
 		mpfr_add(rest, rest, term, MPFR_RNDU);
 		mpfr_mul(power, power, width, MPFR_RNDN);
 	}
@@ -91,12 +112,36 @@ static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 	return sign;
 }
 
+/* A p that is 0 or below it at `from`, and bends one way, rises at most once: where it bends up, if it is above 0 in the
+ * end, and there Newton's method comes down to the root; where it bends down, not if it is about to fall. 1, 0: whether
+ * it does; -1: that is not known */
+static int rises_bent(const struct sought *f, mpfr_t *p, mpfr_srcptr from, mpfr_srcptr width, mpfr_ptr at)
+{
+	const int bend = mpfr_cmp(p[0], f->tiny) <= 0 ? sign_over(p, 2, width) : 0;
+	if (bend == 0)
+		return -1;
+	if (bend < 0)
+		return mpfr_cmp(p[1], f->tiny) <= 0 ? 0 : -1;
+	mpfr_t value, slope;
+	mpfr_inits2(BITS, value, slope, (mpfr_ptr)0);
+	mpfr_add(at, from, width, MPFR_RNDN);
+	value_and_slope(f->p, at, value, slope);
+	const int rises = mpfr_sgn(value) > 0;
+	if (rises) {
+		mpfr_set(value, at, MPFR_RNDN);
+		close_in(f->p, from, value, at);
+	}
+	mpfr_clears(value, slope, (mpfr_ptr)0);
+	return rises;
+}
+
 static bool search(const struct sought *f, mpfr_srcptr from, mpfr_srcptr width, int depth, mpfr_ptr at)
 {
 	mpfr_t *p = shifted(f, from), to, half, value, slope;
 	const bool may = sign_over(p, 0, width) == 0;   /* be 0 */
 	const int turn = may ? sign_over(p, 1, width) : 0;
-	bool found = false;
+	const int bent = may && turn == 0 ? rises_bent(f, p, from, width, at) : 0;
+	bool found = bent == 1;
 	mpfr_inits2(BITS, to, half, value, slope, (mpfr_ptr)0);
 	if (may && turn > 0 && mpfr_cmp(p[0], f->tiny) <= 0) {
 		mpfr_add(to, from, width, MPFR_RNDN);
@@ -105,7 +150,7 @@ static bool search(const struct sought *f, mpfr_srcptr from, mpfr_srcptr width, 
 		mpfr_set(at, from, MPFR_RNDN);
 		if (found && mpfr_sgn(p[0]) < 0)
 			close_in(f->p, from, to, at);
-	} else if (may && turn == 0 && depth < DEEPEST) {
+	} else if (bent < 0 && depth < DEEPEST) {
 		mpfr_div_2ui(half, width, 1, MPFR_RNDN);
 		mpfr_add(to, from, half, MPFR_RNDN);
 		found = search(f, from, half, depth + 1, at) || search(f, to, half, depth + 1, at);

@@ -6,7 +6,8 @@
 #include <mpfr.h>
 #include <stdbool.h>
 
-enum { BITS = 192, DEGREE = 44 };
+/* Numbers that do not quite fill three words MPFR multiplies and adds by code of its own */
+enum { BITS = 191, DEGREE = 58 };
 
 /* coefficient: DEGREE + 1 of p(s). `at` receives the first s in 0 <= s <= width where p rises through 0; false: there
  * is none. At s = 0 a p that falls, or is 0 to `tiny` and then falls, does not rise. Intervals are halved until the

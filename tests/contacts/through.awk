@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # through.awk SPEC FOUND SOLUTION: whether --solution meets every event in FOUND, in order, and ends where FOUND says,
-# to what doubles leave of numbers of 192 bits. Events of one instant count once, as in follow.c.
+# to what doubles leave of numbers of 191 bits. Events of one instant count once, as in follow.c.
 function size(x) { return x < 0 ? -x : x }
 FNR == 1 { file++ }
 BEGIN { together = 0.01 / 2^20 }         # of a step of through.sh

@@ -3,7 +3,7 @@
 # through.sh PLGEN TRUTH FOLLOW.AWK SOURCE STOPS FRICTIONS IMPACTS CHANGES FIRST COUNT
 #
 # COUNT random scenes from seed FIRST on with at most so many contacts of each kind, and changes of the loads: every
-# event and the end of --solution against the same scene by a Taylor series of 192 bits; and NAME_selftest of each
+# event and the end of --solution against the same scene by a Taylor series of 191 bits; and NAME_selftest of each
 # scene, in double and in float, small. $CC compiles, $PLRT is the runtime.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How a scene moves, in multiprecision: Taylor series of 192 bits from one event to the next, each event halved in on
+/* How a scene moves, in multiprecision: Taylor series of 191 bits from one event to the next, each event halved in on
  * a short piece of the series. Which contacts stick, slide, rest and are open behind an event is found by trying all
  * combinations: the one that keeps to all laws from there on. */
 #ifndef TRUTH_H
