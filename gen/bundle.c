@@ -24,12 +24,35 @@ static const char *own_name(const struct piece *p, const char *name)
 	return own;
 }
 
-static bool has_name(const struct piece *p, const char *word, size_t length)
+static int by_name(const void *a, const void *b)
 {
-	for (int i = 0; i < p->names; i++)
-		if (p->name[i][0] == *word && is_word(word, length, p->name[i]))
-			return true;
-	return false;
+	const struct owner *one = a, *other = b;
+	int order = strcmp(one->name, other->name);
+	return order ? order : one->piece - other->piece;
+}
+
+static void list_owners(struct runtime *r)
+{
+	r->owners = 0;
+	for (int i = 0; i < r->pieces; i++)
+		for (int k = 0; k < r->piece[i].names; k++)
+			*MORE(r->owner, r->owners) = (struct owner){ r->piece[i].name[k], i };
+	qsort(r->owner, (size_t)r->owners, sizeof *r->owner, by_name);
+}
+
+/* The piece number `place` of those that have this name; NULL: there are not so many */
+static struct piece *owner_of(const struct runtime *r, const char *word, size_t length, int place)
+{
+	int low = 0;
+	for (int high = r->owners; low < high;) {
+		int middle = (low + high) / 2;
+		if (strncmp(r->owner[middle].name, word, length) < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	low += place;
+	return low < r->owners && is_word(word, length, r->owner[low].name) ? &r->piece[r->owner[low].piece] : NULL;
 }
 
 /* Does a file include another, itself or through one that it includes? */
@@ -64,11 +87,11 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 		return r->single ? "float" : "double";
 	if (strncmp(name, "pl_", 3) == 0 || strncmp(name, "PL_", 3) == 0)
 		return name;
+	const struct piece *p;
 	for (int header = 0; header < 2; header++)
-		for (int i = 0; i < r->pieces; i++)
-			if (!r->piece[i].shared && has_name(&r->piece[i], word, length) &&
-			    is_seen(r, &r->piece[i], from, header))
-				return own_name(&r->piece[i], name);
+		for (int i = 0; (p = owner_of(r, word, length, i)); i++)
+			if (!p->shared && is_seen(r, p, from, header))
+				return own_name(p, name);
 	return name;
 }
 
@@ -134,10 +157,11 @@ static void use_words(struct runtime *r, const char *text, enum side side)
 {
 	const char *word;
 	size_t length;
-	while ((word = next_word(&text, &length)))
-		for (int i = 0; i < r->pieces; i++)
-			if (has_name(&r->piece[i], word, length))
-				use(r, &r->piece[i], side);
+	while ((word = next_word(&text, &length))) {
+		struct piece *p;
+		for (int i = 0; (p = owner_of(r, word, length, i)); i++)
+			use(r, p, side);
+	}
 }
 
 /* What declares nothing tells what the arithmetic needs: of plrt.h always, of another file where that is used */
@@ -247,7 +271,9 @@ static void print_bundled(FILE *to, const char *text, const void *context)
 void bundle(struct file *code, struct file *header, const char *more, bool single, bool kept)
 {
 	struct runtime *r = runtime_read(single, kept);
+	list_owners(r);
 	rename_all(r);
+	list_owners(r);
 	/* what a program asks of a model */
 	if (header) {
 		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED", IN_HEADER);

@@ -90,11 +90,14 @@ struct piece {                  /* a declaration, a definition, or lines of the 
 	bool in_code, in_header;
 };
 struct include { const char *file, *header; };      /* both without the ending */
+struct owner { const char *name; int piece; };
 struct runtime {
 	bool single;            /* for models in float */
 	bool kept;              /* for piecewise-linear ones whose state has two words */
 	struct piece *piece;
 	int pieces;
+	struct owner *owner;    /* who has a name, by names, of the same in the order of the pieces */
+	int owners;
 	struct include *include;
 	int includes;
 	const char **from, **to; /* names that stand for others in float, or of states in two words */

@@ -125,7 +125,10 @@ static void add_piece(struct runtime *r, const char *file, const char *comment, 
 struct reader {
 	struct runtime *runtime;
 	const char *file;               /* its name without the ending */
-	const char *comment, *text;     /* of the piece that is being read */
+	const char *comment, *text;     /* of the piece that is being read; the text in the file, from its first line */
+	const char *read, *end;         /* so far by is_complete(); behind its last line */
+	int depth;                      /* open brackets there, and the last sign */
+	char last;
 	int conditions;                 /* open #if of the piece */
 	int known, left_out;            /* open #if that are decided here; the outermost that is not taken, 0: none */
 	int opaque_inside[8];           /* other #if inside each of them */
@@ -145,28 +148,26 @@ static const char *without_ending(const char *name)
 	return format("%.*s", (int)(strlen(name) - 2), name);
 }
 
-/* Is a declaration or a group of lines complete? */
-static bool complete(const struct reader *f)
+/* Is a declaration or a group of lines complete, with its last line? */
+static bool is_complete(struct reader *f)
 {
-	int depth = 0;
-	char last = 0;
-	const char *end = f->text;
 	if (*f->text == '#')
-		return f->conditions == 0 && f->text[strlen(f->text) - 2] != '\\';
-	for (const char *at = f->text; *at; at = end) {
-		end = token_end(at);
-		if (at[0] == '/' && at[1] == '*') {
-			if (strncmp(end - 2, "*/", 2) != 0 || end - at < 4)
+		return f->conditions == 0 && f->end[-2] != '\\';
+	for (const char *end; f->read < f->end; f->read = end) {
+		end = token_end(f->read);
+		if (f->read[0] == '/' && f->read[1] == '*') {
+			if (end > f->end)
 				return false;
 			continue;
 		}
-		depth += (strchr("({[", *at) != NULL) - (strchr(")}]", *at) != NULL);
-		last = isspace((unsigned char)*at) ? last : *at;
+		f->depth += (strchr("({[", *f->read) != NULL) - (strchr(")}]", *f->read) != NULL);
+		f->last = isspace((unsigned char)*f->read) ? f->last : *f->read;
 	}
-	return depth == 0 && (last == ';' || last == '}');
+	return f->depth == 0 && (f->last == ';' || f->last == '}');
 }
 
-static void take_line(struct reader *f, const char *line)
+/* `end`: behind it in the file */
+static void take_line(struct reader *f, const char *line, const char *end)
 {
 	bool comment_open = *f->comment && !strstr(f->comment, "*/");
 	if (!*f->text && (comment_open || strncmp(line, "/*", 2) == 0)) {
@@ -179,10 +180,14 @@ static void take_line(struct reader *f, const char *line)
 	}
 	f->conditions += strncmp(line, "#if", 3) == 0;
 	f->conditions -= strncmp(line, "#endif", 6) == 0;
-	f->text = format("%s%s\n", f->text, line);
-	if (!complete(f))
+	if (!*f->text) {
+		f->text = f->read = end - strlen(line) - 1;
+		f->depth = f->last = 0;
+	}
+	f->end = end;
+	if (!is_complete(f))
 		return;
-	add_piece(f->runtime, f->file, f->comment, f->text);
+	add_piece(f->runtime, f->file, f->comment, format("%.*s", (int)(end - f->text), f->text));
 	f->comment = f->text = "";
 }
 
@@ -283,7 +288,7 @@ static void read_lines(struct reader *f, const char *rest)
 			continue;
 		if (f->left_out || (*line == '#' && !*f->text && take_directive(f, line)))
 			continue;
-		take_line(f, line);
+		take_line(f, line, rest);
 	}
 }
 
