@@ -37,8 +37,8 @@ static double guessed(mpfr_t *p, double at)
 	return isfinite(at) ? at : start;
 }
 
-/* The root of a p that rises from below 0 at `from` to above it at `to`: by Newton's method from `at`, and halving where
- * that leaves what is known to hold the root */
+/* The root of a p that rises from below 0 at `from` to above it at `to`: by Newton's method from `at`, and halving
+ * where that leaves what is known to hold the root */
 static void close_in(mpfr_t *p, mpfr_srcptr from, mpfr_srcptr to, mpfr_ptr at)
 {
 	mpfr_t low, high, value, slope;
@@ -112,9 +112,9 @@ static int sign_over(mpfr_t *p, int from, mpfr_srcptr width)
 	return sign;
 }
 
-/* A p that is 0 or below it at `from`, and bends one way, rises at most once: where it bends up, if it is above 0 in the
- * end, and there Newton's method comes down to the root; where it bends down, not if it is about to fall. 1, 0: whether
- * it does; -1: that is not known */
+/* A p that is 0 or below it at `from`, and bends one way, rises at most once: where it bends up, if it is above 0 in
+ * the end, and there Newton's method comes down to the root; where it bends down, not if it is about to fall. 1, 0:
+ * whether it does; -1: that is not known */
 static int rises_bent(const struct sought *f, mpfr_t *p, mpfr_srcptr from, mpfr_srcptr width, mpfr_ptr at)
 {
 	const int bend = mpfr_cmp(p[0], f->tiny) <= 0 ? sign_over(p, 2, width) : 0;
