@@ -323,9 +323,11 @@ static bool goes_with_delays(const struct work *w)
 			   : o->print == PRINT_PLOT     ? "--plot"
 			   : o->print == PRINT_REPORT   ? "--report"
 							: NULL;
-	if (!what || !w->model->delays)
+	const struct facts facts = facts_of_model(w->model);
+	const char *against = objection_to(CAN_VIEWS, &facts, w->model).why;
+	if (!what || !against)
 		return true;
-	say_error(w->model->delays->delay->symbol->at, NULL, "%s does not go with delayed inputs", what);
+	say_error(w->model->delays->delay->symbol->at, NULL, "%s %s", what, against);
 	return false;
 }
 

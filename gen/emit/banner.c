@@ -559,17 +559,12 @@ static void banner_run(const struct emitter *e)
 /* Functions that there are not, and why; what one of them needs */
 static void banner_functions(const struct emitter *e)
 {
-	const char *no_at = no_values_between(e->step);
+	const char *no_at = step_objection(e->step, CAN_AT), *no_jump = step_objection(e->step, CAN_JUMP);
 	int states = is_blockwise(e) ? 0 : e->system->states;
-	if (has_jump(e) && states > 12)
+	if (no_jump)
+		say(e, " * There is no $n_jump: %s.\n", no_jump);
+	else if (states > 12)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
-	if (!has_jump(e))
-		say(e, " * There is no $n_jump: %s.\n",
-		    e->kind->no_jump  ? e->kind->no_jump
-		    : has_peaks(e) ? "peaks are found step by step"
-		    : has_ranges(e) ? "ranges are looked at step by step"
-		    : e->kind->own_factors && no_at ? no_at
-				   : "the samples to come are not known");
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);
 	else if (e->step->layout.powers == PARABOLA)

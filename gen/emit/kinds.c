@@ -63,7 +63,7 @@ static void emit_region_tables(const struct emitter *e)
 /* What both kinds of regions have */
 #define OF_REGIONS \
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n", \
-	.no_jump = "crossings are found step by step", .constants = emit_event_limit, .keeps_status = true, \
+	.constants = emit_event_limit, .keeps_status = true, \
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS", .declare_state = emit_crossing_declarations, \
 	.places = always
 
@@ -106,7 +106,6 @@ static bool flows_whole(const struct step *step)
 
 static const struct kind leftover = {
 	.banner = banner_leftover,
-	.no_jump = "what is left over is not linear in the state",
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.reads_phi = flows_whole,
@@ -126,7 +125,7 @@ static void emit_expansion_constants(const struct emitter *e)
 
 /* What all have whose state may choose formulas */
 #define OF_SERIES \
-	.no_jump = "what is left over is not linear in the state", .constants = emit_expansion_constants, \
+	.constants = emit_expansion_constants, \
 	.types = emit_divided_types, .keeps_status = true, .status_note = "0, or PL_... bits (plrt.h)", \
 	.declare_state = emit_divided_declarations
 
@@ -169,7 +168,6 @@ static const struct kind collocated = {
 
 static const struct kind normal_modes = {
 	.banner = banner_normal,
-	.no_jump = "what is left over changes in time",
 	.members = emit_normal_members,
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",

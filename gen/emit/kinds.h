@@ -12,7 +12,6 @@ struct kind {                           /* NULL: none of its own */
 	/* The comment at the top: what is approximated; before what a step costs */
 	void (*banner)(const struct emitter *e);
 	const char *step_note;
-	const char *no_jump;                            /* why there never is a NAME_jump; NULL: there may be one */
 	/* The header: constants; types before that of the state; at its end; functions */
 	void (*constants)(const struct emitter *e);
 	void (*types)(const struct emitter *e);

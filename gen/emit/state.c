@@ -63,8 +63,7 @@ bool keeps_status(const struct emitter *e)
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e) && !has_ranges(e) &&
-	       (e->step->series.emitted || !e->kind->own_factors);
+	return !step_objection(e->step, CAN_JUMP);
 }
 
 const char *state_list(const struct model *model)

@@ -61,8 +61,6 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
-bool steps_exactly(const struct model *model);              /* by scheme exact, or by one that nothing is left to */
-bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
 
 /* ---- amplitudes.c ---- */
 

@@ -3,6 +3,7 @@
  * what it is. Where a delay is no multiple of the step, the model is stepped by parts of it of which all delays are
  * multiples: in such a part a delayed input is held, or a ramp, like any other, and nothing is approximated. */
 #include "building.h"
+#include "capability.h"
 
 static const struct symbol *next_delayed(const struct symbol *s)
 {
@@ -83,16 +84,12 @@ static void find_parts(struct delays *delays, const mpq_t *d)
 
 static void check_request(const struct building *b, const struct symbol *s)
 {
-	const struct request *r = b->request;
-	const char *what = r->solution  ? "--solution"
-			   : r->selftest ? "--selftest"
-					 : NULL;
-	if (what)
-		error(s->at, NULL, "%s does not go with delayed inputs", what);
-	if (b->spec->tunables > 0)
-		error(s->at, NULL, "tunable params do not go with delayed inputs");
-	if (b->spec->needs > 0)
-		error(s->at, NULL, "a need is not certified beside delayed inputs");
+	const struct facts facts = { .delays = true };
+	const bool asked[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution, [CAN_SELFTEST] = b->request->selftest,
+					   [CAN_TUNABLE] = b->spec->tunables > 0, [CAN_NEED] = b->spec->needs > 0 };
+	for (int k = 0; k < CAPABILITIES; k++)
+		if (asked[k])
+			error(s->at, NULL, "%s%s", words_before(k), objection_to(k, &facts, b->model).why);
 	if (mpq_sgn(b->model->h) == 0)
 		error(s->at, NULL, "a delayed input needs a step that is given");
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a parsed spec to a model: params, scheme, step and initial values here, the rest by the files before it. */
 #include "building.h"
+#include "capability.h"
 #include "checks.h"
-#include "model/contacts/contacts.h"
 #include "model.h"
+#include "model/contacts/contacts.h"
 #include "model/linear/relative.h"
 #include "model/tunable/tuning.h"
 
@@ -503,11 +504,8 @@ static void collect_model(struct building *b)
 static void check_reduction(const struct building *b)
 {
 	struct model *model = b->model;
-	const char *why = model->switching		  ? "what regions hold depends on the coordinates"
-			  : !steps_exactly(model)  ? "what the scheme leaves over depends on the coordinates"
-			  : model->ranges > 0		  ? "a range is of a state as written"
-			  : model->delays		  ? "there are delayed inputs"
-							  : NULL;
+	const struct facts facts = facts_of_model(model);
+	const char *why = objection_to(CAN_REDUCTION, &facts, model).why;
 	if (!model->asked.reduce || !why)
 		return;
 	stand_aside(b->spec->name_at, "--reduce", why);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How exact outputs have to be, until when, for which inputs; what a step may cost on which target. */
+#include "capability.h"
 #include "checks.h"
-#include "model/contacts/contacts.h"
-#include "model/tunable/tuning.h"
 
 #include <string.h>
 
@@ -35,36 +34,6 @@ static const char *names_of_outputs(const struct model *model)
 	return format("outputs: %s%s", list, model->outputs > SHOWN ? ", ..." : "");
 }
 
-static int output_named(const struct model *model, const char *name)
-{
-	for (int i = 0; i < model->outputs; i++)
-		if (strcmp(model->output[i].name, name) == 0)
-			return i;
-	return -1;
-}
-
-static bool has_linear_form(const struct output *output)
-{
-	return !output->left && output->state;
-}
-
-bool steps_exactly(const struct model *model)
-{
-	return model->scheme == SCHEME_EXACT ||
-	       (model->channels == 0 && !has_contacts(model) && !scheme_row(model->scheme)->holds_coupling);
-}
-
-/* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
-bool is_measured(const struct model *model)
-{
-	bool measured = model->switching || model->obstacle || model->channels > 0;
-	for (int i = 0; i < model->spec->needs && !measured; i++) {
-		const int o = output_named(model, model->spec->need[i].output);
-		measured = o >= 0 && !model->output[o].peak && !has_linear_form(&model->output[o]);
-	}
-	return measured;
-}
-
 /* Inputs of a family are tried, the same for all needs. */
 static void check_measured(const struct finding *f)
 {
@@ -79,26 +48,6 @@ static void check_measured(const struct finding *f)
 			error(f->need->at, NULL, "needs that are measured have one bound for '%s'",
 			      system->input[i].name);
 	}
-}
-
-static void check_certified(const struct finding *f)
-{
-	const struct model *model = f->model;
-	struct place at = f->need->at;
-	if (tunables_of(model))
-		error(at, "a need holds for one model: without tunable, or with -D for other values",
-		      "the model has tunable params: what their values do to the error is not bounded");
-	if (is_measured(model))
-		return;
-	if (!steps_exactly(model))
-		error(at, "without it the step is exact, and its rounding is certified",
-		      "a need is certified for scheme exact, and scheme %s is asked for", scheme_name(model->scheme));
-	if (model->relative && !model->declared_outputs)
-		error(at, format("output %s", model->output[0].name),
-		      "a need is of a declared output where coordinates may move as a whole");
-	if (model->system.segments > 1 && model->system.inputs > 0)
-		error(at, "without inputs its run is known, and walked through",
-		      "a need is not certified where loads change their formula in time beside inputs");
 }
 
 static void find_output(const struct finding *f)
@@ -155,9 +104,7 @@ static void find_requirement(void *context)
 	struct requirement *r = f->found;
 	mpq_inits(r->bound, r->until, NULL);
 	r->need = f->need;
-	if (has_contacts(f->model) || (f->model->switching && has_events(f->model->switching)))
-		error(f->need->at, "plrun tries steps", "a need is not measured beside friction and impacts yet");
-	check_certified(f);
+	refuse(CAN_NEED, f->model, f->need->at);
 	find_output(f);
 	constant(f->need->bound, r->bound);
 	if (mpq_sgn(r->bound) <= 0)

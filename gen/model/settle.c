@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which scheme the equations allow: exact, exact in regions, or one that leaves something over. */
 #include "building.h"
+#include "capability.h"
 #include "checks.h"
 #include "model/contacts/friction.h"
 

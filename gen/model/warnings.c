@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better told about. */
 #include "building.h"
+#include "capability.h"
 #include "checks.h"
-#include "model/contacts/friction.h"
 #include "reads.h"
+#include "model/contacts/friction.h"
 
 #include <string.h>
 

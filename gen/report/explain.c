@@ -144,28 +144,10 @@ void person_cost(FILE *to, const struct step *step)
 		person_needs(to, step);
 }
 
-const char *no_values_between(const struct step *step)
-{
-	if (step->series.emitted)
-		return NULL;
-	switch (step->kind) {
-	case KIND_TUNED:
-		return format("an independent block has more than %d states, load states and inputs",
-			      LIMIT_TUNED_BLOCK);
-	case KIND_NORMAL:
-		return format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
-	case KIND_CUT:
-	case KIND_EXPANDED:
-	case KIND_COLLOCATED:
-		return NULL;
-	default:
-		return "the largest |pole| times h is above 8";
-	}
-}
-
 static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
+	const char *no_at = step_objection(step, CAN_AT);
 	person_operations(to, step);
 	if (step->shown->no_phi)
 		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no_phi);
@@ -186,8 +168,8 @@ static void person_step(FILE *to, const struct step *step)
 		person_tuning(to, step);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
-	else if (no_values_between(step))
-		fprintf(to, "There is no %s_at: %s.\n", model->name, no_values_between(step));
+	else if (no_at)
+		fprintf(to, "There is no %s_at: %s.\n", model->name, no_at);
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);

@@ -233,7 +233,6 @@ void explain_person(FILE *to, const struct step *step);
 void person_equations(FILE *to, const struct step *step);   /* as written, and what a sketch or a scene means */
 void person_course(FILE *to, const struct step *step);      /* what is exact, and what is done with what is not */
 void person_cost(FILE *to, const struct step *step);        /* and how far a step may be off */
-const char *no_values_between(const struct step *step);     /* why there is no NAME_at; NULL: there is one */
 void explain_json(FILE *to, const struct step *step);
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end);
 

@@ -12,9 +12,7 @@
 
 static void check_outputs(const struct model *model)
 {
-	if (model->system.inputs)
-		error(model->asked.end_at, "plrun MODEL.spec --input FILE.csv runs it by recorded samples",
-		      "--solution needs a model without inputs: their samples are not known");
+	refuse(CAN_SOLUTION, model, model->asked.end_at);
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start,

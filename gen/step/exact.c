@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exact numbers of the equations that stand in the code as they are: the border where each is rounded, once. */
 #include "step/linear/images.h"
+#include "tapes.h"
 
 struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 {
@@ -31,4 +32,28 @@ struct slopes state_slopes(const struct step *step, int operator)
 			slopes.B[i * channels + c] = equation_number(step->model, force[i]);
 	}
 	return slopes;
+}
+
+/* ---- the equations as written, for NAME_rhs: residuals without the highest derivatives, how those follow ---- */
+
+const struct form *without_highest(const struct model *model, const struct form *form)
+{
+	struct form *rest = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (!is_highest(&model->written->frame, &form->term[i].basis))
+			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
+	return rest;
+}
+
+struct coefficient *derivatives_of_residuals(const struct model *model)
+{
+	const struct linear *written = &model->written->system;
+	int n = written->n;
+	RATIONALS *inverse = inverse_of_leading(written);
+	struct coefficient *factor = ARRAY(struct coefficient, (size_t)(n * n));
+	for (int i = 0; i < n * n; i++) {
+		mpq_neg(inverse[i], inverse[i]);
+		factor[i] = equation_number(model, inverse[i]);
+	}
+	return factor;
 }

@@ -7,15 +7,14 @@
 
 enum step_kind kind_of_step(const struct model *model)
 {
+	static const enum step_kind of_flow[] = { KIND_LINEAR, KIND_LEFTOVER, KIND_EXPANDED, KIND_COLLOCATED,
+						  KIND_NORMAL };
 	if (model->switching)
 		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
-	if (model->channels == 0 && !has_contacts(model))
-		return KIND_LINEAR;
-	const struct scheme_row *row = scheme_row(model->scheme);
-	return row->modes ? KIND_NORMAL : row->collocates ? KIND_COLLOCATED
-		   : row->expands ? KIND_EXPANDED : follows_crossings(model) ? KIND_CUT : KIND_LEFTOVER;
+	const enum step_kind kind = of_flow[flow_of(model)];
+	return kind == KIND_LEFTOVER && follows_crossings(model) ? KIND_CUT : kind;
 }
 
 bool is_anchored(const struct step *step, int load)
@@ -93,27 +92,4 @@ bool *loads_of_regions(const struct step *step)
 	if (s->parts == 0)
 		mark_loads_of(s, segments, needed);
 	return needed;
-}
-
-bool has_leftover(const struct step *step)
-{
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_CUT || step->kind == KIND_EXPANDED ||
-	       step->kind == KIND_COLLOCATED || step->kind == KIND_NORMAL;
-}
-
-void need_closed_form(const struct step *step)
-{
-	static const char *const of_kind[KINDS] = {
-		[KIND_LEFTOVER] = "what is left over has no closed form",
-		[KIND_CUT] = "what is left over has no closed form",
-		[KIND_EXPANDED] = "what is left over has no closed form",
-		[KIND_COLLOCATED] = "what is left over has no closed form",
-		[KIND_NORMAL] = "what is left over has no closed form"
-	};
-	const char *why = of_kind[step->kind];
-	if (!why && !steps_exactly(step->model))
-		why = format("scheme %s approximates", scheme_name(step->model->scheme));
-	if (why)
-		error((struct place){ source_argument("--selftest"), 0 }, NULL,
-		      "--selftest needs a linear model and scheme exact: %s", why);
 }

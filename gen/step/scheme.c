@@ -148,7 +148,6 @@ static void build_tuned_step(struct step *step)
 
 static void build_leftover_step(struct step *step)
 {
-	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover ? 1
 							: step->kind == KIND_LEFTOVER ? PARABOLA : 0);
 	build_with_leftover(step);
@@ -310,7 +309,6 @@ static void build_collocated_step(struct step *step)
 /* Times in a step at which forces are evaluated are those of a step by collocation. */
 static void build_normal_step(struct step *step)
 {
-	need_one_word(step);
 	step->layout = layout_of(&step->branch->system, false);
 	make_read_table(&(struct reading){ step, 1 });
 	write_no_list(step);
@@ -361,7 +359,9 @@ static void build(void *context)
 	check_pole_size(model, step->written);
 	check_holds(step);
 	if (step->kind == KIND_NORMAL)
-		check_mode_orders(step);
+		refuse(CAN_NORMAL, model, scheme_place(step));
+	if (model->asked.compensated)
+		refuse(CAN_COMPENSATED, model, model->asked.compensated_at);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
@@ -369,9 +369,9 @@ static void build(void *context)
 	check_anchors(step);
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
-		need_closed_form(step);
+		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
 	if (model->asked.batch)
-		find_lanes(step);
+		step->no_lanes = step_objection(step, CAN_LANES);
 	check_peaks(step);
 	count_peaks(step);
 	program_check(step);

@@ -76,7 +76,6 @@ void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivati
 /* what |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
 double tap_reach(int hold, int power);
 void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
-bool further_samples(const struct linear *system);           /* an input goes through more than two */
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
 

@@ -3,7 +3,7 @@
 #ifndef PLGEN_STEP_STEP_H
 #define PLGEN_STEP_STEP_H
 
-#include "model/model.h"
+#include "model/capability.h"
 #include "program.h"
 #include "slopes.h"
 
@@ -99,12 +99,12 @@ int load_of_column(const struct linear *system, int column, int *first); /* *fir
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
 /* those that a system or an expression reads */
 bool *loads_of_regions(const struct step *step);
-bool has_leftover(const struct step *step);                 /* it is of that kind, or expanded */
-void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
-/* ---- batch.c: many instances in one call ---- */
+/* ---- facts.c: what is so of a step, and what stands against what is asked of it ---- */
 
-void find_lanes(struct step *step);                         /* whether they step as lanes */
+struct facts facts_of_step(const struct step *step);
+const char *step_objection(const struct step *step, enum capability asked); /* NULL: nothing does */
+bool has_leftover(const struct step *step);
 
 /* ---- scheme.c: the step of a model ---- */
 

@@ -1,24 +1,77 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models in which capabilities meet.
  *
- *     covering rows CAPABILITIES REFUSALS      a line for each model that must work: its capabilities.  Together they
- *                                              have every pair that is not refused, of the first ones every triple
- *     covering pairs CAPABILITIES REFUSALS     every pair that no group forbids: for who looks for refusals
- *     covering refused CAPABILITIES REFUSALS   a line for each set that is refused
- *     covering table CAPABILITIES REFUSALS     doc/combinations.md
+ *     covering rows CAPABILITIES      a line for each model that must work: its capabilities.  Together they have every
+ *                                     pair that is not refused, of the first ones every triple
+ *     covering pairs CAPABILITIES     every pair that no group forbids: for who looks for refusals
+ *     covering refused CAPABILITIES   a line for each set that is refused
+ *     covering table CAPABILITIES     doc/combinations.md
  *     covering spec FILE.spec CAPABILITY ...   the model, with its options and what batch.sh asks for in comments
  *
- * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.
- * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of
- * the others, as long as nothing in it is refused. */
+ * What is refused, and why, is what gen/model/capability.def says of sets of up to three. The array is made greedily: a
+ * row starts with the first set that is not covered yet, and takes what covers most of the others, as long as nothing
+ * in it is refused. */
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MOST = 52, MOST_REFUSALS = 600, LINE = 1000, ROW = 10, PAGE = 118 };
 
-static struct { char name[32], group[32], words[120]; } capability[MOST];
+/* ---- gen/model/capability.def ---- */
+
+struct facts {
+#define FACT(name, is) bool name;
+#define STEP_FACT(name) bool name;
+#define ASKED(name, words) bool name;
+#include "model/capability.def"
+};
+
+static const struct { const char *name; size_t place; } fact[] = {
+#define FACT(name, is) { #name, offsetof(struct facts, name) },
+#define STEP_FACT(name) { #name, offsetof(struct facts, name) },
+#define ASKED(name, words) { #name, offsetof(struct facts, name) },
+#include "model/capability.def"
+};
+enum { FACTS = sizeof fact / sizeof *fact };
+
+struct row { const char *asked, *words, *reason; };
+static const struct row table[] = {
+#define FIRST(format, ...) format
+#define ASKED(name, words) { #name, words, NULL },
+#define AGAINST(name, when, ...) { #name, NULL, FIRST(__VA_ARGS__, "") },
+#include "model/capability.def"
+};
+enum { TABLE = sizeof table / sizeof *table };
+
+/* The row of the table that stands against something of these; NULL: none does */
+static const struct row *row_against(const struct facts *f)
+{
+	const struct row *at = table;
+#define ASKED(name, words) at++;
+#define AGAINST(name, when, ...) \
+	if (f->name && (when)) \
+		return at; \
+	at++;
+#include "model/capability.def"
+	return NULL;
+}
+
+/* The message that a row makes; what it puts in stays %d and %s */
+static void message_of(const struct row *row, char *text, size_t size)
+{
+	const struct row *words = row;
+	while (!words->words)
+		words--;
+	const char *name = strstr(words->words, "$n");
+	snprintf(text, size, "%.*s%s%s%s", (int)(name ? name - words->words : 0), words->words, name ? "NAME" : "",
+		 name ? name + 2 : words->words, row->reason);
+}
+
+/* ---- what goes with what ---- */
+
+static struct { char name[32], group[32], facts[64], words[120]; struct facts is; } capability[MOST];
 static int count, first;
 static struct { bool has[MOST]; int size; char reason[LINE]; } refusal[MOST_REFUSALS];
 static int refusals;
@@ -47,32 +100,57 @@ static FILE *need(const char *path)
 	return file;
 }
 
-static void read_lists(const char *capabilities, const char *refused)
+static bool *fact_named(struct facts *facts, const char *name)
 {
-	char line[LINE];
-	FILE *file = need(capabilities);
-	while (fgets(line, sizeof line, file)) {
-		if (strncmp(line, "---", 3) == 0)
-			first = count;
-		else if (*line != '#' && count < MOST && sscanf(line, "%31s %31s %119[^\n]", capability[count].name,
-				capability[count].group, capability[count].words) == 3)
-			count++;
-	}
-	fclose(file);
-	file = need(refused);
-	while (fgets(line, sizeof line, file) && refusals < MOST_REFUSALS) {
-		char *const tab = strchr(line, '\t');
-		if (*line == '#' || !tab)
-			continue;
-		*tab = 0;
-		for (char *name = strtok(line, " "); name; name = strtok(NULL, " ")) {
-			refusal[refusals].has[number_of(name)] = true;
-			refusal[refusals].size++;
+	for (int i = 0; i < FACTS; i++)
+		if (strcmp(fact[i].name, name) == 0)
+			return (bool *)((char *)facts + fact[i].place);
+	stop("unknown fact", name);
+	return NULL;
+}
+
+static void read_capability(const char *line)
+{
+	if (count == MOST || sscanf(line, "%31s %31s %63s %119[^\n]", capability[count].name, capability[count].group,
+				    capability[count].facts, capability[count].words) != 4)
+		stop("not a capability:", line);
+	for (char *name = strtok(capability[count].facts, ","); name; name = strtok(NULL, ","))
+		if (strcmp(name, "-") != 0)
+			*fact_named(&capability[count].is, name) = true;
+	count++;
+}
+
+static void read_refusal(char *line)
+{
+	char *const tab = line + strcspn(line, "\t");
+	snprintf(refusal[refusals].reason, LINE, "%.*s", (int)strcspn(tab + 1, "\n"), tab + 1);
+	*tab = 0;
+	for (char *name = strtok(line, " "); name; name = strtok(NULL, " "), refusal[refusals].size++)
+		refusal[refusals].has[number_of(name)] = true;
+	refusals++;
+}
+
+/* All facts of a model with these, those too that follow from several */
+static struct facts facts_of(const bool *row)
+{
+	struct facts f = { 0 };
+	for (int i = 0; i < count; i++)
+		for (int k = 0; k < FACTS && row[i]; k++) {
+			const bool *const own = (const bool *)((const char *)&capability[i].is + fact[k].place);
+			bool *const all = (bool *)((char *)&f + fact[k].place);
+			*all = *all || *own;
 		}
-		tab[1 + strcspn(tab + 1, "\n")] = 0;
-		strcpy(refusal[refusals++].reason, tab + 1);
-	}
-	fclose(file);
+	f.contacts = f.rubs || f.bounces;
+	/* a scheme leaves over what is piecewise linear; from event to event loads are not left over */
+	f.left = f.left || (f.regions && f.approximates) || (f.recipe && !f.contacts);
+	f.regions = f.regions && !f.left;
+	f.linear = !f.regions && !f.left;
+	f.recipe = f.left && !f.normal && (f.approximates || (f.recipe && !f.contacts));
+	f.curved = f.left;
+	f.inexact = f.left || f.holds;
+	f.measured = f.left || f.regions;
+	f.tuned = f.tunable && !f.left;         /* else params are held, as inputs are */
+	return f;
 }
 
 static bool excludes(int i, int j)
@@ -90,6 +168,43 @@ static bool is_refused(const bool *row)
 			return true;
 	}
 	return false;
+}
+
+/* Those of up to three capabilities that the table refuses, without what is refused within them */
+static void find_refusals(void)
+{
+	for (int size = 1; size <= 3; size++)
+		for (int i = 0; i < count; i++)
+			for (int j = size < 2 ? i : 0; j <= (size < 2 ? i : i - 1); j++)
+				for (int k = size < 3 ? j : 0; k <= (size < 3 ? j : j - 1); k++) {
+					bool row[MOST] = { false };
+					row[i] = row[j] = row[k] = true;
+					const struct facts f = facts_of(row);
+					const struct row *const against = row_against(&f);
+					if (!against || is_refused(row) || excludes(i, j) || excludes(j, k) ||
+					    excludes(i, k))
+						continue;
+					if (refusals == MOST_REFUSALS)
+						stop("too many refusals", capability[i].name);
+					memcpy(refusal[refusals].has, row, sizeof row);
+					refusal[refusals].size = size;
+					message_of(against, refusal[refusals++].reason, LINE);
+				}
+}
+
+static void read_list(const char *capabilities)
+{
+	char line[LINE];
+	FILE *const file = need(capabilities);
+	while (fgets(line, sizeof line, file))
+		if (strncmp(line, "---", 3) == 0)
+			first = count;
+		else if (*line == '!')
+			read_refusal(line + 1);
+		else if (*line != '#')
+			read_capability(line);
+	fclose(file);
+	find_refusals();
 }
 
 static bool fits(bool *row, int i)
@@ -232,9 +347,14 @@ static const char *cell(int i, int j)
 	return "+";
 }
 
-/* The text of an item of a list, which begins in this column, as lines of at most PAGE columns. */
-static void print_words(const char *text, int column)
+/* The text of an item of a list, which begins in this column, as lines of at most PAGE columns; a number that is put in
+ * is N, a name X. */
+static void print_words(char *text, int column)
 {
+	for (char *put = strchr(text, '%'); put; put = strchr(text, '%')) {
+		*put = put[1] == 'd' ? 'N' : 'X';
+		memmove(put + 1, put + 2, strlen(put + 1));
+	}
 	for (int at = column; *text;) {
 		const int length = (int)strcspn(text, " ");
 		if (at > column && at + 1 + length > PAGE) {
@@ -273,22 +393,51 @@ static void print_pairs_table(void)
 		printf("| %c | %s | %s |\n", letter(i), capability[i].name, capability[i].words);
 }
 
+static void add_names(char *text, size_t size, const char *before, const bool *row)
+{
+	strncat(text, before, size - strlen(text) - 1);
+	for (int i = 0; i < count; i++)
+		if (row[i])
+			snprintf(text + strlen(text), size - strlen(text), " %s", capability[i].name);
+}
+
 static void print_refusals(void)
 {
 	puts("\n## Refusals\n");
 	for (int i = 0; i < reasons_count; i++)
-		print_words(reasons[i], printf("%d. ", i + 1));
+		print_words(strcpy((char[LINE]){ "" }, reasons[i]), printf("%d. ", i + 1));
 	puts("\nRefused only with three or more together:\n");
 	for (int r = 0; r < refusals; r++) {
-		char item[2 * LINE];
-		int at = 0;
-		if (refusal[r].size < 3)
+		char item[8 * LINE];
+		bool told = false;
+		for (int before = 0; before < r; before++)
+			told = told || (refusal[before].size > 2 &&
+					strcmp(refusal[before].reason, refusal[r].reason) == 0);
+		if (refusal[r].size < 3 || told)
 			continue;
-		for (int i = 0; i < count; i++)
-			if (refusal[r].has[i])
-				at += snprintf(item + at, sizeof item - (size_t)at, "%s%s", at ? ", " : "",
-					capability[i].name);
-		snprintf(item + at, sizeof item - (size_t)at, ": %s", refusal[r].reason);
+		snprintf(item, sizeof item, "%s:", refusal[r].reason);
+		for (int k = r; k < refusals; k++)
+			if (refusal[k].size > 2 && strcmp(refusal[k].reason, refusal[r].reason) == 0)
+				add_names(item, sizeof item, k > r ? ";" : "", refusal[k].has);
+		print_words(item, printf("- "));
+	}
+}
+
+/* What the table says of what no cell is about, an item for each that is asked */
+static void print_asides(void)
+{
+	puts("\n## What stands aside, and what is not there\n");
+	for (int i = 0; i < TABLE; i++) {
+		char item[8 * LINE];
+		bool seen = false;
+		for (int c = 0; c < count; c++)
+			seen = seen || *fact_named(&capability[c].is, table[i].asked);
+		if (table[i].reason || seen)
+			continue;
+		message_of(&(struct row){ NULL, table[i].words, "" }, item, sizeof item);
+		for (int k = i + 1; k < TABLE && table[k].reason; k++)
+			snprintf(item + strlen(item), sizeof item - strlen(item), "%s%s", k > i + 1 ? "; " : "",
+				 table[k].reason);
 		print_words(item, printf("- "));
 	}
 }
@@ -297,17 +446,19 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
 	     "# What goes with what\n\n"
-	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against\n"
-	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones\n"
-	     "every triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by\n"
-	     "`step`, `run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused,\n"
-	     "with the message below. Blank: one excludes the other. A column has the letter of its row.\n");
+	     "Made by `tests/combinations/combinations.sh` from `gen/model/capability.def`, of which plgen's messages\n"
+	     "are made too, and from the list beside it; do not edit. `+`: works, in a row of a covering array that\n"
+	     "has every pair (of the first ones every triple), and agrees with CVODE or the closed form within the\n"
+	     "bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and restored,\n"
+	     "with `--rhs`. A number: refused, with the message below; N is a number there, X a name. Blank: one\n"
+	     "excludes the other. A column has the letter of its row.\n");
 	print_pairs_table();
 	print_refusals();
+	print_asides();
 	puts("\n## A new capability\n\n"
-	     "A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec`\n"
-	     "of `covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs`\n"
-	     "prints those that plgen has. `combinations.sh ... --table` then prints this page.");
+	     "A row for each refusal that it brings in `gen/model/capability.def`, a line in\n"
+	     "`tests/combinations/capabilities.list`, and what it adds to a spec or the options in `write_spec` of\n"
+	     "`covering.c`. `combinations.sh ... --pairs` prints the refusals that plgen has, `--table` this page.");
 }
 
 /* ---- a model ---- */
@@ -506,11 +657,10 @@ int main(int argc, char **argv)
 		write_spec(to);
 		return fclose(to) != 0;
 	}
-	if (argc != 4)
-		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY "
-		     "..., not",
+	if (argc != 3)
+		stop("usage: covering rows|pairs|refused|table CAPABILITIES, or spec FILE.spec CAPABILITY ..., not",
 			argc > 1 ? argv[1] : "");
-	read_lists(argv[2], argv[3]);
+	read_list(argv[2]);
 	if (strcmp(argv[1], "rows") == 0)
 		print_rows();
 	else if (strcmp(argv[1], "pairs") == 0)

@@ -2,6 +2,7 @@
 /* Impacts and dry friction beside what is not piecewise linear, which a Taylor series is made of: no regions, but what
  * holds something and what lets it go as forms. */
 #include "model/building.h"
+#include "model/capability.h"
 #include "contacts.h"
 #include "friction.h"
 
@@ -69,12 +70,12 @@ static void find_drags(struct building *b)
 }
 
 /* What an output reads of it, an acceleration by its equation too, would differ where it is held. */
-static void refuse_in_output(const struct output *output, const struct form *form, bool *seen)
+static void refuse_in_output(const struct model *model, const struct output *output, const struct form *form,
+			     bool *seen)
 {
 	for (const struct form_term **term = terms_within(form, seen); *term; term++)
 		if ((*term)->basis.atom && is_friction((*term)->basis.atom))
-			error(output->value->start, "a piecewise-linear model gives it",
-			      "what friction carries beside what is not piecewise linear is no output");
+			refuse(CAN_CARRIED, model, output->value->start);
 }
 
 /* What rests has another acceleration than its equations say. */
@@ -83,9 +84,7 @@ static void refuse_acceleration(const struct building *b, const struct output *o
 {
 	for (const struct form_term **term = terms_within(form, seen); *term; term++)
 		if (is_highest(&b->model->frame, &(*term)->basis))
-			error(output->value->start, "a piecewise-linear model gives it",
-			      "an acceleration that a contact may hold beside what is not piecewise linear is no "
-			      "output");
+			refuse(CAN_ACCELERATION, b->model, output->value->start);
 }
 
 struct asking {
@@ -104,10 +103,10 @@ static void check_output(void *context)
 	if (form && has_bounces(model))
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
-		refuse_in_output(work->output, work->output->left, seen);
+		refuse_in_output(model, work->output, work->output->left, seen);
 	for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
 		if (mpq_sgn(work->output->channel[c]) != 0)
-			refuse_in_output(work->output, model->operator[0].left[c], seen);
+			refuse_in_output(model, work->output, model->operator[0].left[c], seen);
 }
 
 void check_contact_outputs(struct building *b)
@@ -147,9 +146,4 @@ void place_contact_loads(struct building *b)
 		place_loads(b, model->drag[i].force);
 		place_loads(b, model->drag[i].rest);
 	}
-}
-
-bool has_contacts(const struct model *model)
-{
-	return model->drags > 0 || (model->impacts > 0 && !model->switching);
 }

@@ -104,6 +104,5 @@ bool has_events(const struct switching *s);                 /* each region has i
 void find_contacts(struct building *b);                     /* of the equations for all time */
 void place_contact_loads(struct building *b);
 void check_contact_outputs(struct building *b);             /* says what they cannot read */
-bool has_contacts(const struct model *model);               /* without regions */
 
 #endif

@@ -4,6 +4,7 @@
  * one where e is 0, its contact rests. */
 #include "model/building.h"
 #include "friction.h"
+#include "model/capability.h"
 #include "model/tunable/tuning.h"
 
 /* ---- guards and jumps as forms ---- */
@@ -173,9 +174,8 @@ void tell_no_events(const struct building *b, struct place at)
 	if ((row->expands || row->cuts || scheme == SCHEME_EXACT) && strikes_change(b))
 		error(at, "scheme exact takes them beside what is piecewise linear",
 		      "beside a series a guard and its jumps have one formula for all time");
-	error(at, format("scheme exact, of what is piecewise linear, and schemes %s go from event to event: %s does "
-			 "not", stopping_schemes(), scheme_name(scheme)),
-	      "friction and impacts are events inside steps, at which the scheme does not stop");
+	refuse(CAN_CONTACTS, b->model, at);
+	abandon();
 }
 
 /* ---- what a jump does to a form ---- */

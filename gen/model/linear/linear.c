@@ -184,6 +184,14 @@ int column_of_load(const struct linear *system, int load)
 	return column;
 }
 
+bool further_samples(const struct linear *system)
+{
+	bool any = false;
+	for (int i = 0; i < system->inputs; i++)
+		any = any || system->input[i].hold > 1;
+	return any;
+}
+
 int load_columns(const struct linear *system)
 {
 	return column_of_load(system, system->loads);

@@ -55,6 +55,7 @@ mpq_t *shifted_inverse(int m, const mpq_t *A, mpq_srcptr a, mpq_srcptr w);
 /* What of x' = A x + B z goes with the states z of a load, x = P z; P, columns x m, is B before */
 void solve_forced(int m, const mpq_t *shifted, const struct load *load, mpq_t *P);
 int load_columns(const struct linear *system);
+bool further_samples(const struct linear *system);          /* an input goes through more than two */
 int column_of_load(const struct linear *system, int load);  /* its first */
 int input_columns(const struct linear *system);
 bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */

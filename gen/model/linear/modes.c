@@ -6,6 +6,7 @@
  * tell.
  */
 #include "inner.h"
+#include "model/capability.h"
 #include "model/checks.h"
 
 #include <float.h>
@@ -14,33 +15,6 @@
 
 enum { MODE_BITS = 128 };           /* of the numbers that a model of modes is made of */
 #define PERHAPS_RIGID 1e-9          /* of the largest pole's square: whether it is 0 is found in more digits */
-
-/* ---- what stands against it ---- */
-
-static const char *objection_of_outputs(const struct model *model)
-{
-	if (!model->declared_outputs)
-		return "there is no output, and what a mode contributes is seen in outputs";
-	for (int i = 0; i < model->outputs; i++)
-		if (!model->output[i].form)
-			return format("output %s is not linear", model->output[i].name);
-	return NULL;
-}
-
-static const char *objection(const struct model *model)
-{
-	if (model->switching)
-		return "the equations are piecewise linear, and each region has modes of its own";
-	if (model->obstacle || model->operators)
-		return "the equations are not linear, and modes are of linear ones";
-	if (!steps_exactly(model))
-		return "that needs scheme exact";
-	if (model->tuning)
-		return "there are tunable params, and modes follow from them";
-	if (model->written != model)
-		return "--reduce has taken other states: what no output sees is left out with modes, too";
-	return objection_of_outputs(model);
-}
 
 /* ---- which matrix ---- */
 
@@ -274,7 +248,8 @@ static void list_modes(struct modes *modes, const struct survey *survey)
 
 struct modes *modes_of(const struct model *model, const char **why)
 {
-	*why = objection(model);
+	const struct facts facts = facts_of_model(model);
+	*why = objection_to(CAN_MODES, &facts, model).why;
 	if (*why)
 		return NULL;
 	struct mode_basis *basis = basis_of(&model->system);

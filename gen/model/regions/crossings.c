@@ -3,8 +3,7 @@
  * of an expression of the state with a breakpoint, or of times, the formulas on both sides have derivatives there, and
  * the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else it steps
  * across, and is of the order that is left there. */
-#include "model/contacts/contacts.h"
-#include "model/model.h"
+#include "model/capability.h"
 
 struct following {
 	bool *seen;                 /* per atom */
@@ -101,14 +100,6 @@ static void follow_form(struct following *f, const struct form *form)
 			follow_atom(f, form->term[i].basis.atom);
 }
 
-static bool goes_through_samples(const struct model *model)
-{
-	for (int i = 0; i < model->system.inputs; i++)
-		if (model->system.input[i].hold > 1)
-			return true;
-	return false;
-}
-
 /* Of e^{A tau}, with the forces' polynomials */
 static bool has_small_tables(const struct model *model)
 {
@@ -126,7 +117,7 @@ const char *why_not_cut(const struct model *model)
 		return format("'%s' has no derivatives where %s",
 			      text_between(model->smooth.singular->start, model->smooth.singular->end),
 			      model->smooth.singular_where);
-	if (goes_through_samples(model))
+	if (further_samples(&model->system))
 		return "inputs go through their samples in curves";
 	if (!has_small_tables(model))
 		return format("states, loads, inputs and what is left over are more than %d, whose tables a target "

@@ -4,8 +4,9 @@
  * numbers of the model. It is looked at elsewhere (elsewhere.c), regions close to the spec's values, where breakpoints
  * keep their order and factors their sign: what decided on the way which region is which has to keep its sign on the
  * target. */
-#include "model/contacts/contacts.h"
 #include "elsewhere.h"
+#include "model/capability.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "model/linear/shortening.h"
 #include "tuning.h"
@@ -346,38 +347,28 @@ static void number_rows(struct elsewhere *s)
 
 static void check_outputs(const struct model *model)
 {
+	const struct facts facts = facts_of_model(model);
+	const struct objection o = objection_to(CAN_ACCELERATION, &facts, model);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
 		const struct form *form = output->form ? output->form : output->left;
 		struct reads reads = reads_of(model, form != NULL, &form);
 		for (int k = 0; k < model->n; k++)
 			if (reads.highest[k])
-				error(output->value->start, "the program has the masses and forces to divide",
-				      "output '%s' reads a highest derivative, which tunable params change",
-				      output->name);
+				error(output->value->start, o.way, "output '%s' %s", output->name, o.why);
 	}
 }
 
 static void check_regions(const struct model *model)
 {
-	const struct spec *spec = model->spec;
 	check_tuned(model);
 	check_outputs(model);
-	if (model->switching->sliders > 0)
-		error(spec->tunable[0].at, "a small mass slides with its own inertia",
-		      "tunable params beside what slides without mass are not built yet");
-	if (model->system.states > LIMIT_UNROLLED_STATES)
-		error(spec->tunable[0].at, "gaps and forces alone may be tunable with any number of states",
-		      "tunable params of regions are built for up to %d states: the model has %d",
-		      LIMIT_UNROLLED_STATES, model->system.states);
+	refuse(CAN_TUNABLE, model, model->spec->tunable[0].at);
 }
 
 static void check_linear(const struct model *model)
 {
-	if (scheme_row(model->scheme)->holds_coupling)
-		error(model->spec->tunable[0].at,
-		      "tunable params are for scheme exact, and for what a scheme leaves over",
-		      "scheme %s cannot be retuned", scheme_name(model->scheme));
+	refuse(CAN_TUNABLE, model, model->spec->tunable[0].at);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
 		if (name)

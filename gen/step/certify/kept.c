@@ -327,9 +327,9 @@ enum {
 	LIMIT_SEGMENTS = 16
 };
 
-struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the series' matrix */
+struct segment_flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the series' matrix */
 
-static bool make_flow(const struct step *step, const struct layout *place, int segment, struct flow *flow)
+static bool make_flow(const struct step *step, const struct layout *place, int segment, struct segment_flow *flow)
 {
 	int size = place->size;
 	struct taylor *taylor =
@@ -409,7 +409,7 @@ static bool follow(const struct step *step, const struct layout *place, struct c
 {
 	int size = place->size;
 	REALS *x = reals(size, BITS), *next = reals(size, BITS);
-	struct flow *flow = ARRAY(struct flow, step->branch->system.segments);
+	struct segment_flow *flow = ARRAY(struct segment_flow, step->branch->system.segments);
 	RATIONAL t = ZERO, value = ZERO;
 	for (int i = 0; i < step->branch->system.states; i++)
 		mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
@@ -424,7 +424,7 @@ static bool follow(const struct step *step, const struct layout *place, struct c
 		mpq_mul(t, t, step->model->h);
 		c->segment[k] = segment_at(&step->branch->system, t);
 		good = note_course(step, place, (const mpfr_t *)x, c, k);
-		struct flow *now = &flow[c->segment[k]];
+		struct segment_flow *now = &flow[c->segment[k]];
 		good = good && (now->E || make_flow(step, place, c->segment[k], now));
 		if (good)
 			advance(size, (const mpfr_t *)now->E, x, next);

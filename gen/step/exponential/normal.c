@@ -13,7 +13,7 @@ enum {
 	FIRST_SWEEPS = 6            /* beside as many as stages, where nothing is */
 };
 
-static struct place scheme_place(const struct step *step)
+struct place scheme_place(const struct step *step)
 {
 	const struct model *model = step->model;
 	return model->asked.scheme_at.source ? model->asked.scheme_at : model->spec->name_at;
@@ -24,19 +24,6 @@ static struct place scheme_place(const struct step *step)
 static const char *name_of(const struct step *step)
 {
 	return scheme_name(step->model->scheme);
-}
-
-void check_mode_orders(const struct step *step)
-{
-	const struct model *model = step->model;
-	if (model->n > LIMIT_MODES)
-		error(scheme_place(step), NULL, "more coordinates than the limit of %d of scheme %s", LIMIT_MODES,
-		      name_of(step));
-	for (int j = 0; j < model->n; j++)
-		if (model->system.velocity[j] < 0)
-			error(scheme_place(step), "etdrk4 and taylor take it",
-			      "scheme %s steps normal modes, which are of second order: %s is of first order",
-			      name_of(step), model->coord_name[j]);
 }
 
 static void check_symmetry(const struct normal_work *w)
@@ -56,9 +43,6 @@ static void check_symmetry(const struct normal_work *w)
 static void check_left(const struct step *step)
 {
 	const struct model *model = step->model;
-	if (model->system.inputs > 0)
-		error(scheme_place(step), "etdrk4 and taylor take it",
-		      "scheme %s needs forces that are smooth from step to step: the model has inputs", name_of(step));
 	if (model->operators > 1 && model->split->selector < 0)
 		error(model->spec->operator_at, "of one operator, or of a bank by time or a let of time",
 		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));

@@ -74,7 +74,7 @@ struct normal {
 	struct stability stability; /* of a multistep method */
 	struct within within;
 };
-void check_mode_orders(const struct step *step);      /* of what has no modes of second order there is no operator */
+struct place scheme_place(const struct step *step);   /* where it is asked for, else the model's name */
 struct normal *normal_of(struct step *step);                /* leaves the statement where there is none */
 struct normal_work {                /* what its builders share */
 	struct step *step;

@@ -21,28 +21,6 @@ enum {
 
 /* ---- which loads, and how many steps ---- */
 
-/* What stands against anchors; NULL: nothing */
-static const char *objection(const struct step *step)
-{
-	static const char *const of_kind[KINDS] = {
-		[KIND_TUNED] = "the target would have to make the tables of tunable params",
-		[KIND_LEFTOVER] = "the scheme needs the loads between steps",
-		[KIND_CUT] = "the scheme needs the loads between steps",
-		[KIND_EXPANDED] = "steps of a series are no steps of h",
-		[KIND_COLLOCATED] = "steps of a collocation are no steps of h",
-		[KIND_NORMAL] = "loads are forces on normal modes, at the ends of steps"
-	};
-	if (of_kind[step->kind])
-		return of_kind[step->kind];
-	if (step->model->asked.single)
-		return "in float functions are cheap, and memory is short";
-	if (step->branch->system.segments > 1)
-		return "loads change their formula in time";
-	if (!step->model->switching && step->branch->system.states > LIMIT_UNROLLED_STATES)
-		return format("beyond %d states the step loops over its tables", LIMIT_UNROLLED_STATES);
-	return NULL;
-}
-
 static bool moves(const struct step *step, int state, int first, int columns)
 {
 	const struct table *table = step->branch->whole;
@@ -140,7 +118,7 @@ static bool any_load(const struct step *step, const struct anchors *anchors)
 
 void check_anchors(struct step *step)
 {
-	const char *against = objection(step);
+	const char *against = step_objection(step, CAN_ANCHORS);
 	if (against)
 		note_aside(step, against);
 	if (any_load(step, anchors_of(step)))
@@ -157,7 +135,8 @@ void drop_anchors(struct step *step, const char *why)
 void plan_anchors(struct step *step)
 {
 	struct anchors *anchors = anchors_of(step);
-	if (step->no_anchors || step->model->asked.anchors == 1 || objection(step) || !any_load(step, anchors))
+	if (step->no_anchors || step->model->asked.anchors == 1 || step_objection(step, CAN_ANCHORS) ||
+	    !any_load(step, anchors))
 		return;
 	list_terms(anchors, step, true);
 	anchors->steps = chosen_steps(step, anchors);

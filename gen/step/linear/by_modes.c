@@ -17,8 +17,6 @@ static bool simple_poles(const struct block *block)
 
 static const char *objection_of_loads(const struct linear *system)
 {
-	if (system->segments > 1)
-		return "loads change their formula";
 	for (int l = 0; l < system->loads; l++)
 		if (load_acts(system, &system->load[l]) && system->load[l].powers > 1)
 			return "a load has a power of t";
@@ -29,21 +27,10 @@ static const char *objection_of_loads(const struct linear *system)
 static const char *modal_objection(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	const struct model *model = step->model;
 	struct block *block;
-	if (system->heldK)
-		return "the scheme holds terms over the step";
-	if (model->tuning)
-		return "there are tunable params: the target computes e^{A h}, and no poles";
-	if (model->relative)
-		return "what moves as a whole has a repeated pole, and is kept apart";
-	if (model->asked.compensated)
-		return "--accuracy compensated takes the form delta or kick-drift-kick";
-	if (further_samples(system))
-		return "an input goes through further samples";
-	for (int o = 0; o < model->outputs; o++)
-		if (model->output[o].peak)
-			return "peaks are found from states";
+	const char *why = step_objection(step, CAN_MODAL);
+	if (why)
+		return why;
 	if (objection_of_loads(system))
 		return objection_of_loads(system);
 	int blocks = blocks_of(system, &block);

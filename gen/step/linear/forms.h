@@ -47,7 +47,6 @@ int anchored_term(const struct step *step, int state, int column);   /* its inde
 const char *step_form_text(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void check_step_form(struct step *step);                         /* before the step: leaves what its kind has not */
-void need_one_word(const struct step *step);                /* leaves the statement where two are asked for */
 void choose_form_of_regions(struct step *step);             /* the same of a piecewise-linear model */
 /* before its program; none where all of the state is compensated */
 void find_carries(struct step *step);

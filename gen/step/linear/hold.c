@@ -75,32 +75,11 @@ int samples_ahead(int hold)
 	return (hold + 1) / 2;
 }
 
-static const char *objection(const struct step *step)
-{
-	if (step->model->switching)
-		return "where a piecewise-linear model crosses a breakpoint is searched for with held inputs and ramps";
-	if (has_leftover(step))
-		return "what is left over reads held inputs and ramps";
-	if (step->model->asked.single)
-		return "powers of the step leave the range of float";
-	if (step->model->asked.selftest)
-		return "the selftest has held inputs and ramps";
-	return NULL;
-}
-
 void check_holds(const struct step *step)
 {
-	const char *why = objection(step);
+	const char *why = step_objection(step, CAN_FURTHER);
 	for (const struct symbol *s = step->model->spec->first; s && why; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->hold > 1)
 			error(s->at, "'hold first' would do", "input '%s' cannot be hold %s here: %s", s->name,
 			      hold_name(s->hold), why);
-}
-
-bool further_samples(const struct linear *system)
-{
-	bool any = false;
-	for (int i = 0; i < system->inputs; i++)
-		any = any || system->input[i].hold > 1;
-	return any;
 }

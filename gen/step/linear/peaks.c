@@ -21,21 +21,6 @@ int peak_place(const struct model *model, const struct output *output)
 	return place;
 }
 
-/* One matrix over all of a step, of all of x, and outputs that are rows over it? */
-static bool is_one_flow(const struct step *step)
-{
-	bool rows = true;
-	for (int i = 0; i < step->model->outputs; i++)
-		rows = rows && !(step->model->output[i].peak && step->model->output[i].left);
-	return rows && (step->kind == KIND_LINEAR || (step->kind == KIND_TUNED && step->blocks->solved)) &&
-	       step->branch->system.segments <= 1;
-}
-
-bool peaks_by_values(const struct step *step)
-{
-	return peak_outputs(step->model) > 0 && !is_one_flow(step);
-}
-
 /* Inside a step what outputs read of such an input is not known. */
 static const struct input *smooth_input(const struct model *model, const struct output *output)
 {

@@ -11,8 +11,7 @@
 enum {
 	TABLE_NUMBERS = 3072,       /* of a block: they stay in the nearest cache */
 	LANES = 4,                  /* numbers that a compiler may take at a time */
-	FEWEST = 4,                 /* rows that are worth a block */
-	MOST_LOADS = 16             /* each column takes numbers of its own to build, powers of t large ones */
+	FEWEST = 4                  /* rows that are worth a block */
 };
 
 int held_columns(const struct linear *system)
@@ -306,45 +305,13 @@ static bool try_rows(struct step *step, int count)
 	return true;
 }
 
-/* What stands against blocks; NULL: nothing */
-static const char *rows_objection(const struct step *step)
-{
-	const struct model *model = step->model;
-	if (step->kind != KIND_LINEAR && !model->tuning)
-		return "they are of a linear step";
-	if (step->modal)
-		return "modes are stepped";
-	if (step->branch->system.heldK)
-		return "the scheme holds terms over each step";
-	if (model->tuning)
-		return "the instance has its own factors";
-	if (further_samples(&step->branch->system))
-		return "an input goes through further samples";
-	if (step->branch->system.segments > 1)
-		return "loads change their formula";
-	if (step->branch->system.states > LIMIT_RESIDUE_STATES)
-		return format("blocks are built for up to %d states", LIMIT_RESIDUE_STATES);
-	if (load_columns(&step->branch->system) > MOST_LOADS)
-		return format("blocks are built for up to %d columns of loads", MOST_LOADS);
-	if (model->relative && !model->declared_outputs)
-		return "the states as written follow from what each has gained";
-	if (model->written->ranges > 0)
-		return "ranges are looked at step by step";
-	for (int o = 0; o < model->outputs; o++)
-		if (model->output[o].left)
-			return format("output %s is not linear", model->output[o].name);
-		else if (model->output[o].peak)
-			return "peaks are found step by step";
-	return NULL;
-}
-
 /* In float they are made where they are asked for: tables are larger than all the code of a small board's model. */
 void plan_rows(struct step *step)
 {
 	const struct request *asked = &step->model->asked;
 	if (asked->rows == 1 || (!asked->rows && (asked->single || step->kind != KIND_LINEAR)))
 		return;
-	step->no_rows = rows_objection(step);
+	step->no_rows = step_objection(step, CAN_ROWS);
 	if (step->no_rows)
 		return;
 	int wish = asked->rows ? asked->rows : best_rows(step);

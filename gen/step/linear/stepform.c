@@ -108,13 +108,9 @@ static const char *kick_objection(struct step *step)
 	const struct linear *system = &step->branch->system;
 	int n = system->n;
 	mpq_t *a = rationals((size_t)(n * n));
-	if (system->heldK)
-		return "the scheme holds terms over the step";
-	if (system->states > LIMIT_UNROLLED_STATES)
-		return format("it is built for up to %d states", LIMIT_UNROLLED_STATES);
-	if (step->model->tuning)
-		return "there are tunable params: the target computes e^{A h}, and not what kicks and drifts are made "
-		       "of";
+	const char *why = step_objection(step, CAN_KICKS);
+	if (why)
+		return why;
 	if (!accelerations(system, a))
 		return system->states == 2 * n ? "there is damping, or a term that depends on velocities"
 					       : "a coordinate has no velocity";
@@ -169,28 +165,11 @@ void check_step_form(struct step *step)
 		leave_form(step, "it keeps modes in the place of states, which --batch steps");
 }
 
-void need_one_word(const struct step *step)
-{
-	const struct model *model = step->model;
-	if (model->asked.compensated)
-		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated needs a step that adds to the state: scheme %s multiplies it",
-		      scheme_name(model->scheme));
-}
-
-static void need_factors_in_two_words(const struct model *model)
-{
-	if (model->asked.compensated && (model->tuning || model->retuned))
-		error(model->asked.compensated_at, NULL,
-		      "--accuracy compensated needs factors in two words: those of tunable params have one");
-}
-
 /* Direct; in two words delta. */
 void choose_form_of_regions(struct step *step)
 {
 	const struct model *model = step->model;
 	step->form = model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
-	need_factors_in_two_words(model);
 }
 
 /* Kick-drift-kick where it can be; delta where I is most of Phi. */
@@ -221,10 +200,6 @@ void choose_form(struct step *step)
 		step->mass = NULL;
 		step->momenta = false;
 	}
-	need_factors_in_two_words(model);
-	if (model->asked.compensated && step->branch->system.states > LIMIT_UNROLLED_STATES)
-		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states",
-		      LIMIT_UNROLLED_STATES);
 }
 
 /* ---- states that only add up ---- */

@@ -84,10 +84,7 @@ struct branch {
 /* ---- branches.c: the linear systems that a step is made of ---- */
 
 void take_operators(struct step *step);
-
-/* ---- held.c: what scheme pl holds over a step ---- */
-
-struct linear piecewise_laplace(const struct linear *written);
+/* of scheme pl: what holding terms over a step does */
 struct linear modified_equation(const struct linear *written, const struct linear *split, mpq_srcptr h);
 
 #endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is so of a model and its step, and what stands against what is asked of them: capability.def. */
+#ifndef PLGEN_MODEL_CAPABILITY_H
+#define PLGEN_MODEL_CAPABILITY_H
+
+#include "model/model.h"
+
+/* ---- capability.c: what goes with what ---- */
+
+enum { MOST_ROW_LOADS = 16 };       /* each column takes numbers of its own to build, powers of t large ones */
+
+enum flow {                         /* how a state goes on, without events */
+	FLOW_LINEAR,                /* e^{A tau}: nothing is left over */
+	FLOW_RECIPE,                /* a list of actions on stages and leftovers */
+	FLOW_SERIES,                /* the Taylor series of the solution */
+	FLOW_COLLOCATION,           /* polynomials that solve the equations at nodes; beside them a series, or none */
+	FLOW_NORMAL                 /* normal modes, and what is left over as forces on them */
+};
+enum flow flow_of(const struct model *model);
+
+struct facts {
+#define FACT(name, is) bool name;
+#define STEP_FACT(name) bool name;
+#include "model/capability.def"
+};
+enum capability {
+#define ASKED(name, words) CAN_##name,
+#include "model/capability.def"
+	CAPABILITIES
+};
+struct facts facts_of_model(const struct model *model);      /* as far as it is built; those of its step are false */
+
+struct objection { const char *why, *way; };                 /* the reason; a hint, or NULL */
+/* What stands against it; why is NULL where nothing does */
+struct objection objection_to(enum capability asked, const struct facts *f, const struct model *model);
+void refuse(enum capability asked, const struct model *model, struct place at); /* leaves the statement where it does */
+const char *words_before(enum capability asked);                 /* before a reason */
+
+bool steps_exactly(const struct model *model);               /* by scheme exact, or by one that nothing is left to */
+bool is_measured(const struct model *model);                 /* no bound is known: it is not linear, or in pieces */
+bool has_contacts(const struct model *model);                /* impacts, friction without regions */
+bool has_peak(const struct model *model);                    /* some output is one */
+int  output_named(const struct model *model, const char *name); /* its index; -1: there is none */
+
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is so of a step, and what stands against what is asked of it. */
+#include "step/linear/rows.h"
+#include "step/tunable/tuned.h"
+
+/* One matrix over all of a step, of all of x, and outputs that are rows over it? */
+static bool is_one_flow(const struct step *step)
+{
+	bool rows = true;
+	for (int i = 0; i < step->model->outputs; i++)
+		rows = rows && !(step->model->output[i].peak && step->model->output[i].left);
+	return rows && step->model->system.segments <= 1 &&
+	       (step->kind == KIND_LINEAR || (step->kind == KIND_TUNED && step->blocks && step->blocks->solved));
+}
+
+bool peaks_by_values(const struct step *step)
+{
+	return has_peak(step->model) && !is_one_flow(step);
+}
+
+/* The polynomials of a series and of nodes have values at any time. */
+static bool lacks_values(const struct step *step)
+{
+	return !step->series.emitted && !step->cut && !step->expansion && !step->collocation;
+}
+
+struct facts facts_of_step(const struct step *step)
+{
+	struct facts facts = facts_of_model(step->model);
+	facts.far = lacks_values(step);
+	facts.sought = peaks_by_values(step);
+	facts.loops = step->program && step->program->loops;
+	facts.modal = step->modal != NULL;
+	return facts;
+}
+
+const char *step_objection(const struct step *step, enum capability asked)
+{
+	const struct facts facts = facts_of_step(step);
+	return objection_to(asked, &facts, step->model).why;
+}
+
+bool has_leftover(const struct step *step)
+{
+	return flow_of(step->model) != FLOW_LINEAR;
+}
