@@ -147,8 +147,15 @@ tape_ref tape_call(struct tape *t, enum function function, tape_ref a)
 	return make(t, TAPE_CALL, (int)function, a, TAPE_NONE);
 }
 
+static bool is_one(const struct tape *t, tape_ref ref)
+{
+	return t->node[ref].op == TAPE_CONSTANT && mpq_cmp_ui(t->node[ref].value, 1, 1) == 0;
+}
+
 tape_ref tape_binary(struct tape *t, enum tape_op op, tape_ref a, tape_ref b)
 {
+	if (op == TAPE_MUL && (is_one(t, a) || is_one(t, b)))
+		return is_one(t, a) ? b : a;
 	return make(t, op, 0, a, b);
 }
 

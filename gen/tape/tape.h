@@ -63,6 +63,7 @@ tape_ref tape_pi(struct tape *t);
 tape_ref tape_operand(struct tape *t, enum tape_op kind, int index, int part);
 tape_ref tape_unary(struct tape *t, enum tape_op op, tape_ref a);
 tape_ref tape_call(struct tape *t, enum function function, tape_ref a);
+/* a product with 1 is its other factor */
 tape_ref tape_binary(struct tape *t, enum tape_op op, tape_ref a, tape_ref b);
 tape_ref tape_compare(struct tape *t, enum comparison comparison, tape_ref a, tape_ref b);
 tape_ref tape_select(struct tape *t, tape_ref condition, tape_ref a, tape_ref b);

@@ -74,10 +74,11 @@ void emit_series_locals(const struct emitter *e)
 	for (int k = 0; k <= x->order; k++) {
 		for (int i = 0; i < e->system->states && !x->alone; i++)
 			if (coefficient(e, i, k))
-				tape_set_local(t, coefficient(e, i, k), recurrence(r, i, k));
+				tape_set_local(t, coefficient(e, i, k), recurrence_number(r, i, k));
 		for (int i = 0; i < x->columns; i++)
 			if (k <= x->column_top[i] && coefficient(e, x->column[i], k))
-				tape_set_local(t, coefficient(e, x->column[i], k), recurrence(r, x->column[i], k));
+				tape_set_local(t, coefficient(e, x->column[i], k),
+					       recurrence_number(r, x->column[i], k));
 	}
 	emit_series_tape(e, r);
 }

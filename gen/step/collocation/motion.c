@@ -99,9 +99,8 @@ static tape_ref highest_node(const struct step *step, struct recurrences *r, int
 {
 	RATIONAL per = ZERO;
 	mpq_inv(per, step->model->h);
-	tape_ref ref = recurrence(r, highest_state(&step->branch->system, coord), 1);
-	struct tape *t = tape_of_recurrences(r);
-	return ref == TAPE_NONE ? tape_number(t, 0) : tape_scaled(t, round_rational(per), ref);
+	tape_ref ref = recurrence_number(r, highest_state(&step->branch->system, coord), 1);
+	return tape_scaled(tape_of_recurrences(r), round_rational(per), ref);
 }
 
 static int state_of_entry(const struct linear *system, const struct motion_entry *entry)

@@ -182,9 +182,7 @@ static int bare_slope(struct sequencing *w, int state)
 		int sequence = sum_sequence(w, &slope);
 		if (w->system->segments > 1) {
 			RATIONALS *scale = plain_scale(w);
-			struct sequence with = w->x->sequence[sequence];
-			add_changing_loads(w, &with, state, scale);
-			w->x->sequence[sequence] = with;
+			add_changing_loads(w, &w->x->sequence[sequence], state, scale);
 		}
 		*made = sequence;
 	}
@@ -195,8 +193,7 @@ static int bare_slope(struct sequencing *w, int state)
 static int bare_rate(struct sequencing *w, const struct form *rate)
 {
 	struct sum sum = { 0 };
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	for (int i = 0; i < rate->terms; i++) {
 		const struct form_term *term = &rate->term[i];
 		struct form single = { 1, &rate->term[i], 0 };
@@ -250,8 +247,7 @@ static int rest_sequence(struct sequencing *w, const struct drag *drag)
 		return rest;
 	const struct form *less = form_difference(form_number(0), more);
 	struct sum sum = { 0 };
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, more, rest), 0, one);
 	int force = force_sequence(w, drag->force);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, less, force), 0, one);
@@ -533,8 +529,7 @@ struct sum held_slope(struct sequencing *w, int state)
 		return slope_of_state(w, state);
 	if (c->bare[state] == NONE)
 		slope = slope_of_state(w, state);
-	RATIONAL one = ZERO;
-	mpq_set_ui(one, 1, 1);
+	RATIONAL one = RATIO(1, 1);
 	if (c->bare[state] != NONE)
 		sum_add(&slope, TERM_SEQUENCE, c->bare[state], 0, one);
 	for (int i = 0; i < c->holds; i++)

@@ -16,11 +16,9 @@ static void expand_state(struct sequencing *w, int state)
 {
 	RATIONALS *scale = integral_scale(w, true);
 	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
-	struct sequence made = w->x->sequence[state];
-	sum_numbers(w, &made, &sum, scale);
+	sum_numbers(w, &w->x->sequence[state], &sum, scale);
 	if (w->system->segments > 1 && !is_bare(w, state))
-		add_changing_loads(w, &made, state, scale);
-	w->x->sequence[state] = made;
+		add_changing_loads(w, &w->x->sequence[state], state, scale);
 }
 
 /* ---- which coefficients there are, and are read ---- */

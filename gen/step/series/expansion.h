@@ -16,8 +16,7 @@ struct expansion {
 	int count;                  /* sequences; the first are the states */
 	struct sequence *sequence;
 	int slots;                  /* factors that change from segment to segment: */
-	double *changing;           /* [segment][k][slot] */
-	int *slot_load;             /* per slot: column of the loads */
+	double *changing;           /* [slot][segment][k] */
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
 	bool time, choices;         /* t is read; formulas are chosen by it */
@@ -50,6 +49,7 @@ struct recurrences;
 struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
 struct tape *tape_of_recurrences(const struct recurrences *r);
 tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
+tape_ref recurrence_number(struct recurrences *r, int sequence, int k); /* 0 has a node too */
 void recurrence_set(struct recurrences *r, const char *target, int sequence, int k); /* target: its k-th */
 int sequence_operands(const struct sequence *s, int **operand);
 tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */

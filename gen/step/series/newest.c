@@ -17,7 +17,7 @@ int sequence_operands(const struct sequence *s, int **operand)
 		const struct sequence_term *t = &s->term[k];
 		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
 			(*operand)[count++] = t->a;
-		if (t->kind == TERM_PRODUCT)
+		if (t->kind == TERM_PRODUCT && t->b != t->a)
 			(*operand)[count++] = t->b;
 	}
 	if (s->kind != SEQUENCE_INTEGRAL && s->a != NONE)
@@ -83,17 +83,6 @@ static void include_operand(const struct expansion *x, const bool *depends, stru
 		include(s, o->gain[i]);
 }
 
-/* Operands whose k-th a sum has, each product both of its */
-static int direct_operands(const struct sequence *s)
-{
-	int count = 0;
-	for (int k = 0; k < s->terms; k++)
-		count += s->term[k].kind == TERM_SEQUENCE ? 1 : s->term[k].kind != TERM_PRODUCT ? 0
-							      : s->term[k].a == s->term[k].b    ? 1
-											 : 2;
-	return count;
-}
-
 static bool has_product(const struct sequence *s)
 {
 	for (int k = 0; k < s->terms; k++)
@@ -113,9 +102,9 @@ static void find_gains(const struct expansion *x, const bool *depends, const boo
 	int operands = sequence_operands(s, &operand);
 	for (int i = 0; i < operands; i++)
 		include_operand(x, depends, s, operand[i]);
-	int direct = direct_operands(s), most = !sum ? FEW : direct > ENOUGH ? direct : ENOUGH;
+	int most = !sum ? FEW : operands > ENOUGH ? operands : ENOUGH;
 	s->split = s->kind != SEQUENCE_INTEGRAL && s->gains > 0 && s->gains <= FEW;
-	if (s->gains > most || (s->kind == SEQUENCE_INTEGRAL && !has_product(s) && s->gains == direct))
+	if (s->gains > most || (s->kind == SEQUENCE_INTEGRAL && !has_product(s) && s->gains == operands))
 		s->gains = 0;
 }
 

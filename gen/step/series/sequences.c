@@ -257,10 +257,8 @@ static int new_integral(struct sequencing *w, enum function function, int a, int
 
 static void set_integrand(struct sequencing *w, int sequence, const struct sum *sum)
 {
-	struct sequence made = w->x->sequence[sequence];
 	RATIONALS *scale = integral_scale(w, false);
-	sum_numbers(w, &made, sum, scale);
-	w->x->sequence[sequence] = made;
+	sum_numbers(w, &w->x->sequence[sequence], sum, scale);
 }
 
 /* c' = factor a' b */

@@ -24,17 +24,27 @@ static double rounded(const struct sequencing *w, mpq_srcptr q)
 	return equation_number(w->step->model, q).value;
 }
 
+/* One more, with factors from the k-th to the last */
+static void add_numbers(struct sequencing *w, struct sequence *s, struct sequence_term term, int k, int last,
+			mpq_srcptr factor, const mpq_t *scale)
+{
+	RATIONAL number = ZERO;
+	term.slot = -1;
+	term.factor = ARRAY(double, w->x->order + 1);
+	for (; k <= last && k <= w->x->order; k++) {
+		mpq_mul(number, factor, scale[k]);
+		term.factor[k] = rounded(w, number);
+	}
+	*MORE(s->term, s->terms) = term;
+}
+
 /* binomial(m, k) D^k t^{m-k}, k = 0 .. m */
 static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcptr factor, const mpq_t *scale)
 {
 	RATIONAL part = ZERO, binomial = ZERO;
 	mpq_set(part, factor);
 	for (int k = 0; k <= m && k <= w->x->order; k++) {
-		struct sequence_term *term = MORE(s->term, s->terms);
-		*term = (struct sequence_term){ .kind = TERM_TIME, .a = m - k, .slot = -1 };
-		term->factor = ARRAY(double, w->x->order + 1);
-		mpq_mul(binomial, part, scale[k]);
-		term->factor[k] = rounded(w, binomial);
+		add_numbers(w, s, (struct sequence_term){ .kind = TERM_TIME, .a = m - k }, k, k, part, scale);
 		mpq_set_ui(binomial, (unsigned long)(m - k), (unsigned long)k + 1);
 		mpq_canonicalize(binomial);
 		mpq_mul(part, part, binomial);
@@ -60,7 +70,7 @@ static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
 		mpq_mul(row[j], next[j], part);
 }
 
-/* value[k][column] */
+/* value[column][k] */
 static double *load_numbers(const struct sequencing *w, int load, mpq_t *row, const mpq_t *scale)
 {
 	int n = w->system->load[load].columns, order = w->x->order;
@@ -69,42 +79,32 @@ static double *load_numbers(const struct sequencing *w, int load, mpq_t *row, co
 	for (int k = 0; k <= order; k++) {
 		for (int j = 0; j < n; j++) {
 			mpq_mul(scaled, row[j], scale[k]);
-			value[k * n + j] = rounded(w, scaled);
+			value[j * (order + 1) + k] = rounded(w, scaled);
 		}
 		next_row(w, load, k, row);
 	}
 	return value;
 }
 
-static void add_load_numbers(struct sequencing *w, struct sequence *s, int load, mpq_t *row, const mpq_t *scale)
-{
-	int n = w->system->load[load].columns, order = w->x->order, first = column_of_load(w->system, load);
-	const double *value = load_numbers(w, load, row, scale);
-	for (int j = 0; j < n; j++) {
-		struct sequence_term *term = MORE(s->term, s->terms);
-		*term = (struct sequence_term){ .kind = TERM_LOAD, .a = first + j, .slot = -1 };
-		term->factor = ARRAY(double, order + 1);
-		for (int k = 0; k <= order; k++)
-			term->factor[k] = value[k * n + j];
-	}
-}
-
 /* All loads of a sum, whose columns change into each other */
 static void add_loads(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale)
 {
+	const int stride = w->x->order + 1;
 	for (int l = 0; l < w->system->loads; l++) {
 		int first = column_of_load(w->system, l), n = w->system->load[l].columns;
 		RATIONALS *row = rationals(n);
-		bool any = false;
 		for (int i = 0; i < sum->keys; i++) {
 			const struct key *key = &sum->key[i];
-			if (key->kind != TERM_LOAD || key->a < first || key->a >= first + n)
-				continue;
-			mpq_set(row[key->a - first], key->factor);
-			any = any || mpq_sgn(key->factor) != 0;
+			if (key->kind == TERM_LOAD && key->a >= first && key->a < first + n)
+				mpq_set(row[key->a - first], key->factor);
 		}
-		if (any)
-			add_load_numbers(w, s, l, row, scale);
+		if (rationals_zero((size_t)n, row))
+			continue;
+		double *value = load_numbers(w, l, row, scale);
+		for (int j = 0; j < n; j++)
+			*MORE(s->term, s->terms) = (struct sequence_term){
+				.kind = TERM_LOAD, .a = first + j, .slot = -1, .factor = value + j * stride
+			};
 	}
 }
 
@@ -112,40 +112,13 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 static void add_input(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	bool ramps = w->system->input[key->a].hold > 0;
+	RATIONAL turned = ZERO;
 	if (key->kind == TERM_SLOPE && !ramps)
 		return;
-	RATIONAL number = ZERO;
-	for (int k = 0; k <= (key->kind == TERM_INPUT && ramps); k++) {
-		struct sequence_term *term = MORE(s->term, s->terms);
-		*term = (struct sequence_term){ .kind = k ? TERM_SLOPE : key->kind, .a = key->a, .slot = -1 };
-		term->factor = ARRAY(double, w->x->order + 1);
-		mpq_mul(number, key->factor, scale[k]);
-		if (k)
-			mpq_mul(number, number, w->unit);
-		term->factor[k] = rounded(w, number);
-	}
-}
-
-static void add_param(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
-{
-	RATIONAL number = ZERO;
-	struct sequence_term *term = MORE(s->term, s->terms);
-	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
-	term->factor = ARRAY(double, w->x->order + 1);
-	mpq_mul(number, key->factor, scale[0]);
-	term->factor[0] = rounded(w, number);
-}
-
-static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
-{
-	RATIONAL number = ZERO;
-	struct sequence_term *term = MORE(s->term, s->terms);
-	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .b = key->b, .slot = -1 };
-	term->factor = ARRAY(double, w->x->order + 1);
-	for (int k = 0; k <= w->x->order; k++) {
-		mpq_mul(number, key->factor, scale[k]);
-		term->factor[k] = rounded(w, number);
-	}
+	add_numbers(w, s, (struct sequence_term){ .kind = key->kind, .a = key->a }, 0, 0, key->factor, scale);
+	mpq_mul(turned, key->factor, w->unit);
+	if (key->kind == TERM_INPUT && ramps)
+		add_numbers(w, s, (struct sequence_term){ .kind = TERM_SLOPE, .a = key->a }, 1, 1, turned, scale);
 }
 
 /* Its keys as terms, scaled by scale[k] at k */
@@ -153,16 +126,15 @@ void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum
 {
 	for (int i = 0; i < sum->keys; i++) {
 		const struct key *key = &sum->key[i];
+		struct sequence_term term = { .kind = key->kind, .a = key->a, .b = key->b };
 		if (mpq_sgn(key->factor) == 0 || key->kind == TERM_LOAD)
 			continue;
 		if (key->kind == TERM_TIME)
 			add_powers(w, s, key->a, key->factor, scale);
 		else if (key->kind == TERM_INPUT || key->kind == TERM_SLOPE)
 			add_input(w, s, key, scale);
-		else if (key->kind == TERM_PARAM)
-			add_param(w, s, key, scale);
 		else
-			add_plain(w, s, key, scale);
+			add_numbers(w, s, term, 0, key->kind == TERM_PARAM ? 0 : w->x->order, key->factor, scale);
 	}
 	add_loads(w, s, sum, scale);
 }
@@ -198,28 +170,20 @@ void add_changing_loads(struct sequencing *w, struct sequence *s, int state, con
 		int at = w->layout.load[l], n = w->system->load[l].columns, first = column_of_load(w->system, l);
 		bool any = false;
 		for (int k = 0; k < segments && at >= 0; k++)
-			for (int j = 0; j < n; j++)
-				any = any || mpq_sgn(w->slopes[k][state * size + at + j]) != 0;
+			any = any || !rationals_zero((size_t)n, w->slopes[k] + state * size + at);
 		if (!any)
 			continue;
-		for (int j = 0; j < n; j++) {
+		for (int j = 0; j < n; j++)
 			*MORE(s->term, s->terms) = (struct sequence_term){
 				.kind = TERM_LOAD, .a = first + j, .slot = x->slots + j
 			};
-		}
-		ENLARGE(x->slot_load, (size_t)(x->slots + n));
 		ENLARGE(x->changing, (size_t)((x->slots + n) * segments * stride));
 		for (int k = 0; k < segments; k++) {
-			RATIONALS *row = rationals(n);
-			for (int j = 0; j < n; j++)
-				mpq_set(row[j], w->slopes[k][state * size + at + j]);
+			mpq_t *row = rationals_copied(n, w->slopes[k] + state * size + at);
 			const double *value = load_numbers(w, l, row, scale);
-			for (int j = 0; j < n; j++)
-				for (int m = 0; m < stride; m++)
-					x->changing[((x->slots + j) * segments + k) * stride + m] = value[m * n + j];
+			for (int i = 0; i < n * stride; i++)
+				x->changing[((x->slots + i / stride) * segments + k) * stride + i % stride] = value[i];
 		}
-		for (int j = 0; j < n; j++)
-			x->slot_load[x->slots++] = first + j;
+		x->slots += n;
 	}
 }
-
