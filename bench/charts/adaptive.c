@@ -29,7 +29,7 @@ static void set_scales(struct adaptive *a)
 static void adaptive_restart(struct run *run)
 {
 	struct adaptive *a = (struct adaptive *)run;
-	a->units = a->evaluations = 0;
+	a->units = a->run.asked = 0;
 	memcpy(a->now, run->problem->start, (size_t)a->size * sizeof *a->now);
 	a->failed = !kind_of(a)->solver->begin(a, 0.0, a->now);
 }
@@ -76,17 +76,6 @@ static void adaptive_between(struct run *run, double fraction, double *y)
 		y[i] = NAN;
 }
 
-static void adaptive_get(const struct run *run, double *y)
-{
-	const struct adaptive *a = (const struct adaptive *)run;
-	memcpy(y, a->now, (size_t)a->size * sizeof *y);
-}
-
-static long adaptive_evaluations(const struct run *run)
-{
-	return ((const struct adaptive *)run)->evaluations;
-}
-
 static void adaptive_close(struct run *run)
 {
 	struct adaptive *a = (struct adaptive *)run;
@@ -106,13 +95,14 @@ static struct adaptive *adaptive_new(const struct method *method, const struct p
 		return NULL;
 	a->run = (struct run){.method = method, .problem = problem, .setting = setting, .restart = adaptive_restart,
 	                      .advance = adaptive_advance,
-	                      .between = adaptive_between, .get = adaptive_get, .evaluations = adaptive_evaluations,
+	                      .between = adaptive_between, .get = run_get, .evaluations = run_evaluations,
 	                      .close = adaptive_close};
 	a->rhs = asked_of(problem);
 	a->n = problem->n;
 	a->size = 2 * problem->n;
 	a->scale = calloc((size_t)a->size, sizeof *a->scale);
 	a->now = calloc((size_t)a->size, sizeof *a->now);
+	a->run.now = a->now;
 	if (a->scale && a->now) {
 		if (method->tolerance)
 			set_scales(a);

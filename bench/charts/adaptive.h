@@ -27,7 +27,6 @@ struct adaptive {
 	int n, size;
 	double *scale;              /* size: largest coordinate, or velocity, of the history */
 	long units;                 /* gone since the start */
-	long evaluations;
 	bool failed;
 	double *now;                /* at the end of the last unit */
 	struct adaptive *aside;     /* `between`: a second one, made when it is first wanted */
@@ -61,7 +60,7 @@ static inline const struct kind *kind_of(const struct adaptive *a)
 
 static inline void slope(struct adaptive *a, double t, const double *y, double *dydt)
 {
-	a->evaluations++;
+	a->run.asked++;
 #ifdef INLINED_SLOPE            /* of the chart of any spec */
 	INLINED_SLOPE(t, y, dydt);
 #else
@@ -78,6 +77,33 @@ static inline double larger(double a, double b)
 static inline double smaller(double a, double b)
 {
 	return a < b ? a : b;
+}
+
+/* Of x at y, by the tolerance: the weighted size of explicit pairs */
+static inline double weighted(const struct adaptive *a, const double *y, const double *x)
+{
+	double sum = 0.0;
+	for (int i = 0; i < a->size; i++) {
+		const double share = x[i] / (a->run.setting * (a->scale[i] + fabs(y[i])));
+		sum += share * share;
+	}
+	return sqrt(sum / a->size);
+}
+
+/* Of such a pair: Hairer, Norsett, Wanner I, II.4 (4.14); f: the slope at (t, y) */
+static inline double first_step(struct adaptive *a, int order, double t, const double *y, const double *f)
+{
+	const double unit = a->run.problem->unit, size0 = weighted(a, y, y), size1 = weighted(a, y, f);
+	const double guess = size0 < 1e-5 || size1 < 1e-5 ? 1e-6 * unit : 0.01 * size0 / size1;
+	double next[a->size], bend[a->size];
+	for (int i = 0; i < a->size; i++)
+		next[i] = y[i] + guess * f[i];
+	slope(a, t + guess, next, bend);
+	for (int i = 0; i < a->size; i++)
+		bend[i] -= f[i];
+	const double most = fmax(size1, weighted(a, y, bend) / guess);
+	const double h = most <= 1e-15 ? fmax(1e-6 * unit, 1e-3 * guess) : pow(0.01 / most, 1.0 / order);
+	return fmin(100.0 * guess, h);
 }
 
 struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting);

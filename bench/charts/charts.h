@@ -112,7 +112,12 @@ struct run {
 	void (*close)(struct run *run);
 	/* NULL; or of a float run: advance with rows of floats, as its user has them; what is timed then */
 	bool (*timed)(struct run *run, int units);
+	/* Of run_get and run_evaluations, which most have: y now; evaluations so far, or -1 */
+	const double *now;
+	long asked;
 };
+void run_get(const struct run *run, double *y);
+long run_evaluations(const struct run *run);
 extern const struct method *const fixed_methods[];      /* fixed.c; NULL at the end */
 extern const struct method *const dormand_prince_fixed; /* not among them: its formula of order 5 at a fixed step */
 /* of structural dynamics, linear problems: one of each kind, and the same with other parameters */
@@ -179,6 +184,9 @@ extern const char *const family_names[];
 /* Which of `flags` ("--quick --list") come first, a bit each in that order; argv becomes what follows, least to most
  * arguments, else the program is left with its usage */
 unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most, const char *usage);
+void leave(const char *of, const char *why) __attribute__((noreturn));
+void *room_for(size_t count, size_t size);              /* zeros; never NULL */
+void *object_open(const char *file);                    /* a shared object; NULL: there is none */
 FILE *file_in(const char *folder, const char *name, const char *mode);
 FILE *table_open(const char *folder, const char *name, const char *head);
 void table_close(FILE *csv, const char *name);

@@ -116,9 +116,7 @@ static const double *exponential_of(struct exact *r, int level)
 	const struct regions *of = &r->regions;
 	double **Phi = &r->Phi[of->now][level];
 	if (!*Phi) {
-		*Phi = calloc((size_t)(of->size * of->size), sizeof **Phi);
-		if (!*Phi)
-			exit(1);
+		*Phi = room_for((size_t)(of->size * of->size), sizeof **Phi);
 		rounded_exponential(of->size, of->generator[of->now], ldexp(r->h, -level), *Phi);
 	}
 	return *Phi;
@@ -159,12 +157,6 @@ static bool exact_advance(struct run *run, int units, double *rows)
 	return all_finite(own, r->z);
 }
 
-static void exact_get(const struct run *run, double *y)
-{
-	const struct exact *r = (const struct exact *)run;
-	memcpy(y, r->z, 2 * (size_t)r->regions.n * sizeof *y);
-}
-
 /* Whole steps, then the binary digits of what is left */
 static void exact_between(struct run *run, double fraction, double *y)
 {
@@ -175,15 +167,9 @@ static void exact_between(struct run *run, double fraction, double *y)
 	for (int level = 0; level < LEVELS; level++)
 		for (; left >= ldexp(1.0, -level); left -= ldexp(1.0, -level))
 			exact_part(r, level);
-	exact_get(run, y);
+	run_get(run, y);
 	memcpy(r->z, kept, sizeof kept);
 	r->regions.now = region;
-}
-
-static long exact_evaluations(const struct run *run)
-{
-	(void)run;
-	return -1;
 }
 
 static void exact_close(struct run *run)
@@ -205,8 +191,8 @@ static struct run *exact_open(const struct method *method, const struct problem 
 	r->steps = steps;
 	r->h = problem->unit / steps;
 	r->run = (struct run){.method = method, .problem = problem, .setting = r->h, .restart = exact_restart,
-	                      .advance = exact_advance, .between = exact_between, .get = exact_get,
-	                      .evaluations = exact_evaluations, .close = exact_close};
+	                      .advance = exact_advance, .between = exact_between, .get = run_get,
+	                      .evaluations = run_evaluations, .close = exact_close, .now = r->z, .asked = -1};
 	exact_restart(&r->run);
 	return &r->run;
 }

@@ -37,7 +37,7 @@ struct dop853 {
 static inline void ask(struct adaptive *a, double t, const double *y, double *f)
 {
 	slope(a, t, y, f);
-	a->evaluations--;               /* counted by the stepper */
+	a->run.asked--;               /* counted by the stepper */
 }
 
 #define SIZE d->adaptive.size
@@ -78,34 +78,6 @@ static bool dop853_make(struct adaptive *a)
 	return true;
 }
 
-static double weighted(const struct dop853 *d, const double *x)
-{
-	const struct adaptive *a = &d->adaptive;
-	double sum = 0.0;
-	for (int i = 0; i < a->size; i++) {
-		const double share = x[i] / (d->tolerance * (a->scale[i] + fabs(d->y[i])));
-		sum += share * share;
-	}
-	return sqrt(sum / a->size);
-}
-
-/* A first step: II.4 (4.14) there, for order 8 */
-static double first_step(struct dop853 *d)
-{
-	struct adaptive *a = &d->adaptive;
-	const double unit = a->run.problem->unit, size0 = weighted(d, d->y), size1 = weighted(d, d->slope);
-	const double guess = size0 < 1e-5 || size1 < 1e-5 ? 1e-6 * unit : 0.01 * size0 / size1;
-	double next[MOST_ENTRIES], slope_there[MOST_ENTRIES];
-	for (int i = 0; i < a->size; i++)
-		next[i] = d->y[i] + guess * d->slope[i];
-	slope(a, d->t + guess, next, slope_there);
-	for (int i = 0; i < a->size; i++)
-		slope_there[i] -= d->slope[i];
-	const double most = fmax(size1, weighted(d, slope_there) / guess);
-	const double h = most <= 1e-15 ? fmax(1e-6 * unit, 1e-3 * guess) : pow(0.01 / most, 0.125);
-	return fmin(100.0 * guess, h);
-}
-
 static bool dop853_begin(struct adaptive *a, double t, const double *y)
 {
 	struct dop853 *d = (struct dop853 *)a;
@@ -114,7 +86,7 @@ static bool dop853_begin(struct adaptive *a, double t, const double *y)
 	d->t = d->from = t;
 	d->last = 0.0;
 	slope(a, t, d->y, d->slope);
-	d->h = first_step(d);
+	d->h = first_step(a, 8, t, d->y, d->slope);
 	return d->h > 0.0 && isfinite(d->h);
 }
 

@@ -23,7 +23,7 @@ static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const d
 	STAGE(14, A(14, 1) + A(14, 7) + A(14, 8) + A(14, 9) + A(14, 10) + A(14, 11) + A(14, 12) + A(14, 13));
 	STAGE(15, A(15, 1) + A(15, 6) + A(15, 7) + A(15, 8) + A(15, 11) + A(15, 12) + A(15, 13) + A(15, 14));
 	STAGE(16, A(16, 1) + A(16, 6) + A(16, 7) + A(16, 8) + A(16, 9) + A(16, 13) + A(16, 14) + A(16, 15));
-	d->adaptive.evaluations += 3;
+	d->adaptive.run.asked += 3;
 	EACH {
 		const double across = next[m] - y[m], bend = h * k[1][m] - across;
 		d->dense[0][m] = y[m];
@@ -70,7 +70,7 @@ INLINE double INSTANCE(try)(struct dop853 *d, double t, double h, const double *
 		sum5 += error5 * over * (error5 * over);
 		sum3 += error3 * over * (error3 * over);
 	}
-	d->adaptive.evaluations += 11;
+	d->adaptive.run.asked += 11;
 	/* the error of order 5 where that of order 3 is not much larger: II.5 (5.27) */
 	const double whole = sum5 + 0.01 * sum3;
 	return whole > 0.0 ? h * sum5 / sqrt(SIZE * whole) : 0.0;
@@ -100,7 +100,7 @@ static bool INSTANCE(advance)(struct dop853 *d, double end)
 			continue;
 		}
 		SLOPES(t + h, next, k[13]);
-		d->adaptive.evaluations++;
+		d->adaptive.run.asked++;
 		if (t + h >= end)
 			INSTANCE(dense)(d, t, h, y, next, k);
 		d->from = t;

@@ -34,33 +34,6 @@ static bool dormand_make(struct adaptive *a)
 	return true;
 }
 
-static double weighted(const struct dormand *d, const double *x)
-{
-	const struct adaptive *a = &d->adaptive;
-	double sum = 0.0;
-	for (int i = 0; i < a->size; i++) {
-		const double share = x[i] / (d->tolerance * (a->scale[i] + fabs(d->y[i])));
-		sum += share * share;
-	}
-	return sqrt(sum / a->size);
-}
-
-/* A first step: II.4 (4.14) there */
-static double first_step(struct dormand *d)
-{
-	struct adaptive *a = &d->adaptive;
-	const double size0 = weighted(d, d->y), size1 = weighted(d, d->spare);
-	const double guess = size0 < 1e-5 || size1 < 1e-5 ? 1e-6 * a->run.problem->unit : 0.01 * size0 / size1;
-	for (int i = 0; i < a->size; i++)
-		d->next[i] = d->y[i] + guess * d->spare[i];
-	slope(a, d->t + guess, d->next, d->k[1]);
-	for (int i = 0; i < a->size; i++)
-		d->k[2][i] = d->k[1][i] - d->spare[i];
-	const double size2 = weighted(d, d->k[2]) / guess, most = fmax(size1, size2);
-	const double h = most <= 1e-15 ? fmax(1e-6 * a->run.problem->unit, 1e-3 * guess) : pow(0.01 / most, 0.2);
-	return fmin(100.0 * guess, h);
-}
-
 static bool dormand_begin(struct adaptive *a, double t, const double *y)
 {
 	struct dormand *d = (struct dormand *)a;
@@ -70,7 +43,7 @@ static bool dormand_begin(struct adaptive *a, double t, const double *y)
 	d->last = 0.0;
 	d->before = 1e-4;
 	slope(a, t, d->y, d->spare);
-	d->h = first_step(d);
+	d->h = first_step(a, 5, t, d->y, d->spare);
 	return d->h > 0.0 && isfinite(d->h);
 }
 

@@ -168,10 +168,8 @@ static void measure_ours(const struct problem *p, const struct code *v, double s
 {
 	const struct method ours = { v->method, OURS, false, true, 0, "", NULL };
 	struct run *run = p ? generated_open(&ours, p, v->file) : NULL;
-	if (!run) {
-		fprintf(stderr, "energy: %s cannot be opened%s\n", v->file, p ? "" : ": no problem before it");
-		exit(1);
-	}
+	if (!run)
+		leave(v->file, p ? "cannot be opened" : "no problem before it");
 	measure(run, v, steps, changes, decays);
 }
 

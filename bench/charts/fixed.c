@@ -20,6 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dop853_table.h"
 #include "fixed.h"
 
 /* ---- explicit methods ---- */
@@ -93,31 +94,20 @@ INLINE bool verlet(struct fixed *f, struct part *p, double t, double *state)
 }
 MARCH(verlet)
 
-/* Dormand and Prince, J. Computational and Applied Mathematics 6 (1980) 19-26, of order 5: its row 7 is the step, and
- * the slope there the first of the next */
+/* Dormand and Prince, of order 5: the slope at the end is the first of the next step */
 INLINE bool dormand_prince(struct fixed *f, struct part *p, double t, double *state)
 {
-	static const double nodes[7] = {0, 1 / 5.0, 3 / 10.0, 4 / 5.0, 8 / 9.0, 1, 1};
-	static const double row[7][6] = {
-		{0},
-		{1 / 5.0},
-		{3 / 40.0, 9 / 40.0},
-		{44 / 45.0, -56 / 15.0, 32 / 9.0},
-		{19372 / 6561.0, -25360 / 2187.0, 64448 / 6561.0, -212 / 729.0},
-		{9017 / 3168.0, -355 / 33.0, 46732 / 5247.0, 49 / 176.0, -5103 / 18656.0},
-		{35 / 384.0, 0, 500 / 1113.0, 125 / 192.0, -2187 / 6784.0, 11 / 84.0},
-	};
 	const int n = f->n, size = 2 * n;
 	double *x = f->work[7];
 	memcpy(f->work[0], state + n, sizeof *x * (size_t)size);
-	for (int stage = 1; stage < 7; stage++) {
+	for (int stage = 1; stage < DORMAND_STAGES; stage++) {
 		for (int i = 0; i < size; i++) {
 			double sum = 0;
 			for (int j = 0; j < stage; j++)
-				sum += row[stage][j] * f->work[j][i];
+				sum += dormand_a[stage][j] * f->work[j][i];
 			x[i] = state[i] + p->h * sum;
 		}
-		slope(f, t + nodes[stage] * p->h, x, f->work[stage]);
+		slope(f, t + dormand_c[stage] * p->h, x, f->work[stage]);
 	}
 	memcpy(state, x, sizeof *x * (size_t)size);
 	memcpy(state + size, f->work[6] + n, sizeof *x * (size_t)n);

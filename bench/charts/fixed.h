@@ -32,7 +32,6 @@ struct fixed {
 	int steps;                  /* in a unit */
 	double h;
 	long units;                 /* gone since the start */
-	long evaluations;
 	bool failed, linear;
 	/* 3n each: coordinates, velocities, and the accelerations that some methods keep; ahead: of `between` */
 	double *state, *ahead;
@@ -65,7 +64,7 @@ struct scheme {
 
 INLINE void slope(struct fixed *f, double t, const double *y, double *dydt)
 {
-	f->evaluations++;
+	f->run.asked++;
 	right_side(&f->rhs, t, y, dydt);
 }
 

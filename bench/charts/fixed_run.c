@@ -21,7 +21,7 @@ static void fixed_restart(struct run *run)
 	struct fixed *f = (struct fixed *)run;
 	const size_t n = (size_t)f->n;
 	memcpy(f->state, run->problem->start, 2 * n * sizeof *f->state);
-	f->units = f->evaluations = 0;
+	f->units = f->run.asked = 0;
 	f->failed = false;
 	f->scale_q = f->scale_v = 0.0;
 	if (scheme_of(f)->keeps_acceleration) {
@@ -51,22 +51,11 @@ static void fixed_between(struct run *run, double fraction, double *y)
 		prepare(f, &f->rest, rest);
 		good = step(f, &f->rest, t + whole * f->h, f->ahead);
 	}
-	f->evaluations = kept.evaluations;
+	f->run.asked = kept.run.asked;
 	f->scale_q = kept.scale_q;
 	f->scale_v = kept.scale_v;
 	for (int i = 0; i < 2 * f->n; i++)
 		y[i] = good ? f->ahead[i] : NAN;
-}
-
-static void fixed_get(const struct run *run, double *y)
-{
-	const struct fixed *f = (const struct fixed *)run;
-	memcpy(y, f->state, 2 * (size_t)f->n * sizeof *y);
-}
-
-static long fixed_evaluations(const struct run *run)
-{
-	return ((const struct fixed *)run)->evaluations;
 }
 
 static void fixed_close(struct run *run)
@@ -126,7 +115,7 @@ struct run *fixed_open(const struct method *method, const struct problem *proble
 	if (!f)
 		return NULL;
 	f->run = (struct run){.method = method, .problem = problem, .restart = fixed_restart, .advance = way->advance,
-	                      .between = fixed_between, .get = fixed_get, .evaluations = fixed_evaluations,
+	                      .between = fixed_between, .get = run_get, .evaluations = run_evaluations,
 	                      .close = fixed_close};
 	f->rhs = asked_of(problem);
 	f->n = problem->n;
@@ -137,6 +126,7 @@ struct run *fixed_open(const struct method *method, const struct problem *proble
 		fixed_close(&f->run);
 		return NULL;
 	}
+	f->run.now = f->state;
 	prepare(f, &f->every, f->h);
 	fixed_restart(&f->run);
 	return &f->run;

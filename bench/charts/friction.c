@@ -204,6 +204,7 @@ static void rk4_restart(struct run *run)
 {
 	struct way *way = (struct way *)run->problem->of;
 	way->units = 0;
+	run->asked = 0;
 	way->y[0] = way->y[1] = 0;
 }
 
@@ -230,13 +231,8 @@ static bool rk4_advance(struct run *run, int units, double *rows)
 		if (rows)
 			memcpy(rows + 2 * k, y, sizeof way->y);
 	}
+	run->asked += 4L * units * steps;
 	return true;
-}
-
-static long rk4_evaluations(const struct run *run)
-{
-	const struct way *way = run->problem->of;
-	return 4 * way->units * lround(unit / run->setting);
 }
 
 static void rk4_close(struct run *run)
@@ -257,14 +253,12 @@ static void way_open(struct way *way, const char *variants, const struct truth_o
 	                       : unit / ceil(unit * hold / (mass * way->eps));
 	snprintf(file, sizeof file, "%s/friction-%ld.so", variants, lround(unit / way->setting));
 	way->steps = (struct run){.problem = &way->problem, .setting = setting, .restart = rk4_restart,
-	                          .advance = rk4_advance, .evaluations = rk4_evaluations, .close = rk4_close};
+	                          .advance = rk4_advance, .evaluations = run_evaluations, .close = rk4_close};
 	way->run = way->how == STEPS ? &way->steps
 		: way->how == EXACT ? generated_open(way->method, &way->problem, file)
 		: way->method->open(way->method, &way->problem, setting);
-	if (!way->run) {
-		fprintf(stderr, "friction: %s cannot be opened\n", way->name);
-		exit(1);
-	}
+	if (!way->run)
+		leave(way->name, "cannot be opened");
 }
 
 /* ---- what they get wrong ---- */

@@ -119,9 +119,7 @@ static void make_room(struct generated *g, int units)
 		return;
 	free(g->row);
 	g->rows = units;
-	g->row = calloc((size_t)units * 2 * (size_t)g->run.problem->n, sizeof *g->row);
-	if (!g->row)
-		exit(1);
+	g->row = room_for((size_t)units * 2 * (size_t)g->run.problem->n, sizeof *g->row);
 }
 
 /* One unit is one step and a row is the state: one call. */
@@ -264,9 +262,7 @@ static bool same_names(int states, int outputs, const char *const *state, const 
 
 static bool load(struct generated *g, const char *file)
 {
-	char path[4096];
-	snprintf(path, sizeof path, "%s%s", strchr(file, '/') ? "" : "./", file);
-	g->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	g->handle = object_open(file);
 	const void *model = g->handle ? dlsym(g->handle, "subject_model") : NULL;
 	if (!model)
 		return false;
@@ -297,9 +293,7 @@ static bool divides(struct generated *g)
 
 struct run *generated_open(const struct method *method, const struct problem *problem, const char *file)
 {
-	struct generated *g = calloc(1, sizeof *g);
-	if (!g)
-		return NULL;
+	struct generated *g = room_for(1, sizeof *g);
 	g->run = (struct run){ .method = method, .problem = problem, .restart = restart, .advance = advance,
 	                       .between = between, .get = get,
 	                       .evaluations = evaluations, .close = close_run };
@@ -308,12 +302,8 @@ struct run *generated_open(const struct method *method, const struct problem *pr
 		return NULL;
 	}
 	g->run.setting = g->h;
-	g->state = calloc(1, g->size);
-	g->copy = calloc(1, g->size);
-	if (!g->state || !g->copy) {
-		close_run(&g->run);
-		return NULL;
-	}
+	g->state = room_for(1, g->size);
+	g->copy = room_for(1, g->size);
 	restart(&g->run);
 	return &g->run;
 }

@@ -176,8 +176,7 @@ static const struct hard_case *case_find(const char *name)
 	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
 		if (strcmp(cases[k].name, name) == 0)
 			return &cases[k];
-	fprintf(stderr, "hard: no case is called %s\n", name);
-	exit(1);
+	leave(name, "no case of hard is called that");
 }
 
 /* ---- histories ---- */
@@ -205,9 +204,7 @@ static void set_scales(struct history *h, const struct problem *p, double least_
 /* And the problem's scales, which are the history's */
 static struct history history_of(const struct hard_case *c, struct problem *p)
 {
-	struct history h = { 2 * p->n, p->units, calloc((size_t)p->units * 2 * (size_t)p->n, sizeof(double)), { 0 } };
-	if (!h.y)
-		exit(1);
+	struct history h = { 2 * p->n, p->units, room_for((size_t)p->units * 2 * (size_t)p->n, sizeof(double)), { 0 } };
 	if (c->exact) {
 		for (int k = 0; k < h.units; k++) {
 			quad y[MOST_STATES] = { 0 };

@@ -303,10 +303,8 @@ static void read_settings(struct rows *rows, const struct problem *p, const char
 		row->found.reached = reached;
 		if (reached && row->method)
 			row->run = row->method->open(row->method, p, row->found.setting);
-		if (!row->method || (reached && !row->run)) {
-			fprintf(stderr, "headline: settings of %s, which is not there\n", name);
-			exit(1);
-		}
+		if (!row->method || (reached && !row->run))
+			leave(name, "has settings, and is not there");
 	}
 	fclose(in);
 }

@@ -17,10 +17,8 @@
 static const struct method *need(const char *name)
 {
 	const struct method *m = method_find(name);
-	if (!m) {
-		fprintf(stderr, "integrators: no method %s\n", name);
-		exit(1);
-	}
+	if (!m)
+		leave(name, "no method");
 	return m;
 }
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dop853_table.h"
 #include "papers.h"
 
 static const char source[] = "000";
@@ -29,22 +30,12 @@ static const struct method exact = { .name = "exact", .family = OURS, .linear_on
  * Dormand and Prince (J. Comput. Appl. Math. 6, 1980) with local extrapolation and the defaults RelTol = 1e-3, AbsTol
  * = 1e-6, and values between steps by the pair's continuous extension. */
 
-enum { STAGES = 7, STATES = 4 };
-static const double node[STAGES] = { 0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1 };
-static const double tableau[STAGES][STAGES - 1] = {
-	{ 0 },
-	{ 1. / 5 },
-	{ 3. / 40, 9. / 40 },
-	{ 44. / 45, -56. / 15, 32. / 9 },
-	{ 19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729 },
-	{ 9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656 },
-	{ 35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84 },
-};
+enum { STATES = 4 };
 /* Weights of order 5 less those of order 4 */
-static const double defect[STAGES] = { 71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525,
+static const double defect[DORMAND_STAGES] = { 71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525,
                                        -1. / 40 };
 /* Of the continuous extension: powers 1 to 4 of the part of the step */
-static const double extension[STAGES][4] = {
+static const double extension[DORMAND_STAGES][4] = {
 	{ 1, -183. / 64, 37. / 12, -145. / 128 }, { 0 }, { 0, 1500. / 371, -1000. / 159, 1000. / 371 },
 	{ 0, -125. / 32, 125. / 12, -375. / 64 }, { 0, 9477. / 3392, -729. / 106, 25515. / 6784 },
 	{ 0, -11. / 7, 11. / 3, -55. / 28 }, { 0, 3. / 2, -4, 5. / 2 },
@@ -53,7 +44,7 @@ static const double relative = 1e-3, absolute = 1e-6;
 
 struct ode45 {
 	const struct problem *p;
-	double t, h, y[STATES], k[STAGES][STATES];
+	double t, h, y[STATES], k[DORMAND_STAGES][STATES];
 	double next[STATES];
 };
 
@@ -69,18 +60,18 @@ static double weighted(const double *x, const double *a, const double *b)
 static double attempt(struct ode45 *s)
 {
 	double off[STATES];
-	for (int stage = 1; stage < STAGES; stage++) {
+	for (int stage = 1; stage < DORMAND_STAGES; stage++) {
 		for (int i = 0; i < STATES; i++) {
 			double sum = 0;
 			for (int j = 0; j < stage; j++)
-				sum += tableau[stage][j] * s->k[j][i];
+				sum += dormand_a[stage][j] * s->k[j][i];
 			s->next[i] = s->y[i] + s->h * sum;
 		}
-		problem_slope(s->p, s->t + node[stage] * s->h, s->next, s->k[stage]);
+		problem_slope(s->p, s->t + dormand_c[stage] * s->h, s->next, s->k[stage]);
 	}
 	for (int i = 0; i < STATES; i++) {
 		off[i] = 0;
-		for (int j = 0; j < STAGES; j++)
+		for (int j = 0; j < DORMAND_STAGES; j++)
 			off[i] += s->h * defect[j] * s->k[j][i];
 	}
 	return weighted(off, s->y, s->next) / relative;
@@ -90,7 +81,7 @@ static void inside(const struct ode45 *s, double part, double *y)
 {
 	for (int i = 0; i < STATES; i++) {
 		y[i] = s->y[i];
-		for (int j = 0; j < STAGES; j++)
+		for (int j = 0; j < DORMAND_STAGES; j++)
 			y[i] += s->h * s->k[j][i] * part *
 				(extension[j][0] +
 				 part * (extension[j][1] + part * (extension[j][2] + part * extension[j][3])));
@@ -120,7 +111,7 @@ static int ode45_solve(const struct problem *p, double *rows)
 			inside(&s, ((row + 1) * p->unit - s.t) / s.h, rows + row * STATES);
 		s.t += s.h;
 		memcpy(s.y, s.next, sizeof s.y);
-		memcpy(s.k[0], s.k[STAGES - 1], sizeof s.k[0]);
+		memcpy(s.k[0], s.k[DORMAND_STAGES - 1], sizeof s.k[0]);
 		taken++;
 		if (!failed)
 			s.h *= fmin(5, 0.8 * pow(1 / error, 0.2));

@@ -189,8 +189,7 @@ static const struct charted *model_named(const char *name)
 	for (int i = 0; i < MODELS; i++)
 		if (strcmp(models[i].name, name) == 0)
 			return &models[i];
-	fprintf(stderr, "precision: no model %s\n", name);
-	exit(2);
+	leave(name, "no model");
 }
 
 static double value_of(const char *fraction)
@@ -243,10 +242,8 @@ static void list_model(const struct charted *m, bool quick)
 static struct line *add_line(struct lines *lines)
 {
 	struct line *line = realloc(lines->line, (size_t)(lines->count + 1) * sizeof *line);
-	if (!line) {
-		fputs("precision: out of memory\n", stderr);
-		exit(1);
-	}
+	if (!line)
+		leave("precision", "out of memory");
 	lines->line = line;
 	line += lines->count++;
 	memset(line, 0, sizeof *line);

@@ -76,17 +76,12 @@ static FILE *open_errors(const char *folder, const char *name, const char *mode)
 void keep_errors(const struct lines *lines, const struct problem *p, const char *folder)
 {
 	FILE *out = open_errors(folder, p->name, "w");
-	if (!out) {
-		perror(folder);
-		exit(1);
-	}
+	if (!out)
+		leave(folder, "cannot be written to");
 	fprintf(out, "%d %.17g %.17g %.17g\n", p->units, p->scale_q, p->scale_v, lines->agreement);
 	for (const struct line *line = lines->line; line < lines->line + lines->count; line++)
 		fprintf(out, "%s\t%.6g\t%s\n", method_of(line)->name, line->setting, line->found);
-	if (ferror(out) || fclose(out) != 0) {
-		fprintf(stderr, "precision: cannot write errors of %s\n", p->name);
-		exit(1);
-	}
+	table_close(out, p->name);
 }
 
 bool read_scales(struct lines *lines, struct problem *p, const char *folder)
@@ -96,10 +91,8 @@ bool read_scales(struct lines *lines, struct problem *p, const char *folder)
 	if (!in)
 		return false;
 	if (fscanf(in, "%d %lf %lf %lf", &units, &p->scale_q, &p->scale_v, &lines->agreement) != 4 ||
-	    units != p->units) {
-		fprintf(stderr, "precision: %s.errors is of another history\n", p->name);
-		exit(1);
-	}
+	    units != p->units)
+		leave(p->name, "its .errors is of another history");
 	fclose(in);
 	return true;
 }
@@ -116,10 +109,8 @@ void read_errors(struct lines *lines, const struct problem *p, const char *folde
 		line->found[strcspn(line->found, "\n")] = '\0';
 		read_largest(line);
 	}
-	if (!good || fgets(text, sizeof text, in)) {
-		fprintf(stderr, "precision: %s.errors has not the runs that there are\n", p->name);
-		exit(1);
-	}
+	if (!good || fgets(text, sizeof text, in))
+		leave(p->name, "its .errors has not the runs that there are");
 	fclose(in);
 }
 
@@ -161,14 +152,10 @@ static int in_turn(struct lines *lines, struct line **turn)
 
 void find_times(struct lines *lines, double seconds)
 {
-	const size_t room = (size_t)lines->count + 1;
-	struct run **run = calloc(room, sizeof *run);
-	struct samples *samples = calloc(room, sizeof *samples);
-	struct line **line = calloc(room, sizeof *line);
-	if (!run || !samples || !line) {
-		fputs("precision: out of memory\n", stderr);
-		exit(1);
-	}
+	const size_t room = (size_t)lines->count;
+	struct run **run = room_for(room, sizeof *run);
+	struct samples *samples = room_for(room, sizeof *samples);
+	struct line **line = room_for(room, sizeof *line);
 	const int count = in_turn(lines, line);
 	struct timed timed = { line };
 	for (int k = 0; k < count; k++)

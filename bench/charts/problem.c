@@ -8,38 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void leave(const char *file, const char *why)
-{
-	fprintf(stderr, "%s: %s\n", file, why);
-	exit(1);
-}
-
-static double *numbers(int count)
-{
-	double *x = calloc((size_t)count, sizeof *x);
-	if (!x)
-		leave("problem", "out of memory");
-	return x;
-}
-
-static void *open_object(const char *file)
-{
-	char path[4096];                /* without a slash dlopen would look in the system's places */
-	snprintf(path, sizeof path, "%s%s", strchr(file, '/') ? "" : "./", file);
-	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-	if (!handle)
-		leave(file, dlerror());
-	return handle;
-}
-
 /* C has no conversion from an object pointer to a function's; POSIX has, through memory. */
-static void find_function(void *handle, const char *file, const char *name,
-                          void (**function)(double, const double *, double *))
+static void find_rhs(struct problem *p, const char *file)
 {
-	void *symbol = dlsym(handle, name);
+	void *symbol = dlsym(p->handle, "subject_rhs");
 	if (!symbol)
 		leave(file, "no subject_rhs");
-	memcpy(function, &symbol, sizeof symbol);
+	memcpy(&p->rhs, &symbol, sizeof symbol);
 }
 
 /* y = n coordinates, then their velocities, in the same order */
@@ -56,10 +31,8 @@ static bool second_order(const pl_model *model)
 
 static double *start_of(const pl_model *model)
 {
-	double *y = numbers(model->states);
-	void *state = calloc(1, model->size);
-	if (!state)
-		leave(model->name, "out of memory");
+	double *y = room_for((size_t)model->states, sizeof(double));
+	void *state = room_for(1, model->size);
 	model->init(state);
 	model->get(state, y);
 	free(state);
@@ -68,16 +41,16 @@ static double *start_of(const pl_model *model)
 
 struct problem *problem_load(const char *file, const char *name, double unit, int units, bool linear, double frequency)
 {
-	struct problem *p = calloc(1, sizeof *p);
-	if (!p)
-		leave(file, "out of memory");
-	p->handle = open_object(file);
+	struct problem *p = room_for(1, sizeof *p);
+	p->handle = object_open(file);
+	if (!p->handle)
+		leave(file, dlerror());
 	p->model = dlsym(p->handle, "subject_model");
 	if (!p->model)
 		leave(file, "no subject_model");
 	if (!second_order(p->model) || p->model->inputs > 0)
 		leave(file, "its states are not coordinates and their velocities, or it has inputs");
-	find_function(p->handle, file, "subject_rhs", &p->rhs);
+	find_rhs(p, file);
 	p->name = name;
 	p->n = p->model->states / 2;
 	p->start = start_of(p->model);
@@ -102,7 +75,7 @@ static void ask_loads(struct problem *p, const double *y)
 {
 	const double turn = p->w > 0 ? 2 * M_PI / p->w : 0;
 	int size = 2 * p->n;
-	double *at_start = numbers(size), *at_half = numbers(size), *at_quarter = numbers(size);
+	double at_start[size], at_half[size], at_quarter[size];
 	problem_slope(p, 0, y, at_start);
 	problem_slope(p, turn / 2, y, at_half);
 	problem_slope(p, turn / 4, y, at_quarter);
@@ -111,9 +84,6 @@ static void ask_loads(struct problem *p, const double *y)
 		p->b1[i] = (at_start[i] - at_half[i]) / 2;
 		p->b2[i] = at_quarter[i] - p->b0[i];
 	}
-	free(at_start);
-	free(at_half);
-	free(at_quarter);
 }
 
 /* What the cosine of a rounded quarter turn leaves where there is no load */
@@ -130,20 +100,19 @@ static void drop_dust(int size, const double *large, double *b)
 static void clean_loads(struct problem *p)
 {
 	int size = 2 * p->n;
-	double *large = numbers(size);
+	double large[size];
 	for (int i = 0; i < size; i++)
 		large[i] = fmax(fabs(p->b0[i]), fmax(fabs(p->b1[i]), fabs(p->b2[i])));
 	drop_dust(size, large, p->b0);
 	drop_dust(size, large, p->b1);
 	drop_dust(size, large, p->b2);
-	free(large);
 }
 
 /* A column: the slope at a unit state, less that at rest. */
 static void ask_matrix(struct problem *p, double *y)
 {
 	int size = 2 * p->n;
-	double *at_rest = numbers(size), *slope = numbers(size);
+	double at_rest[size], slope[size];
 	problem_slope(p, 0, y, at_rest);
 	for (int j = 0; j < size; j++) {
 		y[j] = 1;
@@ -152,8 +121,6 @@ static void ask_matrix(struct problem *p, double *y)
 			p->A[i * size + j] = slope[i] - at_rest[i];
 		y[j] = 0;
 	}
-	free(at_rest);
-	free(slope);
 }
 
 void problem_linear(struct problem *p)
@@ -161,12 +128,12 @@ void problem_linear(struct problem *p)
 	int size = 2 * p->n;
 	if (p->A)
 		return;
-	double *y = numbers(size);
+	double *y = room_for((size_t)size, sizeof *y);
 	p->linear = true;
-	p->A = numbers(size * size);
-	p->b0 = numbers(size);
-	p->b1 = numbers(size);
-	p->b2 = numbers(size);
+	p->A = room_for((size_t)(size * size), sizeof(double));
+	p->b0 = room_for((size_t)size, sizeof(double));
+	p->b1 = room_for((size_t)size, sizeof(double));
+	p->b2 = room_for((size_t)size, sizeof(double));
 	ask_loads(p, y);
 	clean_loads(p);
 	ask_matrix(p, y);

@@ -243,9 +243,7 @@ static bool single_timed(struct run *run, int units)
 	if (units > r->rows) {
 		free(r->row);
 		r->rows = units;
-		r->row = calloc((size_t)units * (size_t)r->own, sizeof *r->row);
-		if (!r->row)
-			exit(1);
+		r->row = room_for((size_t)units * (size_t)r->own, sizeof *r->row);
 	}
 	if (r->literals_single)
 		r->literals_single(z, units, r->row);
@@ -306,12 +304,6 @@ static void propagator_get(const struct run *run, double *y)
 {
 	const struct propagator *r = (const struct propagator *)run;
 	memcpy(y, r->z, (size_t)r->own * sizeof *y);
-}
-
-static long no_evaluations(const struct run *run)
-{
-	(void)run;
-	return -1;
 }
 
 static void propagator_close(struct run *run)
@@ -408,7 +400,8 @@ static struct run *propagator_open(const struct method *method, const struct pro
 	r->run = (struct run){.method = method, .problem = p, .setting = p->unit / steps, .restart = propagator_restart,
 	                      .advance = advances[kind->way],
 	                      .between = kind->way == MODAL ? modal_between : propagator_between,
-	                      .get = propagator_get, .evaluations = no_evaluations, .close = propagator_close};
+	                      .get = propagator_get, .evaluations = run_evaluations, .close = propagator_close,
+	                      .asked = -1};
 	r->own = 2 * p->n;
 	r->size = r->own + is_pushed(p) + 2 * is_shaken(p);
 	r->steps = steps;

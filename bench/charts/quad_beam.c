@@ -11,12 +11,6 @@
 typedef __float128 quad;
 enum { N = BEAM_N, ORDER = 120, SPEED_TERMS = 9, PARTS = 8 };
 
-static void leave(const char *file)
-{
-	fprintf(stderr, "%s: no Matrix Market file of a beam's matrix\n", file);
-	exit(1);
-}
-
 /* Matrix Market: coordinate real symmetric or general, or array real general; entries of `columns` columns */
 static void read_matrix(const char *name, int columns, quad *entries)
 {
@@ -24,7 +18,7 @@ static void read_matrix(const char *name, int columns, quad *entries)
 	snprintf(file, sizeof file, "models/beam/%s.mtx", name);
 	FILE *f = fopen(file, "r");
 	if (!f || !fgets(line, sizeof line, f))
-		leave(file);
+		leave(file, "no Matrix Market file of a beam's matrix");
 	const bool symmetric = strstr(line, " symmetric"), array = strstr(line, " array ");
 	while (fgets(line, sizeof line, f) && line[0] == '%')
 		continue;
@@ -35,14 +29,14 @@ static void read_matrix(const char *name, int columns, quad *entries)
 		count = 0;
 	}
 	if (count == 0)
-		leave(file);
+		leave(file, "no Matrix Market file of a beam's matrix");
 	memset(entries, 0, (size_t)(N * columns) * sizeof *entries);
 	for (int k = 0; k < count; k++) {
 		int i = k % N + 1, j = k / N + 1;
 		if (array ? fscanf(f, "%99s", text) != 1 : fscanf(f, "%d %d %99s", &i, &j, text) != 3)
-			leave(file);
+			leave(file, "no Matrix Market file of a beam's matrix");
 		if (i < 1 || i > N || j < 1 || j > columns)
-			leave(file);
+			leave(file, "no Matrix Market file of a beam's matrix");
 		entries[(i - 1) * columns + j - 1] = strtoflt128(text, NULL);
 		if (symmetric)
 			entries[(j - 1) * columns + i - 1] = entries[(i - 1) * columns + j - 1];
@@ -202,10 +196,8 @@ static void step(struct beam_series *x, const struct quad_beam *beam, quad Om, q
 		                     largest_of(x->v[k + 1]) > 1e-30Q * largest[1];
 		small = matters ? 0 : small + 1;
 	}
-	if (k == ORDER) {
-		fputs("quad_beam: a series does not end\n", stderr);
-		exit(1);
-	}
+	if (k == ORDER)
+		leave("quad_beam", "a series does not end");
 	for (; k > 0; k--)
 		for (int i = 0; i < N; i++) {
 			y[i] += x->q[k][i];

@@ -44,10 +44,8 @@ struct tape {
 
 static int push(struct tape *x, enum op op, int a, int b, quad factor)
 {
-	if (x->count == MOST_NODES) {
-		fputs("quad_taylor: a tape is full\n", stderr);
-		exit(1);
-	}
+	if (x->count == MOST_NODES)
+		leave("quad_taylor", "a tape is full");
 	struct node *node = &x->node[x->count];
 	node->op = op;
 	node->a = a;
@@ -311,10 +309,8 @@ static quad step_length(const struct tape *x, const struct scales *largest)
 			if (size > 0)
 				h = fminq(h, powq(1e-29Q / size, 1.0Q / k));
 		}
-	if (!(h > 1e-9Q) || !(h <= 1e10Q)) {
-		fputs("quad_taylor: a step vanishes\n", stderr);
-		exit(1);
-	}
+	if (!(h > 1e-9Q) || !(h <= 1e10Q))
+		leave("quad_taylor", "a step vanishes");
 	return fminq(h, 1);
 }
 

@@ -285,7 +285,7 @@ void radau_numbers(int s, double *c, double *A)
 static inline void ask(struct adaptive *a, double t, const double *y, double *f)
 {
 	slope(a, t, y, f);
-	a->evaluations--;               /* counted by the stepper */
+	a->run.asked--;               /* counted by the stepper */
 }
 
 #define INSTANCE(part) beam4_##part

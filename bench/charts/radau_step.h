@@ -46,7 +46,7 @@ INLINE void INSTANCE(residual)(struct radau *d, double h, const double *y, doubl
 		end[m] = x[m];
 		end[COORDINATES + m] = x[COORDINATES + m];
 	}
-	d->adaptive.evaluations += s;
+	d->adaptive.run.asked += s;
 }
 
 /* r becomes the correction of K: by eigenvectors of A, a system for each eigenvalue */
@@ -241,7 +241,7 @@ INLINE bool INSTANCE(advance)(struct radau *d, double limit, const int s)
 			for (int m = 0; m < 2 * COORDINATES; m++)
 				moved[m] = d->y[m] + error[m];
 			SLOPES(d->t, moved, there);
-			d->adaptive.evaluations++;
+			d->adaptive.run.asked++;
 			size = INSTANCE(error)(d, h, d->y, end, K, there, error, s);
 		}
 		size = larger(1e-10, size);
@@ -261,7 +261,7 @@ INLINE bool INSTANCE(advance)(struct radau *d, double limit, const int s)
 		d->accepted_error = larger(1e-2, size);
 		INSTANCE(keep)(d, h, K, end, s);
 		SLOPES(d->t, d->y, d->slope);
-		d->adaptive.evaluations++;
+		d->adaptive.run.asked++;
 		double next = h / shrink;
 		if (d->rejected)
 			next = smaller(next, h);

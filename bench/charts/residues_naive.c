@@ -167,12 +167,6 @@ static void step(struct naive *r)
 	r->taken++;
 }
 
-static void get(const struct run *run, double *y)
-{
-	const struct naive *r = (const struct naive *)run;
-	memcpy(y, r->y, 2 * (size_t)r->n * sizeof *y);
-}
-
 static bool advance(struct run *run, int units, double *rows)
 {
 	struct naive *r = (struct naive *)run;
@@ -181,15 +175,9 @@ static bool advance(struct run *run, int units, double *rows)
 		for (int i = 0; i < steps; i++)
 			step(r);
 		if (rows)
-			get(run, rows + 2 * k * r->n);
+			run_get(run, rows + 2 * k * r->n);
 	}
 	return true;
-}
-
-static long evaluations(const struct run *run)
-{
-	(void)run;
-	return -1;
 }
 
 static void close_run(struct run *run)
@@ -209,8 +197,8 @@ static struct run *open_run(const struct method *method, const struct problem *p
 			r->C[i][j] = -p->A[(p->n + i) * 2 * p->n + p->n + j];
 		}
 	r->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = restart, .advance = advance,
-	                       .get = get,
-	                       .evaluations = evaluations, .close = close_run };
+	                       .get = run_get, .evaluations = run_evaluations, .close = close_run, .now = r->y,
+	                       .asked = -1 };
 	characteristic(r);
 	if (!sum_residues(r, h, p->w)) {
 		free(r);

@@ -131,23 +131,14 @@ static double *rows_of(int runs, struct run *const *run)
 		size_t room = 2 * (size_t)run[i]->problem->n * CHUNK;
 		most = most > room ? most : room;
 	}
-	double *rows = calloc(most + 1, sizeof *rows);
-	if (!rows) {
-		fputs("samples: out of memory\n", stderr);
-		exit(1);
-	}
-	return rows;
+	return room_for(most, sizeof(double));
 }
 
 void sample_ladders(int runs, struct run *const *run, double seconds,
                     bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of, struct samples *result)
 {
-	struct turn *turn = calloc((size_t)runs + 1, sizeof *turn);
+	struct turn *turn = room_for((size_t)runs, sizeof *turn);
 	double *rows = rows_of(runs, run), share = 1e9 * seconds / (runs > 0 ? runs : 1);
-	if (!turn) {
-		fputs("samples: out of memory\n", stderr);
-		exit(1);
-	}
 	for (int i = 0; i < runs; i++) {
 		result[i] = (struct samples){ 0 };
 		if (is_dear && is_dear(i, result, of))

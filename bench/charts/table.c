@@ -30,6 +30,28 @@ unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most
 	return found;
 }
 
+void leave(const char *of, const char *why)
+{
+	fprintf(stderr, "%s: %s\n", of, why);
+	exit(1);
+}
+
+void *room_for(size_t count, size_t size)
+{
+	void *room = calloc(count + 1, size);
+	if (!room)
+		leave("charts", "out of memory");
+	return room;
+}
+
+/* Without a slash dlopen would look in the system's places */
+void *object_open(const char *file)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s%s", strchr(file, '/') ? "" : "./", file);
+	return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+}
+
 FILE *file_in(const char *folder, const char *name, const char *mode)
 {
 	char path[4096];
@@ -69,12 +91,10 @@ void put_quoted(FILE *out, const char *text)
 void *variant_symbol(const char *folder, const char *file, const char *name)
 {
 	char path[4096];
-	snprintf(path, sizeof path, "%s%s/%s.so", strchr(folder, '/') ? "" : "./", folder, file);
-	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL), *symbol = handle ? dlsym(handle, name) : NULL;
-	if (!symbol) {
-		fprintf(stderr, "%s\n", dlerror());
-		exit(1);
-	}
+	snprintf(path, sizeof path, "%s/%s.so", folder, file);
+	void *handle = object_open(path), *symbol = handle ? dlsym(handle, name) : NULL;
+	if (!symbol)
+		leave(path, dlerror());
 	return symbol;
 }
 
@@ -88,11 +108,9 @@ const pl_model *variant_model(const char *folder, const char *file)
 double *history_rows(struct run *run, int units)
 {
 	const size_t entries = (size_t)units * 2 * (size_t)run->problem->n;
-	double *rows = calloc(entries + 1, sizeof *rows);
-	for (size_t i = 0; rows && i < entries; i++)
+	double *rows = room_for(entries, sizeof *rows);
+	for (size_t i = 0; i < entries; i++)
 		rows[i] = NAN;
-	if (!rows)
-		exit(1);
 	run->restart(run);
 	run->advance(run, units, rows);
 	return rows;

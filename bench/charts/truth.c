@@ -31,20 +31,6 @@
 typedef __float128 quad;
 enum { MOST = 64 };                 /* entries of a state, load states included */
 
-static void leave(const char *name, const char *why)
-{
-	fprintf(stderr, "truth of %s: %s\n", name, why);
-	exit(1);
-}
-
-static void *allot(size_t count, size_t size)
-{
-	void *room = calloc(count + 1, size);
-	if (!room)
-		leave("a problem", "out of memory");
-	return room;
-}
-
 /* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
 static quad exactly(double x)
 {
@@ -395,11 +381,11 @@ static void between_crossings(const struct problem *p, void (*make)(struct hand_
 static struct truth *new_truth(const struct problem *p)
 {
 	const size_t size = (size_t)p->units * 2 * (size_t)p->n;
-	struct truth *t = allot(1, sizeof *t);
+	struct truth *t = room_for(1, sizeof *t);
 	t->n = p->n;
 	t->units = p->units;
-	t->at_end = allot(size, sizeof *t->at_end);
-	t->between = allot(size, sizeof *t->between);
+	t->at_end = room_for(size, sizeof *t->at_end);
+	t->between = room_for(size, sizeof *t->between);
 	return t;
 }
 
@@ -515,7 +501,7 @@ static void solve(struct problem *p, struct truth *t)
 struct truth *truth_of(struct problem *p)
 {
 	if (2 * p->n + 3 > MOST)
-		leave(p->name, "too many coordinates");
+		leave(p->name, "truth: too many coordinates");
 	struct truth *t = new_truth(p);
 	say_progress("%s: truth", p->name);
 	solve(p, t);
