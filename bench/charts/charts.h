@@ -18,6 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <time.h>
 
 #include "plrt.h"
 
@@ -193,6 +194,7 @@ void table_close(FILE *csv, const char *name);
 void put_quoted(FILE *out, const char *text);           /* NULL: nothing, within quotes */
 void *variant_symbol(const char *folder, const char *file, const char *name);  /* of FOLDER/FILE.so, never closed */
 const pl_model *variant_model(const char *folder, const char *file);
+bool same_names(int states, int outputs, const char *const *state, const char *const *output);
 /* The states at the ends of units, 2n each, not numbers where a run has given up; the caller frees them */
 double *history_rows(struct run *run, int units);
 /* The largest difference in the first `judged` coordinates of n; INFINITY where one is not a number */
@@ -219,6 +221,13 @@ void sample_ladders(int runs, struct run *const *run, double seconds,
 double sample_pass(struct run *run);        /* ns per unit of one such pass by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);
+/* Of the thread: what else the machine does is not in it but for the caches */
+static inline double own_ns(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+}
 void say_progress(const char *format, ...) __attribute__((format(printf, 1, 2))); /* standard error, one line */
 
 #endif

@@ -39,24 +39,6 @@ int leftover_evaluations(const char *scheme)
 	return -1;
 }
 
-char *variant_refused(const char *file)
-{
-	char name[4096], *line = NULL;
-	size_t room = 0;
-	snprintf(name, sizeof name, "%s.refused", file);
-	FILE *f = fopen(name, "r");
-	if (!f)
-		return NULL;
-	ssize_t length = getline(&line, &room, f);
-	fclose(f);
-	if (length < 0) {
-		free(line);
-		return strdup("refused");
-	}
-	line[strcspn(line, "\n")] = '\0';
-	return line;
-}
-
 static struct generated *of(struct run *run)
 {
 	return (struct generated *)run;
@@ -250,14 +232,6 @@ static int evaluations_of(const char *options)
 	if (found)
 		sscanf(found, "--scheme %31s", scheme);
 	return leftover_evaluations(scheme);
-}
-
-static bool same_names(int states, int outputs, const char *const *state, const char *const *output)
-{
-	bool same = states == outputs;
-	for (int i = 0; same && i < states; i++)
-		same = strcmp(state[i], output[i]) == 0;
-	return same;
 }
 
 static bool load(struct generated *g, const char *file)

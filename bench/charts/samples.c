@@ -4,10 +4,7 @@
  * caches. */
 #include "charts.h"
 
-#include <stdarg.h>
 #include <stdlib.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { SAMPLES_LEAST = 3, SAMPLES_MOST = 201, CHUNK = 1000 };
 /* ns of one run: what takes this long in one pass or two is not disturbed by much */
@@ -18,26 +15,6 @@ double now_ns(void)
 	struct timespec t;
 	clock_gettime(CLOCK_MONOTONIC, &t);
 	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
-static double own_ns(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
-void say_progress(const char *format, ...)
-{
-	va_list arguments;
-	va_start(arguments, format);
-	if (isatty(2))
-		fputs("\r\033[K", stderr);
-	vfprintf(stderr, format, arguments);
-	if (!isatty(2))
-		fputc('\n', stderr);
-	va_end(arguments);
-	fflush(stderr);
 }
 
 static int ascending(const void *a, const void *b)

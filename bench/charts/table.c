@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "charts.h"
 
@@ -28,6 +29,19 @@ unsigned flags_of(int argc, char ***argv, const char *flags, int least, int most
 	}
 	*argv = next;
 	return found;
+}
+
+void say_progress(const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	if (isatty(2))
+		fputs("\r\033[K", stderr);
+	vfprintf(stderr, format, arguments);
+	if (!isatty(2))
+		fputc('\n', stderr);
+	va_end(arguments);
+	fflush(stderr);
 }
 
 void leave(const char *of, const char *why)
@@ -101,6 +115,32 @@ void *variant_symbol(const char *folder, const char *file, const char *name)
 const pl_model *variant_model(const char *folder, const char *file)
 {
 	return variant_symbol(folder, file, "subject_model");
+}
+
+char *variant_refused(const char *file)
+{
+	char name[4096], *line = NULL;
+	size_t room = 0;
+	snprintf(name, sizeof name, "%s.refused", file);
+	FILE *f = fopen(name, "r");
+	if (!f)
+		return NULL;
+	ssize_t length = getline(&line, &room, f);
+	fclose(f);
+	if (length < 0) {
+		free(line);
+		return strdup("refused");
+	}
+	line[strcspn(line, "\n")] = '\0';
+	return line;
+}
+
+bool same_names(int states, int outputs, const char *const *state, const char *const *output)
+{
+	bool same = states == outputs;
+	for (int i = 0; same && i < states; i++)
+		same = strcmp(state[i], output[i]) == 0;
+	return same;
 }
 
 /* ---- histories ---- */

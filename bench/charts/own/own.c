@@ -7,6 +7,7 @@
  * FOLDER/model.so is the model as plgen makes it, FOLDER/list has a line for each further variant: file, name, `step`
  * or `tolerance`, setting, options. -q: each time taken once, for tests.
  */
+#include "../charts.h"
 #include "own.h"
 #include "peers.h"
 #include "truth.h"
@@ -46,7 +47,7 @@ struct line {
 	char name[64], file[200], options[100];
 	bool tolerance;
 	double setting;
-	void *handle, *state;
+	void *state;
 	const pl_model *model;
 	const pl_modelf *single;
 	int steps;                      /* of ours in an output */
@@ -54,62 +55,22 @@ struct line {
 	bool rows;
 	double error, evaluations, ns;
 	const char *word;               /* ok, failed, gave up, refused */
-	char refusal[300];
+	char *refusal;                  /* NULL: none */
 };
 
-static void leave(const char *what, const char *why)
-{
-	fprintf(stderr, "own: %s: %s\n", what, why);
-	exit(1);
-}
-
-static void *need(void *memory)
-{
-	if (!memory)
-		leave("memory", "there is none left");
-	return memory;
-}
-
-static double own_ns(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 /* ---- ours ---- */
-
-static bool read_refusal(struct line *line, const char *path)
-{
-	char name[4200];
-	snprintf(name, sizeof name, "%s.refused", path);
-	FILE *f = fopen(name, "r");
-	if (!f)
-		return false;
-	if (!fgets(line->refusal, sizeof line->refusal, f))
-		strcpy(line->refusal, "refused");
-	line->refusal[strcspn(line->refusal, "\n")] = '\0';
-	fclose(f);
-	line->word = "refused";
-	return true;
-}
-
-static bool shows_states(int outputs, const char *const *output, const char *const *state)
-{
-	bool same = outputs == N;
-	for (int i = 0; same && i < N; i++)
-		same = strcmp(output[i], state[i]) == 0;
-	return same;
-}
 
 static void open_ours(struct line *line, const char *folder)
 {
 	char path[4096];
-	snprintf(path, sizeof path, "%s%s/%s", strchr(folder, '/') ? "" : "./", folder, line->file);
-	if (read_refusal(line, path))
+	snprintf(path, sizeof path, "%s/%s", folder, line->file);
+	line->refusal = variant_refused(path);
+	if (line->refusal) {
+		line->word = "refused";
 		return;
-	line->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-	const void *model = line->handle ? dlsym(line->handle, "subject_model") : NULL;
+	}
+	void *handle = object_open(path);
+	const void *model = handle ? dlsym(handle, "subject_model") : NULL;
 	if (!model)
 		leave(path, "no model in it");
 	if (strstr(line->options, "--real float"))
@@ -117,10 +78,10 @@ static void open_ours(struct line *line, const char *folder)
 	else
 		line->model = model;
 	line->steps = line->tolerance ? 1 : (int)line->setting;
-	line->state = need(calloc(1, line->single ? line->single->size : line->model->size));
+	line->state = room_for(1, line->single ? line->single->size : line->model->size);
 	line->rows = line->steps == 1 && (line->single ?
-		shows_states(line->single->outputs, line->single->output_names, line->single->state_names) :
-		shows_states(line->model->outputs, line->model->output_names, line->model->state_names));
+		same_names(N, line->single->outputs, line->single->state_names, line->single->output_names) :
+		same_names(N, line->model->outputs, line->model->state_names, line->model->output_names));
 }
 
 /* Rows of inputs for the steps of output k: as plrt.h has it, row j + 1 where an input is a ramp */
@@ -182,13 +143,8 @@ static bool run_single(struct line *line, double *rows)
 
 static void describe(const char *folder, struct extrapolation *x)
 {
-	char path[4096];
-	snprintf(path, sizeof path, "%s%s/model.so", strchr(folder, '/') ? "" : "./", folder);
-	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-	const pl_model *model = handle ? dlsym(handle, "subject_model") : NULL;
-	if (!model)
-		leave(path, handle ? "no model in it" : dlerror());
-	void *state = need(calloc(1, model->size));
+	const pl_model *model = variant_model(folder, "model");
+	void *state = room_for(1, model->size);
 	model->init(state);
 	model->get(state, history.start);
 	for (int i = 0; i < N; i++)
@@ -201,16 +157,16 @@ static void describe(const char *folder, struct extrapolation *x)
 /* Inputs: two sines with periods of 40 and 17 outputs, each input by its number later */
 static void make_signal(void)
 {
-	history.sample = need(calloc((size_t)(history.units + 2) * (INPUTS > 0 ? INPUTS : 1), sizeof(double)));
+	history.sample = room_for((size_t)(history.units + 2) * (INPUTS > 0 ? INPUTS : 1), sizeof(double));
 	for (int k = 0; k <= history.units + 1; k++)
 		for (int i = 0; i < INPUTS; i++)
 			history.sample[k * INPUTS + i] = sin(2 * M_PI * k / 40 + i) + sin(2 * M_PI * k / 17 + i) / 2;
-	history.single = need(calloc((size_t)history.units * N, sizeof(float)));
+	history.single = room_for((size_t)history.units * N, sizeof(float));
 	if (INPUTS == 0)
 		return;
 	const size_t count = (size_t)history.units * INPUTS;
-	history.ends = need(calloc(count, sizeof(double)));
-	history.single_ends = need(calloc(count, sizeof(float)));
+	history.ends = room_for(count, sizeof(double));
+	history.single_ends = room_for(count, sizeof(float));
 	for (int k = 0; k < history.units; k++)
 		samples_of(k, 1, history.ends + (size_t)k * INPUTS);
 	for (size_t i = 0; i < count; i++)
@@ -229,7 +185,7 @@ static void find_scales(const struct extrapolation *x, const double *rows)
 		history.scale[i] = most[x->velocity[i]] > 0 ? most[x->velocity[i]] : 1;
 }
 
-static double error_of(const double *rows, const double *truth)
+static double off_by(const double *rows, const double *truth)
 {
 	double most = 0;
 	for (int k = 0; k < history.units * N; k++) {
@@ -246,17 +202,14 @@ static double error_of(const double *rows, const double *truth)
 
 static int read_list(const char *folder, struct line *lines)
 {
-	char path[4096], text[1000], kind[20];
-	snprintf(path, sizeof path, "%s/list", folder);
-	FILE *f = fopen(path, "r");
+	char text[1000], kind[20];
+	FILE *f = file_in(folder, "list", "r");
 	int count = 0;
-	if (!f)
-		leave(path, "cannot be read");
 	while (count < MOST_LINES && fgets(text, sizeof text, f)) {
 		struct line *line = &lines[count];
 		if (sscanf(text, "%199[^\t]\t%63[^\t]\t%19[^\t]\t%lf\t%99[^\n]", line->file, line->name, kind,
 		           &line->setting, line->options) != 5)
-			leave(path, text);
+			leave("list", text);
 		line->tolerance = strcmp(kind, "tolerance") == 0;
 		open_ours(line, folder);
 		count++;
@@ -312,7 +265,7 @@ static void find_error(struct line *line, double *rows, const double *truth)
 	bool good = false;
 	line->word = "ok";
 	line->ns = pass(line, rows, &good);
-	line->error = good ? error_of(rows, truth) : HUGE_VAL;
+	line->error = good ? off_by(rows, truth) : HUGE_VAL;
 	line->evaluations = line->peer ? (double)history.evaluations / history.units : -1;
 	if (!isfinite(line->error) && strcmp(line->word, "gave up") != 0)
 		line->word = "failed";
@@ -347,7 +300,7 @@ static void put_setting(FILE *out, const struct line *line)
 static void put_line(FILE *csv, const struct line *line, double agreement)
 {
 	const bool good = strcmp(line->word, "ok") == 0;
-	const char *settings = line->peer ? line->peer->settings : line->refusal[0] ? line->refusal : line->options;
+	const char *settings = line->peer ? line->peer->settings : line->refusal ? line->refusal : line->options;
 	fprintf(csv, "\"%s\",%s,%s,%.6g,", line->name, line->peer ? "peer" : "ours",
 	        line->tolerance ? "tolerance" : "step",
 	        line->tolerance ? line->setting : history.every / line->setting);
@@ -363,31 +316,18 @@ static void put_line(FILE *csv, const struct line *line, double agreement)
 		fprintf(csv, "%.5g,", line->ns);
 	else
 		fputs("none,", csv);
-	fprintf(csv, "%.2g,\"", agreement);
-	for (; *settings; settings++)
-		putc(*settings == '"' ? '\'' : *settings, csv);
-	fputs("\"\n", csv);
-}
-
-static FILE *open_in(const char *folder, const char *name)
-{
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *out = fopen(path, "w");
-	if (!out)
-		leave(path, "cannot be written");
-	return out;
+	fprintf(csv, "%.2g,", agreement);
+	put_quoted(csv, settings);
+	putc('\n', csv);
 }
 
 static void write_table(const char *folder, const struct line *lines, int count, double agreement)
 {
-	FILE *csv = open_in(folder, "own.csv");
-	fputs("method,family,setting_kind,setting,largest,word,evaluations_per_output,ns_min,truth_agreement,"
-	      "settings\n", csv);
+	FILE *csv = table_open(folder, "own.csv", "method,family,setting_kind,setting,largest,word,"
+	                       "evaluations_per_output,ns_min,truth_agreement,settings");
 	for (const struct line *line = lines; line < lines + count; line++)
 		put_line(csv, line, agreement);
-	if (ferror(csv) | fclose(csv))
-		leave("own.csv", "cannot be written");
+	table_close(csv, "own.csv");
 }
 
 static const struct line *cheapest(const struct line *lines, int count, bool ours, double target)
@@ -416,7 +356,7 @@ static void write_verdict(const char *folder, const struct line *lines, int coun
 {
 	static const double targets[] = {1e-3, 1e-6, 1e-9, 1e-12};
 	char title[400] = "";
-	FILE *out = open_in(folder, "verdict.txt");
+	FILE *out = file_in(folder, "verdict.txt", "w");
 	for (int i = 0; i < 4; i++) {
 		const struct line *ours = cheapest(lines, count, true, targets[i]),
 			*peer = cheapest(lines, count, false, targets[i]);
@@ -440,8 +380,7 @@ static void write_verdict(const char *folder, const struct line *lines, int coun
 		putc('\n', out);
 	}
 	fprintf(out, "title: %s\n", title);
-	if (ferror(out) | fclose(out))
-		leave("verdict.txt", "cannot be written");
+	table_close(out, "verdict.txt");
 }
 
 int main(int argc, char **argv)
@@ -458,12 +397,12 @@ int main(int argc, char **argv)
 	history.units = atoi(argv[2 + quick]);
 	if (!(history.every > 0) || history.units < 1)
 		leave("UNTIL and EVERY", "an output at least has to come before the end");
-	double *truth = need(calloc((size_t)history.units * N, sizeof *truth)),
-		*rows = need(calloc((size_t)history.units * N, sizeof *rows));
+	double *truth = room_for((size_t)history.units * N, sizeof *truth),
+		*rows = room_for((size_t)history.units * N, sizeof *rows);
 	describe(folder, &x);
 	make_signal();
 	x.most = 1000000000L / N;
-	if (!truth_of(&x, truth))
+	if (!find_truth(&x, truth))
 		leave("what is true", "extrapolation does not come to the end: the motion grows without bound, or its "
 		      "equations are too stiff or too rough for it");
 	find_scales(&x, truth);
@@ -471,7 +410,7 @@ int main(int argc, char **argv)
 	/* of what is true with whatever comes nearest, another road in every case */
 	double agreement = HUGE_VAL;
 	for (struct line *line = lines; line < lines + count; line++)
-		if (!line->refusal[0]) {
+		if (!line->refusal) {
 			find_error(line, rows, truth);
 			if (strcmp(line->word, "ok") == 0)
 				agreement = fmin(agreement, line->error);

@@ -127,7 +127,7 @@ static bool go_through(struct extrapolation *x, double *rows)
 
 /* Roughly first, so that the scales are those of the whole history: near a start at rest nothing is known to 1e-16 of
  * itself */
-static bool truth_of(struct extrapolation *x, double *rows)
+static bool find_truth(struct extrapolation *x, double *rows)
 {
 	x->tolerance = 1e-6L;
 	if (!go_through(x, rows))
