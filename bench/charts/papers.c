@@ -54,14 +54,33 @@ void row_of(FILE *table, const char *source, const char *model, const char *meth
 }
 
 void time_of(const struct papers *papers, const char *source, const char *model, const char *method,
-	const char *quantity,
-             const char *reported, const char *measured, const char *settings, struct samples ns)
+             const char *quantity, const char *reported, const char *measured, const char *settings, struct samples ns)
 {
 	const char *const field[] = { source, model, method, quantity, reported ? reported : "not stated", measured };
 	print_fields(papers->times, sizeof field / sizeof *field, field);
 	fprintf(papers->times, ",%.6g,%.6g,%.6g,", ns.min, ns.median, ns.max);
 	print_fields(papers->times, 1, &settings);
 	fputc('\n', papers->times);
+}
+
+void times_of(const struct papers *papers, const char *source, const char *model, const char *quantity, int count,
+              struct run *const *run, double seconds, const char *const *reported, const char *settings)
+{
+	struct samples ns[count];
+	say_progress("papers: %s, times of %s", source, model);
+	sample_runs(count, run, seconds, ns);
+	for (int i = 0; i < count; i++) {
+		time_of(papers, source, model, run[i]->method->name, quantity, reported ? reported[i] : NULL,
+		        text("%.3g", ns[i].median / ns[0].median), settings, ns[i]);
+		run[i]->close(run[i]);
+	}
+}
+
+double *rows_of(struct run *run)
+{
+	double *rows = history_rows(run, run->problem->units);
+	run->close(run);
+	return rows;
 }
 
 struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,

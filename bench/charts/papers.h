@@ -32,10 +32,15 @@ FILE *table_begin(const struct papers *papers, const char *name);
 void row_of(FILE *table, const char *source, const char *model, const char *method, const char *quantity,
             const char *reported, const char *recovered, const char *measured, const char *settings);
 void time_of(const struct papers *papers, const char *source, const char *model, const char *method,
-	const char *quantity,
-             const char *reported, const char *measured, const char *settings, struct samples ns);
+             const char *quantity, const char *reported, const char *measured, const char *settings, struct samples ns);
+/* Of runs that take turns for `seconds`, their steps' times over that of the first; closes them. reported NULL: none */
+void times_of(const struct papers *papers, const char *source, const char *model, const char *quantity, int count,
+              struct run *const *run, double seconds, const char *const *reported, const char *settings);
+/* What a row is judged by, closed then: 2n at the ends of units; the caller frees it */
+double *rows_of(struct run *run);
 #define put_row(table, ...) row_of(table, source, __VA_ARGS__)
 #define put_time(papers, ...) time_of(papers, source, __VA_ARGS__)
+#define put_times(papers, ...) times_of(papers, source, __VA_ARGS__)
 const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
 const char *percent(double part);
 /* frequency: of a linear model's load, 0 where it has none; below 0: the model is not linear */

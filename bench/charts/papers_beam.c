@@ -26,10 +26,9 @@ struct reference {
 static void tips_of(struct run *run, double *tip)
 {
 	const int units = run->problem->units;
-	double *rows = history_rows(run, units);
+	double *rows = rows_of(run);
 	for (int row = 0; row < units; row++)
 		tip[row] = rows[row * 2 * COORDINATES + TIP];
-	run->close(run);
 	free(rows);
 }
 
@@ -212,34 +211,24 @@ static void compare_schemes(const struct papers *papers, FILE *table, const stru
 {
 	static const char *const at_rest[] = { "diverges near 10 s", "diverges near 22 s", "diverges near 26 s" };
 	static const char *const left[2][2] = { { "7.5e-4", "8.8e-5" }, { "1.5e-3", "6.3e-7" } };
-	for (int i = 0; i < 3; i++) {
-		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
-		                                         text("beam15_A0_%s_100", schemes[i]->name)), b);
-		put_row(table, b->model, schemes[i]->name, "operator A(0), h = 0.01 s, 50 s", NULL, at_rest[i],
-			say(&f, b), "Om = 15");
+	for (int i = 0; i < 6; i++) {
+		const struct method *scheme = schemes[i % 3];
+		const int speed = i < 3 ? 0 : 15;
+		const struct fate f = fate_of(papers_run(papers, scheme, b->p,
+		                                         text("beam15_A%d_%s_100", speed, scheme->name)), b);
+		put_row(table, b->model, scheme->name, text("operator A(%d), h = 0.01 s, 50 s", speed), NULL,
+			i < 3 ? at_rest[i] : "bounded", say(&f, b), "Om = 15");
 	}
-	for (int i = 0; i < 3; i++) {
+	for (int k = 0; k < (papers->quick ? 4 : 8); k++) {
+		const int fine = k / 4, exact = k % 4 / 2, i = k % 2 + 1, rate = fine ? 1000 : 100;
 		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
-		                                         text("beam15_A15_%s_100", schemes[i]->name)), b);
-		put_row(table, b->model, schemes[i]->name, "operator A(15), h = 0.01 s, 50 s", NULL, "bounded",
-			say(&f, b), "Om = 15");
-	}
-	for (int fine = 0; fine < (papers->quick ? 1 : 2); fine++) {
-		const int rate = fine ? 1000 : 100;
-		for (int i = 1; i < 3; i++) {
-			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
-			                                         text("beam15_left_%s_%d", schemes[i]->name, rate)), b);
-			put_row(table, b->model, schemes[i]->name,
-				text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL,
-				left[i - 1][fine], text("%.2g", f.error), "Om = 15; loads left to the scheme");
-		}
-		for (int i = 1; i < 3; i++) {
-			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
-			                                         text("beam15_A15_%s_%d", schemes[i]->name, rate)), b);
-			put_row(table, b->model, schemes[i]->name,
-				text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL, NULL,
-				text("%.2g", f.error), "Om = 15; loads carried exactly, plgen's default");
-		}
+		                                         text("beam15_%s_%s_%d", exact ? "A15" : "left",
+		                                              schemes[i]->name, rate)), b);
+		put_row(table, b->model, schemes[i]->name,
+			text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL,
+			exact ? NULL : left[i - 1][fine], text("%.2g", f.error),
+			exact ? "Om = 15; loads carried exactly, plgen's default"
+				: "Om = 15; loads left to the scheme");
 	}
 }
 
@@ -248,17 +237,10 @@ void beam_times(const struct papers *papers)
 	static const char *const reported[] = { "1", "about 2", "about 4" };
 	struct problem *p = papers_problem(papers, "beam15_A15_etd1_100", "beam15", 0.01, 5000, -1);
 	struct run *run[3];
-	struct samples ns[3];
 	for (int i = 0; i < 3; i++)
 		run[i] = papers_run(papers, schemes[i], p, text("beam15_A15_%s_100", schemes[i]->name));
-	say_progress("papers: 004, times");
-	sample_runs(3, run, papers->quick ? 0.3 : 1.5, ns);
-	for (int i = 0; i < 3; i++) {
-		put_time(papers, "beam15", schemes[i]->name, "time of a step over etd1's", reported[i],
-			text("%.3g", ns[i].median / ns[0].median),
-			"one operator A(15), h = 0.01 s, loads exact; compiled C, -O2", ns[i]);
-		run[i]->close(run[i]);
-	}
+	put_times(papers, "beam15", "time of a step over etd1's", 3, run, papers->quick ? 0.3 : 1.5, reported,
+	          "one operator A(15), h = 0.01 s, loads exact; compiled C, -O2");
 	problem_free(p);
 }
 

@@ -121,13 +121,6 @@ static int ode45_solve(const struct problem *p, double *rows)
 
 /* ---- errors ---- */
 
-static double *history(struct run *run)
-{
-	double *rows = history_rows(run, run->problem->units);
-	run->close(run);
-	return rows;
-}
-
 /* Largest of any displacement, over the initial one */
 static double largest(const struct problem *p, const double *rows, const double *reference, int units)
 {
@@ -138,7 +131,7 @@ static double largest(const struct problem *p, const double *rows, const double 
 static double *fine_rk4(const struct problem *p)
 {
 	const struct method *rk4 = method_find("RK4");
-	return history(rk4->open(rk4, p, p->unit / 10));
+	return rows_of(rk4->open(rk4, p, p->unit / 10));
 }
 
 enum { METHODS = 6 };
@@ -159,9 +152,9 @@ static void order_errors(const struct papers *papers, FILE *table, const struct 
 			rows[i] = calloc((size_t)(STATES * p->units), sizeof **rows);
 			steps = ode45_solve(p, rows[i]);
 		} else if (peer) {
-			rows[i] = history(peer->open(peer, p, p->unit));
+			rows[i] = rows_of(peer->open(peer, p, p->unit));
 		} else {
-			rows[i] = history(papers_run(papers, i == 4 ? &pl : &exact, p,
+			rows[i] = rows_of(papers_run(papers, i == 4 ? &pl : &exact, p,
 			                             text("%s_%s_100", system->name, names[i])));
 		}
 	}
@@ -222,7 +215,7 @@ static void compare_springs(const struct papers *papers, FILE *table, const stru
 	                      papers_run(papers, &exact, p, text("%s_exact", variant)) };
 	for (int i = 0; i < 3; i++) {
 		const char *name = run[i]->method->name;
-		double *rows = history(run[i]);
+		double *rows = rows_of(run[i]);
 		put_row(table, model, name, "largest displacement error over x1(0), 0.6 s, against the closed form",
 			i < 2 ? s->reported[i] : NULL, i < 2 ? s->recovered[i] : NULL,
 			percent(largest(p, rows, truth->at_end, p->units)), "h = 0.01 s; m = 1; undamped");
@@ -242,16 +235,10 @@ static void time_histories(const struct papers *papers, const struct system *sys
 	struct run *run[] = { rk4->open(rk4, p, p->unit),
 	                      papers_run(papers, &pl, p, text("%s_pl_%d", system->name, rate)),
 		papers_run(papers, &exact, p, text("%s_exact_%d", system->name, rate)) };
-	struct samples ns[3];
-	say_progress("papers: 000, times of %s, h = %g s", system->name, p->unit);
-	sample_runs(3, run, papers->quick ? 0.15 : 0.8, ns);
-	for (int i = 0; i < 3; i++) {
-		put_time(papers, system->name, run[i]->method->name,
-			text("time of a step over RK4's, 30 s at h = %g s", p->unit),
-			i == 1 ? system->time_ratio[fine] : NULL, text("%.3g", ns[i].median / ns[0].median),
-			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i]);
-		run[i]->close(run[i]);
-	}
+	const char *const reported[3] = { NULL, system->time_ratio[fine], NULL };
+	put_times(papers, system->name, text("time of a step over RK4's, 30 s at h = %g s", p->unit), 3, run,
+	          papers->quick ? 0.15 : 0.8, reported,
+	          "compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step");
 	problem_free(p);
 }
 

@@ -40,10 +40,10 @@ static const struct history {
 /* Largest error of a judged coordinate at the ends of steps, in its own unit */
 static double largest(struct run *run, const struct truth *truth, int judged)
 {
-	double *rows = history_rows(run, run->problem->units);
-	const double worst = largest_off(run->problem->n, judged, rows, truth->at_end, run->problem->units);
+	const struct problem *p = run->problem;
+	double *rows = rows_of(run);
+	const double worst = largest_off(p->n, judged, rows, truth->at_end, p->units);
 	free(rows);
-	run->close(run);
 	return worst;
 }
 
@@ -108,17 +108,11 @@ void integration_times(const struct papers *papers)
 	const struct method *rk4 = method_find("RK4");
 	struct problem *p = papers_problem(papers, "pendulum_bm3_10", "pendulum", 0.1, 1000, -1);
 	struct run *run[SCHEMES + 1];
-	struct samples ns[SCHEMES + 1];
 	run[0] = rk4->open(rk4, p, p->unit);
 	for (int i = 0; i < SCHEMES; i++)
 		run[i + 1] = papers_run(papers, &schemes[i], p, text("pendulum_%s_10", schemes[i].name));
-	say_progress("papers: 001, times");
-	sample_runs(SCHEMES + 1, run, papers->quick ? 0.15 : 0.8, ns);
-	for (int i = 0; i <= SCHEMES; i++) {
-		put_time(papers, "pendulum", run[i]->method->name, "time of a step over RK4's, h = 0.1 s", NULL,
-			text("%.3g", ns[i].median / ns[0].median),
-			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i]);
-		run[i]->close(run[i]);
-	}
+	put_times(papers, "pendulum", "time of a step over RK4's, h = 0.1 s", SCHEMES + 1, run,
+	          papers->quick ? 0.15 : 0.8, NULL,
+	          "compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step");
 	problem_free(p);
 }

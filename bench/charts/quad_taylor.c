@@ -26,12 +26,12 @@ quad quad_of_decimal(double x)
 /* ---- the tape ---- */
 
 /* SIN has its cosine in the node after it, which is its b, and COS its sine in the node before it */
-enum op { LEAF, ADD, SUBTRACT, TIMES, OVER, SCALED, SHIFTED, ROOT, SIN, COS };
+enum op { LEAF, ADD, SUBTRACT, TIMES, OVER, SCALED, ROOT, SIN, COS };
 
 struct node {
 	enum op op;
 	int a, b;                       /* nodes before this one */
-	quad factor;                    /* SCALED: times; SHIFTED: plus */
+	quad factor;                    /* SCALED: times; of a number: itself */
 	quad c[ORDER + 1];
 };
 
@@ -53,14 +53,6 @@ static int push(struct tape *x, enum op op, int a, int b, quad factor)
 	node->factor = factor;
 	return x->count++;
 }
-
-#define add(x, a, b) push(x, ADD, a, b, 0)
-#define subtract(x, a, b) push(x, SUBTRACT, a, b, 0)
-#define times(x, a, b) push(x, TIMES, a, b, 0)
-#define over(x, a, b) push(x, OVER, a, b, 0)
-#define scaled(x, factor, a) push(x, SCALED, a, 0, factor)
-#define shifted(x, by, a) push(x, SHIFTED, a, 0, by)
-#define root(x, a) push(x, ROOT, a, 0, 0)
 
 /* The sine; its cosine is the node after it */
 static int sine(struct tape *x, int a)
@@ -110,9 +102,6 @@ static void coefficient(struct tape *x, int at, int k)
 	case SCALED:
 		c[k] = node->factor * a[k];
 		return;
-	case SHIFTED:
-		c[k] = a[k] + (k == 0 ? node->factor : 0);
-		return;
 	case ROOT:
 		c[k] = k == 0 ? sqrtq(a[0]) : (a[k] - convolution(c, c, 1, k - 1, k)) / (2 * c[0]);
 		return;
@@ -146,108 +135,93 @@ static void expand(struct tape *x, quad t, const quad *y)
 
 /* ---- the equations, as the specs have them ---- */
 
-static void pendulum(struct tape *x)
+/* A text onto the tape; x, z: coordinates, v, w: their velocities, t: time */
+struct reader { struct tape *tape; const char *at; int node['z' + 1]; };
+
+static int sum(struct reader *r);
+
+static bool skips(struct reader *r, const char *text)
 {
-	x->acceleration[0] = scaled(x, -1, sine(x, x->q));
+	const size_t length = strlen(text);
+	const bool same = strncmp(r->at, text, length) == 0;
+	r->at += same ? length : 0;
+	return same;
 }
 
-/* mu (1 - q^2) v - q */
-static int relaxation(struct tape *x, quad mu, int q, int v)
+/* A number, a name, sin(...), cos(...), sqrt(...), (...) */
+static int factor(struct reader *r)
 {
-	const int damping = shifted(x, 1, scaled(x, -1, times(x, q, q)));
-	return subtract(x, scaled(x, mu, times(x, damping, v)), q);
-}
-
-static void vanderpol(struct tape *x)
-{
-	x->acceleration[0] = relaxation(x, 1, x->q, x->v);
-}
-
-static void vanderpol_stiff(struct tape *x)
-{
-	x->acceleration[0] = relaxation(x, 100, x->q, x->v);
-}
-
-static void vanderpol_stiffer(struct tape *x)
-{
-	x->acceleration[0] = relaxation(x, 1000, x->q, x->v);
-}
-
-static void henon_heiles(struct tape *x)
-{
-	const int p = x->q, q = x->q + 1, product = times(x, p, q);
-	x->acceleration[0] = scaled(x, -1, add(x, p, scaled(x, 2, product)));
-	x->acceleration[1] = subtract(x, subtract(x, times(x, q, q), times(x, p, p)), q);
-}
-
-static void duffing(struct tape *x)
-{
-	const int cube = times(x, times(x, x->q, x->q), x->q);
-	const int wave = sine(x, scaled(x, 1.4Q, x->time)) + 1;
-	const int force = subtract(x, scaled(x, 0.5Q, wave), scaled(x, 0.2Q, x->v));
-	x->acceleration[0] = subtract(x, force, add(x, x->q, cube));
-}
-
-static void mathieu(struct tape *x)
-{
-	const int wave = sine(x, scaled(x, 2, x->time)) + 1;
-	const int stiffness = shifted(x, -1, scaled(x, 0.4Q, wave));
-	x->acceleration[0] = subtract(x, times(x, stiffness, x->q), scaled(x, 0.1Q, x->v));
-}
-
-static void coupled_vanderpol(struct tape *x)
-{
-	const int p = x->q, q = x->q + 1, pull = scaled(x, 0.3Q, subtract(x, q, p));
-	x->acceleration[0] = add(x, relaxation(x, 1, p, x->v), pull);
-	x->acceleration[1] = subtract(x, subtract(x, relaxation(x, 1, q, x->v + 1), scaled(x, 0.2Q, q)), pull);
-}
-
-static void double_pendulum(struct tape *x)
-{
-	const int v = x->v, w = x->v + 1;
-	const int s1 = sine(x, x->q), s2 = sine(x, x->q + 1), s = sine(x, subtract(x, x->q, x->q + 1)), c = s + 1;
-	const int first = add(x, times(x, s, times(x, w, w)), scaled(x, 2, s1));
-	const int second = subtract(x, times(x, s, times(x, v, v)), s2);
-	const int mass = shifted(x, 2, scaled(x, -1, times(x, c, c)));
-	x->acceleration[0] = over(x, scaled(x, -1, add(x, first, times(x, c, second))), mass);
-	x->acceleration[1] = over(x, add(x, scaled(x, 2, second), times(x, c, first)), mass);
-}
-
-static void rayleigh(struct tape *x)
-{
-	const int damping = shifted(x, 1, scaled(x, -1, times(x, x->v, x->v)));
-	x->acceleration[0] = subtract(x, times(x, damping, x->v), x->q);
-}
-
-static void duffing_pair(struct tape *x)
-{
-	const int pull = scaled(x, 0.5Q, subtract(x, x->q + 1, x->q));
-	const int wave = sine(x, scaled(x, 1.2Q, x->time)) + 1;
-	for (int i = 0; i < 2; i++) {
-		const int q = x->q + i, v = x->v + i;
-		const int speed = root(x, shifted(x, 0.01Q, times(x, v, v)));
-		const int drag = scaled(x, 0.1Q, times(x, v, speed));
-		const int spring = add(x, q, times(x, q, times(x, q, q)));
-		const int own = scaled(x, -1, add(x, spring, drag));
-		x->acceleration[i] = i == 0 ? add(x, add(x, own, pull), scaled(x, 0.5Q, wave)) : subtract(x, own, pull);
+	struct tape *x = r->tape;
+	char *end;
+	const quad number = strtoflt128(r->at, &end);
+	if (end != r->at) {
+		const int node = push(x, LEAF, 0, 0, number);
+		r->at = end;
+		x->node[node].c[0] = number;
+		return node;
 	}
+	const bool root = skips(r, "sqrt"), sin = skips(r, "sin"), cos = skips(r, "cos");
+	if (!skips(r, "("))
+		return r->node[(int)*r->at++];
+	const int inside = sum(r);
+	skips(r, ")");
+	return root ? push(x, ROOT, inside, 0, 0) : sin || cos ? sine(x, inside) + cos : inside;
 }
 
-static void spherical_pendulum(struct tape *x)
+static int product(struct reader *r)
 {
-	const int s = sine(x, x->q), c = s + 1, v = x->v, w = x->v + 1;
-	const int turn = times(x, times(x, s, c), times(x, w, w));
-	x->acceleration[0] = subtract(x, turn, s);
-	x->acceleration[1] = scaled(x, -2, over(x, times(x, c, times(x, v, w)), s));
+	struct tape *x = r->tape;
+	int a = factor(r);
+	for (bool times; (times = skips(r, "*")) || skips(r, "/");) {
+		const int b = factor(r);
+		const struct node *left = &x->node[a];
+		a = times && left->op == LEAF && left->factor != 0 ? push(x, SCALED, b, 0, left->factor)
+		    : push(x, times ? TIMES : OVER, a, b, 0);
+	}
+	return a;
 }
 
-static const struct { const char *name; int n; void (*write)(struct tape *x); } models[] = {
-	{ "pendulum", 1, pendulum }, { "vanderpol", 1, vanderpol }, { "vanderpol_stiff", 1, vanderpol_stiff },
-	{ "vanderpol_stiffer", 1, vanderpol_stiffer },
-	{ "quad2dof", 2, henon_heiles }, { "duffing", 1, duffing }, { "mathieu", 1, mathieu },
-	{ "henon_heiles", 2, henon_heiles }, { "coupled_vanderpol", 2, coupled_vanderpol },
-	{ "double_pendulum", 2, double_pendulum }, { "rayleigh", 1, rayleigh }, { "duffing_pair", 2, duffing_pair },
-	{ "spherical_pendulum", 2, spherical_pendulum },
+static int sum(struct reader *r)
+{
+	struct tape *x = r->tape;
+	int a = skips(r, "-") ? push(x, SCALED, product(r), 0, -1) : product(r);
+	for (bool plus; (plus = skips(r, " + ")) || skips(r, " - ");)
+		a = push(x, plus ? ADD : SUBTRACT, a, product(r), 0);
+	return a;
+}
+
+/* NAME = SUM; ...: a and b are the accelerations */
+static void write_equations(struct tape *x, const char *text)
+{
+	struct reader r = { x, text,
+	                    { ['t'] = x->time, ['x'] = x->q, ['z'] = x->q + 1, ['v'] = x->v, ['w'] = x->v + 1 } };
+	while (*r.at) {
+		const int name = *r.at;
+		r.at += strlen("a = ");
+		r.node[name] = sum(&r);
+		skips(&r, "; ");
+	}
+	x->acceleration[0] = r.node['a'];
+	x->acceleration[1] = r.node['b'];
+}
+
+#define DRAGGED(q, v) "0.1*" v "*sqrt(" v "*" v " + 0.01) - " q " - " q "*" q "*" q
+static const struct { const char *name; int n; const char *equations; } models[] = {
+	{ "pendulum", 1, "a = -sin(x)" },
+	{ "vanderpol", 1, "a = (1 - x*x)*v - x" },
+	{ "vanderpol_stiff", 1, "a = 100*((1 - x*x)*v) - x" },
+	{ "vanderpol_stiffer", 1, "a = 1000*((1 - x*x)*v) - x" },
+	{ "rayleigh", 1, "a = (1 - v*v)*v - x" },
+	{ "duffing", 1, "a = 0.5*cos(1.4*t) - 0.2*v - x - x*x*x" },
+	{ "mathieu", 1, "a = (0.4*cos(2*t) - 1)*x - 0.1*v" },
+	{ "quad2dof", 2, "a = -x - 2*x*z; b = z*z - x*x - z" },
+	{ "henon_heiles", 2, "a = -x - 2*x*z; b = z*z - x*x - z" },
+	{ "coupled_vanderpol", 2, "p = 0.3*(z - x); a = (1 - x*x)*v - x + p; b = (1 - z*z)*w - 1.2*z - p" },
+	{ "double_pendulum", 2, "s = sin(x - z); c = cos(x - z); p = s*w*w + 2*sin(x); q = s*v*v - sin(z); "
+	                        "m = 2 - c*c; a = -(p + c*q)/m; b = (2*q + c*p)/m" },
+	{ "duffing_pair", 2, "p = 0.5*(z - x); a = 0.5*cos(1.2*t) + p - " DRAGGED("x", "v") "; "
+	                     "b = -p - " DRAGGED("z", "w") },
+	{ "spherical_pendulum", 2, "s = sin(x); c = cos(x); a = s*c*w*w - s; b = -2*v*w*c/s" },
 };
 enum { MODELS = sizeof models / sizeof *models };
 
@@ -352,7 +326,7 @@ void quad_taylor(const struct problem *p, struct truth *t)
 	}
 	const int model = model_of(p);
 	start_tape(&x, p->n);
-	models[model].write(&x);
+	write_equations(&x, models[model].equations);
 	for (int i = 0; i < 2 * p->n; i++)
 		y[i] = quad_of_decimal(p->start[i]);
 	see(&largest, p->n, y);
