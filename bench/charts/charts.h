@@ -129,6 +129,7 @@ extern const struct method *const adaptive_methods[];   /* adaptive.c */
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const clearance_methods[];  /* clearance.c: models with clearances */
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
+extern const struct method residues_naive;              /* residues_naive.c: the same, where poles are apart */
 const struct method *method_find(const char *name);     /* among these */
 /* pade.c: e^{A length}, n x n, row-major; false: A is not finite, and nor is the result */
 bool pade_exponential(int n, const double *A, double length, double *result);

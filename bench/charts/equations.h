@@ -31,6 +31,7 @@
 
 /* A model of one coordinate: its acceleration, and that by x and by v */
 #define ONE(NAME, ACCELERATION, BY_X, BY_V) \
+enum { NAME##_coordinates = 1 }; \
 INLINE void NAME##_slopes(NUMBER t, const NUMBER *y, NUMBER *f) \
 { \
 	const NUMBER x = y[0], v = y[1]; \
@@ -48,6 +49,7 @@ INLINE void NAME##_jacobian(NUMBER t, const NUMBER *y, NUMBER *Jq, NUMBER *Jv) \
 /* Of two, x and z with velocities v and w: what both accelerations share, as statements; these; what their derivatives
  * share beside; Jq, Jv */
 #define TWO(NAME, SHARED, ONE_IS, OTHER_IS, SHARED_BY, XX, XZ, ZX, ZZ, VV, VW, WV, WW) \
+enum { NAME##_coordinates = 2 }; \
 INLINE void NAME##_slopes(NUMBER t, const NUMBER *y, NUMBER *f) \
 { \
 	const NUMBER x = y[0], z = y[1], v = y[2], w = y[3]; \

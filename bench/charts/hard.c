@@ -26,7 +26,6 @@
 #include <string.h>
 
 #include "charts.h"
-#include "residues_naive.h"
 
 typedef __float128 quad;
 enum { MOST_STATES = 4 };

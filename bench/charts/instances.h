@@ -8,6 +8,7 @@
  * What includes this may add an instance of its own for any other problem. */
 #ifdef MODEL
 #define INSTANCE(part) OF_MODEL(MODEL, part)
+#define COORDINATES OF_MODEL(MODEL, coordinates)
 #define EXTENT COORDINATES
 #define SLOPES(t, y, f) OF_MODEL(MODEL, slopes)(t, y, f)
 #define JACOBIAN(t, y, Jq, Jv) OF_MODEL(MODEL, jacobian)(t, y, Jq, Jv)
@@ -17,42 +18,29 @@
 #define JOINED(model, part) model##_##part
 #define OF_MODEL(model, part) JOINED(model, part)
 #define MODEL pendulum
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL vanderpol
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL vanderpol_stiff
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL vanderpol_stiffer
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL quad2dof
-#define COORDINATES 2
 #include "instances.h"
 #define MODEL duffing
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL mathieu
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL henon_heiles
-#define COORDINATES 2
 #include "instances.h"
 #define MODEL coupled_vanderpol
-#define COORDINATES 2
 #include "instances.h"
 #define MODEL double_pendulum
-#define COORDINATES 2
 #include "instances.h"
 #define MODEL rayleigh
-#define COORDINATES 1
 #include "instances.h"
 #define MODEL duffing_pair
-#define COORDINATES 2
 #include "instances.h"
 #define MODEL spherical_pendulum
-#define COORDINATES 2
 #include "instances.h"
 #endif

@@ -3,7 +3,7 @@
  * polynomial solver, every pole taken for a simple one, A(s)/B'(s) e^{sh} summed into the matrix of a step. For one or
  * two coordinates. It shows what plgen's exact multiplicities and correct rounding are for; nobody need write it like
  * this. */
-#include "residues_naive.h"
+#include "charts.h"
 
 #include <complex.h>
 #include <gsl/gsl_poly.h>

@@ -8,11 +8,6 @@ enum { MOST_ENTRIES = N + N % 2 };
 #define SLOPES(t, y, f) model_slope(t, y, f)
 #include "../dop853.c"
 
-static void as_it_is(const double *y, double *state)
-{
-	memcpy(state, y, N * sizeof *y);
-}
-
 bool own_dop853(double setting, double *rows)
 {
 	static struct dop853 d;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exact in regions, bisection, of the kept charts (clearance.c), for any model of regions. A, and where regions end,
- * are those of the tables that its C has, turned back to its states as written. */
+ * are those of the tables that its C has, turned back to its states as written. And a matrix as constants in code,
+ * compiled while the chart is made (literals.c). */
 #include "own.h"
 #include "../exponential.c"
+#include "../literals.c"
 #include "subject_regions.h"
 
 #if REGIONS > 0
@@ -133,3 +135,10 @@ bool own_regions(double setting, double *rows)
 	return false;
 }
 #endif
+
+void *own_literals(int own, const double *Phi)
+{
+	const struct literals l = {.own = own, .size = own + 1, .steps = 1, .Phi = Phi};
+	void *handle = literals_load(&l);
+	return handle ? dlsym(handle, "advance") : NULL;
+}

@@ -11,11 +11,6 @@
 #include "../solvers_gsl.c"
 #include "../solvers_sundials.c"
 
-static void as_it_is(const double *y, double *state)
-{
-	memcpy(state, y, N * sizeof *y);
-}
-
 static bool kept(struct adaptive *a, double *length, const struct kind *kind, double setting, double *rows)
 {
 	*a = (struct adaptive){.n = N / 2, .size = N, .scale = history.scale};

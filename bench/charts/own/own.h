@@ -95,7 +95,7 @@ struct peer {
 	bool once;                      /* its step is an output */
 };
 
-/* Of the kept charts: kept_solvers.c, kept_dop853.c, kept_radau.c, kept_regions.c, kept_literals.c. Absolute tolerances
+/* Of the kept charts: kept_solvers.c, kept_dop853.c, kept_radau.c, kept_regions.c. Absolute tolerances
  * are the relative one times the largest coordinate, or velocity, of the history. */
 bool own_dormand(double setting, double *rows);
 bool own_rk8pd(double setting, double *rows);

@@ -109,12 +109,12 @@ grep -v '^#' $own/variants | while IFS='|' read -r method options setting values
 done
 xargs -P "${JOBS:-2}" -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
 variants=$!
-for part in own kept_solvers kept_dop853 kept_radau kept_regions kept_literals ../table; do
+for part in own kept_solvers kept_dop853 kept_radau kept_regions ../table; do
 	echo "-c $own/$part.c -o $work/${part#../}.o"
 done | xargs -P "${JOBS:-2}" -L1 $cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -fcx-limited-range -Iruntime -I$own \
 	-I"$work" -DSTATES="$states" -DINPUTS="$inputs" -DSECOND_ORDER="$second"
 $cc "$work/own.o" "$work/kept_solvers.o" "$work/kept_dop853.o" "$work/kept_radau.o" "$work/kept_regions.o" \
-	"$work/kept_literals.o" "$work/table.o" "${CHARTS_RUNTIME:-$work/runtime.a}" -o "$work/own" \
+	"$work/table.o" "${CHARTS_RUNTIME:-$work/runtime.a}" -o "$work/own" \
 	-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
 	-lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas -lm -ldl
 wait $variants
