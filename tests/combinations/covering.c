@@ -506,7 +506,7 @@ static void print_options(FILE *to)
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
 	if (has("modes"))       /* all of them; what no output sees is left out */
-		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 9 : has("file") ? 3 : 0));
+		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 7 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12") || has("over3");
 	if (has("loads") && !scheme && !has("friction") && !has("impact"))
 		fputs(" --scheme etdrk4", to);
@@ -571,7 +571,7 @@ static void write_spec(FILE *to)
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
 	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") ||
 			     has("batch") || has("need");
-	const int n = has("many") ? 9 : 3;
+	const int n = has("many") ? 7 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
 	fputs(has("tunable") ? "tunable k\n" : "", to);

@@ -86,8 +86,7 @@ EOT
 
 # own_names OBJECT: what it shows beside names of its own
 own_names() {
-    nm "$1" | grep -E ' [A-TV-Z] ' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
-    nm "$1" | grep -E ' U pl_' >>log
+    nm "$1" | grep -E ' ([A-TV-Z] |U pl_)' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
 }
 
 # warns: what the compilers say of model.c

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # bits.sh PLGEN INSIDE SOURCE_ROOT: the C of models, run inside the generator and compiled: the same bits, of each
-# scheme and both types, in float every second by turns. Every ninth is compiled by another compiler than the generator
-# has inside. With LONG=1 in the environment all are, optimised, and all in float too.
+# scheme and both types, in float every second by turns. Every eighteenth is compiled by another compiler than the
+# generator has inside, whose bits `compilers` holds against others. With LONG=1 in the environment all are, optimised,
+# and all in float too.
 set -u
 plgen=$1
 inside=$2
@@ -29,7 +30,7 @@ same() {
 	: >log
 	compiler=$run_cc
 	turn=$((turn + 1))
-	[ -n "${LONG:-}" ] || [ $((turn % 9)) -ne 0 ] || compiler=$other_cc
+	[ -n "${LONG:-}" ] || [ $((turn % 18)) -ne 0 ] || compiler=$other_cc
 	# shellcheck disable=SC2086
 	"$plgen" --rhs --real "$3" ${4:+--scheme "$4"} "$1" >model.c 2>>log &&
 		$compiler $flags -I"$root/runtime" "$here/drive.c" model.c \

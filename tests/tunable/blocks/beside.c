@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* beside: a model that was retuned beside one of the same equations with the values written into its spec.
- * -DTUNED=NAME_model -DPLAIN=NAME_model, and -DREAL_FLOAT for models in float.
+ * -DTUNED=NAME_model -DPLAIN=NAME_model, -DREAL_FLOAT for models in float, and -DSTARTS=40 for fewer starts.
  *
  *     beside STATUS TOLERANCE H VALUE ...    retunes to these values of its params, in their order, and to H [s], 0:
  *                                            its own step
@@ -28,7 +28,10 @@ static const double unit = DBL_EPSILON;
 #endif
 extern const model TUNED, PLAIN;
 
-enum { STATES = 512, OUTPUTS = 64, INPUTS = 8, PARAMS = 16, BYTES = 1 << 17, STARTS = 150, STEPS = 4 };
+enum { STATES = 512, OUTPUTS = 64, INPUTS = 8, PARAMS = 16, BYTES = 1 << 17, STEPS = 4 };
+#ifndef STARTS
+#define STARTS 150
+#endif
 typedef union instance {
     double align;
     uint64_t word;

@@ -3,7 +3,7 @@
 # blocks.sh PLGEN ROOT CHAINS, the runtime's library in PLRT: tunable params of models of more than 16 states. What
 # NAME_retune makes of an instance, beside the same equations with the values written, and beside the series of the
 # solution for random models; what it returns for bad values; what keeps its tables. With MERGE=1 in the environment in
-# float too, and at other steps.
+# float too, at other steps, and from 150 starts instead of 40.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
@@ -22,10 +22,13 @@ plain() {
 	"$plgen" $defines "$@" -o plain.c plain.spec >>log 2>&1
 }
 
+starts=
+merging || starts=-DSTARTS=40
+
 # driver NAME REAL: ./beside, of NAME.c and plain.c
 driver() {
 	# shellcheck disable=SC2086
-	$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" -DTUNED="$1_model" -DPLAIN=plain_model \
+	$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" $starts -DTUNED="$1_model" -DPLAIN=plain_model \
 		"$here/beside.c" "$1.c" plain.c "$library" -lm -o beside >>log 2>&1
 }
 
