@@ -28,8 +28,8 @@ merging || starts=-DSTARTS=40
 # driver NAME REAL: ./beside, of NAME.c and plain.c
 driver() {
 	# shellcheck disable=SC2086
-	$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) -I"$root/runtime" $starts -DTUNED="$1_model" -DPLAIN=plain_model \
-		"$here/beside.c" "$1.c" plain.c "$library" -lm -o beside >>log 2>&1
+	$run_cc $([ "$2" = float ] && echo -DREAL_FLOAT) $starts -I"$root/runtime" -DTUNED="$1_model" \
+		-DPLAIN=plain_model "$here/beside.c" "$1.c" plain.c "$library" -lm -o beside >>log 2>&1
 }
 
 # beside TOLERANCE NAME VALUES H [OPTION ...]: retuned, to units of rounding as with the values written; H 0: its own
