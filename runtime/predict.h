@@ -5,15 +5,23 @@
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_FORCES       states; forces that are left over
  *     PL_DRIVEN                  1: loads and inputs have a part in them
+ *     PL_CUT                     1: a step of cut.h, of the forces of given intervals, which that says
  *
  *     PL(leftover)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
  *     PL(slope_of)(which, z, left, dz)                 A z + B left */
 #include "numbers.h"
 
+#if PL_CUT
+#define PL_FORMULAS real when, const int interval[],
+#else
+#define PL_FORMULAS
+#endif
+
 /* y at node `end` of the step, tau [s] after its start, over node `half` in the middle; first: the slope at the start;
  * middle, last: what loads and inputs add from rest up to these nodes. */
 static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real slope[], int half, int end, real tau,
-                        const real first[PL_STATES], const real middle[], const real last[], real y[PL_STATES])
+                        PL_FORMULAS const real first[PL_STATES], const real middle[], const real last[],
+                        real y[PL_STATES])
 {
     static const real ahead[3] = {(real)0.5, (real)0.5, 1}, weight[3] = {2, 2, 1};
     real z[PL_STATES], dz[PL_STATES], sum[PL_STATES], left[PL_FORCES];
@@ -31,8 +39,13 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
             y[i] = z[i];
 #endif
         }
+#if PL_CUT
+        PL(forces_at)(s, u, slope, k < 2 ? tau / 2 : tau, when, which, interval, y, left);
+        PL(slope_of)(0, z, left, dz);
+#else
         PL(leftover)(s, which, k < 2 ? half : end, u, slope, y, left);
         PL(slope_of)(which, z, left, dz);
+#endif
         for (i = 0; i < PL_STATES; i++) {
             sum[i] += weight[k] * dz[i];
         }
@@ -44,6 +57,8 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
         y[i] = s->y[i] + tau / 6 * sum[i];
 #endif
     }
+    (void)half;
+    (void)end;
     (void)middle;
     (void)last;
 }

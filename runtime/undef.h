@@ -48,6 +48,7 @@
 #undef PL_CORRECTION
 #undef PL_CROSSED
 #undef PL_CROWDED
+#undef PL_CUT
 #undef PL_DAMPED
 #undef PL_DEGREE
 #undef PL_DERIVED
@@ -74,6 +75,7 @@
 #undef PL_FOLDED
 #undef PL_FORCED
 #undef PL_FORCES
+#undef PL_FORMULAS
 #undef PL_FROM
 #undef PL_FUNCTIONS
 #undef PL_GATES

@@ -56,6 +56,7 @@ void emit_sum_loop(const struct emitter *e, const struct action *a);
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 
 void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
+void emit_predictor(const struct emitter *e);                      /* NAME_predict: states at nodes */
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 

@@ -277,8 +277,7 @@ static bool goes_by_series(const struct building *b)
 {
 	const struct model *model = b->model;
 	bool chosen = !model->asked.scheme_at.source && !is_piecewise_linear(b);
-	const struct scheme_row *row = scheme_row(model->scheme);
-	return (row->expands || row->cuts || chosen) && !strikes_change(b) && !b->request->solution &&
+	return (stops_at_events(model->scheme) || chosen) && !strikes_change(b) && !b->request->solution &&
 	       !b->request->loads_left;
 }
 

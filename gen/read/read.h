@@ -332,6 +332,8 @@ enum scheme default_scheme(void);                           /* with a leftover *
 const char *all_schemes(const char *separator);             /* their names */
 const char *leaving_schemes(const char *last);              /* of those with a quadrature: a, b<last>c */
 const char *stopping_schemes(void);                         /* of those that go from event to event by events.c */
+bool stops_at_events(enum scheme scheme);                   /* whether it does, with steps that are cut into parts */
+bool is_cut(enum scheme scheme);
 const char *holding_schemes(void);                          /* of those that hold coupling terms */
 /* Scheme etd1, of first order in h: ... `order`: of a scheme that expands */
 const char *scheme_note(enum scheme scheme, int order);

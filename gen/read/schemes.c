@@ -63,7 +63,7 @@ enum scheme default_scheme(void)
 
 static bool is_any(const struct scheme_row *row) { return row->name; }
 static bool leaves(const struct scheme_row *row) { return row->leaves && !row->modes; }      /* anything */
-static bool stops(const struct scheme_row *row) { return row->expands || row->cuts; }        /* at events */
+static bool stops(const struct scheme_row *row) { return leaves(row) || row->holds_coupling; } /* at events */
 static bool holds(const struct scheme_row *row) { return row->holds_coupling; }
 
 /* a, b<last>c of those that are meant */
@@ -90,6 +90,16 @@ const char *all_schemes(const char *separator)
 const char *leaving_schemes(const char *last)
 {
 	return listed(leaves, ", ", last);
+}
+
+bool stops_at_events(enum scheme scheme)
+{
+	return stops(&rows[scheme]);
+}
+
+bool is_cut(enum scheme scheme)
+{
+	return stops(&rows[scheme]) && !rows[scheme].expands;
 }
 
 const char *stopping_schemes(void)

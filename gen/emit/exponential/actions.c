@@ -84,8 +84,10 @@ static bool adds_driven(const struct emitter *e)
 static void emit_prediction(const struct emitter *e, const struct action *a)
 {
 	const char *tau = shortest(time_in_step(e->model, e->step->program->node[a->node]));
-	say(e, "    $n_predict(s, %s, %s, %d, %d, %s, first, %s, stage%d);\n", many_operators(e) ? "which" : "0",
-	    samples_of_step(e), a->half, a->node, tau,
+	say(e, "    $n_predict(s, %s, %s, %d, %d, %s, %sfirst, %s, stage%d);\n",
+	    many_operators(e) ? "which" : e->step->cut && e->system->segments > 1 ? "s->segment" : "0",
+	    e->step->cut ? "start, slope" : samples_of_step(e), a->half, a->node, tau,
+	    e->step->cut ? "when, interval, " : "",
 	    adds_driven(e) ? format("driven%d, driven%d", a->half, a->node) : "NULL, NULL", a->target);
 }
 
@@ -97,9 +99,9 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
 		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
 		    e->system->segments > 1 ? "s->segment" : "0", state, a->target);
-		return;
+	} else {
+		say(e, "    %s\n", leftover_of_step(e, a->node, state, format("left%d", a->target)));
 	}
-	say(e, "    %s\n", leftover_of_step(e, a->node, state, format("left%d", a->target)));
 	if (a->target == 0 && e->step->program->predicts)
 		say(e, "    $n_slope_of(%s, s->y, left0, first);\n", many_operators(e) ? "which" : "0");
 }
@@ -242,7 +244,7 @@ static void emit_unrolled_slope(const struct emitter *e)
 	}
 }
 
-static void emit_predictor(const struct emitter *e)
+void emit_predictor(const struct emitter *e)
 {
 	open_function(e, "dz = A z + B r, r what is left over",
 		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
@@ -255,7 +257,7 @@ static void emit_predictor(const struct emitter *e)
 		emit_unrolled_slope(e);
 	close_function(e, "which z");
 	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->channels },
-		   { "DRIVEN", adds_driven(e) });
+		   { "DRIVEN", adds_driven(e) }, { "CUT", e->step->cut != NULL });
 	say_include(e, "predict.h");
 }
 

@@ -134,6 +134,8 @@ void emit_cut_step(const struct emitter *e)
 	emit_acting(e);
 	if (e->step->program->loops)
 		emit_loop_tables(e);
+	if (e->step->program->predicts)
+		emit_predictor(e);
 	emit_whole(e);
 	emit_pass_time(e);
 	emit_algorithm(e);

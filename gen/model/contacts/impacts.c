@@ -170,8 +170,7 @@ bool strikes_change(const struct building *b)
 void tell_no_events(const struct building *b, struct place at)
 {
 	const enum scheme scheme = b->model->scheme;
-	const struct scheme_row *row = scheme_row(scheme);
-	if ((row->expands || row->cuts || scheme == SCHEME_EXACT) && strikes_change(b))
+	if ((stops_at_events(scheme) || scheme == SCHEME_EXACT) && strikes_change(b))
 		error(at, "scheme exact takes them beside what is piecewise linear",
 		      "beside a series a guard and its jumps have one formula for all time");
 	refuse(CAN_CONTACTS, b->model, at);

@@ -339,7 +339,7 @@ static struct form *leftover_of(struct building *b, const struct operator *opera
 static bool is_pressed(const struct model *model, int row)
 {
 	bool any = false;
-	for (int i = 0; i < model->impacts && scheme_row(model->scheme)->cuts; i++)
+	for (int i = 0; i < model->impacts && is_cut(model->scheme); i++)
 		for (int j = 0; j < model->n && model->impact[i].bounces; j++)
 			any = any || (mpq_sgn(model->impact[i].in->direction[j]) != 0 &&
 				      mpq_sgn(model->system.M[row * model->n + j]) != 0);

@@ -109,7 +109,7 @@ static bool has_small_tables(const struct model *model)
 
 const char *why_not_cut(const struct model *model)
 {
-	if (!scheme_row(model->scheme)->cuts || model->channels == 0)
+	if (!is_cut(model->scheme) || model->channels == 0)
 		return "its steps are not cut";
 	if (model->operators > 1)
 		return "its operator changes";
@@ -131,7 +131,7 @@ bool follows_crossings(const struct model *model)
 		return false;
 	if (has_contacts(model))
 		return true;
-	if (model->smooth.kind == SMOOTH_ALL)
+	if (!scheme_row(model->scheme)->cuts || model->smooth.kind == SMOOTH_ALL)
 		return false;
 	struct following f = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
 	for (int c = 0; c < model->channels; c++)

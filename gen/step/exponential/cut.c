@@ -90,8 +90,20 @@ static void count_looks(const struct step *step, struct cut *cut)
 	cut->calls = looks * program.calls;
 }
 
-void plan_cut(struct step *step)
+/* The step of a scheme that holds coupling, and does not in a part */
+static struct step *coupled(const struct step *step)
 {
+	struct step *made = NEW(struct step);
+	*made = *step;
+	made->branch = NEW(struct branch);
+	*made->branch = *step->branch;
+	made->branch->system = operator_system(step->model, 0);
+	return made;
+}
+
+void plan_cut(struct step *held)
+{
+	struct step *step = scheme_row(held->model->scheme)->holds_coupling ? coupled(held) : held;
 	const struct linear *system = &step->branch->system;
 	struct cut *cut = NEW(struct cut);
 	int watched;
@@ -111,7 +123,7 @@ void plan_cut(struct step *step)
 		cut->fastest = (double)(float)cut->fastest;
 	count_looks(step, cut);
 	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
-	step->cut = cut;
-	step->divided = cut->look;
-	step->series.emitted = true;
+	held->cut = cut;
+	held->divided = cut->look;
+	held->series.emitted = true;
 }
