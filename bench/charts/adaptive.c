@@ -81,7 +81,8 @@ static void adaptive_close(struct run *run)
 	struct adaptive *a = (struct adaptive *)run;
 	if (a->aside)
 		adaptive_close(&a->aside->run);
-	kind_of(a)->solver->discard(a);
+	if (kind_of(a)->solver->discard)
+		kind_of(a)->solver->discard(a);
 	free(a->scale);
 	free(a->now);
 	free(a);
@@ -194,12 +195,12 @@ const struct method *const adaptive_methods[] = {
 	&radau9.method, &radau13.method, NULL,
 };
 
-void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v)
+void put_scales(FILE *out, const struct problem *problem, const char *name, const char *file)
 {
 	struct adaptive *a = adaptive_new(&dormand_prince.method, problem, 1e-3);
 	if (!a)
-		exit(1);
-	*scale_q = a->scale[0];
-	*scale_v = a->scale[a->n];
+		leave(name, "no run");
+	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", name, file, problem->unit, problem->units, a->scale[0],
+	        a->scale[a->n]);
 	adaptive_close(&a->run);
 }

@@ -43,7 +43,7 @@ struct solver {
 	bool (*reach)(struct adaptive *a, double end, double *y);
 	/* `reach` may be asked for a time inside a unit, and the run goes on as if it had not been */
 	bool looks_ahead;
-	void (*discard)(struct adaptive *a);
+	void (*discard)(struct adaptive *a);            /* NULL: nothing is to be */
 };
 
 struct kind {

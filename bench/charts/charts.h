@@ -125,8 +125,9 @@ extern const struct method *const dormand_prince_fixed; /* not among them: its f
 extern const struct method *const structural_methods[], *const structural_others[];
 extern const struct method *const inlined_methods[];    /* inlined.c: of fixed step, smooth models */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
-/* What the absolute tolerances of a run stand on: one that an adaptive method opens on this problem */
-void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
+/* What the absolute tolerances of a run stand on, of one that an adaptive method opens on this problem: name, file,
+ * unit [s], units, largest |coordinate|, |velocity|, between tabs */
+void put_scales(FILE *out, const struct problem *problem, const char *name, const char *file);
 extern const struct method *const clearance_methods[];  /* clearance.c: models with clearances */
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 extern const struct method residues_naive;              /* residues_naive.c: the same, where poles are apart */

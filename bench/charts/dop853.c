@@ -96,14 +96,9 @@ static bool dop853_reach(struct adaptive *a, double end, double *y)
 	return end >= d->from && d->instance->reach(a, end, y);
 }
 
-static void dop853_discard(struct adaptive *a)
-{
-	(void)a;
-}
-
 static const struct solver dop853_solver = {
 	.bytes = sizeof(struct dop853), .make = dop853_make, .begin = dop853_begin, .reach = dop853_reach,
-	.looks_ahead = true, .discard = dop853_discard,
+	.looks_ahead = true,
 };
 
 const struct kind dop853 = {

@@ -363,13 +363,6 @@ static struct problem *problem_of(const struct hard_case *c, const char *file, b
 	                    c->linear, c->frequency);
 }
 
-static void say_scales(FILE *out, const struct problem *p, const char *name, const char *file)
-{
-	double scale_q, scale_v;
-	adaptive_scales(p, &scale_q, &scale_v);
-	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", name, file, p->unit, p->units, scale_q, scale_v);
-}
-
 int main(int argc, char **argv)
 {
 	const unsigned flags = flags_of(argc, &argv, "--quick --scales", 1, 2, "hard [--quick] VARIANTS FOLDER\n"
@@ -392,7 +385,7 @@ int main(int argc, char **argv)
 			p = problem_of(c, file, quick);
 			h = history_of(c, p);
 			if (scales)
-				say_scales(out, p, name, file);
+				put_scales(out, p, name, file);
 			else
 				try_peers(out, c, p, &h);
 		} else if (p && !scales) {

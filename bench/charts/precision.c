@@ -346,10 +346,8 @@ static void say_scales(FILE *out, const struct charted *m, const char *folder, b
 {
 	char path[4096];
 	struct problem *p = load(m, folder, quick, path);
-	double scale_q, scale_v;
 	truth_free(truth_of(p));
-	adaptive_scales(p, &scale_q, &scale_v);
-	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", m->name, path, p->unit, p->units, scale_q, scale_v);
+	put_scales(out, p, m->name, path);
 	problem_free(p);
 }
 

@@ -87,25 +87,15 @@ static void ask_loads(struct problem *p, const double *y)
 }
 
 /* What the cosine of a rounded quarter turn leaves where there is no load */
-static void drop_dust(int size, const double *large, double *b)
-{
-	double most = 0;
-	for (int i = 0; i < size; i++)
-		most = fmax(most, fabs(large[i]));
-	for (int i = 0; i < size; i++)
-		if (fabs(b[i]) < 1e-14 * most)
-			b[i] = 0;
-}
-
 static void clean_loads(struct problem *p)
 {
-	int size = 2 * p->n;
-	double large[size];
-	for (int i = 0; i < size; i++)
-		large[i] = fmax(fabs(p->b0[i]), fmax(fabs(p->b1[i]), fabs(p->b2[i])));
-	drop_dust(size, large, p->b0);
-	drop_dust(size, large, p->b1);
-	drop_dust(size, large, p->b2);
+	double *const loads[] = { p->b0, p->b1, p->b2 };
+	double most = 0;
+	for (int i = 0; i < 6 * p->n; i++)
+		most = fmax(most, fabs(loads[i % 3][i / 3]));
+	for (int i = 0; i < 6 * p->n; i++)
+		if (fabs(loads[i % 3][i / 3]) < 1e-14 * most)
+			loads[i % 3][i / 3] = 0;
 }
 
 /* A column: the slope at a unit state, less that at rest. */

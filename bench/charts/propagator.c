@@ -310,12 +310,6 @@ static void propagator_close(struct run *run)
 {
 	struct propagator *r = (struct propagator *)run;
 	free(r->generator);
-	free(r->start);
-	free(r->z);
-	free(r->spare);
-	free(r->Phi);
-	free(r->part);
-	free(r->ahead);
 	modes_discard(r->modes);
 	free(r->single);
 	free(r->row);
@@ -324,17 +318,17 @@ static void propagator_close(struct run *run)
 	free(r);
 }
 
-static bool allot(struct propagator *r)
+/* In one block of memory */
+static void allot(struct propagator *r)
 {
 	const size_t size = (size_t)r->size;
-	r->generator = calloc(size * size, sizeof(double));
-	r->Phi = calloc(size * size, sizeof(double));
-	r->part = calloc(size * size, sizeof(double));
-	r->start = calloc(size, sizeof(double));
-	r->z = calloc(size, sizeof(double));
-	r->spare = calloc(size, sizeof(double));
-	r->ahead = calloc(size, sizeof(double));
-	return r->generator && r->Phi && r->part && r->start && r->z && r->spare && r->ahead;
+	r->generator = room_for(3 * size * size + 4 * size, sizeof(double));
+	r->Phi = r->generator + size * size;
+	r->part = r->Phi + size * size;
+	r->start = r->part + size * size;
+	r->z = r->start + size;
+	r->spare = r->z + size;
+	r->ahead = r->spare + size;
 }
 
 /* How the matrix of a step is found, and how it is applied */
@@ -376,8 +370,7 @@ static bool in_float(struct propagator *r)
 
 static bool make(struct propagator *r, const struct kind *kind)
 {
-	if (!allot(r))
-		return false;
+	allot(r);
 	augment(r);
 	if (kind->exponential)
 		kind->exponential(r->size, r->generator, r->h, r->Phi);

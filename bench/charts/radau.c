@@ -390,14 +390,9 @@ static bool radau_reach(struct adaptive *a, double end, double *y)
 	return end >= d->from && d->reach(a, end, y);
 }
 
-static void radau_discard(struct adaptive *a)
-{
-	(void)a;
-}
-
 static const struct solver radau_solver = {
 	.bytes = sizeof(struct radau), .make = radau_make, .begin = radau_begin, .reach = radau_reach,
-	.looks_ahead = true, .discard = radau_discard,
+	.looks_ahead = true,
 };
 
 #define RADAU_SETTINGS \

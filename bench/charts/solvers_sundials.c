@@ -158,6 +158,14 @@ const struct solver cvode_solver = {
 	.discard = cvode_discard,
 };
 
+static bool arkode_settings(struct sundials *s)
+{
+	struct adaptive *a = &s->adaptive;
+	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
+	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
+	       ARKStepSetUserData(s->memory, a) == 0 && ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0;
+}
+
 /* By ARKStep: ERKStep of SUNDIALS 6.4 takes the last stage of this table for the first of the next step, which it is
  * not, and so loses accuracy (SUNDIALS issue 311, mended since). Its interpolants, of degree 5 at most, spoil what is
  * below 1e-5 between its long steps: stopped at the output times it reaches 1e-9 with less than half the evaluations,
@@ -167,10 +175,7 @@ static bool arkode_make(struct adaptive *a)
 	struct sundials *s = (struct sundials *)a;
 	if (!sundials_vectors(s) || !(s->memory = ARKStepCreate(sundials_slope, NULL, 0.0, s->y, s->context)))
 		return false;
-	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
-	       ARKStepSetTableNum(s->memory, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) == 0 &&
-	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
-	       ARKStepSetUserData(s->memory, a) == 0 && ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0;
+	return ARKStepSetTableNum(s->memory, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) == 0 && arkode_settings(s);
 }
 
 /* Diagonally implicit, as its manual advises for stiff problems: Newton, dense. Its interpolants are of degree 5 at
@@ -182,28 +187,20 @@ static bool dirk_make(struct adaptive *a)
 	struct sundials *s = (struct sundials *)a;
 	if (!sundials_vectors(s) || !(s->memory = ARKStepCreate(NULL, sundials_slope, 0.0, s->y, s->context)))
 		return false;
-	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
-	       ARKStepSetOrder(s->memory, kind_of(a)->formula) == 0 &&
-	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
-	       ARKStepSetUserData(s->memory, a) == 0 && ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0 &&
+	return ARKStepSetOrder(s->memory, kind_of(a)->formula) == 0 && arkode_settings(s) &&
 	       (a->run.problem->linear ? ARKStepSetLinear(s->memory, 0)
 	                               : ARKStepSetNonlinConvCoef(s->memory, 1e-3)) == 0 &&
 	       make_dense(s) && ARKStepSetLinearSolver(s->memory, s->dense, s->jacobian) == 0 &&
 	       (!jacobian_of(a->run.problem) || ARKStepSetJacFn(s->memory, sundials_jacobian) == 0);
 }
 
-static bool dirk_begin(struct adaptive *a, double t, const double *y)
-{
-	struct sundials *s = (struct sundials *)a;
-	memcpy(NV_DATA_S(s->y), y, (size_t)a->size * sizeof *y);
-	return ARKStepReInit(s->memory, NULL, sundials_slope, t, s->y) == 0;
-}
-
+/* dense: of the implicit one alone */
 static bool arkode_begin(struct adaptive *a, double t, const double *y)
 {
 	struct sundials *s = (struct sundials *)a;
 	memcpy(NV_DATA_S(s->y), y, (size_t)a->size * sizeof *y);
-	return ARKStepReInit(s->memory, sundials_slope, NULL, t, s->y) == 0;
+	return ARKStepReInit(s->memory, s->dense ? NULL : sundials_slope, s->dense ? sundials_slope : NULL, t,
+	                     s->y) == 0;
 }
 
 static bool arkode_reach(struct adaptive *a, double end, double *y)
@@ -227,6 +224,6 @@ const struct solver arkode_solver = {
 	.discard = arkode_discard,
 };
 const struct solver dirk_solver = {
-	.bytes = sizeof(struct sundials), .make = dirk_make, .begin = dirk_begin, .reach = arkode_reach,
+	.bytes = sizeof(struct sundials), .make = dirk_make, .begin = arkode_begin, .reach = arkode_reach,
 	.discard = arkode_discard,
 };

@@ -48,7 +48,8 @@ static inline bool kept_history(struct adaptive *a, const struct kind *kind, dou
 		good = good && solver->reach(a, (k + 1) * history.every, state);
 		memcpy(rows, state + skip, N * sizeof *rows);
 	}
-	solver->discard(a);
+	if (solver->discard)
+		solver->discard(a);
 	return good && all_finite(a->size, state);
 }
 
