@@ -5,11 +5,10 @@
 /* ---- series.c: between two steps ------------------------------------------------------------------------- */
 
 /* x' = A x, to be advanced by a Taylor polynomial of e^{A tau} on 2^halvings equal parts of tau.  The generator chooses
- * degree and halvings for 0 <= tau <= h.  With |pole| h / 2^halvings <= 1 for every
- * pole, those of loads included, and degree 15 + d, d the longest way from one entry to another along nonzero entries
- * of A, the error of x_i stays below 8 DBL_EPSILON sum_j most_ij |x_j|, most_ij the largest |Phi_ij| of e^{A tau} on 0
- * .. h (measured for |pole| h up to 8: 7.4 in 200 damped and undamped chains, half of them below 1.7); in floats
- * with degree 8 + d below 8 FLT_EPSILON (...) (6.7 in eleven such chains). */
+ * degree and halvings for 0 <= tau <= h.  With |pole| h / 2^halvings <= 1 for every pole, those of loads included, and
+ * degree 15 + d, in floats 8 + d, d the longest way from one entry to another along nonzero entries of A, the error of
+ * x_i stays below 8 DBL_EPSILON sum_j most_ij |x_j|, most_ij the largest |Phi_ij| of e^{A tau} on 0 .. h (measured for
+ * |pole| h up to 8: 7.4 in 200 damped and undamped chains, half of them below 1.7; in floats 6.7 in eleven). */
 typedef struct pl_series {
     int size;        /* entries of x */
     int states;      /* of which the first are the model's own states; the others carry loads and inputs */
@@ -23,19 +22,16 @@ void pl_series_advance(const pl_series *p, PL_REAL tau, PL_REAL *x, PL_REAL *wor
 
 /* ---- power.c: many steps at once ------------------------------------------------------------------------- */
 
-/* A number in two words: the unevaluated sum hi + lo, |lo| <= half a unit in the last place of hi (106 bits,
- * in floats 48). */
+/* A number in two words, hi + lo, |lo| <= half a unit in the last place of hi (106 bits, in floats 48). */
 typedef struct pl_two {
     PL_REAL hi, lo;
 } pl_two;
 
 /* x <- P^k x by binary powering in two-word arithmetic; P is n x n, row-major.  The relative error is about k 2^-104,
  * in floats k 2^-46, where a term below 2^-102 loses bits of its low word to underflow.
- *     P     destroyed
- *     x     n entries, in and out; k = 0 leaves them as they are
- *     W, w  work: n x n and n entries
- * A result beyond the range of double is an infinity with lo = 0; no NaN comes out of finite arguments.  Once an entry
- * of a power of P has itself overflowed, what it reaches is infinite, and its sign means nothing. */
+ * P is destroyed; x: n entries, which k = 0 leaves as they are; W, w: work, n x n and n entries.  A result beyond the
+ * range of double is an infinity with lo = 0; no NaN comes out of finite arguments.  Once an entry of a power of P has
+ * itself overflowed, what it reaches is infinite, and its sign means nothing. */
 void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t k);
 
 /* ---- sums whose rounding is kept: the forms of --accuracy compensated ------------------------------------------ */
@@ -69,9 +65,8 @@ void pl_solve_complex(int n, const PL_REAL *A, const int *pivot, PL_REAL *x);
 
 /* ---- until.c: when a load changes ------------------------------------------------------------------------- */
 
-/* change - (t0 + k h) [s], off by less than 2^-100 of the largest of change, t0 and k h, and rounded: so a change
- * inside a step is met where it is, however late the step.  k counts in full up to 2^63.  In floats off
- * by less than 2^-45 of it (2^-46.5 measured over 9 10^5). */
+/* change - (t0 + k h) [s], off by less than 2^-100 of the largest of change, t0 and k h, and rounded; in floats by less
+ * than 2^-45 of it (2^-46.5 measured over 9 10^5).  k counts in full up to 2^63. */
 PL_REAL pl_until(PL_REAL t0, uint64_t k, pl_two h, pl_two change);
 
 /* ---- peak.c: the largest size of an output --------------------------------------------------------------- */
@@ -123,11 +118,9 @@ int pl_not_finite(const PL_REAL *y, int n);
 /* ---- crossings.c: piecewise-linear models ------------------------------------------------------------------- */
 
 /* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t,
- * cos w t,
- * ...) and inputs, so that between two crossings nothing is approximated.  Switching expressions e_i = row_i . x, each
- * with breakpoints b_i0 < b_i1 < ..., are in interval 0 below b_i0, in 1 between b_i0 and b_i1, ...; a region is one
- * interval for each expression, its number interval_0 + (breaks_0 + 1) (interval_1 + (breaks_1 + 1) (interval_2 +
- * ...)).
+ * cos w t, ...) and inputs, so that between two crossings nothing is approximated.  Switching expressions
+ * e_i = row_i . x, each with breakpoints b_i0 < b_i1 < ..., are in interval 0 below b_i0, in 1 between b_i0 and b_i1,
+ * ...; a region is one of each: interval_0 + (breaks_0 + 1) (interval_1 + (breaks_1 + 1) (interval_2 + ...)).
  *
  * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves
  * in the time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
@@ -181,15 +174,14 @@ typedef struct pl_crossing {
  * what rests there counts as below. */
 void pl_switching_start(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 
-/* x over h, with every crossing on the way, in order.  A step that is seen to have none is Phi x, to the last bit.
- *     x         `size` entries, in and out.  Loads may be set anew before each step, and inputs may jump: an expression
- * that has left its interval by that passes its breakpoints at time 0 crossing  max_events entries work
- * PL_SWITCHING_WORK(size, switches, degree) Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing
- * is passed but not listed; pieces that are seen to stay clear go on as ever; the first other one goes by e^{A d} of
- * the region where x is, without looking, d = h / 2^halvings or what is left, and behind it x is held to the end of the
- * step.  As |pole| d is about 1 or below, no mode has grown by more than about e where its region was not the true one;
- * from there on x is off by at most how far the true motion goes.  The next step starts in the region of x.  An x that
- * is not finite sets no bit here: ask pl_not_finite. */
+/* x, `size` entries, over h, with every crossing on the way, max_events of them at most, in order.  A step that is seen
+ * to have none is Phi x, to the last bit.  Loads may be set anew before each step, and inputs may jump: an expression
+ * that has left its interval by that passes its breakpoints at time 0.  work: PL_SWITCHING_WORK(size, switches, degree)
+ *
+ * Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing is passed but not listed; pieces that are
+ * seen to stay clear go on as ever; the first other one goes by e^{A d} of the region where x is, d at most
+ * h / 2^halvings, in which no mode of another region grows by more than about e, and behind it x is held to the end of
+ * the step.  The next step starts in the region of x.  An x that is not finite sets no bit here: ask pl_not_finite. */
 void pl_switching_step(const pl_switching *m, PL_REAL *x, pl_contact *c, pl_crossing *crossing, PL_REAL *work);
 
 /* The same over tau, 0 <= tau <= h. */
@@ -198,8 +190,7 @@ void pl_switching_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_con
 
 /* The same with what rounding takes from x kept: x is `size` entries and then their rests, so that x + rest is what is
  * meant.  m->A, m->Phi and the rungs, which are e^{A d} - I, have two words: of each size x size first ones and then as
- * many second ones.  Of what a piece adds rounding takes a unit in the last place or a few; crossings are those of
- * x. */
+ * many second ones.  Crossings are those of x. */
 #define PL_SWITCHING_KEPT_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
 void pl_switching_kept_start(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_switching_kept_step(const pl_switching *m, PL_REAL *x, pl_contact *c, pl_crossing *crossing, PL_REAL *work);
@@ -221,8 +212,7 @@ typedef struct pl_divided {
     const PL_REAL *at;  /* those of expression 0, rising; of expression 1; ... */
 } pl_divided;
 
-/* How many doubles, or floats, of work pl_divided_next needs */
-#define PL_DIVIDED_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+#define PL_DIVIDED_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1)) /* numbers that pl_divided_next works in */
 
 /* The interval of each expression at the start, exactly on a breakpoint by the first derivative that is not 0; what
  * rests there counts as below.  1: some are others than before, and c may be another one. */
@@ -389,13 +379,12 @@ typedef struct pl_guards {
 
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
 
-/* The region of x.  What is on a breakpoint that stands twice sticks where that can be, else goes where it is heading;
- * what is on another one goes as in pl_switching_start. */
+/* The region of x, as pl_switching_start; what is on a breakpoint that stands twice sticks where that can be. */
 void pl_guards_start(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 
-/* x over tau, 0 <= tau <= h, as pl_switching_advance.  Where several stick or slip at
- * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
- * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
+/* x over tau, 0 <= tau <= h, as pl_switching_advance.  Where several stick or slip at one event, the combination is
+ * taken in which all of them agree: none is held by more than its guard lets it, and each that slips moves away in its
+ * direction; of several the one with the fewest changes, then with most that stick.
  *
  * Impacts at one instant act in their order, each from the state that the one before has left, and again from the
  * first, until none is on its guard and comes closer; what is slower than 2^-48 of the fastest (float: 2^-20) is over,
@@ -447,32 +436,24 @@ typedef struct pl_equations {
 } pl_equations;
 
 /* value <- W^-1 R at these params, in two words: row i from value[i width] on, width = columns + (solves ? rows : 0);
- * what is behind `columns` has no meaning.  By elimination with partial pivoting. value  rows x width work   monomials
- * + 1 entries, contents of no meaning 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one,
- * or a divisor is 0; PL_NOT_FINITE: a param or a result is infinite, or not a number.
- *
- * Without W an entry is off by less than 2^-101 (in floats 2^-43) of the sizes of its terms, summed (2^-103.7 and
- * 2^-45.9 measured over 6 10^4 equations).  With W that of row i, column j is off by less than 2^-101 of sum_k
- * |W^-1|_ik times the largest, over rows, of the sizes of all terms in W a - R x for column j (2^-104.2 and 2^-46.5
- * measured, nearly singular W included). */
+ * what is behind `columns` has no meaning.
+ *     value  rows x width; work: monomials + 1 entries, contents of no meaning
+ * 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one, or a divisor is 0; PL_NOT_FINITE: a
+ * param or a result is infinite, or not a number.  Without W an entry is off by less than 2^-101 (in floats 2^-43) of
+ * the sizes of its terms, summed; with W that of row i, column j by less than 2^-101 of sum_k |W^-1|_ik times the
+ * largest, over rows, of the sizes of all terms in W a - R x for column j. */
 int pl_equations_at(const pl_equations *e, const PL_REAL *params, pl_two *value, pl_two *work);
 
 /* D <- e^{A tau} - I, its first `states` rows, tau in seconds.
- *     A     size x size, row-major [1/s]; 0 below the first `states` rows and left of column `states`: what acts on the
- * states does not depend on them words 1, or 2: two words in any case D     states x size; the low words are 0 where
- * one word was enough work  PL_INCREMENT_WORK(size) entries, contents of no meaning 0, or PL_NOT_FINITE and D has no
- * meaning; so it ends too where |A| tau is beyond 2^64, or 2^32 in floats.  |A| is a norm that knows no units, as a
- * rule at most twice the largest pole or frequency of a load.
- *
- * In the first `states` columns no entry is off by more than 16 units in the last place of the largest of all these, in
- * each other column of the largest in it, for |A| tau up to 2^20 and where that largest is above 2^-900.  Measured: 7.2
- * units, over 2 10^5 models with and without damping, stiff, near confluence and free, with all kinds of loads; 0.5
- * where two words are used.  In floats for |A| tau up to 2^10 and above 2^-100: 11.5 units; up to 2^12 one in 2 10^4
- * damped models was off by 16.7 in units that are far apart.
- *
- * Taylor's series of A tau 2^-k, then k times D <- 2 D + D^2, which keeps small entries that I + D would lose.  In one
- * word where |A| tau is below 2.  In two beyond, and where terms of the series meet that leave little; there it is I +
- * D that is squared from |A| tau 2^-k = 1/2 on, which keeps what decays. */
+ *     A      size x size, row-major [1/s]; 0 below the first `states` rows and left of column `states`: what acts on
+ *            the states does not depend on them
+ *     D      states x size; the low words are 0 where one word was enough; words 2: two in any case
+ *     work   PL_INCREMENT_WORK(size) entries, contents of no meaning
+ * 0, or PL_NOT_FINITE and D has no meaning; so it ends too where |A| tau is beyond 2^64, or 2^32 in floats.  |A| is a
+ * norm that knows no units, as a rule at most twice the largest pole or frequency of a load.  In the first `states`
+ * columns no entry is off by more than 16 units in the last place of the largest of all these, in each other column of
+ * the largest in it, for |A| tau up to 2^20 and where that largest is above 2^-900; in floats up to 2^10, above 2^-100.
+ */
 int pl_increment(int size, int states, const pl_two *A, PL_REAL tau, int words, pl_two *D, pl_two *work);
 #define PL_INCREMENT_WORK(size) (6 * (size) * (size))
 
@@ -524,28 +505,23 @@ typedef struct pl_group {
 
 /* Of x' = A x, A size x size in two words: *halvings, so that no pole times h 2^-halvings is above 1; slopes and
  * Phi = e^{A h} as pl_switching has them, each entry within 16 units in the last place of the largest of all; and the
- * pieces of a ladder that has room for `rungs` of them, *spacing halvings apart.
- *     most  halvings that are allowed
- *     work  PL_REGION_WORK(size) entries, contents of no meaning
- * 0; PL_NOT_FINITE, PL_OUT_OF_RANGE: more halvings */
+ * pieces of a ladder that has room for `rungs` of them, *spacing halvings apart.  work: PL_REGION_WORK(size) entries.
+ * 0; PL_NOT_FINITE; PL_OUT_OF_RANGE: more halvings than `most` */
 int pl_region_of(int size, const pl_two *A, PL_REAL h, int most, int rungs, int *halvings, int *spacing,
                  PL_REAL *slopes, PL_REAL *Phi, PL_REAL *ladder, pl_two *work);
 #define PL_REGION_WORK(size) (7 * (size) * (size))
 
-/* `most` over the largest entry of Phi, or over 1; 0 where there is more than one halving: no step looks over the whole
- * of h then. */
+/* `most` over the largest entry of Phi, or over 1; 0 where there is more than one halving: no step looks over h */
 PL_REAL pl_region_large(int size, int halvings, const PL_REAL *Phi, PL_REAL most);
 
 /* Of rows over x, rows x size, in such a region: slope, second and fourth as tangent, chord_error and cubic_error of
- * pl_switching, with room for what rounding did to them.
- *     work  PL_BOUNDS_WORK(size) entries, contents of no meaning */
+ * pl_switching, with room for what rounding did to them.  work: PL_BOUNDS_WORK(size) entries */
 void pl_region_bounds(int size, PL_REAL d, const PL_REAL *A, int rows, const PL_REAL *row, PL_REAL *slope,
                       PL_REAL *second, PL_REAL *fourth, PL_REAL *work);
 #define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
 
-/* Of the same rows: reach as a ladder has it, for each row that of all rungs but the first, and of h.
- *     A     size x size [1/s]
- *     work  PL_REACH_WORK(size, rows) entries, contents of no meaning */
+/* Of the same rows: reach as a ladder has it, for each row that of all rungs but the first, and of h.  work:
+ * PL_REACH_WORK(size, rows) entries */
 void pl_region_reach(int size, PL_REAL h, int halvings, int spacing, const PL_REAL *A, int rows, const PL_REAL *row,
                      PL_REAL *reach, PL_REAL *work);
 #define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
@@ -563,8 +539,7 @@ typedef struct pl_cut {
 /* By the series, or where fastest times tau is above 2 by tables that are made here.
  *     A        size x size [1/s], kept as long as m is
  *     fastest  the sizes |A| have no larger pole [1/s]
- *     work     PL_CUT_WORK(size) entries, kept as long as m is
- *     room     PL_CUT_ROOM(size) entries
+ *     work     PL_CUT_WORK(size) entries, kept as long as m is; room: PL_CUT_ROOM(size) entries
  * 0, or PL_NOT_FINITE and m has no meaning */
 int pl_cut_begin(pl_cut *m, int size, const PL_REAL *A, PL_REAL fastest, PL_REAL tau, PL_REAL *work, pl_two *room);
 
@@ -609,19 +584,16 @@ typedef struct pl_model {
     void (*step)(void *s, const PL_REAL *u);
     void (*out)(const void *s, PL_REAL *out);        /* out: `outputs` entries */
     void (*run)(void *s, size_t n, const PL_REAL *u, PL_REAL *out); /* n steps; n rows of u; n rows of out, or NULL */
-    /* 0 <= tau <= h; NULL where the model has none */
-    void (*at)(const void *s, const PL_REAL *u, PL_REAL tau, PL_REAL *y);
+    void (*at)(const void *s, const PL_REAL *u, PL_REAL tau, PL_REAL *y); /* 0 <= tau <= h; NULL where it has none */
     void (*jump)(void *s, uint64_t n);                                 /* n steps at once; NULL where it has none */
     int (*status)(const void *s); /* 0, or PL_... bits */
     int params;                   /* tunable ones */
     const char *const *param_names;
     const PL_REAL *param_values;  /* the spec's */
-    /* state and time stay; as NAME_retune says; NULL: nothing is tunable */
-    int (*retune)(void *s, const PL_REAL *params, PL_REAL h);
+    int (*retune)(void *s, const PL_REAL *params, PL_REAL h); /* state and time stay; NULL: nothing is tunable */
     void (*hold)(void *s, const PL_REAL *u); /* the samples before the first step; NULL where no input is a ramp */
-    const int
-        *start_samples; /* of each input: how many it has had when the first step comes.  0: held, so row k of a
-                         * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
-                         * `hold` takes, and row k + 1 that at the end of step k; m > 1: `hold` takes rows 0 to
-                         * m - 1 one after the other, step k row k + m.  NULL where there are no inputs */
+    /* Of each input: how many it has had when the first step comes.  0: held, so row k of a record acts from k h to
+     * (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which `hold` takes, and row k + 1 that at the end of step
+     * k; m > 1: `hold` takes rows 0 to m - 1 one after the other, step k row k + m.  NULL where there are no inputs */
+    const int *start_samples;
 } pl_model;

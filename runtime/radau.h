@@ -233,39 +233,6 @@ static int PL(ends)(const real y[PL_STATES], const real gain[PL_STATES])
 
 /* ---- the next internal step ---- */
 
-#if PL_ARGUMENTS > 0 || PL_EXPRESSIONS > 0
-/* Polynomials in powers of theta that are constant so far: c[0] is theirs to fill */
-static void PL(no_slopes)(int degree, int columns, real c[])
-{
-    int i;
-    for (i = columns; i < (degree + 1) * columns; i++) {
-        c[i] = 0;
-    }
-}
-
-/* The states at node k of a step with this polynomial */
-static void PL(at_node)(const PL_TYPE *s, const real poly[PL_STAGES + 1][PL_COLUMNS], int k, real y[PL_STATES])
-{
-    int i;
-    PL(within)(poly, PL(node)[k], y);
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] += s->start[i];
-    }
-}
-
-/* Polynomials through what stands in c[0] at the start, and in value at node k: what that node adds */
-static void PL(add_node)(int columns, int k, const real value[], real c[])
-{
-    int i, m;
-    for (i = 0; i < columns; i++) {
-        const real rise = (value[i] - c[i]) / PL(node)[k];
-        for (m = 0; m < PL_STAGES; m++) {
-            c[(m + 1) * columns + i] += PL(monomial)[m][k] * rise;
-        }
-    }
-}
-#endif
-
 #if PL_ARGUMENTS > 0
 /* Whether the nodes of a step of `size` h show what the arguments do between them: where one moves by less than would
  * pass over it.  An exponent of (3 stages / 2)^2 is one of exp(-z^2) for z from -3 stages / 2 on, whose nodes are 3

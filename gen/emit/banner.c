@@ -3,6 +3,7 @@
 #include "emit/linear/blocks.h"
 #include "declarations.h"
 #include "kinds.h"
+#include "steps.h"
 #include "emit/series/series.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"
@@ -465,18 +466,6 @@ static void banner_form(const struct emitter *e)
 		say(e, " * %s.\n", rounding_text(e->step));
 	if (e->model->asked.single)
 		say(e, " * Numbers and arithmetic are float; each constant is rounded to it once.\n");
-}
-
-/* What is left out of the step, and what it costs where it comes back */
-static void banner_forced(const struct emitter *e)
-{
-	const struct forced *forced = e->step->forced;
-	int count = 0;
-	for (int l = 0; l < e->system->loads; l++)
-		count += forced->load[l];
-	say(e, " * The state is kept less what %d load%s sustain%s: added where it is read, by %d multiplications, %d "
-	       "additions.\n", count, count == 1 ? "" : "s", count == 1 ? "s" : "", forced->multiplications,
-	    forced->additions);
 }
 
 static void banner_cost(const struct emitter *e)

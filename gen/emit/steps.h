@@ -23,6 +23,7 @@ void emit_anchored_loads(const struct emitter *e, const bool *loads);
 void emit_loads_at_anchor(const struct emitter *e, const bool *loads);    /* where one stands now */
 void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
+void banner_forced(const struct emitter *e);                      /* what of the state it is, what that costs */
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
 const char *column_operand(const struct emitter *e, int column);
 

@@ -79,3 +79,15 @@ void emit_forced(const struct emitter *e)
 	emit_formulas(f, 4);
 	close_function(e, "s");
 }
+
+/* What is left out of the step, and what it costs where it comes back */
+void banner_forced(const struct emitter *e)
+{
+	const struct forced *forced = e->step->forced;
+	int count = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		count += forced->load[l];
+	say(e, " * The state is kept less what %d load%s sustain%s: added where it is read, by %d multiplications, %d "
+	       "additions.\n", count, count == 1 ? "" : "s", count == 1 ? "s" : "", forced->multiplications,
+	    forced->additions);
+}
