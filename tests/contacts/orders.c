@@ -9,7 +9,10 @@
 #include <string.h>
 #include "variants.h"
 
-enum { MOST = 16, STARTS = 48 };
+#ifndef STARTS
+#define STARTS 48
+#endif
+enum { MOST = 16 };
 
 struct run {
 	double y[STARTS][SECONDS][MOST];

@@ -3,8 +3,8 @@
 # orders.sh PLGEN SOURCE [FIRST EVERY]: scheme taylor of orders 4, 6 and 8 on the models of orders/ (each EVERY-th of
 # them from FIRST on, counted from 0), with stops, friction and impacts beside curves, beside order 24 at 600 steps a
 # second. Errors (orders.c) of some 16 steps, h to 2.5 h, tell the order (orders.awk); one run before tells at which h
-# they come down to what is still well above rounding. TABLE=1: a row for doc/accuracy.md. $CC compiles, $PLRT is the
-# runtime.
+# they come down to what is still well above rounding. From 24 starts, with MERGE=1 or LONG=1 in the environment 48.
+# TABLE=1: a row for doc/accuracy.md. $CC compiles, $PLRT is the runtime.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 first=${3:-0}
@@ -12,6 +12,8 @@ every=${4:-1}
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
+starts=
+merging || starts=-DSTARTS=24
 seconds=6
 
 # add ORDER STEPS: a variant of $spec
@@ -54,7 +56,7 @@ errors() {
 		$(cat rows)
 		};
 	END
-	$run_cc -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
+	$run_cc $starts -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
 		>>log 2>&1 || return 1
 	./errors
 }
