@@ -50,7 +50,6 @@ bool flows_apart(const struct emitter *e);                        /* where a cha
 void emit_operands(const struct emitter *e);                      /* declares load, input, which the tables multiply */
 /* target = Phi y + loads + inputs over the time of table t; from rest: the loads and inputs alone */
 void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
-void emit_combination_loop(const struct emitter *e, const struct action *a);
 void emit_sum_loop(const struct emitter *e, const struct action *a);
 
 /* ---- actions.c: the step of a scheme that leaves something over ---- */

@@ -249,7 +249,7 @@ static void emit_passage_limits(const struct emitter *e)
 	say_macro(e, "EVENT_ORDER", whole_text(e->step->divided->order));
 	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->divided->columns));
 	if (!switches(e))
-		say_macro(e, "CHOICES", whole_text(has_choices(meeting(e))));
+		say_macro(e, "CHOICES", whole_text(has_choices(by_series(e, e->step->divided))));
 }
 
 static void emit_include(const struct emitter *e)
@@ -286,11 +286,11 @@ void emit_collocation_step(const struct emitter *e)
 {
 	emit_stage_tables(e);
 	if (meets_contacts(e))
-		emit_series_functions(meeting(e));
+		emit_series_functions(by_series(e, e->step->divided));
 	emit_motion(e);
 	emit_inputs_now(e);
 	if (is_divided(e)) {
-		emit_divided_tables(meets_contacts(e) ? meeting(e) : e);
+		emit_divided_tables(meets_contacts(e) ? by_series(e, e->step->divided) : e);
 		emit_passing_table(e, stages(e) + meets_contacts(e));
 	}
 	if (meets_contacts(e)) {

@@ -437,7 +437,7 @@ static void close_motion(const struct emitter *e, const struct tape *t, const st
 /* Beside contacts */
 static void emit_series_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	struct emitter here = *meeting(e);
+	struct emitter here = *by_series(e, e->step->divided);
 	here.at_state = true;
 	struct recurrences *made = series_new(&here);
 	const struct tape *t = set_part(e, made, part);

@@ -4,15 +4,20 @@
 
 /* ---- sums and combinations, unrolled ---- */
 
+static const char *combination_at(const struct action *a, const char *place)
+{
+	return a->minus == NONE ? format("2.0 * left%d[%s]", a->plus, place)
+				: format("left%d[%s] %c left%d[%s]", a->plus, place, a->added ? '+' : '-', a->minus, place);
+}
+
 static void emit_combination(const struct emitter *e, const struct action *a)
 {
-	for (int c = 0; c < e->model->channels; c++) {
-		if (a->minus == NONE)
-			say(e, "    left%d[%d] = 2.0 * left%d[%d];\n", a->target, c, a->plus, c);
-		else
-			say(e, "    left%d[%d] = left%d[%d] %c left%d[%d];\n", a->target, c, a->plus, c,
-			    a->added ? '+' : '-', a->minus, c);
-	}
+	const bool loops = e->step->program->loops;
+	if (loops)
+		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->channels, a->target,
+		    combination_at(a, "i"));
+	for (int c = 0; c < e->model->channels && !loops; c++)
+		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, whole_text(c)));
 }
 
 /* y(tau) of a table, with Phi y or from rest */
@@ -108,17 +113,16 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 
 static void emit_action(const struct emitter *e, const struct action *a)
 {
-	bool loops = e->step->program->loops;
 	switch (a->kind) {
 	case ACTION_LEFTOVER:
 		emit_evaluation(e, a);
 		break;
 	case ACTION_COMBINE:
-		(loops ? emit_combination_loop : emit_combination)(e, a);
+		emit_combination(e, a);
 		break;
 	case ACTION_SUM:
 		say(e, "    /* %s */\n", a->note);
-		(loops ? emit_sum_loop : emit_sum)(e, a);
+		(e->step->program->loops ? emit_sum_loop : emit_sum)(e, a);
 		break;
 	case ACTION_PREDICT:
 		emit_prediction(e, a);

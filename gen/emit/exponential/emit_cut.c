@@ -106,10 +106,10 @@ static void emit_algorithm(const struct emitter *e)
 		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
 		   { "TERMS", terms_of_events(e) }, { "CONTACTS", meets_contacts(e) },
 		   { "INPUTS", e->system->inputs },
-		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(looking(e)) },
+		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(by_series(e, e->step->cut->look)) },
 		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
 		   { "SWIFT", cut_of(e)->certain < 1 });
-	emit_divided_macros(looking(e));
+	emit_divided_macros(by_series(e, e->step->cut->look));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
 	       "#include \"cut.h\"\n", shortest(cut_of(e)->fastest), shortest(cut_of(e)->certain));
@@ -118,10 +118,10 @@ static void emit_algorithm(const struct emitter *e)
 void emit_cut_step(const struct emitter *e)
 {
 	enum { CUBIC = 3 };
-	const struct emitter *l = looking(e);
+	const struct emitter *l = by_series(e, e->step->cut->look);
 	emit_force_table(l);
-	emit_frozen_function(forcing(e));
-	emit_ends_function(ending(e));
+	emit_frozen_function(by_series(e, e->step->cut->forces));
+	emit_ends_function(by_series(e, e->step->cut->ends));
 	emit_expand_from(l);
 	emit_divided_tables(l);
 	emit_passing_table(e, CUBIC + meets_contacts(e));

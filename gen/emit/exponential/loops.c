@@ -158,13 +158,6 @@ void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *
 	}
 }
 
-void emit_combination_loop(const struct emitter *e, const struct action *a)
-{
-	say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->channels, a->target,
-	    a->minus == NONE ? format("2.0 * left%d[i]", a->plus)
-			     : format("left%d[i] %c left%d[i]", a->plus, a->added ? '+' : '-', a->minus));
-}
-
 void emit_sum_loop(const struct emitter *e, const struct action *a)
 {
 	struct table *const *table = e->step->branch[0].table;

@@ -213,7 +213,7 @@ void emit_series_functions(const struct emitter *e)
 	emit_force_table(e);
 	emit_expand_from(e);
 	if (e->step->slopes)
-		emit_slopes_function(sloping(e));
+		emit_slopes_function(by_series(e, e->step->slopes));
 }
 
 static void emit_model_functions(const struct emitter *e)

@@ -15,8 +15,7 @@ struct view {
 	struct emitter e;
 };
 
-/* The same emitter, whose series is this one */
-static const struct emitter *look_by(const struct emitter *e, struct expansion *x)
+const struct emitter *by_series(const struct emitter *e, struct expansion *x)
 {
 	struct view *view = NEW(struct view);
 	view->step = *e->step;
@@ -25,31 +24,6 @@ static const struct emitter *look_by(const struct emitter *e, struct expansion *
 	view->e.step = &view->step;
 	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
 	return &view->e;
-}
-
-const struct emitter *looking(const struct emitter *e)
-{
-	return look_by(e, e->step->cut->look);
-}
-
-const struct emitter *ending(const struct emitter *e)
-{
-	return look_by(e, e->step->cut->ends);
-}
-
-const struct emitter *forcing(const struct emitter *e)
-{
-	return look_by(e, e->step->cut->forces);
-}
-
-const struct emitter *sloping(const struct emitter *e)
-{
-	return look_by(e, e->step->slopes);
-}
-
-const struct emitter *meeting(const struct emitter *e)
-{
-	return look_by(e, e->step->divided);
 }
 
 /* ---- what is asked of it ---- */

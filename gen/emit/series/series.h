@@ -9,14 +9,10 @@ struct expansion;
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
-/* Of a scheme with a leftover from crossing to crossing, */
-const struct emitter *looking(const struct emitter *e);           /* these print the solution, */
-const struct emitter *ending(const struct emitter *e);            /* the expressions' values and slopes, */
-const struct emitter *forcing(const struct emitter *e);           /* what is left over */
-const struct emitter *sloping(const struct emitter *e);           /* slopes, beside an adaptive series */
-const struct emitter *meeting(const struct emitter *e);           /* beside a collocation, at events */
+/* The same emitter, whose series is this one */
+const struct emitter *by_series(const struct emitter *e, struct expansion *x);
 void emit_expand_from(const struct emitter *e);                   /* all that is kept */
-void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at: sloping(e) prints it */
+void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at, beside an adaptive series */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */

@@ -31,13 +31,19 @@ static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr o
 	return x->expressions - 1;
 }
 
-void add_twin(struct divided *d, int breakpoint)
+static int add_breakpoint(struct divided *d, mpq_srcptr at)
 {
 	mpq_t *all = rationals(d->breaks + 1);
 	for (int i = 0; i < d->breaks; i++)
 		mpq_set(all[i], d->at[i]);
-	mpq_set(all[d->breaks++], d->at[breakpoint]);
+	mpq_set(all[d->breaks], at);
 	d->at = all;
+	return d->breaks++;
+}
+
+void add_twin(struct divided *d, int breakpoint)
+{
+	add_breakpoint(d, d->at[breakpoint]);
 }
 
 static int known_breakpoint(const struct divided *d, mpq_srcptr at)
@@ -51,14 +57,7 @@ static int known_breakpoint(const struct divided *d, mpq_srcptr at)
 static int find_breakpoint(struct divided *d, mpq_srcptr at)
 {
 	int known = known_breakpoint(d, at);
-	if (known != NONE)
-		return known;
-	mpq_t *all = rationals(d->breaks + 1);
-	for (int i = 0; i < d->breaks; i++)
-		mpq_set(all[i], d->at[i]);
-	mpq_set(all[d->breaks], at);
-	d->at = all;
-	return d->breaks++;
+	return known != NONE ? known : add_breakpoint(d, at);
 }
 
 static void value_of_constants(const struct form *plain, mpq_ptr value)
