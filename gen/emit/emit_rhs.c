@@ -232,12 +232,12 @@ static void emit_derivatives(const struct emitter *e)
 		if (written->velocity[i] >= 0)
 			say(e, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
 	for (int i = 0; i < n; i++) {
-		const char **term = ARRAY(const char *, (size_t)n);
-		int terms = 0, state = highest_state(written, i);
+		struct summands s = { 0 };
 		for (int j = 0; j < n; j++)
 			if (!factor[i * n + j].zero)
-				term[terms++] = scaled(factor[i * n + j].value, format("residual[%d]", j));
-		say(e, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", state, tree(terms, term, 12));
+				add_summand(&s, scaled(factor[i * n + j].value, format("residual[%d]", j)));
+		say(e, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", highest_state(written, i),
+		    sum_of(&s, 12));
 	}
 }
 

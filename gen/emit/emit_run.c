@@ -57,18 +57,18 @@ static void emit_row_tables(const struct emitter *e)
 static const char *group_text(const struct emitter *e, int first)
 {
 	const struct rows *rows = e->step->rows;
-	int inputs = e->system->inputs, last = first + rows->group, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)(rows->columns + inputs * last) + 1);
+	int inputs = e->system->inputs, last = first + rows->group;
+	struct summands s = { 0 };
 	const char *at = first ? format("cell + %d", first * rows->outputs) : "cell";
 	for (int k = 0; k < rows->columns; k++)
-		term[terms++] = format("%s_row[%d][%s] * start[%d]", e->name, k, at, k);
+		add_summand(&s, format("%s_row[%d][%s] * start[%d]", e->name, k, at, k));
 	for (int j = 0; j < last && inputs; j++)
 		for (int i = 0; i < inputs; i++) {
 			int shift = (first - j) * rows->outputs + zeros_of(rows);
 			const char *place = shift ? format("cell + %d", shift) : "cell";
-			term[terms++] = format("%s_sample_row[%d][%s] * u[%d]", e->name, i, place, j * inputs + i);
+			add_summand(&s, format("%s_sample_row[%d][%s] * u[%d]", e->name, i, place, j * inputs + i));
 		}
-	return terms ? tree(terms, term, 21) : "0.0";
+	return sum_of(&s, 21);
 }
 
 /* A function of its own: out is nothing else's there, so that several numbers are computed at a time. */
@@ -252,13 +252,13 @@ static void emit_leap(const struct emitter *e)
 {
 	struct leap_column *column = room_for_leap(e);
 	int count = leap_columns_of(e, column);
-	const char **term = ARRAY(const char *, (size_t)count + 1);
+	struct summands s = { 0 };
 	for (int k = 0; k < count; k++) {
 		const char *operand = column[k].operand;
-		term[k] = format("%s_leap[%d][cell]%s%s", e->name, k, operand ? " * " : "", operand ? operand : "");
+		add_summand(&s, format("%s_leap[%d][cell]%s", e->name, k, operand ? format(" * %s", operand) : ""));
 	}
 	say(e, "    for (cell = 0; cell < $N_STATES; cell++) { s->y[cell] %s %s; }\n",
-	    e->step->form == FORM_DELTA ? "+=" : "=", count ? tree(count, term, 22) : "0.0");
+	    e->step->form == FORM_DELTA ? "+=" : "=", sum_of(&s, 22));
 }
 
 static void emit_block_step(const struct emitter *e)

@@ -109,6 +109,16 @@ const char *tree(int terms, const char *const *term, int indent)
 	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
 }
 
+void add_summand(struct summands *s, const char *text)
+{
+	*MORE(s->term, s->terms) = text;
+}
+
+const char *sum_of(const struct summands *s, int indent)
+{
+	return s->terms ? tree(s->terms, s->term, indent) : "0.0";
+}
+
 const char *scaled(double factor, const char *operand)
 {
 	if (!operand)

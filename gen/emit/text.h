@@ -63,6 +63,12 @@ void declare_members(const struct emitter *e, void (*print)(const struct emitter
 void emit_nominal_of(const struct emitter *e, void (*print)(const struct emitter *e));    /* NAME_nominal */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
+struct summands {
+	int terms;
+	const char **term;
+};
+void add_summand(struct summands *s, const char *text);
+const char *sum_of(const struct summands *s, int indent);         /* as a tree; of none 0.0 */
 void say_wrapped(const struct emitter *e, const char *text);      /* a statement, broken where it is long */
 /* const double name[count] = {...}; NULL: 1 */
 void say_vector(const struct emitter *e, const char *name, int count, const char *const *text);

@@ -255,25 +255,25 @@ static bool any_drive(const struct emitter *e)
 static const char *drive_text(const struct emitter *e, int coord)
 {
 	const struct motion *m = motion(e);
-	int inputs = e->system->inputs, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)(m->columns + 2 * inputs) + 1);
+	int inputs = e->system->inputs;
+	struct summands s = { 0 };
 	for (int k = 0; k < m->columns; k++) {
 		const char *operand = column_operand(e, k);
 		double factor = m->load[coord * m->columns + k];
 		if (changes(e) && drives(e, k))
-			term[terms++] = format("drive[%d][%d]%s", coord, k, operand ? format(" * %s", operand) : "");
+			add_summand(&s, format("drive[%d][%d]%s", coord, k, operand ? format(" * %s", operand) : ""));
 		else if (factor != 0)
-			term[terms++] = scaled(factor, operand);
+			add_summand(&s, scaled(factor, operand));
 	}
 	for (int i = 0; i < inputs; i++) {
 		const double *factor = m->input + 2 * (coord * inputs + i);
 		if (factor[0] != 0)
-			term[terms++] = scaled(factor[0], ramps(e, i) ? format("(u[%d] + tau * slope[%d])", i, i)
-								      : format("u[%d]", i));
+			add_summand(&s, scaled(factor[0], ramps(e, i) ? format("(u[%d] + tau * slope[%d])", i, i)
+								      : format("u[%d]", i)));
 		if (factor[1] != 0)
-			term[terms++] = scaled(factor[1], format("slope[%d]", i));
+			add_summand(&s, scaled(factor[1], format("slope[%d]", i)));
 	}
-	return terms ? tree(terms, term, 18) : "0.0";
+	return sum_of(&s, 18);
 }
 
 static void emit_known_loads(const struct emitter *e, const struct reads *r)

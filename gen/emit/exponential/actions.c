@@ -21,51 +21,42 @@ static void emit_combination(const struct emitter *e, const struct action *a)
 }
 
 /* y(tau) of a table, with Phi y or from rest */
-static int add_flow_terms(const struct emitter *e, const struct table *table, bool from_rest, int row,
-			  const char **term)
+static void add_flow(const struct emitter *e, struct summands *s, const struct table *table, bool from_rest, int row)
 {
-	int terms = 0;
 	for (int j = 0; j < table->states && table->Phi && !from_rest; j++)
 		if (!table->Phi[row * table->states + j].zero)
-			term[terms++] = scaled(table->Phi[row * table->states + j].value, e->local[j]);
+			add_summand(s, scaled(table->Phi[row * table->states + j].value, e->local[j]));
 	for (int k = 0; k < table->columns; k++)
 		if (!table->load[row * table->columns + k].zero)
-			term[terms++] = scaled(table->load[row * table->columns + k].value, column_operand(e, k));
+			add_summand(s, scaled(table->load[row * table->columns + k].value, column_operand(e, k)));
 	for (int k = 0; k < table->inputs; k++)
 		if (!table->input[row * table->inputs + k].zero)
-			term[terms++] = scaled(table->input[row * table->inputs + k].value, input_operand(e, k));
-	return terms;
+			add_summand(s, scaled(table->input[row * table->inputs + k].value, input_operand(e, k)));
 }
 
-static int add_kernel_terms(const struct emitter *e, const struct action *a, int row, const char **term)
+static void add_products(struct summands *s, const struct coefficient *row, int columns, const char *vector)
 {
-	int terms = 0, channels = e->model->channels;
-	for (int k = 0; k < a->kernels; k++) {
-		const struct table *table = e->step->branch[0].table[a->kernel[k].table];
-		const struct coefficient *factor = table->kernel[a->kernel[k].kernel] + row * channels;
-		for (int c = 0; c < channels; c++)
-			if (!factor[c].zero)
-				term[terms++] = scaled(factor[c].value, format("left%d[%d]", a->kernel[k].left, c));
-	}
-	return terms;
-}
-
-static const char **room_for_terms(const struct emitter *e)
-{
-	const struct table *table = e->step->branch->whole;
-	return ARRAY(const char *, (size_t)(table->states + table->columns + table->inputs + 4 * table->channels + 2));
+	for (int j = 0; j < columns; j++)
+		if (!row[j].zero)
+			add_summand(s, scaled(row[j].value, format("%s[%d]", vector, j)));
 }
 
 static void emit_sum(const struct emitter *e, const struct action *a)
 {
+	struct table *const *table = e->step->branch[0].table;
+	const int channels = e->model->channels;
 	for (int i = 0; i < e->system->states; i++) {
-		const char **term = room_for_terms(e);
-		int terms = a->flow != NONE ? add_flow_terms(e, e->step->branch[0].table[a->flow], false, i, term) : 0;
+		struct summands s = { 0 };
+		if (a->flow != NONE)
+			add_flow(e, &s, table[a->flow], false, i);
 		if (a->plain != NONE)
-			term[terms++] = format("stage%d[%d]", a->plain, i);
-		terms += add_kernel_terms(e, a, i, term + terms);
+			add_summand(&s, format("stage%d[%d]", a->plain, i));
+		for (int k = 0; k < a->kernels; k++) {
+			const struct coefficient *kernel = table[a->kernel[k].table]->kernel[a->kernel[k].kernel];
+			add_products(&s, kernel + i * channels, channels, format("left%d", a->kernel[k].left));
+		}
 		const char *target = a->target == STAGE_STATE ? "s->y" : vector_name(a->target);
-		say(e, "    %s[%d] = %s;\n", target, i, terms ? tree(terms, term, 14) : "0.0");
+		say(e, "    %s[%d] = %s;\n", target, i, sum_of(&s, 14));
 	}
 }
 
@@ -185,9 +176,9 @@ static void emit_driven(const struct emitter *e)
 			continue;
 		}
 		for (int row = 0; row < e->system->states; row++) {
-			const char **term = room_for_terms(e);
-			int terms = add_flow_terms(e, e->step->branch[0].table[t], true, row, term);
-			say(e, "    driven%d[%d] = %s;\n", i, row, terms ? tree(terms, term, 16) : "0.0");
+			struct summands s = { 0 };
+			add_flow(e, &s, e->step->branch[0].table[t], true, row);
+			say(e, "    driven%d[%d] = %s;\n", i, row, sum_of(&s, 16));
 		}
 	}
 }
@@ -226,25 +217,15 @@ static void emit_flows_apart(const struct emitter *e)
 
 /* ---- predictors of a quadrature ---- */
 
-static int add_terms(const struct coefficient *row, int columns, const char *vector, const char **term)
-{
-	int terms = 0;
-	for (int j = 0; j < columns; j++)
-		if (!row[j].zero)
-			term[terms++] = scaled(row[j].value, format("%s[%d]", vector, j));
-	return terms;
-}
-
 static void emit_unrolled_slope(const struct emitter *e)
 {
 	int states = e->system->states, channels = e->model->channels;
 	const struct slopes slopes = state_slopes(e->step, 0);
 	for (int i = 0; i < states; i++) {
-		const char **term = ARRAY(const char *, (size_t)(states + channels) + 1);
-		int terms = add_terms(slopes.A + i * states, states, "z", term);
-		terms += add_terms(slopes.B + i * channels, channels, "left", term + terms);
-		const char *sum = terms ? tree(terms, term, 12) : "0.0";
-		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum, e->model->state_name[i]);
+		struct summands s = { 0 };
+		add_products(&s, slopes.A + i * states, states, "z");
+		add_products(&s, slopes.B + i * channels, channels, "left");
+		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum_of(&s, 12), e->model->state_name[i]);
 	}
 }
 

@@ -66,15 +66,8 @@ static const char *bank_index(const struct emitter *e, const double *value, int 
 
 /* ---- sums over the rows of a block ---- */
 
-void add_summand(struct row_sum *s, const char *text)
-{
-	if (s->terms == s->room)
-		ENLARGE(s->term, (size_t)(s->room = 2 * s->room + 8));
-	s->term[s->terms++] = text;
-}
-
 /* target[i] = sum for so many i, in as many loops as its terms ask for */
-void say_row_sum(const struct emitter *e, const char *target, int rows, const struct row_sum *s)
+void say_row_sum(const struct emitter *e, const char *target, int rows, const struct summands *s)
 {
 	if (s->terms == 0)
 		say(e, "    for (i = 0; i < %d; i++) { %s = 0.0; }\n", rows, target);
@@ -137,7 +130,7 @@ void emit_to_modes(const struct emitter *e)
 	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++) {
 		const struct mode_block *own = &m->block[b];
-		struct row_sum s = { 0 };
+		struct summands s = { 0 };
 		for (int j = 0; j < own->modes; j++)
 			add_summand(&s, format("%s[%d][i] * q[%d]", table[b], j, own->coord[j]));
 		say_row_sum(e, own->place ? format("mode[%d + i]", own->place) : "mode[i]", own->rows, &s);
@@ -158,7 +151,7 @@ void emit_from_modes(const struct emitter *e)
 	       "    int i;\n", m->width);
 	for (int b = 0; b < m->blocks; b++) {
 		const struct mode_block *own = &m->block[b];
-		struct row_sum s = { 0 };
+		struct summands s = { 0 };
 		for (int j = 0; j < own->modes; j++)
 			add_summand(&s, format("%s[%d][i] * mode[%d]", table[b], j, own->place + j));
 		say_row_sum(e, own->place ? format("x[%d + i]", own->place) : "x[i]", own->rows, &s);
@@ -235,7 +228,7 @@ static double *diagonal_of(const struct emitter *e, const double *matrix, int bl
 }
 
 /* The terms of one block of a matrix, its table printed */
-static void add_block(const struct emitter *e, struct row_sum *s, int matrix, int row, int column)
+static void add_block(const struct emitter *e, struct summands *s, int matrix, int row, int column)
 {
 	const struct normal *m = normal_of_step(e);
 	const double *value = m->matrix[matrix].value;
@@ -282,7 +275,7 @@ struct combination { const char *position, *velocity; };
 static struct combination combination_of(const struct emitter *e, int matrix)
 {
 	const struct normal_matrix *m = &normal_of_step(e)->matrix[matrix];
-	struct row_sum part[2] = { { 0 }, { 0 } };
+	struct summands part[2] = { { 0 }, { 0 } };
 	for (int k = 0; k < m->terms; k++) {
 		const char *name = format("factor%d_%d", matrix + 1, k + 1);
 		add_summand(&part[m->term[k].velocity], factor_text(e, name, m->term[k].function, m->term[k].factor));
@@ -335,7 +328,7 @@ static int block_of_coordinate(const struct emitter *e, int coord, int *place)
 }
 
 /* V's row of each coordinate with such a force: what that is on the modes */
-static void add_rest_forces(const struct emitter *e, struct row_sum *sum)
+static void add_rest_forces(const struct emitter *e, struct summands *sum)
 {
 	const struct normal *m = normal_of_step(e);
 	const struct splitting *split = e->model->split;
@@ -365,7 +358,7 @@ static void emit_rest_values(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++) {
 		int place, block = block_of_coordinate(e, e->system->coord[i], &place);
 		const struct mode_block *own = &m->block[block];
-		struct row_sum s = { 0 };
+		struct summands s = { 0 };
 		if (!r.state[i])
 			continue;
 		const char *table = spell(e, "$n_from_modes%d[%s]", block + 1,
@@ -406,7 +399,7 @@ static void emit_combinations(const struct emitter *e, const struct combination 
 void emit_forces(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	struct row_sum *sum = ARRAY(struct row_sum, (size_t)m->blocks);
+	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
 	struct combination *made = ARRAY(struct combination, (size_t)m->matrices);
 	for (int k = 0; k < m->matrices; k++)
 		made[k] = combination_of(e, k);

@@ -42,7 +42,7 @@ static void emit_waves(const struct emitter *e)
 	close_function(e, "");
 }
 
-static void add_waves(const struct emitter *e, struct row_sum *s, const char *table, int row)
+static void add_waves(const struct emitter *e, struct summands *s, const char *table, int row)
 {
 	for (int k = 0; k < wave_values(e); k++)
 		if (is_there(e, k))
@@ -50,7 +50,7 @@ static void add_waves(const struct emitter *e, struct row_sum *s, const char *ta
 }
 
 /* Of a step by columns of one matrix, theirs from `first` on */
-static void add_waves_of_columns(const struct emitter *e, struct row_sum *s, int first)
+static void add_waves_of_columns(const struct emitter *e, struct summands *s, int first)
 {
 	for (int k = 0; k < wave_values(e); k++)
 		if (is_there(e, k))
@@ -92,7 +92,7 @@ static void emit_node_tables(const struct emitter *e)
 /* e eta + s eta', de eta + ds eta', and weights of forces */
 static const char *stage_sum(const struct emitter *e, int row, int forces, const char *force)
 {
-	struct row_sum s = { 0 };
+	struct summands s = { 0 };
 	add_summand(&s, format("flow[%d][i] * s->eta[i]", 2 * row));
 	add_summand(&s, format("flow[%d][i] * s->rate[i]", 2 * row + 1));
 	for (int k = 0; k < forces; k++)
@@ -145,7 +145,7 @@ static void emit_forces_ahead(const struct emitter *e)
 	       "    for (i = 0; i < %d; i++) {\n"
 	       "        force[0][i] = s->force[%d][i];\n", m->width, m->stages);
 	for (int i = 0; i < m->stages; i++) {
-		struct row_sum s = { 0 };
+		struct summands s = { 0 };
 		for (int k = 0; k < nodes; k++)
 			add_summand(&s, scaled(m->ahead[i * nodes + k], format("s->force[%d][i]", k)));
 		say(e, "        force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 22));
@@ -157,7 +157,7 @@ static void emit_forces_ahead(const struct emitter *e)
 static void emit_predict(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	struct row_sum extrapolated = { 0 };
+	struct summands extrapolated = { 0 };
 	for (int k = 0; k < m->points; k++)
 		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
 	emit_array(e, "Modes after a step, from past forces, the last first", "past_weight", 3,
@@ -196,7 +196,7 @@ static void emit_still(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const int width = m->width;
 	double *omega = ARRAY(double, 2 * (size_t)width);
-	struct row_sum s = { 0 };
+	struct summands s = { 0 };
 	for (int i = 0; i < width; i++) {
 		omega[i] = m->omega[i];
 		omega[width + i] = m->period[i];
@@ -243,7 +243,7 @@ static void emit_swing(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	const int count = wave_values(e);
-	struct row_sum sum = { 0 };
+	struct summands sum = { 0 };
 	if (count == 0)
 		return;
 	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->banks, count, m->width }, m->wave,

@@ -18,17 +18,17 @@ bool *loads_of_step(const struct emitter *e)
 /* The slope at the end of the step of an input that goes through further taps, where something reads it */
 static void emit_tap_slope(const struct emitter *e, int input)
 {
-	int hold = e->system->input[input].hold, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)hold + 1);
+	int hold = e->system->input[input].hold;
+	struct summands s = { 0 };
 	RATIONAL slope = ZERO;
 	if (!reads_input_slope(e->model, input))
 		return;
 	for (int c = 0; c <= hold; c++) {
 		tap_slope(hold, c, slope);
 		if (mpq_sgn(slope) != 0)
-			term[terms++] = scaled(round_rational(slope), tap_text(e, input, c));
+			add_summand(&s, scaled(round_rational(slope), tap_text(e, input, c)));
 	}
-	say(e, "    s->slope[%d] = (%s) / %s;\n", input, tree(terms, term, 18), step_length(e));
+	say(e, "    s->slope[%d] = (%s) / %s;\n", input, sum_of(&s, 18), step_length(e));
 }
 
 /* `samples` steps at once: of inputs that are held or ramp */

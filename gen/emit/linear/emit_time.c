@@ -27,13 +27,12 @@ static void emit_held(const struct emitter *e)
 	int states = e->system->states;
 	const struct coefficient *force = held_forces_of(e->step);
 	for (int i = 0; i < e->model->n; i++) {
-		const char **term = ARRAY(const char *, (size_t)states);
-		int terms = 0;
+		struct summands s = { 0 };
 		for (int j = 0; j < states; j++)
 			if (!force[i * states + j].zero)
-				term[terms++] = scaled(force[i * states + j].value, format("s->y[%d]", j));
-		say(e, "    x[%d] = %s;  /* held for %s */\n", e->step->layout.held + i,
-		    terms ? tree(terms, term, 12) : "0.0", e->model->coord_name[i]);
+				add_summand(&s, scaled(force[i * states + j].value, format("s->y[%d]", j)));
+		say(e, "    x[%d] = %s;  /* held for %s */\n", e->step->layout.held + i, sum_of(&s, 12),
+		    e->model->coord_name[i]);
 	}
 }
 
@@ -59,18 +58,18 @@ static bool *wanted_loads(const struct emitter *e, const int *index)
 static void store_derivatives(const struct emitter *e, int input, int at)
 {
 	int hold = e->system->input[input].hold, before = 0;
-	const char **term = ARRAY(const char *, (size_t)hold + 1), *power = "";
+	const char *power = "";
 	RATIONAL weight = ZERO, one = RATIO(1, 1);
 	for (int i = 0; i < input; i++)
 		before += e->system->input[i].hold + 1;
 	for (int m = 0; m <= hold; m++) {
-		int terms = 0;
+		struct summands s = { 0 };
 		for (int c = 0; c <= hold; c++) {
 			tap_derivative(hold, m, c, one, weight);
 			if (mpq_sgn(weight) != 0)
-				term[terms++] = scaled(round_rational(weight), input_operand(e, before + c));
+				add_summand(&s, scaled(round_rational(weight), input_operand(e, before + c)));
 		}
-		say(e, "    x[%d] = (%s)%s;\n", at + m, tree(terms, term, 13),
+		say(e, "    x[%d] = (%s)%s;\n", at + m, sum_of(&s, 13),
 		    m > 1 ? format(" / (%s)", power) : m ? format(" / %s", power) : "");
 		power = m ? format("%s * %s", power, step_length(e)) : step_length(e);
 	}

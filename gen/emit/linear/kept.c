@@ -6,25 +6,22 @@
 /* The rate of a coordinate, over written values y; or what was gained of it, y being gains */
 static const char *rate_text(const struct emitter *e, const struct form *rate, bool whole)
 {
-	const char **term = ARRAY(const char *, (size_t)rate->terms + 1);
-	int terms = 0;
+	struct summands s = { 0 };
 	for (int i = 0; i < rate->terms; i++) {
 		const struct basis *basis = &rate->term[i].basis;
 		const char *operand = basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL;
 		if (operand || whole)
-			term[terms++] = scaled(finite_number(e, rate->term[i].factor), operand);
+			add_summand(&s, scaled(finite_number(e, rate->term[i].factor), operand));
 	}
-	if (terms == 0)
-		return "0.0";
-	return terms > 1 || *term[0] == '-' ? format("(%s)", tree(terms, term, 12)) : term[0];
+	return s.terms > 1 || *sum_of(&s, 12) == '-' ? format("(%s)", sum_of(&s, 12)) : sum_of(&s, 12);
 }
 
 /* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */
 static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at)
 {
 	const struct relative *r = e->model->relative;
-	const char **term = ARRAY(const char *, (size_t)r->written->n + 1), *own = format("y[%d]", at[coord]);
-	int terms = 0;
+	const char *own = format("y[%d]", at[coord]);
+	struct summands s = { 0 };
 	if (link->kind == LINK_PARENT) {
 		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
 		const char *parent = rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]);
@@ -35,8 +32,8 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 	}
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->weight[k]) != 0)
-			term[terms++] = scaled(finite_number(e, link->weight[k]), format("y[%d]", at[k]));
-	return link->kind == LINK_CENTRE ? tree(terms, term, 12) : own;
+			add_summand(&s, scaled(finite_number(e, link->weight[k]), format("y[%d]", at[k])));
+	return link->kind == LINK_CENTRE ? sum_of(&s, 12) : own;
 }
 
 /* What the written one has gained since the last set: d is what was gained of what is kept, y of the others so far */
@@ -44,19 +41,18 @@ static const char *gain_text(const struct emitter *e, const struct link *link, i
 			     const int *kept)
 {
 	const struct relative *r = e->model->relative;
-	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
-	int terms = 0;
+	struct summands s = { 0 };
 	if (link->kind == LINK_PARENT) {
 		bool rate = link->rate && at[coord] >= r->written->n;
 		const char *parent = rate ? rate_text(e, link->rate, false) : format("y[%d]", at[link->from]);
 		const char *from = scaled(finite_number(e, link->ratio), parent);
 		return format("%s %c d[%d]", from, link->turned ? '-' : '+', kept[coord]);
 	}
-	term[terms++] = format("d[%d]", kept[coord]);
+	add_summand(&s, format("d[%d]", kept[coord]));
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->shift[k]) != 0)
-			term[terms++] = scaled(finite_number(e, link->shift[k]), format("d[%d]", kept[k]));
-	return tree(terms, term, 12);
+			add_summand(&s, scaled(finite_number(e, link->shift[k]), format("d[%d]", kept[k])));
+	return sum_of(&s, 12);
 }
 
 /* Places of positions (order 0) and velocities in the vector of states, -1: there is none; of velocities that stand

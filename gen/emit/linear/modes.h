@@ -10,13 +10,8 @@
 const struct normal *normal_of_step(const struct emitter *e);
 int  functions_of_time(const struct emitter *e);                  /* beside the constant one */
 bool has_bank(const struct emitter *e);                           /* of several operators */
-struct row_sum {                    /* of what is written out in a loop over i */
-	int terms, room;
-	const char **term;
-};
-void add_summand(struct row_sum *s, const char *text);
 /* target[i] = sum for so many i, in as many loops as its terms ask for */
-void say_row_sum(const struct emitter *e, const char *target, int rows, const struct row_sum *s);
+void say_row_sum(const struct emitter *e, const char *target, int rows, const struct summands *s);
 void emit_to_modes(const struct emitter *e);                      /* NAME_modes_of */
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */

@@ -17,16 +17,15 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
 		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL, NULL };
-		const char **term = ARRAY(const char *, (size_t)size);
-		int terms = 0;
+		struct summands s = { 0 };
 		for (int j = 0; j < size; j++) {
 			bool any = false;
 			for (int i = 0; i < n; i++)
 				any = any || p->row[i * size + j] != 0;
 			if (any)
-				term[terms++] = format("%s[i][%d] * x[%d]", rows.text, j, j);
+				add_summand(&s, format("%s[i][%d] * x[%d]", rows.text, j, j));
 		}
-		say(e, "    return %s;\n", terms ? tree(terms, term, 11) : "0.0");
+		say(e, "    return %s;\n", sum_of(&s, 11));
 	}
 	close_function(e, "");
 }

@@ -277,7 +277,7 @@ static const char *given_names(const struct emitter *part)
 static void emit_linear_rows(const struct emitter *part, const double *whole)
 {
 	int size = part->step->layout.size, states = part->system->states;
-	const char **x = operands_of_x(part), **term = ARRAY(const char *, (size_t)size);
+	const char **x = operands_of_x(part);
 	begin_step(part);
 	emit_raw_locals(part, NULL);
 	for (int i = 0; i < part->system->inputs; i++)
@@ -285,12 +285,12 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
 			    ramp_slope(part, place_of_input(part, i)));
 	for (int i = 0; i < states; i++) {
-		int terms = 0;
+		struct summands s = { 0 };
 		for (int j = 0; j < size; j++)
 			if (whole[i * size + j] != 0)
-				term[terms++] = scaled(whole[i * size + j], *x[j] ? x[j] : NULL);
-		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i),
-		    terms ? tree(terms, term, 14) : "0.0", part->model->state_name[i]);
+				add_summand(&s, scaled(whole[i * size + j], *x[j] ? x[j] : NULL));
+		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i), sum_of(&s, 14),
+		    part->model->state_name[i]);
 	}
 }
 

@@ -139,14 +139,13 @@ static const char *entry_times(const struct region_tables *t, int row, int colum
 const char *row_text(const struct region_tables *t, int row, const char *const *operand,
 			    const char *further, int indent)
 {
-	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
-	int terms = 0;
+	struct summands s = { 0 };
 	for (int j = 0; j < t->columns; j++)
 		if (operand[j] && acts_at(t, row, j))
-			term[terms++] = entry_times(t, row, j, *operand[j] ? operand[j] : NULL);
+			add_summand(&s, entry_times(t, row, j, *operand[j] ? operand[j] : NULL));
 	if (further)
-		term[terms++] = further;
-	return terms ? tree(terms, term, indent) : "0.0";
+		add_summand(&s, further);
+	return sum_of(&s, indent);
 }
 
 struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
@@ -309,24 +308,21 @@ const char **entries(const struct emitter *e, const char *layout)
 const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
 				   const char *const *operand, int indent)
 {
-	int size = e->step->layout.size, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)size);
-	for (int j = 0; j < size; j++) {
-		double factor = p->row[expression * size + j];
-		if (factor != 0)
-			term[terms++] = scaled(factor, *operand[j] ? operand[j] : NULL);
-	}
-	return terms ? tree(terms, term, indent) : "0.0";
+	int size = e->step->layout.size;
+	struct summands s = { 0 };
+	for (int j = 0; j < size; j++)
+		if (p->row[expression * size + j] != 0)
+			add_summand(&s, scaled(p->row[expression * size + j], *operand[j] ? operand[j] : NULL));
+	return sum_of(&s, indent);
 }
 
 const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent)
 {
-	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
-	int terms = 0;
+	struct summands s = { 0 };
 	for (int j = 0; j < e->step->layout.size; j++)
 		if (!p->bounded[j] && *size[j])         /* 1 counts for nothing */
-			term[terms++] = size[j];
-	return tree(terms, term, indent);
+			add_summand(&s, size[j]);
+	return sum_of(&s, indent);
 }
 
 bool keeps_rest(const struct emitter *e)
