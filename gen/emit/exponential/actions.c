@@ -6,8 +6,9 @@
 
 static const char *combination_at(const struct action *a, const char *place)
 {
-	return a->minus == NONE ? format("2.0 * left%d[%s]", a->plus, place)
-				: format("left%d[%s] %c left%d[%s]", a->plus, place, a->added ? '+' : '-', a->minus, place);
+	if (a->minus == NONE)
+		return format("2.0 * left%d[%s]", a->plus, place);
+	return format("left%d[%s] %c left%d[%s]", a->plus, place, a->added ? '+' : '-', a->minus, place);
 }
 
 static void emit_combination(const struct emitter *e, const struct action *a)
