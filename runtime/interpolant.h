@@ -130,14 +130,17 @@ static void PL(at_node)(const PL_TYPE *s, const real poly[PL_STAGES + 1][PL_COLU
     }
 }
 
-/* Polynomials through what stands in c[0] at the start, and in value at node k: what that node adds */
-static void PL(add_node)(int columns, int k, const real value[], real c[])
+/* Polynomials of the first `count` columns through what stands in c[0] at the start, and in value at node k: what
+ * that adds */
+static inline void PL(add_node)(int columns, int count, int k, const real value[], real c[])
 {
     int i, m;
-    for (i = 0; i < columns; i++) {
+    for (i = 0; i < count; i++) {
         const real rise = (value[i] - c[i]) / PL(node)[k];
+        real *const at = c + i;
+        PL_UNROLL
         for (m = 0; m < PL_STAGES; m++) {
-            c[(m + 1) * columns + i] += PL(monomial)[m][k] * rise;
+            at[(m + 1) * columns] += PL(monomial)[m][k] * rise;
         }
     }
 }

@@ -286,15 +286,15 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
     }
 }
 
-/* The highest derivatives k at the nodes of a step of `size` h, from those that are given: 1, or 0 where Newton's
- * method does not find them */
+/* The highest derivatives k at the nodes of a step of `size` h, from those that are given, and what is known there: 1,
+ * or 0 where Newton's method does not find them */
 static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], const real jacobian[], real size,
-                     real unit[PL_STATES], real k[PL_UNKNOWNS])
+                     real known[PL_STAGES][PL_ROOM(PL_KNOWN)], real unit[PL_STATES], real k[PL_UNKNOWNS])
 {
     const real dt = size * PL_H;
     const int *const interval = PL(intervals)(s);
     const int fresh = PL_CONTACTS && !s->ready; /* units are not known yet */
-    real previous = 0, known[PL_STAGES][PL_ROOM(PL_KNOWN)];
+    real previous = 0;
     int i;
 #if PL_MODES > 0
     PL(factors) factors;

@@ -8,8 +8,8 @@
  *     PL(breaks), PL(breakpoint), PL(passing)       of each expression how many breakpoints, these, a pl_divided
  *
  * and a member contact.  Where there are impacts, contacts at rest and friction, what these are watched by stands
- * behind the expressions, PL_TERMS in all, and is looked for like them; what happens at an event is the law of
- * events.c, by the first terms of a series there.  The file defines
+ * behind the expressions, PL_TERMS in all, the first PL_WAYS by polynomials, and is looked for like them; what happens
+ * at an event is the law of events.c, by the first terms of a series there.  The file defines
  *
  *     PL(expand_from)            as taylor.h, of order PL_EVENT_ORDER with PL_EVENT_COLUMNS columns
  *     PL(events), PL(along)      a pl_events of that series; of polynomials along a step
@@ -29,22 +29,23 @@ static void PL(values_here)(const PL_TYPE *s, const real start[], const real slo
     PL(watch)(known, s->contact.interval, s->start, c[0], terms);
 }
 
-/* ... along a step of `size` h: polynomials through their values there and at the nodes */
-static void PL(values_along)(const PL_TYPE *s, const real start[], const real slope[], real size,
+/* ... along a step, of which known has what is known at its nodes: polynomials through their values there and at the
+ * nodes */
+static void PL(values_along)(const PL_TYPE *s, const real start[], const real slope[],
+                             const real known[PL_STAGES][PL_ROOM(PL_KNOWN)],
                              const real poly[PL_STAGES + 1][PL_COLUMNS], real c[PL_WAY + 1][PL_TERMS],
                              real terms[PL_TERMS])
 {
-    real y[PL_STATES], value[PL_TERMS], spare[PL_TERMS], known[PL_ROOM(PL_KNOWN)];
+    real y[PL_STATES], value[PL_TERMS], spare[PL_TERMS];
     int k;
     PL(values_here)(s, start, slope, c, terms);
     for (k = 0; k < PL_STAGES; k++) {
-        PL(known_at)(s, PL_WATCH_READS, start, slope, PL(node)[k] * size, size / 2, known);
         PL(at_node)(s, poly, k, y);
-        PL(watch)(known, s->contact.interval, y, value, spare);
-        PL(add_node)(PL_TERMS, k, value, c[0]);
+        PL(watch)(known[k], s->contact.interval, y, value, spare);
+        PL(add_node)(PL_TERMS, PL_WAYS, k, value, c[0]);
     }
 #if PL_CONTACTS
-    PL(guards_along)(size * PL_H, c);
+    PL(guards_along)(s->size * PL_H, c);
 #endif
 }
 
@@ -325,14 +326,16 @@ static void PL(move_end)(PL_TYPE *s, const real start[], const real slope[],
  * is at the start, so that nothing moves.  Near its start a polynomial may leave out more than what has just passed its
  * breakpoint has moved since: that comes back only if it does so along a shorter step too. */
 static int PL(pass)(PL_TYPE *s, const real start[], const real slope[], const real jacobian[], real limit,
-                    real unit[PL_STATES], real poly[PL_STAGES + 1][PL_COLUMNS])
+                    real known[PL_STAGES][PL_ROOM(PL_KNOWN)], real unit[PL_STATES],
+                    real poly[PL_STAGES + 1][PL_COLUMNS])
 {
     PL(search) f;
     real k[PL_UNKNOWNS], theta, part, end = 1, till;
     int again, back, met;
     PL(look_along)(&f, s);
     for (again = 0;; again++) {
-        PL(values_along)(s, start, slope, s->size, (const real (*)[PL_COLUMNS])poly, f.c, f.terms);
+        PL(values_along)(s, start, slope, (const real (*)[PL_ROOM(PL_KNOWN)])known, (const real (*)[PL_COLUMNS])poly,
+                         f.c, f.terms);
 #if PL_CONTACTS
         if (s->contact.placed < 3 && pl_events_left(&f.along, &f.at)) {
             return PL(not_yet)(s, 2);
@@ -369,7 +372,7 @@ static int PL(pass)(PL_TYPE *s, const real start[], const real slope[], const re
         }
         part = back ? (real)0.0625 : theta;
         PL(continue)((const real (*)[PL_COLUMNS])poly, 0, part, 1 / (s->size * PL_H), k);
-        if (!PL(solve)(s, start, slope, jacobian, part * s->size, unit, k)) {
+        if (!PL(solve)(s, start, slope, jacobian, part * s->size, known, unit, k)) {
             if (met) {
                 break;
             }

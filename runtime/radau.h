@@ -249,7 +249,7 @@ static int PL(shows_along)(const PL_TYPE *s, const real start[], const real slop
         PL(known_at)(s, PL_TRACE_READS, start, slope, PL(node)[k] * size, size / 2, known);
         PL(at_node)(s, poly, k, y);
         PL(trace)(known, PL(intervals)(s), y, value);
-        PL(add_node)(PL_ARGUMENTS, k, value, c[0]);
+        PL(add_node)(PL_ARGUMENTS, PL_ARGUMENTS, k, value, c[0]);
     }
     for (i = 0; i < PL_ARGUMENTS; i++) {
         if (!PL(follows)(&c[0][i], PL_ARGUMENTS, PL_STAGES, 1, PL(argument)[i][1], PL_RISE / (real)PL(argument)[i][2],
@@ -365,8 +365,8 @@ static inline void PL(leave_rest)(PL_TYPE *s, int rejected, const real unit[PL_S
 /* Whether a step of `size` h is as exact as it has to be; by what factor the next may be longer, or this has to be
  * shorter */
 static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[], const real jacobian[], real size,
-                              int rejected, real made[PL_STATES], real unit[PL_STATES],
-                              real poly[PL_STAGES + 1][PL_COLUMNS], real *factor)
+                              int rejected, real made[PL_STATES], real known[PL_STAGES][PL_ROOM(PL_KNOWN)],
+                              real unit[PL_STATES], real poly[PL_STAGES + 1][PL_COLUMNS], real *factor)
 {
     real k[PL_UNKNOWNS], error;
     int i, good;
@@ -376,7 +376,7 @@ static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[]
     if (s->ready) {
         PL(continue)((const real (*)[PL_COLUMNS])s->poly, 1, size * s->per, s->per / PL_H, k);
     }
-    if (!PL(solve)(s, start, slope, jacobian, size, unit, k)) {
+    if (!PL(solve)(s, start, slope, jacobian, size, known, unit, k)) {
         return 0;
     }
     error = PL(finish)(s->start, size * PL_H, unit, k, poly, s->gain) + PL_NOTHING;
@@ -408,6 +408,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
     jacobian[0] = 0; /* that of each node counts */
 #endif
     for (;;) {
+        real known[PL_STAGES][PL_ROOM(PL_KNOWN)];
         real poly[PL_STAGES + 1][PL_COLUMNS], unit[PL_STATES], factor = rejected < 3 ? (real)0.25 : (real)0.0625;
         const real size = s->want < limit ? s->want : limit;
         if ((*tried)++ == PL_TRIES) {
@@ -416,7 +417,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
         if (!(size > PL_SHORTEST)) {
             return PL_NOT_FINITE;
         }
-        if (!PL(attempt)(s, start, slope, jacobian, size, rejected, made, unit, poly, &factor)) {
+        if (!PL(attempt)(s, start, slope, jacobian, size, rejected, made, known, unit, poly, &factor)) {
             s->want = size * (rejected++ < 3 || factor < (real)0.1 ? factor : (real)0.1);
 #if PL_ORDER > 0
             if (PL(product)(rates, s->want) < (real)0.5) {
@@ -435,7 +436,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
         s->run++;
 #endif
 #if PL_EXPRESSIONS > 0
-        wrong = PL(pass)(s, start, slope, jacobian, limit, unit, poly);
+        wrong = PL(pass)(s, start, slope, jacobian, limit, known, unit, poly);
 #endif
 #if PL_CONTACTS
         *tried -= s->stop == PL_AT_CROSSING; /* events have a limit of their own */

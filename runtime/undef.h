@@ -238,6 +238,7 @@
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WAY
+#undef PL_WAYS
 #undef PL_WAVES
 #undef PL_WHOLE
 #undef PL_WIDE

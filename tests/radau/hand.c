@@ -108,9 +108,9 @@ static void check_turning(void)
 static double one_step(double size)
 {
     fading s = {.y = {1}};
-    real unit[1], k[3] = {0, 0, 0}, poly[4][1];
+    real known[3][1], unit[1], k[3] = {0, 0, 0}, poly[4][1];
     fading_place(&s);
-    if (!fading_solve(&s, NULL, NULL, NULL, (real)size, unit, k)) {
+    if (!fading_solve(&s, NULL, NULL, NULL, (real)size, known, unit, k)) {
         return NAN;
     }
     (void)fading_finish(s.start, (real)size, unit, k, poly, s.gain);

@@ -6,6 +6,7 @@
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/collocation/collocation.h"
+#include "step/contacts/series_contacts.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 #include "step/regions/guards.h"
@@ -261,6 +262,7 @@ static void emit_include(const struct emitter *e)
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
+		   { "WAYS", d ? d->expressions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);

@@ -46,7 +46,7 @@ struct contacts {
 	struct series_jump *assignment;
 	int conflicts;
 	struct conflict *conflict;
-	int watches;
+	int watches, ways;          /* ways: of so many, the first, more than the value at the start is looked at */
 	struct watch *watch;
 };
 
