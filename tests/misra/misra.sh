@@ -74,12 +74,12 @@ awk -F'|' '$2 ~ /^ [0-9]+\.[0-9]+ $/ { split($4, m, ","); gsub(/ /, "", $2); pri
 column=2
 [ "$part" = models ] || column=3
 while read -r rule models runtime; do
-	count=$models
-	[ "$part" = models ] || count=$runtime
+	times=$models
+	[ "$part" = models ] || times=$runtime
 	most=$(awk -v rule="$rule" -v column=$column '$1 == rule { print $column }' allowed)
-	echo "rule $rule: $count, on the page ${most:-nothing}" >log
-	[ "$count" -le "${most:--1}" ]
-	result $? "$part: rule $rule, $count times, not more than doc/misra.md says"
+	echo "rule $rule: $times, on the page ${most:-nothing}" >log
+	[ "$times" -le "${most:--1}" ]
+	result $? "$part: rule $rule, $times times, not more than doc/misra.md says"
 done <found
 [ "$(wc -l <found)" -gt 15 ] || result 1 "$part: only $(wc -l <found) rules were found"
 tap_end
