@@ -44,7 +44,7 @@ struct choosing {
 static void ask(const struct choosing *c, struct model *model)
 {
 	const struct alternative *a = c->now;
-	model->asked.trial = c->trying;
+	model->asked.again.trial = c->trying;
 	model->asked.single = a->single;
 	model->asked.compensated = a->compensated;
 	model->asked.form = a->form;

@@ -20,7 +20,7 @@ static void emit_masses(const struct emitter *e)
 {
 	double *value = ARRAY(double, (size_t)e->system->states);
 	for (int i = 0; i < e->system->states; i++)
-		value[i] = i < e->model->n ? 1 : finite_number(e, e->step->mass[e->system->coord[i]]);
+		value[i] = i < e->model->n ? 1 : finite_number(e, e->step->kicks.mass[e->system->coord[i]]);
 	emit_array(e, "Velocities are kept times these", "mass", 1, &e->system->states, value, NULL);
 }
 
@@ -75,7 +75,7 @@ static void emit_tables(const struct emitter *e)
 		emit_initial(e, "initial_set", e->model->written);
 		emit_conversions(e);
 	}
-	if (e->step->momenta)
+	if (e->step->kicks.momenta)
 		emit_masses(e);
 	if (has_ranges(e))
 		emit_ranges(e);
@@ -89,11 +89,12 @@ void emit_access(const struct emitter *e)
 	const struct step *step = e->step;
 	emit_tables(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
-		   { "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->momenta },
+		   { "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->kicks.momenta },
 		   { "FORCED", step->forced != NULL },
 		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },
 		   { "KEPT", step->program->compensated },
-		   { "CARRIES", step->carries }, { "RELATIVE", e->model->relative != NULL }, { "PHASES", e->phases },
+		   { "CARRIES", step->carried.count }, { "RELATIVE", e->model->relative != NULL },
+		   { "PHASES", e->phases },
 		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
 		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },

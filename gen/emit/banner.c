@@ -181,8 +181,8 @@ void banner_cut(const struct emitter *e)
 static void tell_no_phi(const struct emitter *e)
 {
 	say(e, " * What rounding takes from the state is kept in rest.\n");
-	if (e->step->shown->no_phi)
-		say(e, " * There is no Phi: %s.\n", e->step->shown->no_phi);
+	if (e->step->shown->no.phi)
+		say(e, " * There is no Phi: %s.\n", e->step->shown->no.phi);
 }
 
 static void banner_impacts(const struct emitter *e)
@@ -348,11 +348,12 @@ void banner_regions(const struct emitter *e)
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);
-	banner_sentence(e, "%s", e->step->swift ? format("A step is one product where a bound shows it clear of every "
+	const struct looking *look = &e->step->look;
+	banner_sentence(e, "%s", look->swift ? format("A step is one product where a bound shows it clear of every "
 			"breakpoint; up to %d crossings that are certain go by the model's own Taylor polynomials, of "
-			"degree %d; all else by the search.", MOST_SWIFT, e->step->swift_degree) : e->step->clears ?
+			"degree %d; all else by the search.", MOST_SWIFT, look->degree) : look->clears ?
 			"A step is one product where a bound shows it clear of every breakpoint; all else goes by the "
-			"search." : format("Every step goes by the search: %s.", e->step->searches));
+			"search." : format("Every step goes by the search: %s.", look->searches));
 	banner_region_number(e);
 }
 
@@ -371,8 +372,8 @@ static void banner_part(const struct emitter *e, int index)
 	else
 		say(e, " *     %s; expression%s%s; %d regions, %d different%s\n", text, s->expressions > 1 ? "s" : "",
 		    divides, possible_regions(s), s->systems,
-		    part->swift ? format("; polynomials of degree %d", part->swift_degree)
-				: format("; every step goes by the search: %s", part->searches));
+		    part->look.swift ? format("; polynomials of degree %d", part->look.degree)
+				: format("; every step goes by the search: %s", part->look.searches));
 }
 
 /* Of independent parts */
@@ -387,7 +388,7 @@ void banner_parts(const struct emitter *e)
 	banner_expressions(e);
 	for (int p = 0; p < e->step->parts; p++) {
 		banner_part(e, p);
-		swift = swift || e->step->part[p]->swift;
+		swift = swift || e->step->part[p]->look.swift;
 	}
 	if (swift)
 		banner_sentence(e, "A step of a part is one product where a bound shows it clear of every breakpoint; "
@@ -450,16 +451,16 @@ static void banner_form(const struct emitter *e)
 		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
 	if (e->step->modal)
 		banner_modes(e);
-	if (e->step->no_modal)
-		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no_modal);
+	if (e->step->no.modal)
+		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no.modal);
 	if (e->step->rest)
 		say(e, " * What has decayed below %s is set to rest: looked for every 64 steps, by $n_%s.\n",
 		    e->model->asked.single ? "1e-35" : "1e-290", e->step->rest->in_step ? "step" : "run");
 	if (e->model->relative)
 		banner_relative(e);
-	if (e->step->carries)
+	if (e->step->carried.count)
 		say(e, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n",
-		       carried_text(e), e->step->carries > 1 ? "each" : "it");
+		       carried_text(e), e->step->carried.count > 1 ? "each" : "it");
 	if (drift.known)
 		say(e, " * %s.\n", drift_text(&drift));
 	if (e->step->rounding.known)
@@ -541,8 +542,8 @@ static void banner_run(const struct emitter *e)
 		    rows->count, row_numbers(e->step));
 	else if (runs_in_blocks(e))
 		say(e, " * $n_run takes %d rows at a time, those of an expansion.\n", e->model->truncation.over);
-	else if (e->step->no_rows)
-		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no_rows);
+	else if (e->step->no.rows)
+		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no.rows);
 }
 
 /* Functions that there are not, and why; what one of them needs */

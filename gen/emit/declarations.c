@@ -19,7 +19,7 @@ void announce(const struct emitter *e, const char *text, const char *comment)
 static void emit_state_struct(const struct emitter *e)
 {
 	const char *first = e->model->coord_name[0];
-	const char *momenta = e->step->momenta ? format("; velocities times mass / mass of %s", first) : "";
+	const char *momenta = e->step->kicks.momenta ? format("; velocities times mass / mass of %s", first) : "";
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
 	       "    double y[$N_STATES];  /* %s%s%s */\n",
@@ -29,8 +29,8 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));
 	if (e->step->program->compensated)
 		say(e, "    double rest[$N_STATES];  /* what rounding took from y so far */\n");
-	if (e->step->carries)
-		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries,
+	if (e->step->carried.count)
+		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carried.count,
 		       carried_text(e));
 	if (e->step->forced && !e->step->program->compensated && !e->model->relative)
 		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
@@ -127,9 +127,9 @@ static void declare_checks(const struct emitter *e, bool rhs)
 
 static void declare_tables(const struct emitter *e)
 {
-	if (!e->step->shown->no_phi)
+	if (!e->step->shown->no.phi)
 		announce(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
-	if (given_inputs(e) && !e->step->shown->no_phi)
+	if (given_inputs(e) && !e->step->shown->no.phi)
 		announce(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");

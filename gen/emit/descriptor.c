@@ -21,7 +21,7 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 /* Of the states as written; of those that are kept where a function reads it */
 void emit_phi(const struct emitter *e)
 {
-	if (e->step->shown->no_phi)
+	if (e->step->shown->no.phi)
 		return;
 	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
 	const bool leaps = has_jump(e) && !e->kind->own_factors;
@@ -67,7 +67,7 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 
 void emit_gamma(const struct emitter *e)
 {
-	if (!e->step->shown->no_phi)
+	if (!e->step->shown->no.phi)
 		emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
 }
 

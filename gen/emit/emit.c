@@ -142,7 +142,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 {
 	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
 		say(e, "\n#include <math.h>\n");
-	if (e->step->program->compensated || e->step->carries)
+	if (e->step->program->compensated || e->step->carried.count)
 		say(e, "\n#if PL_EXCESS_PRECISION%s\n"
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
 		       "on x86 compile it with -msse2 -mfpmath=sse\"\n"

@@ -189,7 +189,7 @@ static bool steps_by_table(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	return e->system->inputs > 0 && e->system->states % 2 == 0 && !program->in_order && !program->compensated &&
-	       e->step->carries == 0;
+	       e->step->carried.count == 0;
 }
 
 struct leap_column {

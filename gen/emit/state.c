@@ -78,7 +78,7 @@ const char *carried_text(const struct emitter *e)
 {
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
+		if (e->step->carried.place[i] >= 0)
 			list = format("%s%s%s", list, *list ? ", " : "", e->model->state_name[i]);
 	return list;
 }
@@ -166,9 +166,10 @@ const char *stepped_table(const struct emitter *e, const char *table)
 /* The mass that a kept velocity is multiplied with; NULL: 1 */
 const char *factor_of_momentum(const struct emitter *e, int state)
 {
-	if (!e->step->momenta || state < e->model->n || mpq_cmp_ui(e->step->mass[e->system->coord[state]], 1, 1) == 0)
+	const struct kicks *kicks = &e->step->kicks;
+	if (!kicks->momenta || state < e->model->n || mpq_cmp_ui(kicks->mass[e->system->coord[state]], 1, 1) == 0)
 		return NULL;
-	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
+	return shortest(finite_number(e, kicks->mass[e->system->coord[state]]));
 }
 
 int place_of_state(const struct emitter *e, int state)

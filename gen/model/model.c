@@ -35,9 +35,9 @@ static void define_override(struct building *b, const char *text)
 
 static void set_tunables(struct building *b)
 {
-	if (b->request->tunable)
+	if (b->request->again.tunable)
 		derive_params(b->spec);
-	for (int i = 0; b->request->tunable && i < b->spec->tunables; i++) {
+	for (int i = 0; b->request->again.tunable && i < b->spec->tunables; i++) {
 		const struct tunable *tunable = &b->spec->tunable[i];
 		struct node *value = NEW(struct node);
 		*value = (struct node){ .kind = NODE_NUMBER,
@@ -45,7 +45,7 @@ static void set_tunables(struct building *b)
 					.start = tunable->at,
 					.end = tunable->at };
 		mpq_init(value->number);
-		mpq_set(value->number, b->request->tunable[i]);
+		mpq_set(value->number, b->request->again.tunable[i]);
 		tunable->symbol->value = value;
 	}
 }
@@ -351,7 +351,7 @@ static void collect_intervals(struct building *b)
 static void part_factors(struct building *b)
 {
 	const struct request *request = b->request;
-	const bool *factor = request->factor         ? request->factor
+	const bool *factor = request->again.factor         ? request->again.factor
 			     : request->find_factors ? request->find_factors(b)
 						     : ARRAY(bool, b->spec->tunables);
 	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
@@ -387,7 +387,7 @@ static void derive_model(struct building *b)
 	derive_params(b->spec);
 	b->model->leads.params = b->spec->tunables;
 	b->model->derived = ARRAY(const struct form *, (size_t)b->spec->derived + 1);
-	for (int k = 0; k < b->spec->derived && !b->request->tunable; k++)
+	for (int k = 0; k < b->spec->derived && !b->request->again.tunable; k++)
 		statement_guard(collect_derived, &(struct derivation){ b, k });
 }
 
@@ -396,10 +396,10 @@ static void derive_model(struct building *b)
 static void collect_with_params(struct building *b)
 {
 	struct collector *c = &b->collector;
-	const bool left = !b->request->factor && leaves_over(b);
+	const bool left = !b->request->again.factor && leaves_over(b);
 	if (!left)
 		derive_model(b);
-	if (!left && !b->request->factor && (b->request->solution || !needs_regions(b)))
+	if (!left && !b->request->again.factor && (b->request->solution || !needs_regions(b)))
 		return;
 	spread_tuned(b->spec);
 	if (!left)
@@ -423,8 +423,8 @@ static void begin_model(struct building *b)
 	mpq_srcptr zero = rationals(1)[0];
 	model->spec = b->spec;
 	model->asked = *request;
-	model->written = request->relative ? request->relative->written : model;
-	model->relative = request->relative;
+	model->written = request->again.relative ? request->again.relative->written : model;
+	model->relative = request->again.relative;
 	model->frame.form = model->relative ? model->relative->form : NULL;
 	if (model->relative)                    /* its params were collected for the written one */
 		b->collector.irrationals = model->written->irrationals;
@@ -470,7 +470,7 @@ static void collect_model(struct building *b)
 {
 	struct model *model = b->model;
 	const struct request *request = b->request;
-	bool all = !request->tunable;
+	bool all = !request->again.tunable;
 	if (all)
 		evaluate_params(b);
 	statement_guard(choose_scheme, b);
@@ -480,7 +480,7 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
-	if (b->spec->tunables > 0 && (all || request->factor) && !diagnostics_errors())
+	if (b->spec->tunables > 0 && (all || request->again.factor) && !diagnostics_errors())
 		collect_with_params(b);
 	gather_impacts(b);
 	if (all)
@@ -540,19 +540,19 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	for (int i = 0; i < request->definitions; i++)
 		define_override(&b, request->definition[i]);
 	set_tunables(&b);
-	if (!request->relative && (request->prefix || (model->name && *model->name)))
+	if (!request->again.relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
 	collect_model(&b);
 	build_parts(&b);
 	model->irrationals = b.collector.irrationals;
-	bool told = request->solution || request->tunable || request->relative || request->undivided;
+	bool told = request->solution || request->again.tunable || request->again.relative || request->again.undivided;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !told && warnings_are_heard())
 		warn(&b);
-	if (!diagnostics_errors() && !request->solution && !request->tunable)
+	if (!diagnostics_errors() && !request->solution && !request->again.tunable)
 		silent_guard(find_nonlinear, &b);
 	return diagnostics_errors() ? NULL : model;
 }

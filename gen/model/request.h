@@ -10,6 +10,16 @@
 struct relative;
 
 struct building;
+struct again {                      /* to build a model a second time, for builders; then nothing is told again */
+	/* values of the tunable params in place of the spec's, to see what the equations become: no step, no initial
+	 * values */
+	const mpq_t *tunable;
+	/* with them: those of the tunable params that regions have as numbers, the others as inputs; else NULL */
+	const bool *factor;
+	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+	bool undivided;             /* regions are those of all coordinates together */
+	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
+};
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
 	const char *modes;
@@ -35,15 +45,7 @@ struct request {                    /* what the user asks for on the command lin
 	struct node *scheme_order, *scheme_over; /* of a series; NULL: not given */
 	struct place step_at, form_at, compensated_at;
 	struct place end_at;        /* the end of --solution, else as step_at */
-	/* What builders ask for to build a model a second time; then nothing is told again */
-	/* values of the tunable params in place of the spec's, to see what the equations become: */
-	const mpq_t *tunable;
-	                            /* no step, no initial values */
-	/* with them: those of the tunable params that regions have as numbers, the others as inputs; else NULL */
-	const bool *factor;
-	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
-	bool undivided;             /* regions are those of all coordinates together */
-	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
+	struct again again;
 };
 
 struct truncation {                 /* of a Taylor series */

@@ -118,8 +118,8 @@ static void person_operations(FILE *to, const struct step *step)
 			program->wave_multiplications, program->wave_additions);
 	else if (program->wave_multiplications)
 		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->wave_multiplications,
-			program->wave_additions, step->no_anchors ? "; no anchors: " : "",
-			step->no_anchors ? step->no_anchors : "");
+			program->wave_additions, step->no.anchors ? "; no anchors: " : "",
+			step->no.anchors ? step->no.anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
 	if (step->program->peak_multiplications)
@@ -149,15 +149,15 @@ static void person_step(FILE *to, const struct step *step)
 	const struct model *model = step->shown->model;
 	const char *no_at = step_objection(step, CAN_AT);
 	person_operations(to, step);
-	if (step->shown->no_phi)
-		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no_phi);
+	if (step->shown->no.phi)
+		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no.phi);
 	else
 		fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
 			model->switching     ? " of region 0"
 			: !has_leftover(step) ? ""
 			: step->branches > 1 ? " = e^{A h} of the first operator"
 					     : " = e^{A h}");
-	for (int i = 0; i < model->system.states && !step->shown->no_phi; i++) {
+	for (int i = 0; i < model->system.states && !step->shown->no.phi; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
 			fprintf(to, " %24s",

@@ -275,7 +275,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_nonlinear(to, step);
 	if (!is_nonlinear(step))
 		json_linear(to, step);
-	if (!step->shown->no_phi) {
+	if (!step->shown->no.phi) {
 		fputs("  ", to);
 		json_matrix(to, "    ", "Phi", states, states, states, Phi);
 		fputs(",\n", to);

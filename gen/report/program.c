@@ -278,7 +278,7 @@ static void print_list(FILE *to, const struct step *step)
 	fprintf(to, "Assignments, %s%s:\n",
 		program->in_order ? "in order: each reads what those before it have left"
 				  : "all of which read the old state",
-		step->momenta ? "; velocities are kept as momenta" : "");
+		step->kicks.momenta ? "; velocities are kept as momenta" : "");
 	for (int i = 0; i < program->assignments; i++)
 		print_assignment(to, step, &program->assignment[i]);
 }

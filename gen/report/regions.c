@@ -28,7 +28,7 @@ static long swift_bytes(const struct step *step)
 	return 8 * s->systems *
 		       (s->expressions * (2 * size + off) +
 			halves * size * 2 * s->expressions) +
-	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
+	       28 * (long)s->regions * s->expressions + 8 * (step->look.degree + 1);
 }
 
 /* Of pieces that are shorter than h, but for what bounds guards */
@@ -57,9 +57,9 @@ static long anchor_bytes(const struct step *step)
 static long swift_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
-	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
-	return !step->clears                         ? 0
-	       : step->swift                        ? size * size + MOST_LOOKS * (bounds + moves)
+	long moves = 6 * step->look.degree * (size * size + size) + 12 * size * size;
+	return !step->look.clears                         ? 0
+	       : step->look.swift                        ? size * size + MOST_LOOKS * (bounds + moves)
 	       : has_events(step->model->switching) ? products_of_unmet(step)
 						    : size * size;
 }
@@ -85,10 +85,10 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->clears && step->model->retuned)
+	if (step->look.clears && step->model->retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
-	return bytes + ladder_bytes(step) + (step->swift ? swift_bytes(step) : 0) +
+	return bytes + ladder_bytes(step) + (step->look.swift ? swift_bytes(step) : 0) +
 	       (has_events(s) ? guard_bytes(step) : 0);
 }
 
@@ -162,15 +162,15 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 
 static void person_way(FILE *to, const struct step *step, const char *of)
 {
-	if (step->swift)
+	if (step->look.swift)
 		fprintf(to,
 			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
 			"degree %d, all else by the search.\n",
-			of, MOST_SWIFT, step->swift_degree);
-	else if (step->clears)
+			of, MOST_SWIFT, step->look.degree);
+	else if (step->look.clears)
 		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
 	else
-		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->searches);
+		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->look.searches);
 }
 
 static void person_impacts(FILE *to, const struct model *model)

@@ -78,7 +78,7 @@ static void check_assignment(const struct check *c, const struct assignment *a)
 	need(c, among(a->terms, table->states + table->columns + table->inputs + 1),
 	     "its number of terms is out of range");
 	need(c, !a->added || c->program->reads[a->target], "it adds to a state that is not marked as read");
-	need(c, !a->carried || c->step->carry[a->target] >= 0,
+	need(c, !a->carried || c->step->carried.place[a->target] >= 0,
 	     "it carries what rounding takes, and there is no place for that");
 	for (int k = 0; k < a->terms; k++)
 		check_operand(c, &a->term[k]);

@@ -69,7 +69,7 @@ static void make_whole(void *context)
 				  .two_words = true,
 				  .name = "full",
 				  .increments = step->form == FORM_DELTA,
-				  .mass = step->mass };
+				  .mass = step->kicks.mass };
 	mpq_init(whole->fraction);
 	mpq_set_ui(whole->fraction, 1, 1);
 	make_tables(step, 1, whole);
@@ -81,8 +81,8 @@ static void build_exact(struct step *step)
 	bool chosen = step->model->asked.form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
 	if (chosen && !silent_guard(make_whole, step)) {        /* kicks may leave the range where Phi does not */
 		step->form = FORM_DELTA;
-		step->mass = NULL;
-		step->momenta = chosen = false;
+		step->kicks.mass = NULL;
+		step->kicks.momenta = chosen = false;
 	}
 	if (!chosen)
 		make_whole(step);
@@ -135,7 +135,7 @@ static void build_linear_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, false);
 	build_exact(step);
-	if (!step->model->asked.trial || step->branch->system.segments > 1 || peak_outputs(step->model) > 0)
+	if (!step->model->asked.again.trial || step->branch->system.segments > 1 || peak_outputs(step->model) > 0)
 		series_plan(step);
 }
 
@@ -176,12 +176,12 @@ static void make_read_table(void *context)
 static void write_no_list(struct step *step)
 {
 	int states = step->branch->system.states;
-	step->carry = ARRAY(int, states);
+	step->carried.place = ARRAY(int, states);
 	step->program = NEW(struct program);
 	step->program->reads = ARRAY(bool, states);
 	step->program->uses = ARRAY(bool, step->branch->whole->columns);
 	for (int i = 0; i < states; i++) {
-		step->carry[i] = -1;
+		step->carried.place[i] = -1;
 		step->program->reads[i] = true;
 	}
 }
@@ -230,7 +230,7 @@ static void read_table_if_there(struct step *step)
 	if (silent_guard(make_read_table, &(struct reading){ step, 1 }))
 		return;
 	make_read_table(&(struct reading){ step, 0 });
-	step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
+	step->no.phi = format("e^{A h} is beyond the range of %s", target_name());
 }
 
 /* One expansion over several steps knows what acts in all of them, and is of one formula. */
@@ -371,12 +371,12 @@ static void build(void *context)
 	if (model->asked.selftest)
 		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
 	if (model->asked.batch)
-		step->no_lanes = step_objection(step, CAN_LANES);
+		step->no.lanes = step_objection(step, CAN_LANES);
 	check_peaks(step);
 	count_peaks(step);
 	program_check(step);
 	plan_phases(step);
-	if (!model->asked.trial)
+	if (!model->asked.again.trial)
 		plan_rows(step);
 }
 

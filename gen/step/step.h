@@ -41,6 +41,25 @@ enum step_kind {                    /* what a step is made of */
 	KINDS
 };
 
+struct absent {                     /* why it is not there, where a reader would ask; NULL: it is, or nobody would */
+	const char *modal;          /* though it would be cheaper */
+	const char *lanes;          /* instances of a batch step each by itself */
+	const char *anchors;        /* of loads that have functions */
+	const char *rows;           /* NAME_run goes step by step */
+	const char *phi;            /* e^{A h}, which a collocated step does not need */
+};
+struct looking {                    /* of regions: a step looks over the whole of h whether it is clear, */
+	bool clears, swift;         /* and for few crossings, by Taylor polynomials of this degree */
+	int degree;
+	const char *searches;       /* why it does not look whether it is clear */
+};
+struct kicks {                      /* of kick-drift-kick */
+	const mpq_t *mass;          /* per coordinate; in units of the first */
+	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
+};
+struct carried {                    /* states that nothing leads back from, which only add up */
+	int count, *place;          /* of what rounding takes from each; -1: of others */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct model *plain;        /* without an option that stands aside: to be built in its place; or NULL */
@@ -53,16 +72,11 @@ struct step {                       /* everything that is emitted for one model 
 	int tables;                 /* of each; 1 where nothing is left over */
 	struct program *program;
 	enum step_form form;        /* any but FORM_AUTO */
-	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
+	struct kicks kicks;
 	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
-	const char *no_modal;       /* why not, where it would be cheaper; NULL: it would not */
-	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
-	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
-	 * others */
-	int carries, *carry;
-	const char *no_lanes;       /* why instances of a batch step each by itself; NULL: as lanes, or there is none */
+	struct carried carried;
+	struct absent no;
 	struct anchors *anchors;    /* NULL: functions of loads in every step */
-	const char *no_anchors;     /* why, where a load has some; NULL: there are anchors, or none has */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
@@ -71,16 +85,11 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	/* of regions: a step looks over the whole of h whether it is clear; and for few crossings, by Taylor
-	 * polynomials of this degree */
-	bool clears, swift;
-	const char *searches;       /* why it does not look whether it is clear */
-	int swift_degree;
+	struct looking look;
 	struct expansion *expansion; /* of an expanded step; else NULL */
 	struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
 	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
-	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
 	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
@@ -90,7 +99,6 @@ struct step {                       /* everything that is emitted for one model 
 	struct step **part;
 	struct load_phase *phase;   /* per load */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
-	const char *no_rows;        /* why it is so, where a reader would ask */
 };
 enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */

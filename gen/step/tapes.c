@@ -134,7 +134,8 @@ static tape_ref assigned_ref(const struct sums *s, const struct assignment *a)
 {
 	tape_ref sum = sum_ref(s, a, false), zero = tape_number(s->t, 0);
 	if (a->carried)
-		return tape_accumulate(s->t, s->state[a->target], sum, zero, s->step->carry[a->target], PLACE_CARRY);
+		return tape_accumulate(s->t, s->state[a->target], sum, zero, s->step->carried.place[a->target],
+				       PLACE_CARRY);
 	if (s->step->program->compensated)
 		return tape_accumulate(s->t, s->state[a->target], sum, sum_ref(s, a, true), a->target, PLACE_REST);
 	return a->added ? tape_binary(s->t, TAPE_ADD, s->state[a->target], sum) : sum;

@@ -102,7 +102,7 @@ static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = cut_of(e)->look;
 	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
-		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carries }, { "ORDER", x->order },
+		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carried.count }, { "ORDER", x->order },
 		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
 		   { "TERMS", terms_of_events(e) }, { "CONTACTS", meets_contacts(e) },
 		   { "INPUTS", e->system->inputs },

@@ -61,7 +61,7 @@ static void emit_load_factors(const struct emitter *e)
 
 void emit_set_aside(const struct emitter *e)
 {
-	const int *carry = e->step->carry;
+	const int *carry = e->step->carried.place;
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
 			say(e, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n",
@@ -73,7 +73,7 @@ void emit_set_aside(const struct emitter *e)
 
 void emit_take_back(const struct emitter *e)
 {
-	const int *carry = e->step->carry;
+	const int *carry = e->step->carried.place;
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
 			say(e, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n",

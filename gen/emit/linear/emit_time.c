@@ -443,19 +443,19 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 /* What is kept is made of the states, in one word */
 static bool converts(const struct emitter *e)
 {
-	return e->step->momenta || e->step->modal;
+	return e->step->kicks.momenta || e->step->modal;
 }
 
 /* Of the states that have a low word, in its order; returns how many */
 static int emit_carried(const struct emitter *e)
 {
-	int *state = ARRAY(int, (size_t)e->step->carries);
+	int *state = ARRAY(int, (size_t)e->step->carried.count);
 	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			state[e->step->carry[i]] = i;
-	if (e->step->carries)
-		emit_int_list(e, "carried", e->step->carries, state);
-	return e->step->carries;
+		if (e->step->carried.place[i] >= 0)
+			state[e->step->carried.place[i]] = i;
+	if (e->step->carried.count)
+		emit_int_list(e, "carried", e->step->carried.count, state);
+	return e->step->carried.count;
 }
 
 /* load[...] = the load states that the step reads */

@@ -21,8 +21,8 @@ static int members_of(const struct emitter *e, struct member member[6])
 	member[count++] = (struct member){ "y", states };
 	if (compensated)
 		member[count++] = (struct member){ "rest", states };
-	if (e->step->carries)
-		member[count++] = (struct member){ "carry", e->step->carries };
+	if (e->step->carried.count)
+		member[count++] = (struct member){ "carry", e->step->carried.count };
 	if (e->step->forced && !compensated && !e->model->relative)
 		member[count++] = (struct member){ "rest", states };
 	if (e->model->relative) {
@@ -62,7 +62,7 @@ static int inputs_of(const struct emitter *e)
 /* As lanes, or each by itself */
 static void declare_instances(const struct emitter *e, const struct batch *b)
 {
-	const char *alone = e->step->no_lanes;
+	const char *alone = e->step->no.lanes;
 	say(e, "\n"
 	       "/* Many instances in one call, all at one time%s. In each array the instance is the fastest: entry i\n"
 	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init.%s */\n",
@@ -91,7 +91,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 
 void emit_batch_declarations(const struct emitter *e)
 {
-	const struct batch b = e->step->no_lanes ? (struct batch){ .e = e } : plan_batch(e);
+	const struct batch b = e->step->no.lanes ? (struct batch){ .e = e } : plan_batch(e);
 	bool inputs = inputs_of(e) > 0;
 	declare_instances(e, &b);
 	say(e, "void   $n_batch_init($n_instances *b);%31s/* t = 0; of each the spec's initial values%s */\n", "",
@@ -102,7 +102,7 @@ void emit_batch_declarations(const struct emitter *e)
 	if (b.factors)
 		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
-	if (e->step->no_lanes)
+	if (e->step->no.lanes)
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
@@ -220,7 +220,7 @@ static void emit_each(const struct emitter *e)
 
 void emit_batch(const struct emitter *e)
 {
-	if (e->step->no_lanes) {
+	if (e->step->no.lanes) {
 		emit_each(e);
 		return;
 	}

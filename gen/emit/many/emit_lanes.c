@@ -105,7 +105,7 @@ struct batch plan_batch(const struct emitter *e)
 /* Rows that a step changes of an instance's memory, the first of them */
 int batch_stepped_rows(const struct emitter *e)
 {
-	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carries;
+	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carried.count;
 }
 
 /* Groups of lanes that step in turns, so that sums of one wait for none of their own */
@@ -122,7 +122,7 @@ struct over_lanes { struct batch *b; int from; }; /* where what is shared stands
 /* Rows of an instance, of what rounding takes from a state */
 static const char *rest_row(const struct emitter *e, const struct tape_node *n)
 {
-	int first = n->part == PLACE_CARRY ? batch_stepped_rows(e) - e->step->carries : e->system->states;
+	int first = n->part == PLACE_CARRY ? batch_stepped_rows(e) - e->step->carried.count : e->system->states;
 	return format("y[%d]", first + n->index);
 }
 

@@ -25,8 +25,8 @@ static bool is_linear_part(const struct emitter *part)
 static int first_of_degree(const struct emitter *e, int index)
 {
 	int first = 0;
-	while (is_linear_step(e->step->part[first]) || !e->step->part[first]->swift ||
-	       e->step->part[first]->swift_degree != e->step->part[index]->swift_degree)
+	while (is_linear_step(e->step->part[first]) || !e->step->part[first]->look.swift ||
+	       e->step->part[first]->look.degree != e->step->part[index]->look.degree)
 		if (first++ == index)
 			return index;
 	return first;
@@ -334,7 +334,7 @@ static void emit_linear_step(const struct emitter *part)
 static void emit_divided_step(const struct emitter *part)
 {
 	begin_step(part);
-	if (part->step->swift) {
+	if (part->step->look.swift) {
 		emit_raw_locals(part, NULL);
 		emit_clear_step(part);
 	} else {
@@ -365,7 +365,7 @@ void emit_parts_step(const struct emitter *e)
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
-	if (e->step->carries)           /* what was set aside is in no bound */
+	if (e->step->carried.count)           /* what was set aside is in no bound */
 		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	close_function(e, "");
 	emit_questions(e);

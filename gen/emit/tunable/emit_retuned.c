@@ -245,8 +245,8 @@ void emit_retuned(const struct emitter *e)
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
-		   { "CLEARS", e->step->clears });
-	if (e->step->clears)
+		   { "CLEARS", e->step->look.clears });
+	if (e->step->look.clears)
 		emit_gathering(e);
 	say_include(e, "retuned.h");
 }

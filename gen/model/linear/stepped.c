@@ -46,7 +46,7 @@ static struct model *undivided(struct model *model, struct spec *spec, struct re
 {
 	if (!model->switching || !model->switching->parts)
 		return model;
-	again->undivided = true;
+	again->again.undivided = true;
 	struct model *whole = model_build(spec, again);
 	if (whole)
 		whole->switching->sharing = model->switching->parts;
@@ -56,8 +56,8 @@ static struct model *undivided(struct model *model, struct spec *spec, struct re
 static struct model *model_over_differences(struct model *model, struct spec *spec, struct request *again)
 {
 	model = undivided(model, spec, again);
-	again->relative = model ? relative_of(model) : NULL;
-	struct model *relative = again->relative ? model_build(spec, again) : NULL;
+	again->again.relative = model ? relative_of(model) : NULL;
+	struct model *relative = again->again.relative ? model_build(spec, again) : NULL;
 	relative = relative ? find_tuning(relative, again) : NULL;
 	if (!relative)
 		return NULL;

@@ -177,7 +177,7 @@ static void search(void *context)
 {
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, n);
-	bool together = b->factor || b->model->relative || b->request->undivided || b->request->solution ||
+	bool together = b->factor || b->model->relative || b->request->again.undivided || b->request->solution ||
 			holds_friction(b) || b->model->impacts > 0;
 	struct switching *s = together ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)

@@ -20,7 +20,7 @@ _Noreturn void too_many_in_time(const struct switching *s)
 
 _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
-	bool together = b->model->relative || b->request->undivided;
+	bool together = b->model->relative || b->request->again.undivided;
 	const char *hint = "a scheme with a leftover, such as etdrk4, needs no regions";
 	if (has_events(s))
 		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";

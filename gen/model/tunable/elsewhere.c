@@ -30,8 +30,8 @@ static void build_there(void *context)
 {
 	struct elsewhere *s = context;
 	struct request request = *s->request;
-	request.tunable = s->values;
-	request.factor = s->factor;
+	request.again.tunable = s->values;
+	request.again.factor = s->factor;
 	s->found = model_build(spec_again(s->model->spec), &request);
 	if (s->found && !s->factor)
 		s->found = model_reduce(s->found);

@@ -15,8 +15,8 @@ static void build_attempt(void *context)
 {
 	const struct attempt *a = context;
 	struct request request = *a->b->request;
-	request.tunable = a->nominal;
-	request.factor = a->factor;
+	request.again.tunable = a->nominal;
+	request.again.factor = a->factor;
 	if (!model_build(spec_again(a->b->spec), &request))
 		abandon();
 }

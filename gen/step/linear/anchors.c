@@ -74,7 +74,7 @@ static bool fits(const struct step *step, const struct anchors *anchors, int ste
 static void note_aside(const struct step *step, const char *why)
 {
 	const char *steps = format("%d", step->model->asked.anchors);
-	if (step->model->asked.anchors > 1 && !step->model->asked.trial)
+	if (step->model->asked.anchors > 1 && !step->model->asked.again.trial)
 		stand_aside((struct place){ source_argument(steps), 0 }, format("--anchors %s", steps), why);
 }
 
@@ -91,7 +91,7 @@ static int chosen_steps(struct step *step, const struct anchors *anchors)
 		steps /= 2;
 	if (steps >= FEWEST_STEPS || asked)
 		return steps;
-	step->no_anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
+	step->no.anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
 							     : "tables would be large";
 	return 1;
 }
@@ -122,20 +122,20 @@ void check_anchors(struct step *step)
 	if (against)
 		note_aside(step, against);
 	if (any_load(step, anchors_of(step)))
-		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
+		step->no.anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
 }
 
 void drop_anchors(struct step *step, const char *why)
 {
 	note_aside(step, why);
-	step->no_anchors = why;
+	step->no.anchors = why;
 	step->anchors = NULL;
 }
 
 void plan_anchors(struct step *step)
 {
 	struct anchors *anchors = anchors_of(step);
-	if (step->no_anchors || step->model->asked.anchors == 1 || step_objection(step, CAN_ANCHORS) ||
+	if (step->no.anchors || step->model->asked.anchors == 1 || step_objection(step, CAN_ANCHORS) ||
 	    !any_load(step, anchors))
 		return;
 	list_terms(anchors, step, true);

@@ -92,9 +92,9 @@ static void take_modal(struct step *step, struct modal *modal)
 	step->modal = modal;
 	step->form = FORM_MODAL;
 	step->program = modal_program(step);
-	step->carries = 0;
+	step->carried.count = 0;
 	for (int i = 0; i < modal->states; i++)
-		step->carry[i] = -1;
+		step->carried.place[i] = -1;
 }
 
 void plan_modal(struct step *step)
@@ -113,7 +113,7 @@ void plan_modal(struct step *step)
 	if (modal && (asked || modal->condition <= AS_EXACT))
 		take_modal(step, modal);
 	else
-		step->no_modal = objection ? objection
+		step->no.modal = objection ? objection
 				 : modal   ? format("states that become modes would lose a factor of %.3g",
 						    modal->condition)
 					   : "two poles, or a pole and a load, are too close";

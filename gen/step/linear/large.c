@@ -124,7 +124,7 @@ static bool is_carried(const struct step *step, const struct group *g)
 {
 	bool any = false;
 	for (int i = 0; i < g->states * g->blocks; i++)
-		any = any || step->carry[g->state[i]] >= 0;
+		any = any || step->carried.place[g->state[i]] >= 0;
 	return any;
 }
 
@@ -206,7 +206,7 @@ static void count_groups(struct program *program, const struct step *step)
 			count_columns(program, &program->group[i]);
 		else
 			count_rows(program, step, &program->group[i]);
-	program->additions += (PL_ACCUMULATE_ADD - 1) * step->carries;
+	program->additions += (PL_ACCUMULATE_ADD - 1) * step->carried.count;
 }
 
 /* ---- the whole ---- */

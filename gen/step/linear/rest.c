@@ -68,7 +68,7 @@ void plan_rest(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct block *block;
-	if (step->model->tuning || system->heldK || step->forced || step->carries ||
+	if (step->model->tuning || system->heldK || step->forced || step->carried.count ||
 	    step->form == FORM_KICK_DRIFT_KICK)
 		return;
 	const int blocks = blocks_of(system, &block);

@@ -114,16 +114,16 @@ static const char *kick_objection(struct step *step)
 	if (!accelerations(system, a))
 		return system->states == 2 * n ? "there is damping, or a term that depends on velocities"
 					       : "a coordinate has no velocity";
-	step->mass = relative_masses(system, a);
-	if (!step->mass)
+	step->kicks.mass = relative_masses(system, a);
+	if (!step->kicks.mass)
 		return "its stiffness is not symmetric, whatever the masses";
 	if (largest_pole_angle(step) > 2.5)
 		return "the largest |pole| times h is above 2.5";
 	for (int i = 0; i < n; i++)
-		if (beyond_range(step->mass[i]) || round_rational(step->mass[i]) == 0)
+		if (beyond_range(step->kicks.mass[i]) || round_rational(step->kicks.mass[i]) == 0)
 			return format("a mass, in units of the first, is beyond the range of %s", target_name());
-	step->momenta = !all_equal(n, step->mass);
-	if (step->momenta && (load_columns(system) || input_columns(system)))
+	step->kicks.momenta = !all_equal(n, step->kicks.mass);
+	if (step->kicks.momenta && (load_columns(system) || input_columns(system)))
 		/* they would have to be multiplied by the masses */
 		return "masses are unequal and there are loads or inputs";
 	return NULL;
@@ -133,7 +133,7 @@ void leave_form(struct step *step, const char *why)
 {
 	const struct model *model = step->model;
 	const char *form = step_form_name(model->asked.form);
-	if (model->asked.trial)
+	if (model->asked.again.trial)
 		error(model->asked.form_at, NULL, "the form %s cannot step this model: %s", form, why);
 	stand_aside(model->asked.form_at, format("--form %s", form), why);
 	step->plain = model_copy(model);
@@ -197,8 +197,8 @@ void choose_form(struct step *step)
 			leave_form(step, objection);
 	}
 	if (step->form != FORM_KICK_DRIFT_KICK) {
-		step->mass = NULL;
-		step->momenta = false;
+		step->kicks.mass = NULL;
+		step->kicks.momenta = false;
 	}
 }
 
@@ -281,10 +281,10 @@ void find_carries(struct step *step)
 {
 	int n = step->branch->system.states;
 	bool listed = !step->model->switching && !step->model->operators && n <= LIMIT_UNROLLED_STATES;
-	step->carry = ARRAY(int, n);
-	step->carries = 0;
+	step->carried.place = ARRAY(int, n);
+	step->carried.count = 0;
 	for (int i = 0; i < n; i++)
-		step->carry[i] = -1;
+		step->carried.place[i] = -1;
 	if (step->model->asked.compensated || step->branch->system.heldK)
 		return;
 	bool *reads = readings(step), *elsewhere = read_elsewhere(step);
@@ -297,7 +297,7 @@ void find_carries(struct step *step)
 		for (int j = 0; j < n && !listed; j++)
 			alone = alone && !reads[j * n + i];
 		if (alone)
-			step->carry[i] = step->carries++;
+			step->carried.place[i] = step->carried.count++;
 	}
 }
 
@@ -363,7 +363,7 @@ static void count(struct program *program, const struct step *step)
 static struct assignment *new_assignment(struct program *program, const struct step *step, int target, bool added)
 {
 	struct assignment *a = MORE(program->assignment, program->assignments);
-	*a = (struct assignment){ .target = target, .added = added, .carried = step->carry[target] >= 0 };
+	*a = (struct assignment){ .target = target, .added = added, .carried = step->carried.place[target] >= 0 };
 	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns +
 						 step->branch->whole->inputs));
 	return a;
@@ -388,7 +388,7 @@ static void write_direct(struct program *program, const struct step *step)
 {
 	int n = step->branch->whole->states;
 	for (int i = 0; i < n; i++) {
-		struct assignment *a = new_assignment(program, step, i, step->carry[i] >= 0);
+		struct assignment *a = new_assignment(program, step, i, step->carried.place[i] >= 0);
 		for (int j = 0; j < n; j++)
 			if (j != i || !a->added)        /* there Phi_ii is 1 */
 				add_term(a, &step->branch->whole->Phi[i * n + j], OPERAND_STATE, j);

@@ -91,13 +91,13 @@ long products_of_unmet(const struct step *step)
 static void plan_look(struct step *step)
 {
 	bool any = false;
-	step->searches = no_look(step);
-	step->clears = !step->searches;
+	step->look.searches = no_look(step);
+	step->look.clears = !step->look.searches;
 	/* crossings go by tables of fixed numbers */
-	step->swift = step->clears && !step->model->retuned && !has_events(step->model->switching);
+	step->look.swift = step->look.clears && !step->model->retuned && !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (!step->clears)
+	if (!step->look.clears)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =
@@ -105,7 +105,7 @@ static void plan_look(struct step *step)
 			? (int)products_of_unmet(step)
 			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications + 2 * expressions;
-	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
+	step->look.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
 static void halve_region(struct step *step, int k)
@@ -181,7 +181,7 @@ static struct step *step_of_part(const struct step *whole, const struct region_p
 	step->model = part->model;
 	step->shown = whole;
 	step->kind = KIND_REGIONS;
-	step->no_anchors = "a part is given its load states";
+	step->no.anchors = "a part is given its load states";
 	take_operators(step);
 	step->written = step->branch->resolvent;
 	build_divided(step);
@@ -192,13 +192,13 @@ static void carry_of_parts(struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	int states = step->branch->system.states;
-	step->carry = ARRAY(int, states);
+	step->carried.place = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
-		step->carry[i] = -1;
+		step->carried.place[i] = -1;
 	for (int p = 0; p < step->parts; p++)
 		for (int i = 0; i < step->part[p]->layout.states; i++)
-			if (step->part[p]->carry[i] >= 0)
-				step->carry[s->part[p].state[i]] = step->carries++;
+			if (step->part[p]->carried.place[i] >= 0)
+				step->carried.place[s->part[p].state[i]] = step->carried.count++;
 }
 
 /* The load states are those of all. */
