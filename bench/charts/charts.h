@@ -134,6 +134,7 @@ extern const struct method residues_naive;              /* residues_naive.c: the
 const struct method *method_find(const char *name);     /* among these */
 /* pade.c: e^{A length}, n x n, row-major; false: A is not finite, and nor is the result */
 bool pade_exponential(int n, const double *A, double length, double *result);
+void matrix_product(int n, const double *x, const double *y, double *result);
 /* exponential.c: the same without the error of scaling and squaring in double */
 void rounded_exponential(int size, const double *generator, double length, double *result);
 /* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`

@@ -134,12 +134,6 @@ static void inlined_between(struct run *run, double fraction, double *y)
 	memcpy(y, ahead, 2 * (size_t)run->problem->n * sizeof *y);
 }
 
-static void inlined_get(const struct run *run, double *y)
-{
-	const struct inlined *r = (const struct inlined *)run;
-	memcpy(y, r->stride ? r->now : r->state, 2 * (size_t)run->problem->n * sizeof *y);
-}
-
 static long inlined_evaluations(const struct run *run)
 {
 	const struct inlined *r = (const struct inlined *)run;
@@ -175,11 +169,12 @@ static struct run *inlined_open(const struct method *method, const struct proble
 	if (!r)
 		return NULL;
 	r->run = (struct run){.method = method, .problem = problem, .restart = inlined_restart,
-	                      .advance = inlined_advance, .between = inlined_between, .get = inlined_get,
+	                      .advance = inlined_advance, .between = inlined_between, .get = run_get,
 	                      .evaluations = inlined_evaluations, .close = inlined_close};
 	r->instance = instance;
 	r->march = instance->march[kind->which];
 	r->stride = span > 1.0 ? instance->stride[kind->which] : NULL;
+	r->run.now = r->stride ? r->now : r->state;
 	r->steps = span > 1.0 ? 0 : (int)steps;
 	r->span = (int)span;
 	r->run.setting = r->h = span > 1.0 ? span * problem->unit : problem->unit / steps;

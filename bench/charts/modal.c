@@ -29,17 +29,6 @@ struct modes {
 	double *part, part_length;  /* `between`: the same for another length */
 };
 
-static void times(int n, const double *a, const double *b, double *product)
-{
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++) {
-			double sum = 0.0;
-			for (int k = 0; k < n; k++)
-				sum += a[i * n + k] * b[k * n + j];
-			product[i * n + j] = sum;
-		}
-}
-
 /* Eigenvectors of a size x size matrix, which is used up; of real matrices complex ones stand in pairs */
 static bool eigen(int size, double *matrix, gsl_vector_complex *values, gsl_matrix_complex *vectors)
 {
@@ -121,8 +110,8 @@ static double diagonalise(struct propagator *r, double *matrix)
 	struct modes *m = r->modes;
 	const int own = r->own;
 	double inside = 0.0, outside = 0.0;
-	times(own, m->inverse, r->run.problem->A, matrix);
-	times(own, matrix, m->shapes, m->diagonal);
+	matrix_product(own, m->inverse, r->run.problem->A, matrix);
+	matrix_product(own, matrix, m->shapes, m->diagonal);
 	for (int i = 0; i < own * own; i++)
 		inside = fmax(inside, fabs(m->diagonal[i]));
 	for (int k = 0; k < m->blocks; k++)

@@ -14,7 +14,7 @@ static const double b[] = { 64764752532480000, 32382376266240000, 77717703038976
 	10559470521600, 670442572800, 33522128640, 1323241920, 40840800, 960960, 16380, 182, 1 };
 static const double largest_norm = 5.371920351148152;   /* of which the approximant keeps double precision: theta_13 */
 
-static void product(int n, const double *x, const double *y, double *result)
+void matrix_product(int n, const double *x, const double *y, double *result)
 {
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
@@ -46,13 +46,13 @@ static bool approximant(int n, const double *x, double *const power[3], double *
 	const double *A2 = power[0], *A4 = power[1], *A6 = power[2];
 	for (int i = 0; i < n * n; i++)
 		inner[i] = b[13] * A6[i] + b[11] * A4[i] + b[9] * A2[i];
-	product(n, A6, inner, V);
+	matrix_product(n, A6, inner, V);
 	for (int i = 0; i < n * n; i++)
 		V[i] += b[7] * A6[i] + b[5] * A4[i] + b[3] * A2[i] + (i % (n + 1) == 0 ? b[1] : 0.0);
-	product(n, x, V, U);
+	matrix_product(n, x, V, U);
 	for (int i = 0; i < n * n; i++)
 		inner[i] = b[12] * A6[i] + b[10] * A4[i] + b[8] * A2[i];
-	product(n, A6, inner, V);
+	matrix_product(n, A6, inner, V);
 	for (int i = 0; i < n * n; i++)
 		V[i] += b[6] * A6[i] + b[4] * A4[i] + b[2] * A2[i] + (i % (n + 1) == 0 ? b[0] : 0.0);
 	for (int i = 0; i < n * n; i++) {
@@ -88,13 +88,13 @@ bool pade_exponential(int n, const double *A, double length, double *result)
 	for (size_t i = 0; good && i < entries; i++)
 		x[i] = ldexp(x[i], -squarings);
 	if (good) {
-		product(n, x, x, power[0]);
-		product(n, power[0], power[0], power[1]);
-		product(n, power[0], power[1], power[2]);
+		matrix_product(n, x, x, power[0]);
+		matrix_product(n, power[0], power[0], power[1]);
+		matrix_product(n, power[0], power[1], power[2]);
 		good = approximant(n, x, power, x + 4 * entries, result);
 	}
 	for (int k = 0; k < squarings && good; k++) {
-		product(n, result, result, x);
+		matrix_product(n, result, result, x);
 		memcpy(result, x, entries * sizeof *result);
 	}
 	for (size_t i = 0; i < entries && !good; i++)
