@@ -20,6 +20,7 @@
 #include "model/linear/shortening.h"
 #include "report/report.h"
 #include "step/linear/images.h"
+#include "step/linear/inner.h"
 
 #include <math.h>
 #include <stdlib.h>

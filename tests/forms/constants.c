@@ -14,7 +14,7 @@
 #include "drawn.h"
 #include "random_spec.h"
 #include "emit/printed.h"
-#include "model/linear/relative.h"
+#include "model/linear/inner.h"
 
 #include <ctype.h>
 #include <float.h>
@@ -58,7 +58,8 @@ static struct model *model_of(const char *text, const struct variant *v)
 {
     struct request *request = NEW(struct request);
     *request =
-        (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
+        (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single,
+                          .again.relative = kept };
     return model_build(spec_of("spec", text), request);
 }
 

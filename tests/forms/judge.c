@@ -42,7 +42,7 @@ static bool is_undamped(const struct linear *system)
 
 /* ---- x' = A x in one segment of time: states, load states, inputs and slopes ---- */
 
-struct flow {
+struct leg {
     int size, first_load, first_input;
     mpq_t *A;
 };
@@ -83,7 +83,7 @@ static void solve(int n, int right, mpq_t *W)
     mpq_clear(factor);
 }
 
-static void fill_waves(const struct linear *system, struct flow *f)
+static void fill_waves(const struct linear *system, struct leg *f)
 {
     int at = f->first_load;
     for (int l = 0; l < system->loads; at += system->load[l++].columns) {
@@ -103,11 +103,11 @@ static void fill_waves(const struct linear *system, struct flow *f)
 }
 
 /* Equations M q'' + C q' + K q = forces, solved for the highest derivative of each coordinate */
-static struct flow flow_of(const struct judge *j, int segment)
+static struct leg flow_in(const struct judge *j, int segment)
 {
     const struct linear *system = j->system;
     const int n = system->n, forces = j->loads + 2 * system->inputs;
-    struct flow f = { .first_load = system->states, .first_input = system->states + j->loads };
+    struct leg f = { .first_load = system->states, .first_input = system->states + j->loads };
     f.size = f.first_input + 2 * system->inputs;
     f.A = rationals((size_t)(f.size * f.size));
     const int right = system->states + forces, width = n + right;
@@ -144,7 +144,7 @@ static struct flow flow_of(const struct judge *j, int segment)
 }
 
 /* Is there a path from `column` to `row`? */
-static bool *reach_of(const struct flow *f)
+static bool *reach_of(const struct leg *f)
 {
     const int n = f->size;
     bool *reach = ARRAY(bool, (size_t)(n * n));
@@ -175,7 +175,7 @@ static void take_entry(mpfi_ptr x, const evaluator_enclosure *E, int i, int k)
 }
 
 /* One column of e^{A h} X: a state, a load, an input (held: u; a ramp: its values before and after) */
-static void take_column(const struct judge *j, const struct flow *f, const evaluator_enclosure *E, int i, int column,
+static void take_column(const struct judge *j, const struct leg *f, const evaluator_enclosure *E, int i, int column,
     mpfi_ptr x)
 {
     const struct linear *system = j->system;
@@ -202,7 +202,7 @@ static void take_column(const struct judge *j, const struct flow *f, const evalu
     mpfi_clear(slope);
 }
 
-static bool column_reaches(const struct judge *j, const struct flow *f, const bool *reach, int i, int column)
+static bool column_reaches(const struct judge *j, const struct leg *f, const bool *reach, int i, int column)
 {
     int part = column - j->states - j->loads, at = f->first_input;
     if (part < 0)
@@ -215,7 +215,7 @@ static bool column_reaches(const struct judge *j, const struct flow *f, const bo
 /* Twice: what is not apart from 0 with BITS is looked at with MORE_BITS; then it is taken for 0. */
 static void fill_segment(struct judge *j, int segment)
 {
-    struct flow f = flow_of(j, segment);
+    struct leg f = flow_in(j, segment);
     const bool *reach = reach_of(&f);
     evaluator_enclosure E;
     bool open = true;
@@ -289,7 +289,7 @@ static void fill_kicks(struct judge *j)
 {
     const struct linear *system = j->system;
     const int n = system->n;
-    struct flow f = flow_of(j, 0);
+    struct leg f = flow_in(j, 0);
     evaluator_enclosure E;
     mpfi_t *L = ARRAY(mpfi_t, (size_t)(n * n)), *R = ARRAY(mpfi_t, (size_t)(n * n));
     mpq_t half, mass;
@@ -334,7 +334,7 @@ static struct judged_number *numbers(int count)
 /* How load states go on by themselves: the corner of A that is theirs */
 static mpq_t *load_matrix(const struct judge *j)
 {
-    struct flow f = flow_of(j, 0);
+    struct leg f = flow_in(j, 0);
     mpq_t *A = rationals((size_t)(j->loads * j->loads));
     for (int i = 0; i < j->loads * j->loads; i++)
         mpq_set(A[i], f.A[(f.first_load + i / j->loads) * f.size + f.first_load + i % j->loads]);

@@ -17,7 +17,7 @@
 #include "drawn.h"
 #include "../emitted/worse.h"
 #include "emit/steps.h"
-#include "model/linear/relative.h"
+#include "model/linear/inner.h"
 #include "model/linear/shortening.h"
 #include "model/tunable/tuning.h"
 
@@ -267,7 +267,7 @@ static void find_kept(void)
 static const struct step *generator(const struct tuned *m, const char *text, const real *p, real h)
 {
     struct request *request = NEW(struct request);
-    *request = (struct request){.relative = kept,
+    *request = (struct request){.again.relative = kept,
                                 .form = m->direct ? FORM_DIRECT : FORM_DELTA,
                                 .single = BITS == 24,
                                 .step = p ? exact(h) : NULL};
