@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps by the Taylor series of the solution: its sums as straight lines, and what the runtime's taylor.h, which the
  * model's file includes, is told of it. */
-#include "series.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "step/series/expansion.h"
 #include "step/regions/guards.h"

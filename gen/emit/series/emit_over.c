@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps of a series of fixed order that one expansion is over several of: its coefficients in powers of time over all
  * of them, so that the last one's end is their sum, those before it values inside. */
-#include "series.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "step/series/expansion.h"
 

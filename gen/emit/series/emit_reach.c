@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far a Taylor series holds, what its coefficients may not show (functions that are all but constant over most of
  * their range, loads that may cancel): what reach.h, measure.h and unseen.h of the runtime are told. */
-#include "series.h"
+#include "inner.h"
 #include "emit/state.h"
 #include "step/collocation/collocation.h"
 #include "step/series/expansion.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions of a series: what they are handed, what of loads and inputs they read, its coefficients. */
-#include "series.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The coefficients of a series as C: their tape under the names of states and letters. */
-#include "series.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "step/series/expansion.h"
 

@@ -12,8 +12,6 @@ struct expansion;
 /* The same emitter, whose series is this one */
 const struct emitter *by_series(const struct emitter *e, struct expansion *x);
 void emit_expand_from(const struct emitter *e);                   /* all that is kept */
-void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at, beside an adaptive series */
-bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
@@ -22,28 +20,13 @@ struct recurrences *series_new(const struct emitter *e);          /* under the n
 /* What the values are summed from of what the search of events looks at, into target[] */
 void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target);
 void emit_series_tape(const struct emitter *e, const struct recurrences *r);
-void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
-const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
-void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
-bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
 bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
-const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
-const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
-void emit_series_ends(const struct emitter *e);                         /* next0, rest0, ...: where it ends */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
-bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
 
 /* ---- emit_reach.c: how far a series holds ---- */
 
-bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series */
-bool looks_at_tolerance(const struct emitter *e);
 void emit_floors(const struct emitter *e);      /* which, over the tolerance: what counts beside their size now */
-bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
-int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
-void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
-void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
 
 /* ---- emit_reach.c: how far what coefficients do not show is followed ---- */
 
@@ -101,10 +84,6 @@ void emit_events_along(const struct emitter *e);                 /* the same, of
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 
 bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
-void emit_over_members(const struct emitter *e);
-/* s->y: the state `theta` after the start, by Horner's rule; what rounding took at the start is in `rest`, with %d */
-void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
-void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
 void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */
 
 /* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */

@@ -2,10 +2,9 @@
 /* Formulas that the state chooses: each comparison is of an expression, smooth until the next event, with a breakpoint.
  * A series, or a step of a collocation, is of the formulas between two events; where an expression passes a breakpoint
  * it ends. */
+#include "inner.h"
 #include "model/reads.h"
 #include "model/regions/regions.h"
-#include "divided.h"
-#include "expansion.h"
 #include "step/contacts/series_contacts.h"
 
 #include <limits.h>

@@ -21,16 +21,11 @@ struct division {                   /* the sign of a difference */
 	int expression, breakpoint; /* it changes where that passes this; NONE: it is constant, */
 	bool above;                 /* and this its sign; else: is it positive above the breakpoint? */
 };
-/* Of a - b. The sequence of an expression that is new is to be made. */
-struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b);
 /* The same of what is known by then; false: it is not */
 bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division);
 /* Of the state, by 0: factor times its expression less the breakpoint; with its sequence */
 struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor);
 void add_twin(struct divided *d, int breakpoint);            /* a second breakpoint there */
-int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
-void rank_breakpoints(struct expansion *x);                  /* once all are there */
-int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
 /* of two alike that of the upper: what is held between them counts as below */
 int  upper_rank(const struct expansion *x, int expression, int breakpoint);
 mpq_t *rising_breakpoints(const struct divided *d);

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The solution as a Taylor series: a sequence of coefficients for each state, which of them there are, and which are
  * read. */
+#include "inner.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "divided.h"
-#include "expansion.h"
 #include "step/contacts/series_contacts.h"
 #include "step/exponential/recipe.h"
-#include "unseen.h"
 
 /* ---- the states ---- */
 

@@ -48,16 +48,10 @@ struct series_names {               /* of a sequence's nodes, x of x_3; NULL: th
 struct recurrences;
 struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
 struct tape *tape_of_recurrences(const struct recurrences *r);
-tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
 tape_ref recurrence_number(struct recurrences *r, int sequence, int k); /* 0 has a node too */
 void recurrence_set(struct recurrences *r, const char *target, int sequence, int k); /* target: its k-th */
-int sequence_operands(const struct sequence *s, int **operand);
 tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
 tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
-
-/* ---- newest.c: how the newest coefficients enter the next ones ---- */
-
-void find_newest(struct expansion *x);
 
 /* ---- expansion.c: the solution as a Taylor series ---- */
 

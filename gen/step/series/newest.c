@@ -4,7 +4,7 @@
  * what follows from a few others is an early part, of coefficients before k, and these factors, its gains, times their
  * k-th. The next coefficient of a state then waits for a multiplication and an addition, however deep the expression
  * is: latency decides what a series costs. */
-#include "expansion.h"
+#include "inner.h"
 
 enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows from; that a sum has anyway */
 

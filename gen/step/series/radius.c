@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far a Taylor series reaches from the start, for a reader: its coefficients at t = 0, inputs 0;
  * from how they fall an estimate of the radius of convergence; how many steps they serve. Nothing emitted reads it. */
+#include "inner.h"
 #include "model/reads.h"
-#include "expansion.h"
 
 #include <float.h>
 #include <math.h>

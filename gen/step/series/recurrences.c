@@ -2,8 +2,7 @@
 /* The coefficients of a series as nodes of a tape, each from those before it (Griewank and Walther, Evaluating
  * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
  * by its gains (newest.c). */
-#include "divided.h"
-#include "expansion.h"
+#include "inner.h"
 #include "step/tapes.h"
 
 #include <math.h>

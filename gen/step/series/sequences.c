@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms to sums of sequences, atoms to recurrences, each once. Sources of the recurrences: Moore 1966; Griewank and
  * Walther 2008, chapter 13. */
-#include "divided.h"
-#include "expansion.h"
-#include "sequences.h"
+#include "inner.h"
 
 int new_sequence(struct sequencing *w, struct sequence sequence)
 {

@@ -78,10 +78,7 @@ struct sequencing {                 /* what the makers of sequences share */
 	struct { const struct form *form; int sequence; } *operand;
 };
 void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor);
-/* Its terms into s, at k times scale[k] */
-void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
 mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
-mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
 /* of a state, whose force changes from segment to segment: in a table */
 void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sums of sequences: what is added up exactly, and its factors as numbers, each rounded once. */
-#include "expansion.h"
+#include "inner.h"
 
 void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor)
 {

@@ -2,7 +2,7 @@
 /* What coefficients at one time may not show: functions that are all but constant over most of their range, as tanh and
  * exp are, and what is divided by. Where they bend follows from their arguments, whose polynomials are at hand; so
  * these have a column each, and bound how far a series serves (emit/emit_unseen.c). */
-#include "unseen.h"
+#include "inner.h"
 
 #include <math.h>
 

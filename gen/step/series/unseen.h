@@ -21,8 +21,5 @@ struct unseen {
 	int power;                  /* of TEETH */
 	int column;                 /* as of an expression */
 };
-/* *looks: there is what no argument bounds, or what is steep: the slope inside and at the end is looked at too */
-struct unseen *unseen_of(const struct model *model, int *count, bool *looks);
-double crowded_frequency(const struct linear *system);      /* 1/s: the highest of loads that may cancel; 0: of few */
 
 #endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of step/series have from one another, and nobody else. */
+#ifndef PLGEN_STEP_SERIES_INNER_H
+#define PLGEN_STEP_SERIES_INNER_H
+
+#include "divided.h"
+#include "expansion.h"
+#include "sequences.h"
+#include "unseen.h"
+
+/* ---- divided.c: formulas that the state chooses ---- */
+
+/* Of a - b. The sequence of an expression that is new is to be made. */
+struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b);
+int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
+void rank_breakpoints(struct expansion *x);                  /* once all are there */
+int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
+
+/* ---- recurrences.c: the coefficients as nodes of a tape ---- */
+
+tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
+int sequence_operands(const struct sequence *s, int **operand);
+
+/* ---- newest.c: how the newest coefficients enter the next ones ---- */
+
+void find_newest(struct expansion *x);
+
+/* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
+
+/* Its terms into s, at k times scale[k] */
+void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
+mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
+
+/* *looks: there is what no argument bounds, or what is steep: the slope inside and at the end is looked at too */
+struct unseen *unseen_of(const struct model *model, int *count, bool *looks);
+double crowded_frequency(const struct linear *system);      /* 1/s: the highest of loads that may cancel; 0: of few */
+
+#endif
