@@ -85,7 +85,6 @@
 #undef pl_switching_kept_step
 #undef pl_switching_start
 #undef pl_switching_step
-#undef pl_term
 #undef pl_turn
 #undef pl_turn_add
 #undef pl_turn_at

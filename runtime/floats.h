@@ -85,7 +85,6 @@
 #define pl_switching_kept_step pl_switchingf_kept_step
 #define pl_switching_start pl_switchingf_start
 #define pl_switching_step pl_switchingf_step
-#define pl_term pl_termf
 #define pl_turn pl_turnf
 #define pl_turn_add pl_turnf_add
 #define pl_turn_at pl_turnf_at

@@ -417,30 +417,27 @@ void pl_guards_kept_change(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_cont
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 
-/* factor times a product of params, added to one entry of [R | W] */
-typedef struct pl_term {
-    unsigned short row, column, monomial;
-    pl_two factor;
-} pl_term;
-
-/* W a = R x: equations of highest derivatives a over the states and what acts on them, x.  Where every mass is fixed
- * the generator has multiplied by the inverse of W, and there is no W. */
+/* W a = R x: equations of highest derivatives a over the states and what acts on them, x.  Where every mass that
+ * params change stands alone the generator has divided by it, and there is no W. */
 typedef struct pl_equations {
     unsigned short rows;    /* entries of a */
     unsigned short columns; /* entries of x */
     unsigned short solves;  /* 1: there is a W, rows x rows, its columns behind those of R; 0: it is the unit matrix */
-    unsigned short params, monomials;
-    int terms;
-    const pl_monomial *monomial;
-    const pl_term *term; /* the same entry's one after the other */
+    unsigned short params, constants;
+    int operations, places;
+    const pl_two *constant;
+    const pl_operation *operation;
+    const pl_place *place; /* of what is not 0 */
 } pl_equations;
 
 /* value <- W^-1 R at these params, in two words: row i from value[i width] on, width = columns + (solves ? rows : 0);
  * what is behind `columns` has no meaning.
- *     value  rows x width; work: monomials + 1 entries, contents of no meaning
- * 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one, or a divisor is 0; PL_NOT_FINITE: a
- * param or a result is infinite, or not a number.  Without W an entry is off by less than 2^-101 (in floats 2^-43) of
- * the sizes of its terms, summed; with W that of row i, column j by less than 2^-101 of sum_k |W^-1|_ik times the
+ *     value  rows x width; work: as many entries as there are operations, contents of no meaning
+ * 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one, or a divisor is 0; PL_NOT_FINITE:
+ * a param or a result is infinite, or not a number.  An operation is off by less than 2^-103 (in floats 2^-45) of
+ * its result, sums and differences of the sizes of both numbers; what so much cancels that rounding alone could have
+ * left it is 0.  Without W an entry that is a sum of products is off by less than 2^-101 (in floats 2^-43) of the
+ * sizes of its terms, summed; with W that of row i, column j by less than 2^-101 of sum_k |W^-1|_ik times the
  * largest, over rows, of the sizes of all terms in W a - R x for column j. */
 int pl_equations_at(const pl_equations *e, const PL_REAL *params, pl_two *value, pl_two *work);
 

@@ -385,12 +385,17 @@ typedef struct pl_guard {
 #define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
 
-/* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list makes 1, 2, ... */
-typedef struct pl_monomial {
-    unsigned short from;    /* an earlier product */
-    unsigned char param;
-    unsigned char divides;  /* 1: divided by it */
-} pl_monomial;
+/* What is done to two numbers, to make the next one.  Numbers are counted: params first, then constants, then what was
+ * made so far. */
+enum { PL_SUM, PL_DIFFERENCE, PL_PRODUCT, PL_QUOTIENT };
+typedef struct pl_operation {
+    unsigned short what, a, b;
+} pl_operation;
+
+/* Number `number`, with the other sign where negative is 1, is one entry of [R | W]. */
+typedef struct pl_place {
+    unsigned short row, column, number, negative;
+} pl_place;
 
 /* The shape of the two descriptors below.  A program that loads models compiled apart from it looks at the first two
  * entries before it reads any other: they stay where they are, whatever comes. */

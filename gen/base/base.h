@@ -44,7 +44,6 @@ enum {
 	LIMIT_DERIVED = 16,         /* and what is computed from them as if it were one */
 	/* states, loads and inputs of an independent block whose e^{A h} the target computes */
 	LIMIT_TUNED_BLOCK = 64,
-	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
 	LIMIT_REGIONS = 243,        /* of a piecewise-linear model, in one segment of time */
 	LIMIT_REGIONS_IN_TIME = 1024, /* in all */
 	LIMIT_IMPACTS = 30,         /* 'when' and stops that bounce: bits of a word in pl_guards */
@@ -102,8 +101,6 @@ mpz_t *integers(size_t count);                             /* 0 */
 mpfr_t *reals(size_t count, mpfr_prec_t bits);             /* 0, of so many bits */
 mpfi_t *enclosures(size_t count, mpfr_prec_t bits);        /* likewise */
 bool  rationals_equal(size_t count, const mpq_t *a, const mpq_t *b);
-/* x is ratio times another, which is not 0 */
-bool  rationals_multiple(size_t count, const mpq_t *x, const mpq_t *of, mpq_ptr ratio);
 bool  rationals_zero(size_t count, const mpq_t *q);       /* all of them are 0 */
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
@@ -231,6 +228,39 @@ void diagnostics_print(FILE *to);
 void check_bits(struct place at, mpq_srcptr value);        /* the limit on exact values */
 void check_power(struct place at, mpq_srcptr base, unsigned long exponent); /* the same, before the work */
 
+/* ---- traced.c: how exact numbers follow from given ones ---- */
+
+enum traced_op { TRACED_GIVEN, TRACED_SUM, TRACED_PRODUCT, TRACED_QUOTIENT };
+struct traced_part {
+	int number;                 /* of the record; -1: a constant */
+	bool negative;              /* it is taken off */
+	mpq_srcptr constant;        /* its size */
+};
+struct traced {                     /* above 0 where it was recorded; GIVEN: a.number of what was given */
+	enum traced_op op;
+	struct traced_part a, b;
+};
+/* Records what is made of numbers that have these values, here, until it pauses; others at another place. */
+void trace_from(int count, const mpq_t *here, const mpq_t *there);
+void trace_pause(void);
+bool is_traced(size_t count, mpq_srcptr x);                 /* now, and some of them is one of the record's */
+/* Its number, or that of its opposite; -1: it is none, or has another value there */
+int  traced_as(mpq_srcptr here, mpq_srcptr there);
+const struct traced *trace_record(int *count);              /* as it is by now: what a number is made of, before it */
+struct traced_part traced_constant(long value);
+void traced_add(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
+void traced_sub(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
+void traced_mul(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
+void traced_div(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
+#undef mpq_add
+#undef mpq_sub
+#undef mpq_mul
+#undef mpq_div
+#define mpq_add traced_add
+#define mpq_sub traced_sub
+#define mpq_mul traced_mul
+#define mpq_div traced_div
+
 /* ---- number.c: the border to rounded numbers ---- */
 
 /* The target's type is double, or float after target_float; a double holds its numbers. */
@@ -261,6 +291,8 @@ const char *runtime_name(int file);                         /* of all of them, f
 
 void rational_addmul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum + a b */
 void rational_submul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b);     /* sum - a b */
+/* x is ratio times another, which is not 0 */
+bool rationals_multiple(size_t count, const mpq_t *x, const mpq_t *of, mpq_ptr ratio);
 long rational_bits(mpq_srcptr q);                           /* before its point, or one more */
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
 const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */

@@ -392,20 +392,3 @@ bool rationals_zero(size_t count, const mpq_t *q)
 			return false;
 	return true;
 }
-
-bool rationals_multiple(size_t count, const mpq_t *x, const mpq_t *of, mpq_ptr ratio)
-{
-	size_t first = 0;
-	while (first < count && mpq_sgn(of[first]) == 0)
-		first++;
-	if (first == count)
-		return false;
-	RATIONAL product = ZERO;
-	mpq_div(ratio, x[first], of[first]);
-	bool multiple = true;
-	for (size_t i = 0; i < count && multiple; i++) {
-		mpq_mul(product, ratio, of[i]);
-		multiple = mpq_equal(product, x[i]);
-	}
-	return multiple;
-}

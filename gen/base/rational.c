@@ -18,6 +18,23 @@ void rational_submul(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)
 	mpq_sub(sum, sum, product);
 }
 
+bool rationals_multiple(size_t count, const mpq_t *x, const mpq_t *of, mpq_ptr ratio)
+{
+	size_t first = 0;
+	while (first < count && mpq_sgn(of[first]) == 0)
+		first++;
+	if (first == count)
+		return false;
+	RATIONAL product = ZERO;
+	mpq_div(ratio, x[first], of[first]);
+	bool multiple = true;
+	for (size_t i = 0; i < count && multiple; i++) {
+		mpq_mul(product, ratio, of[i]);
+		multiple = mpq_equal(product, x[i]);
+	}
+	return multiple;
+}
+
 /* q = digits / 10^places if its denominator allows */
 static bool decimal_places(mpq_srcptr q, unsigned long *places)
 {

@@ -111,6 +111,14 @@ bool constant_atan2(struct place at, mpq_srcptr y, mpq_srcptr x, mpq_ptr value)
 	return false;
 }
 
+static void by_products(mpq_srcptr base, unsigned long n, bool divides, mpq_ptr value)
+{
+	RATIONAL power = RATIO(1, 1);
+	for (; n > 0; n--)
+		(divides ? mpq_div : mpq_mul)(power, power, base);
+	mpq_swap(value, power);
+}
+
 static void integer_power(struct place at, mpq_srcptr base, mpz_srcptr exponent, mpq_ptr value)
 {
 	bool trivial = mpz_cmpabs_ui(mpq_numref(base), 1) <= 0 && mpz_cmp_ui(mpq_denref(base), 1) == 0;
@@ -120,6 +128,10 @@ static void integer_power(struct place at, mpq_srcptr base, mpz_srcptr exponent,
 	else if (!mpz_fits_slong_p(exponent))
 		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
 	check_power(at, base, n);
+	if (is_traced(1, base)) {
+		by_products(base, n, mpz_sgn(exponent) < 0, value);
+		return;
+	}
 	INTEGER numerator = INTEGER_ZERO, denominator = INTEGER_ZERO;
 	mpz_pow_ui(numerator, mpq_numref(base), n);
 	mpz_pow_ui(denominator, mpq_denref(base), n);

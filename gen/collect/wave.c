@@ -117,9 +117,9 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 		return wave_product(c, y, x, factor);
 	if (x->power + y->power > LIMIT_LOAD_POWER)
 		error(c->term->start, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
-	RATIONAL a = ZERO, w = ZERO, p = ZERO, half = ZERO;
+	RATIONAL a = ZERO, w = ZERO, p = ZERO, half = RATIO(1, 2);
 	mpq_add(a, x->wave->a, y->wave->a);
-	mpq_div_2exp(half, factor, 1);
+	mpq_mul(half, half, factor);
 	mpq_sub(w, x->wave->w, y->wave->w);
 	mpq_sub(p, x->wave->p, y->wave->p);
 	bool sine = x->sine && !y->sine;

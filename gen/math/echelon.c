@@ -2,6 +2,15 @@
 /* Rows of rationals that come one by one, reduced as they come (Gauss and Jordan), and what all of them annihilate. */
 #include "math/math.h"
 
+void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
+{
+	for (int j = 0; j < n; j++) {
+		if (mpq_sgn(row[j]) == 0)
+			continue;
+		rational_submul(target[j], row[j], factor);
+	}
+}
+
 struct echelon echelon_new(int width)
 {
 	return (struct echelon){ width, 0, ARRAY(mpq_t *, width), ARRAY(int, width) };

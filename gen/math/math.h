@@ -18,9 +18,7 @@ void join_nodes(int *parent, int a, int b);                 /* their components 
 bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column);
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
-bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x); /* A x = y; false: A is singular */
 bool rational_symmetric(int n, const mpq_t *A);
-void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
 /* numerators and denominators that may have factors in common: for who only rounds them */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
@@ -33,6 +31,7 @@ struct echelon {                    /* reduced: a pivot stands alone in its colu
 	int *pivot;
 };
 
+void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
 struct echelon echelon_new(int width);
 void echelon_add(struct echelon *e, mpq_t *row);            /* `row` is used up */
 /* A basis of what all rows annihilate: one vector for each column without pivot, 1 there; returns how many */
@@ -280,29 +279,5 @@ struct spread spread_of(int n, const double *A, long steps);
  * through where they die away. */
 void reach_of_row(const struct spread *spread, const double *A, const double *row, bool columns, double *sum,
 		  double *most);
-
-/* ---- fit.c: functions of params from their values ---- */
-
-/* powers up to it, and down to its negative; points that tell what is constant */
-enum { FIT_DEGREE = 3, FIT_POINTS = 3, FIT_PARAMS = LIMIT_TUNABLES + LIMIT_DERIVED };
-struct fit {
-	int params;
-	/* points lie about these values, within 1e-7 of their size; NULL: anywhere above 0 */
-	const mpq_t *near;
-	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
-	void *context;
-	int products;               /* found: factors, some 0, times powers of params */
-	signed char power[LIMIT_MONOMIALS + 1][FIT_PARAMS];
-	mpq_t *factor;
-	int culprit;                /* the param of which no power fits; -1: too many products, or there is none */
-	/* on the way: which powers of each occur, from the lowest on; */
-	bool exponent[FIT_PARAMS][2 * FIT_DEGREE + 1];
-	/* whether any does; whether a product holds both */
-	bool depends[FIT_PARAMS], together[FIT_PARAMS][FIT_PARAMS];
-};
-/* params, value and context given; false: it is no such sum */
-bool fit_value(struct fit *fit);
-mpq_t *scattered_values(int params, int number);            /* values that are related by nothing */
-mpq_t *scattered_near(int params, int number, const mpq_t *near); /* the same, near NULL or as above */
 
 #endif

@@ -111,6 +111,30 @@ static struct members members_of(int n, const int *block, int which)
 	return m;
 }
 
+/* As block_inverse below, in numbers whose record is kept: by Gauss and Jordan */
+static void traced_inverse(int n, const mpq_t *A, const struct members *m, mpq_t *inverse, int *free)
+{
+	const int size = m->columns;
+	struct echelon e = echelon_new(2 * size);
+	for (int i = 0; i < size; i++) {
+		mpq_t *row = rationals(2 * (size_t)size);
+		for (int j = 0; j < size && i < m->rows; j++)
+			mpq_set(row[j], A[m->row[i] * n + m->column[j]]);
+		mpq_set_ui(row[size + i], 1, 1);
+		echelon_add(&e, row);
+	}
+	SCRATCH bool *pivot = ARRAY(bool, 2 * (size_t)size);
+	for (int r = 0; r < e.rank; r++)
+		pivot[e.pivot[r]] = true;
+	int k = 0;
+	while (k < size && pivot[k])
+		k++;
+	*free = k < size ? m->column[k] : -1;
+	for (int r = 0; r < e.rank && k == size; r++)
+		for (int j = 0; j < size; j++)
+			mpq_set(inverse[m->column[e.pivot[r]] * n + m->row[j]], e.row[r][size + j]);
+}
+
 /* The block at these rows and columns: with R A = W for integers W, A^-1 = W^-1 R. As many rows as columns, zeros where
  * there are fewer: *free is the first column that depends on those before it; -1: none does. */
 static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t *inverse, int *free)
@@ -147,11 +171,12 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 		mpq_set_ui(inverse[i], 0, 1);
 	}
 	int blocks = matrix_blocks(n, filled, block);
+	const bool traced = is_traced((size_t)n * (size_t)n, A[0]);
 	for (int b = 0; b < blocks; b++) {
 		struct members m = members_of(n, block, b);
 		int free = -1;
 		if (m.rows <= m.columns)        /* else another has fewer rows than columns */
-			block_inverse(n, A, &m, inverse, &free);
+			(traced ? traced_inverse : block_inverse)(n, A, &m, inverse, &free);
 		first = free >= 0 && free < first ? free : first;
 		discard(m.row);
 		discard(m.column);
@@ -159,28 +184,6 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 	if (first < n)
 		*column = first;
 	return first == n;
-}
-
-bool rational_solve(int n, const mpq_t *A, const mpq_t *y, mpq_t *x)
-{
-	const int width = n + 1;
-	int unused;
-	INTEGERS *W = integers((size_t)n * (size_t)width), *scale = integers(1);
-	RATIONALS *row = rationals(width);
-	INTEGER det = INTEGER_ZERO;
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < n; j++)
-			mpq_set(row[j], A[i * n + j]);
-		mpq_set(row[n], y[i]);
-		to_integers(width, row, 1, scale[0], W + i * width);
-	}
-	bool regular = bareiss(n, width, W, det, &unused);
-	for (int i = 0; i < n && regular; i++) {
-		mpz_set(mpq_numref(x[i]), W[i * width + n]);
-		mpz_set(mpq_denref(x[i]), det);
-		mpq_canonicalize(x[i]);
-	}
-	return regular;
 }
 
 bool rational_symmetric(int n, const mpq_t *A)
@@ -192,18 +195,22 @@ bool rational_symmetric(int n, const mpq_t *A)
 	return true;
 }
 
-void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
+static void traced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
-	for (int j = 0; j < n; j++) {
-		if (mpq_sgn(row[j]) == 0)
-			continue;
-		rational_submul(target[j], row[j], factor);
+	for (int i = 0; i < rows * columns; i++) {
+		mpq_set_ui(AB[i], 0, 1);
+		for (int k = 0; k < inner; k++)
+			rational_addmul(AB[i], A[i / columns * inner + k], B[k * columns + i % columns]);
 	}
 }
 
 /* Rows of A and columns of B as integers */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
+	if (is_traced((size_t)(rows * inner), A[0]) || is_traced((size_t)(inner * columns), B[0])) {
+		traced_product(rows, inner, columns, A, B, AB);
+		return;
+	}
 	INTEGERS *row = integers((size_t)inner), *column = integers((size_t)(inner * columns));
 	INTEGERS *scale = integers((size_t)columns);
 	INTEGER common = INTEGER_ZERO;

@@ -248,7 +248,6 @@ struct spec {                       /* what the text says, names resolved, nothi
 	int fixeds;
 	struct fixed *fixed;
 	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
-	bool derives_sums;          /* sums of params are such, too */
 	struct tunable *tunable;
 	int needs;
 	struct need *need;

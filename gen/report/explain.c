@@ -91,8 +91,8 @@ static void person_tuning(FILE *to, const struct step *step)
 	for (int k = 0; k < t->given; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
 	if (model->retuned)
-		fprintf(to, "; rows of regions that change with them have %d terms there%s.\n",
-			t->all.terms,
+		fprintf(to, "; rows of regions that change with them have %d entries there%s.\n",
+			t->all.entries,
 			t->blocks ? format(", and %d sets of them are solved", t->blocks)
 					       : "");
 	else if (model->held && model->switching)
@@ -100,7 +100,8 @@ static void person_tuning(FILE *to, const struct step *step)
 	else if (model->held)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
 	else
-		fprintf(to, "; the equations there have %d term%s%s.\n", t->all.terms, t->all.terms == 1 ? "" : "s",
+		fprintf(to, "; the equations there have %d entr%s%s.\n", t->all.entries,
+			t->all.entries == 1 ? "y" : "ies",
 			t->all.solves ? ", and are solved for the highest derivatives" : "");
 	if (step->blocks && !step->blocks->solved)
 		fprintf(to, "They touch %d of %d independent blocks; %s.\n", step->blocks->touched, step->blocks->all,

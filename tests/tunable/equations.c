@@ -125,25 +125,44 @@ static struct model *model_of(const char *text, const struct spec *tunables, con
             format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
     }
     struct spec *spec = spec_of("spec", text);
-    if (spec && tunables)
-        spec->derives_sums = tunables->derives_sums;
     struct model *model = spec ? model_build(spec, request) : NULL;
     return model && !tunables ? find_tuning(model, request) : model;
 }
 
-/* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. */
+static void part_at(const struct traced_part *part, mpq_t *value, mpq_ptr result)
+{
+    mpq_set(result, part->number < 0 ? part->constant : value[part->number]);
+    if (part->negative)
+        mpq_neg(result, result);
+}
+
+/* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. NULL: a divisor is 0 */
 static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 {
     const int width = t->x.size + t->all.rows;
-    mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->all.rows * width));
-    mpq_set_ui(product[0], 1, 1);
-    for (int m = 0; m < t->monomials; m++)
-        (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from],
-                                                     values[t->monomial[m].param]);
+    mpq_t *number = rationals((size_t)t->numbers + 1), *value = rationals((size_t)(t->all.rows * width)), a, b;
+    mpq_inits(a, b, NULL);
+    bool *divided = ARRAY(bool, (size_t)t->numbers + 1);    /* by 0, or made of what is */
+    for (int i = 0; i < t->numbers; i++) {
+        const struct traced *n = &t->number[i];
+        if (n->op == TRACED_GIVEN) {
+            (n->a.negative ? mpq_neg : mpq_set)(number[i], values[n->a.number]);
+            continue;
+        }
+        part_at(&n->a, number, a);
+        part_at(&n->b, number, b);
+        divided[i] = (n->a.number >= 0 && divided[n->a.number]) || (n->b.number >= 0 && divided[n->b.number]) ||
+                     (n->op == TRACED_QUOTIENT && mpq_sgn(b) == 0);
+        if (!divided[i])
+            (n->op == TRACED_SUM ? mpq_add : n->op == TRACED_PRODUCT ? mpq_mul : mpq_div)(number[i], a, b);
+    }
     for (int i = 0; i < t->all.rows && !t->all.solves; i++)
         mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
-    for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
-        add_product(value[term->row * width + term->column], term->factor, product[term->monomial], false);
+    for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++) {
+        if (entry->value.number >= 0 && divided[entry->value.number])
+            return NULL;
+        part_at(&entry->value, number, value[entry->row * width + entry->column]);
+    }
     return value;
 }
 
@@ -270,7 +289,7 @@ static int try_text(const char *text)
         for (int k = t->given; k < t->params; k++)
             param_value(there->spec->tunable[k].symbol, values[k]);
         mpq_t *value = rows_at(t, (const mpq_t *)values);
-        if (!solve(t, value))
+        if (!value || !solve(t, value))
             complain("singular, but the model there is none");
         else if (there->system.loads == model->system.loads && !turned(model, t, (const mpq_t *)value))
             compare_model(there, t, (const mpq_t *)value);

@@ -1317,139 +1317,165 @@ static void taylor_of_a_chain(void **state)
     mpq_clears(tau, found, NULL);
 }
 
-/* ---- sums of products of powers, from their values ---- */
+/* ---- numbers that follow from others, by what made them ---- */
 
-enum { PARAMS = 3, PRODUCTS = 4 };
+enum { GIVEN = 3, MADE = 40, PLACES = 3, SIDE = 3 };
 
-struct known_sum {
-    int products;
-    int power[PRODUCTS][PARAMS];
-    mpq_t factor[PRODUCTS], value;
-    bool pole;                  /* 1/(1 + first param) is added */
-};
-
-static void times_power(mpq_ptr product, mpq_srcptr x, int power)
+static void draw_places(mpq_t *given)
 {
-    for (int k = 0; k < (power < 0 ? -power : power); k++)
-        (power < 0 ? mpq_div : mpq_mul)(product, product, x);
-}
-
-static mpq_srcptr known_value(void *context, const mpq_t *params)
-{
-    struct known_sum *sum = context;
-    mpq_t term;
-    mpq_init(term);
-    mpq_set_ui(sum->value, 0, 1);
-    for (int i = 0; i < sum->products; i++) {
-        mpq_set(term, sum->factor[i]);
-        for (int k = 0; k < PARAMS; k++)
-            if (sum->power[i][k])
-                times_power(term, params[k], sum->power[i][k]);
-        mpq_add(sum->value, sum->value, term);
-    }
-    if (sum->pole) {
-        mpq_set_ui(term, 1, 1);
-        mpq_add(term, term, params[0]);
-        mpq_inv(term, term);
-        mpq_add(sum->value, sum->value, term);
-    }
-    mpq_clear(term);
-    mpq_t *result = rationals(1);           /* the function's values are looked at several at a time */
-    mpq_set(result[0], sum->value);
-    return result[0];
-}
-
-static void draw_sum(struct known_sum *sum, int params)
-{
-    sum->products = 1 + (int)draw(params > 2 ? 2 : PRODUCTS);
-    sum->pole = false;
-    for (int i = 0; i < sum->products; i++) {
-        bool fresh = true;
-        for (int k = 0; k < PARAMS; k++)
-            sum->power[i][k] = k < params && draw(3) ? (int)draw_integer(FIT_DEGREE) : 0;
-        for (int j = 0; j < i; j++)
-            fresh = fresh && memcmp(sum->power[i], sum->power[j], sizeof sum->power[i]) != 0;
-        i -= !fresh;
-        draw_fraction(sum->factor[i < 0 ? 0 : i], 30, 9);
-        if (i >= 0 && mpq_sgn(sum->factor[i]) == 0)
-            mpq_set_ui(sum->factor[i], 7, 3);
+    for (int i = 0; i < PLACES * GIVEN; i++) {
+        mpq_set_si(given[i], (draw(2) ? 1 : -1) * (1000000 + (long)draw(1000000)), 1000 + draw(1000));
+        mpq_canonicalize(given[i]);
     }
 }
 
-/* Each product found is a known one with its factor, or has the factor 0; each known one is found. */
-static void assert_found(int n, const struct fit *f, const struct known_sum *sum)
+static void part_at(const struct traced_part *part, mpq_t *value, mpq_ptr result)
 {
-    int met = 0;
-    for (int p = 0; p < f->products; p++) {
-        mpq_t expected;
-        mpq_init(expected);
-        for (int i = 0; i < sum->products; i++) {
-            bool same = true;
-            for (int k = 0; k < f->params; k++)
-                same = same && f->power[p][k] == sum->power[i][k];
-            if (same)
-                mpq_set(expected, sum->factor[i]);
-            met += same;
+    mpq_set(result, part->number < 0 ? part->constant : value[part->number]);
+    if (part->negative)
+        mpq_neg(result, result);
+}
+
+/* Of all numbers of the record, where what is given has these values; false: something there is divided by 0 */
+static bool record_at(const struct traced *number, int count, const mpq_t *given, mpq_t *value)
+{
+    mpq_t a, b;
+    mpq_inits(a, b, NULL);
+    bool defined = true;
+    for (int i = 0; i < count && defined; i++) {
+        const struct traced *n = &number[i];
+        if (n->op == TRACED_GIVEN) {
+            (n->a.negative ? mpq_neg : mpq_set)(value[i], given[n->a.number]);
+            continue;
         }
-        assert_rational("factor of a product", n, p, 0, f->factor[p], expected);
-        mpq_clear(expected);
+        part_at(&n->a, value, a);
+        part_at(&n->b, value, b);
+        defined = n->op != TRACED_QUOTIENT || mpq_sgn(b) != 0;
+        if (defined)
+            (n->op == TRACED_SUM ? mpq_add : n->op == TRACED_PRODUCT ? mpq_mul : mpq_div)(value[i], a, b);
     }
-    if (met != sum->products)
-        fail_msg("case %d: %d of %d products are found", n, met, sum->products);
+    mpq_clears(a, b, NULL);
+    return defined;
 }
 
-static void fit_of_known_sums(void **state)
+/* Numbers made at the first place, whose record was kept, and at two others: the record gives those of the last. */
+static void assert_recorded(int n, int count, const mpq_t *given, mpq_t *const made[PLACES])
 {
-    struct known_sum sum;
-    mpq_init(sum.value);
-    for (int i = 0; i < PRODUCTS; i++)
-        mpq_init(sum.factor[i]);
+    int numbers;
+    mpq_t expected;
+    mpq_init(expected);
+    for (int i = 0; i < count; i++)         /* 1 over a number of the record is entered where it is asked for */
+        traced_as(made[0][i], made[1][i]);
+    const struct traced *record = trace_record(&numbers);
+    mpq_t *value = rationals((size_t)numbers);
+    if (!record_at(record, numbers, given + (PLACES - 1) * GIVEN, value))
+        return;
+    for (int i = 0; i < count; i++) {
+        const int number = traced_as(made[0][i], made[1][i]);
+        if (number < 0)
+            assert_rational("a constant", n, i, 0, made[PLACES - 1][i], made[0][i]);
+        if (number < 0)
+            continue;
+        (mpq_sgn(made[0][i]) < 0 ? mpq_neg : mpq_set)(expected, value[number]);
+        assert_rational("a number of the record", n, i, 0, made[PLACES - 1][i], expected);
+    }
+    mpq_clear(expected);
+}
+
+struct operation { int op, a, b; mpq_t constant; };
+
+static bool perform(const struct operation *program, const mpq_t *given, mpq_t *x)
+{
+    for (int k = 0; k < GIVEN; k++)
+        mpq_set(x[k], given[k]);
+    for (int i = GIVEN; i < MADE; i++) {
+        const struct operation *o = &program[i];
+        mpq_srcptr b = o->b < 0 ? o->constant : x[o->b];
+        if ((o->op == 3 && mpq_sgn(b) == 0) || (o->op == 4 && mpq_sgn(x[o->a]) == 0))
+            return false;
+        switch (o->op) {
+        case 0:  mpq_add(x[i], x[o->a], b); break;
+        case 1:  mpq_sub(x[i], x[o->a], b); break;
+        case 2:  mpq_mul(x[i], x[o->a], b); break;
+        case 3:  mpq_div(x[i], x[o->a], b); break;
+        case 4:  mpq_inv(x[i], x[o->a]); break;
+        default: mpq_neg(x[i], x[o->a]);
+        }
+    }
+    return true;
+}
+
+static void record_of_programs(void **state)
+{
     (void)state;
-    for (int n = 0; n < 120; n++) {
-        int params = 1 + (int)draw(PARAMS);
-        struct fit f = { .params = params, .value = known_value, .context = &sum };
-        draw_sum(&sum, params);
-        if (!fit_value(&f))
-            fail_msg("case %d: a sum of %d products of %d params is not found (culprit %d)", n, sum.products, params,
-                     f.culprit);
-        assert_found(n, &f, &sum);
+    for (int n = 0; n < 200; n++) {
+        struct operation program[MADE];
+        mpq_t *given = rationals(PLACES * GIVEN), *made[PLACES];
+        bool defined = true;
+        draw_places(given);
+        for (int i = GIVEN; i < MADE; i++) {
+            program[i] = (struct operation){ .op = (int)draw(6) };
+            program[i].a = (int)draw((unsigned)i);
+            program[i].b = (int)draw((unsigned)i + 3);
+            mpq_init(program[i].constant);
+            draw_fraction(program[i].constant, 5, 3);
+            program[i].b = program[i].b < i ? program[i].b : -1;
+            if (i > 12)             /* what they are made of stays small */
+                program[i].a = (int)draw(8);
+        }
+        trace_from(GIVEN, given, given + GIVEN);
+        for (int p = 0; p < PLACES && defined; p++) {
+            made[p] = rationals(MADE);
+            defined = perform(program, given + p * GIVEN, made[p]);
+            trace_pause();
+        }
+        if (defined)
+            assert_recorded(n, MADE, given, made);
     }
-    for (int n = 0; n < 40; n++) {                  /* no such sums: a power too high, a pole elsewhere */
-        struct fit f = { .params = 2, .value = known_value, .context = &sum };
-        int culprit = n % 2;
-        draw_sum(&sum, 2);
-        sum.pole = culprit == 0;
-        if (culprit)
-            sum.power[0][1] = n % 4 == 1 ? FIT_DEGREE + 1 : -FIT_DEGREE - 1;
-        if (fit_value(&f) || f.culprit != culprit)
-            fail_msg("case %d: culprit found %d, expected %d", n, f.culprit, culprit);
-    }
-    mpq_clear(sum.value);
-    for (int i = 0; i < PRODUCTS; i++)
-        mpq_clear(sum.factor[i]);
 }
 
-/* (a - a0)(b - b0)(c - c0), which is 0 on all lines through the base from which powers are found */
-static mpq_srcptr value_off_the_lines(void *context, const mpq_t *params)
-{
-    const mpq_t *base = context;
-    mpq_t *result = rationals(1), difference;
-    mpq_init(difference);
-    mpq_set_ui(result[0], 1, 1);
-    for (int k = 0; k < 3; k++) {
-        mpq_sub(difference, params[k], base[k]);
-        mpq_mul(result[0], result[0], difference);
-    }
-    mpq_clear(difference);
-    return result[0];
-}
-
-static void fit_is_held_against_other_points(void **state)
+static void record_of_matrices(void **state)
 {
     (void)state;
-    struct fit f = { .params = 3, .value = value_off_the_lines, .context = scattered_values(3, 0) };
-    if (fit_value(&f))
-        fail_msg("a product of three differences is taken for a sum of %d products of powers", f.products);
+    for (int n = 0; n < 40; n++) {
+        mpq_t *given = rationals(PLACES * GIVEN), *made[PLACES];
+        int fixed[SIDE * SIDE], column;
+        bool regular = true;
+        draw_places(given);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            fixed[i] = (int)draw(6) - 3;
+        trace_from(GIVEN, given, given + GIVEN);
+        for (int p = 0; p < PLACES && regular; p++) {
+            mpq_t *A = rationals(SIDE * SIDE);
+            made[p] = rationals(2 * SIDE * SIDE);
+            for (int i = 0; i < SIDE * SIDE; i++)
+                if (fixed[i] < 0)
+                    mpq_set(A[i], given[p * GIVEN - fixed[i] - 1]);
+                else
+                    mpq_set_si(A[i], fixed[i], 1);
+            regular = rational_inverse(SIDE, A, made[p], &column);
+            rational_product(SIDE, SIDE, SIDE, A, A, made[p] + SIDE * SIDE);
+            trace_pause();
+        }
+        if (regular)
+            assert_recorded(n, 2 * SIDE * SIDE, given, made);
+    }
+}
+
+/* Neither what was not made by what is recorded nor what differs elsewhere is one of its numbers. */
+static void record_of_others(void **state)
+{
+    (void)state;
+    mpq_t *given = rationals(PLACES * GIVEN), *other = rationals(2);
+    draw_places(given);
+    trace_from(GIVEN, given, given + GIVEN);
+    mpz_mul(mpq_numref(other[0]), mpq_numref(given[0]), mpq_numref(given[1]));
+    mpq_mul(other[1], given[0], given[1]);
+    trace_pause();
+    assert_int_equal(traced_as(given[0], given[GIVEN]), 0);
+    assert_int_equal(traced_as(given[0], given[GIVEN + 1]), -1);
+    assert_int_equal(traced_as(other[0], given[GIVEN]), -1);
+    assert_int_equal(traced_as(other[1], given[GIVEN]), -1);
 }
 
 int main(int argc, char **argv)
@@ -1482,8 +1508,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(taylor_of_known_eigenvalues),
         cmocka_unit_test(taylor_of_few_bits),
         cmocka_unit_test(taylor_of_a_chain),
-        cmocka_unit_test(fit_of_known_sums),
-        cmocka_unit_test(fit_is_held_against_other_points),
+        cmocka_unit_test(record_of_programs),
+        cmocka_unit_test(record_of_matrices),
+        cmocka_unit_test(record_of_others),
     };
     choose_cases(argc, argv);
     memory_open();

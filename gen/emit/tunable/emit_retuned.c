@@ -46,6 +46,16 @@ static void emit_numbers(const struct emitter *e)
 		emit_integers(e, "short", "block_row", r->blocks + 1, row);
 }
 
+static int most_work(const struct emitter *e)
+{
+	const struct tuning *r = retuned_of(e);
+	int most = PL_REGION_WORK(e->step->layout.size);
+	most = r->all.operations > most ? r->all.operations : most;
+	for (int b = 0; b < r->blocks; b++)
+		most = r->block[b].all.operations > most ? r->block[b].all.operations : most;
+	return most;
+}
+
 static int widest_block(const struct emitter *e)
 {
 	const struct tuning *r = retuned_of(e);
@@ -229,8 +239,7 @@ void emit_retuned(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
 	emit_numbers(e);
-	const int taken = emit_from(e, &g), products = retuned_of(e)->monomials + 1;
-	const int work = PL_REGION_WORK(e->step->layout.size);
+	const int taken = emit_from(e, &g);
 	if (has_guards(e))
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e);
@@ -241,7 +250,7 @@ void emit_retuned(const struct emitter *e)
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
 		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
 		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
-		   { "HIGHEST", e->system->n }, { "WORK", products > work ? products : work },
+		   { "HIGHEST", e->system->n }, { "WORK", most_work(e) },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },

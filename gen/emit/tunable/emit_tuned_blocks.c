@@ -107,66 +107,6 @@ void emit_tuned_members(const struct emitter *e)
 
 /* ---- the equations on the target ---- */
 
-static const char *monomial_text(const struct tuning *t, int number)
-{
-	if (number == 0)
-		return "1";
-	const struct tuned_monomial *m = &t->monomial[number - 1];
-	const char *param = t->param[m->param].symbol->name, *from = monomial_text(t, m->from);
-	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
-}
-
-static void emit_monomials(const struct emitter *e, const struct tuning *t)
-{
-	if (t->monomials == 0)
-		return;
-	say(e, "\nstatic const pl_monomial $n_monomial[%d] = {\n", t->monomials);
-	for (int m = 0; m < t->monomials; m++) {
-		const struct tuned_monomial *made = &t->monomial[m];
-		const char *text = monomial_text(t, m + 1);
-		say(e, "    {%d, %d, %d},  /* %s */\n", made->from, made->param, made->divides, text);
-	}
-	say(e, "};\n");
-}
-
-static const char *two_words(struct coefficient number)
-{
-	return format("{%s, %s}", shortest(number.value), shortest(number.low));
-}
-
-/* Values of an array, some a line */
-static const char *next_value(int number)
-{
-	return number == 0 ? "\n    " : number % 5 ? ", " : ",\n    ";
-}
-
-static void emit_terms(const struct emitter *e, int terms, int count, const struct tuned_equations *const *list)
-{
-	int number = 0;
-	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */", terms);
-	for (int k = 0; k < count; k++)
-		for (const struct tuned_term *term = list[k]->term; term < list[k]->term + list[k]->terms; term++)
-			say(e, "%s{%d, %d, %d, %s}", next_value(number++), term->row, term->column, term->monomial,
-			    two_words(equation_number(e->model, term->factor)));
-	say(e, "\n};\n");
-}
-
-const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
-			    const struct tuned_equations *const *list)
-{
-	const char **text = ARRAY(const char *, (size_t)count);
-	int terms = 0;
-	for (int k = 0; k < count; terms += list[k++]->terms)
-		text[k] = format("{%d, %d, %d, %d, %d, %d, %s, %s}", list[k]->rows, list[k]->columns,
-				 list[k]->solves, t->params, t->monomials, list[k]->terms,
-				 t->monomials ? format("%s_monomial", e->name) : "NULL",
-				 list[k]->terms ? format("%s_term + %d", e->name, terms) : "NULL");
-	emit_monomials(e, t);
-	if (terms)
-		emit_terms(e, terms, count, list);
-	return text;
-}
-
 /* Outputs and frequencies that the equations of no block have */
 static bool has_others(const struct emitter *e)
 {
@@ -213,16 +153,6 @@ static int add_places(struct lists *l, int count, const int *place)
 static const char *list_text(const struct emitter *e, int count, int first)
 {
 	return count ? format("%s_places + %d", e->name, first) : "NULL";
-}
-
-void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed)
-{
-	if (count == 0)
-		return;
-	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */", count);
-	for (int i = 0; i < count; i++)
-		say(e, "%s{%d, %d, %s}", next_value(i), fixed[i].row, fixed[i].column, two_words(fixed[i].value));
-	say(e, "\n};\n");
 }
 
 static void emit_all_entries(const struct emitter *e)

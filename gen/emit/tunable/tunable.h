@@ -11,8 +11,11 @@ struct tuned_equations;
 /* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
 
 void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */
+
+/* ---- emit_entries.c: how entries follow from params ---- */
+
 void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
-/* Products and terms of all of the list; of each what a pl_equations has */
+/* Operations by which all of the list follow from params; of each what a pl_equations has */
 const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
 			    const struct tuned_equations *const *list);
 

@@ -18,7 +18,7 @@ struct strike {                     /* what an impact is in one segment of time 
 	int jumps;
 	struct jump *jump;
 	mpq_t restitution;          /* of a bounce: e */
-	mpq_t gap, answer;          /* of a stop, as numbers; answer: of its speed to a force of contact */
+	mpq_t gap;                  /* of a stop, as a number */
 	mpq_t *direction;           /* d, per coordinate */
 	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;

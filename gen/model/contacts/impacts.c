@@ -88,7 +88,7 @@ static void collect_impact(void *context)
 	const struct when *when = work->when;
 	struct strike *strike = work->strike;
 	struct node *const *side = when->guard->child;
-	mpq_inits(strike->restitution, strike->gap, strike->answer, strike->at, strike->factor, NULL);
+	mpq_inits(strike->restitution, strike->gap, strike->at, strike->factor, NULL);
 	if (when->restitution)
 		check_stop(b, when, strike->restitution, strike->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
@@ -121,9 +121,8 @@ void collect_impacts(struct building *b, struct snapshot *snapshot)
 static struct strike copied(const struct building *b, const struct when *when, const struct strike *from)
 {
 	struct strike copy = *from;
-	mpq_inits(copy.restitution, copy.gap, copy.answer, copy.at, copy.factor, NULL);
+	mpq_inits(copy.restitution, copy.gap, copy.at, copy.factor, NULL);
 	mpq_set(copy.gap, from->gap);
-	mpq_set(copy.answer, from->answer);
 	mpq_set(copy.restitution, from->restitution);
 	copy.jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
 	for (int k = 0; k < copy.jumps; k++)
@@ -350,7 +349,6 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 		error(when->at, NULL, "the masses at this stop do not make a force part them");
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
-	mpq_set(strike->answer, speed);
 	strike->direction = d;
 	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Params that are made of tunable ones in another way than as sums of products: sin(p), sqrt(k/m), the 1 + p of
- * x/(1 + p), p > 1 ? a : b; where an entry has too many products, all sums. Each is a tunable param of its own, behind
- * those of the spec, which the target finds from these by its expression. */
+/* Params that are made of tunable ones by more than sums, products and quotients: sin(p), sqrt(k/m), p > 1 ? a : b.
+ * Each is a tunable param of its own, behind those of the spec, which the target finds from these by its expression. */
 #include "tuning.h"
 
-/* ---- what a sum of products is not ---- */
+/* ---- what is no sum, product or quotient ---- */
 
 struct exponent {
 	struct node *node;
@@ -18,29 +17,13 @@ static void find_exponent(void *context)
 	collect_constant(&collector, e->node, e->value);
 }
 
-/* One that a product of powers may have; 0: it is none */
-static long whole_exponent(struct node *node)
+/* A power that is a few products, or one over them */
+static bool is_few_products(struct node *exponent)
 {
+	enum { MOST = 16 };
 	RATIONAL value = ZERO;
-	const bool whole = !first_tuned(node) && silent_guard(find_exponent, &(struct exponent){ node, value }) &&
-			   mpz_cmp_ui(mpq_denref(value), 1) == 0 &&
-			   mpz_cmpabs_ui(mpq_numref(value), FIT_DEGREE) <= 0;
-	return whole ? mpz_get_si(mpq_numref(value)) : 0;
-}
-
-/* One product of powers, by which a sum of them can be divided */
-static bool is_product(const struct node *node)
-{
-	bool product = node->kind == NODE_PRODUCT || (node->kind == NODE_SUM && node->children == 1);
-	if (!first_tuned(node))
-		return true;
-	if (node->kind == NODE_NAME)
-		return node->symbol->tunable || is_product(node->symbol->value);
-	if (node->kind == NODE_POWER)
-		return whole_exponent(node->child[1]) != 0 && is_product(node->child[0]);
-	for (int i = 0; i < node->children && product; i++)
-		product = is_product(node->child[i]);
-	return product;
+	return !first_tuned(exponent) && silent_guard(find_exponent, &(struct exponent){ exponent, value }) &&
+	       mpz_cmp_ui(mpq_denref(value), 1) == 0 && mpz_cmpabs_ui(mpq_numref(value), MOST) <= 0;
 }
 
 /* One number, of params and numbers */
@@ -56,11 +39,10 @@ static bool is_number(const struct node *node)
 	return number;
 }
 
-static bool is_other(const struct spec *spec, const struct node *node, bool divides)
+static bool is_other(const struct node *node)
 {
 	return node->kind == NODE_CALL || node->kind == NODE_CHOOSE || node->kind == NODE_COMPARE ||
-	       (node->kind == NODE_POWER && whole_exponent(node->child[1]) == 0) ||
-	       ((divides || spec->derives_sums) && !is_product(node));
+	       (node->kind == NODE_POWER && !is_few_products(node->child[1]));
 }
 
 /* ---- in its place ---- */
@@ -98,25 +80,22 @@ static struct node *derived_name(struct spec *spec, struct node *node)
 	return name;
 }
 
-static void derive_in(struct spec *spec, struct node **place, bool divides)
+static void derive_in(struct spec *spec, struct node **place)
 {
 	struct node *node = *place;
 	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	if (!first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
 		return;
-	if (is_number(node) && is_other(spec, node, divides)) {
+	if (is_number(node) && is_other(node)) {
 		*place = derived_name(spec, node);
 		return;
 	}
 	if (s && s->value && !s->derived) {
 		s->derived = true;
-		derive_in(spec, &s->value, false);
+		derive_in(spec, &s->value);
 	}
-	for (int i = 0; i < node->children; i++) {
-		const bool inverse = node->kind == NODE_PRODUCT && node->inverse[i];
-		const bool power = node->kind == NODE_POWER && i == 0 && whole_exponent(node->child[1]) < 0;
-		derive_in(spec, &node->child[i], inverse || power);
-	}
+	for (int i = 0; i < node->children; i++)
+		derive_in(spec, &node->child[i]);
 }
 
 /* ---- what the target reads ---- */
@@ -146,7 +125,7 @@ static void each_expression(struct spec *spec, void (*visit)(void *context, stru
 
 static void derive_here(void *context, struct node **place)
 {
-	derive_in(context, place, false);
+	derive_in(context, place);
 }
 
 void derive_params(struct spec *spec)
@@ -155,13 +134,6 @@ void derive_params(struct spec *spec)
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->derived = s->derived && s->tunable;  /* -D gives it another value */
 	each_expression(spec, derive_here, spec);
-}
-
-struct spec *spec_again(const struct spec *spec)
-{
-	struct spec *again = parse_spec(spec->source);
-	again->derives_sums = spec->derives_sums;
-	return again;
 }
 
 static void add_read(void *context, struct node **place)
@@ -195,7 +167,7 @@ static bool stays_here(const struct node *node, int i)
 static _Noreturn void refuse_decided(const struct node *node, const struct node *name)
 {
 	const bool call = node->kind == NODE_CALL, power = node->kind == NODE_POWER;
-	const char *one_more = format("%d expressions that are no sums of products are found on the target, and this "
+	const char *one_more = format("%d functions and conditions of tunables are found on the target, and this "
 				      "is one more", LIMIT_DERIVED);
 	error(name->at,
 	      is_number(node) ? one_more

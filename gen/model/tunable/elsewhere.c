@@ -1,13 +1,44 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A model at other values of its tunable params. Params stand in a spec wherever a number may: in equations, sketches,
- * matrices, other params. So nothing is derived from its text: the model is built anew at a few exact values, and every
- * entry of it is found from its values there (fit.c). What could only seem to be a sum of products, a function or a
- * condition, is a param of its own where it is made of params alone (derived.c), or refused before. */
+ * matrices, other params. So nothing is derived from its text: the model is built anew at values drawn at random, and
+ * what is done to them on the way to its entries is recorded (base/traced.c). Functions and conditions of params are
+ * params of their own (derived.c); where they hold more, they are refused before. */
 #include "elsewhere.h"
 #include "model/linear/shortening.h"
 #include "tuning.h"
 
-/* ---- points ---- */
+/* ---- places ---- */
+
+/* A value like no other */
+static void set_value(mpq_ptr value, int index)
+{
+	uint32_t bits = (uint32_t)index * 2654435761u + 12345u;
+	bits ^= bits >> 15;
+	bits *= 2246822519u;
+	bits ^= bits >> 13;
+	mpq_set_ui(value, (1ul << 24) + bits % 16769023, (1ul << 17) + (bits >> 12) % 131071);
+	mpq_canonicalize(value);
+}
+
+/* Related by nothing; or near + 2^-40 |near| of that: what has a sign there, or an order, keeps it */
+static mpq_t *values_at(const struct elsewhere *s, int place)
+{
+	enum { PARAMS = LIMIT_TUNABLES + LIMIT_DERIVED };
+	mpq_t *values = rationals(s->tuning->params);
+	RATIONAL unit = ZERO;
+	for (int k = 0; k < s->tuning->params; k++) {
+		set_value(values[k], place * PARAMS + k);
+		if (!s->near)
+			continue;
+		mpq_abs(unit, s->near[k]);
+		if (mpq_sgn(unit) == 0)
+			mpq_set_ui(unit, 1, 1);
+		mpq_div_2exp(unit, unit, 40);
+		mpq_mul(values[k], values[k], unit);
+		mpq_add(values[k], values[k], s->near[k]);
+	}
+	return values;
+}
 
 static bool same_load(const struct load *a, const struct load *b, bool any_rate)
 {
@@ -32,7 +63,7 @@ static void build_there(void *context)
 	struct request request = *s->request;
 	request.again.tunable = s->values;
 	request.again.factor = s->factor;
-	s->found = model_build(spec_again(s->model->spec), &request);
+	s->found = model_build(parse_spec(s->model->spec->source), &request);
 	if (s->found && !s->factor)
 		s->found = model_reduce(s->found);
 	if (!s->found)
@@ -55,7 +86,7 @@ static const struct tunable *suspect(struct elsewhere *s, bool (*same)(const str
 			continue;
 		first = first < 0 ? k : first;
 		s->values = rationals_copied(t->params, t->nominal);
-		mpq_set(s->values[k], scattered_near(t->params, 0, s->near)[k]);
+		mpq_set(s->values[k], values_at(s, 0)[k]);
 		if (silent_guard(build_there, s) && !same(pattern(s), s->found))
 			return &t->param[k];
 	}
@@ -68,181 +99,88 @@ void tell_difference(struct elsewhere *s, const struct difference *difference)
 	error(why->at, difference->note, "with another value of '%s' %s", why->symbol->name, difference->text);
 }
 
-static void find_changing(struct elsewhere *s)
-{
-	s->place = ARRAY(ptrdiff_t, s->entries);
-	for (ptrdiff_t i = 0; i < s->entries; i++) {
-		bool changes = false;
-		for (int p = 1; p < s->points; p++)
-			changes = changes || !mpq_equal(entry_seen(s, p, i), entry_seen(s, 0, i));
-		s->place[i] = changes ? s->changing++ : -1;
-	}
-}
-
-/* Those that are not 0, of all entries, or of those that change */
+/* Those that are not 0 */
 static mpq_ptr *keep(const struct elsewhere *s, mpq_t *all)
 {
-	mpq_ptr *kept = ARRAY(mpq_ptr, (size_t)(s->place ? s->changing : s->entries));
+	mpq_ptr *kept = ARRAY(mpq_ptr, (size_t)s->entries);
 	for (ptrdiff_t i = 0; i < s->entries; i++) {
-		if (mpq_sgn(all[i]) == 0 || (s->place && s->place[i] < 0))
+		if (mpq_sgn(all[i]) == 0)
 			continue;
-		mpq_ptr entry = *rationals(1);
-		mpq_swap(entry, all[i]);
-		kept[s->place ? s->place[i] : i] = entry;
+		kept[i] = *rationals(1);
+		mpq_swap(kept[i], all[i]);
 	}
 	rationals_free(all, (size_t)s->entries);
 	return kept;
 }
 
-/* Of the model at a point that is not looked at again, matrices and rows: what a large one is made of */
-static void forget(struct elsewhere *s)
+static void look(struct elsewhere *s)
 {
-	struct linear *system = &s->found->system;
-	const size_t cells = (size_t)system->n * (size_t)system->n;
-	rationals_free(system->M, cells);
-	rationals_free(system->C, cells);
-	rationals_free(system->K, cells);
-	for (int o = 0; o < s->found->outputs; o++)
-		rationals_free(s->found->output[o].state, (size_t)system->states);
-	s->found = NULL;
-}
-
-static int point_with(const struct elsewhere *s, const mpq_t *values)
-{
-	for (int i = 0; i < s->points; i++)
-		if (rationals_equal(s->tuning->params, s->point[i], values))
-			return i;
-	return -1;
-}
-
-/* The point where the params have these values; kept, since several questions ask for the same */
-static int look(struct elsewhere *s, const mpq_t *values)
-{
-	const int known = point_with(s, values);
-	if (known >= 0)
-		return known;
-	mpq_t *at = s->values = rationals_copied(s->tuning->params, values);
+	s->values = values_at(s, s->places);
 	if (!silent_guard(build_there, s))
 		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model");
 	for (int i = 0; i < s->differences; i++)
 		if (!s->difference[i].same(pattern(s), s->found))
 			tell_difference(s, &s->difference[i]);
 	s->other = s->other ? s->other : s->found;
-	ENLARGE(s->point, (size_t)s->points + 1);
-	ENLARGE(s->seen, (size_t)s->points + 1);
-	s->point[s->points] = at;
-	s->seen[s->points] = keep(s, s->read(s, s->found));
-	if (s->place)
-		forget(s);
-	return s->points++;
+	s->seen[s->places] = keep(s, s->read(s, s->found));
+	s->places++;
+}
+
+static void look_at_both(void *context)
+{
+	struct elsewhere *s = context;
+	trace_from(s->tuning->params, values_at(s, 0), values_at(s, 1));
+	look(s);
+	trace_pause();
+	look(s);
 }
 
 void look_elsewhere(struct elsewhere *s)
 {
-	const int params = s->tuning->params;
 	mpq_init(s->zero);
-	for (int i = 0; i < WHOLE_POINTS; i++)
-		look(s, scattered_near(params, i, s->near));
-	find_changing(s);
+	const bool looked = statement_guard(look_at_both, s);
+	trace_pause();
+	if (!looked)
+		abandon();
 }
 
-mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index)
+mpq_srcptr entry_seen(const struct elsewhere *s, int place, ptrdiff_t index)
 {
-	const bool all = point < WHOLE_POINTS;
-	mpq_srcptr entry = all ? s->seen[point][index]
-			   : s->place[index] < 0 ? s->seen[0][index] : s->seen[point][s->place[index]];
+	mpq_srcptr entry = s->seen[place][index];
 	return entry ? entry : s->zero;
 }
 
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index)
 {
-	return s->place[index] < 0;
+	return mpq_equal(entry_seen(s, 0, index), entry_seen(s, 1, index));
 }
 
-/* ---- sums of products ---- */
+/* ---- entries ---- */
 
-/* The number of a product of powers, each made of one that is a step nearer to 1 */
-static int monomial_of(struct tuning *t, signed char *power)
+static struct traced_part *new_entry(struct tuned_equations *all, int row, int column)
 {
-	int last = t->params - 1, from;
-	while (last >= 0 && power[last] == 0)
-		last--;
-	if (last < 0)
-		return 0;
-	bool divides = power[last] < 0;
-	power[last] = (signed char)(power[last] + (divides ? 1 : -1));
-	from = monomial_of(t, power);
-	for (int m = 0; m < t->monomials; m++)
-		if (t->monomial[m].from == from && t->monomial[m].param == last && t->monomial[m].divides == divides)
-			return m + 1;
-	*MORE(t->monomial, t->monomials) = (struct tuned_monomial){ from, last, divides };
-	return t->monomials;
-}
-
-static struct tuned_term *add_term(struct tuned_equations *all, int row, int column, int monomial)
-{
-	struct tuned_term *term = MORE(all->term, all->terms);
-	*term = (struct tuned_term){ .row = row, .column = column, .monomial = monomial };
-	mpq_init(term->factor);
-	return term;
+	struct tuned_entry *entry = MORE(all->entry, all->entries);
+	*entry = (struct tuned_entry){ .row = row, .column = column, .value = traced_constant(1) };
+	return &entry->value;
 }
 
 void add_tuned_unit(struct tuned_equations *all, int row, int column)
 {
-	mpq_set_ui(add_term(all, row, column, 0)->factor, 1, 1);
+	new_entry(all, row, column);
 }
 
-static void add_fitted(struct elsewhere *s, struct tuned_equations *all, int row, int column)
+void add_tuned_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column)
 {
-	const struct fit *f = &s->fit;
-	for (int i = 0; i < f->products; i++) {
-		signed char power[FIT_PARAMS];
-		if (mpq_sgn(f->factor[i]) == 0)
-			continue;
-		for (int k = 0; k < f->params; k++)
-			power[k] = f->power[i][k];
-		mpq_set(add_term(all, row, column, monomial_of(s->tuning, power))->factor, f->factor[i]);
-	}
-}
-
-struct entry {
-	struct elsewhere *search;
-	ptrdiff_t index;
-};
-
-static mpq_srcptr entry_at(void *context, const mpq_t *values)
-{
-	const struct entry *entry = context;
-	return entry_seen(entry->search, look(entry->search, values), entry->index);
-}
-
-static bool fits_entry(struct elsewhere *s, ptrdiff_t index)
-{
-	struct fit *f = &s->fit;
-	*f = (struct fit){ .params = s->tuning->params, .near = s->near, .value = entry_at,
-			   .context = &(struct entry){ s, index } };
-	if (!entry_stays(s, index))
-		return fit_value(f);
-	f->products = 1;
-	f->factor = rationals(1);
-	mpq_set(f->factor[0], entry_seen(s, 0, index));
-	return true;
-}
-
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column)
-{
-	const bool fits = fits_entry(s, index);
-	if (fits)
-		add_fitted(s, all, row, column);
-	return fits;
-}
-
-void refuse_fit(const struct elsewhere *s, const char *what, const char *way)
-{
-	const int culprit = s->fit.culprit;
-	const struct tunable *why = &s->tuning->param[culprit < 0 ? 0 : culprit];
-	error(why->at,
-	      format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in "
-		     "an entry, are recomputed on the target; %s", FIT_DEGREE, LIMIT_MONOMIALS, way),
-	      "the %s depend on '%s' in a way that cannot be recomputed on the target", what, why->symbol->name);
+	mpq_srcptr here = entry_seen(s, 0, index), there = entry_seen(s, 1, index);
+	if (mpq_sgn(here) == 0 && mpq_sgn(there) == 0)
+		return;
+	struct traced_part *value = new_entry(all, row, column);
+	value->negative = mpq_sgn(here) < 0;
+	value->number = traced_as(here, there);
+	if (value->number < 0 && !entry_stays(s, index))
+		error(s->tuning->param[0].at, NULL,
+		      "the equations depend on tunable params in a way that cannot be recomputed on the target");
+	mpq_t *size = rationals(1);
+	mpq_abs(*size, here);
+	value->constant = *size;
 }

@@ -6,12 +6,13 @@
 #include "math/math.h"
 #include "model/model.h"
 
+struct building;
 struct retuned_row;
 struct tuned_equations;
 
-/* ---- elsewhere.c: a model at other values of its tunable params; its entries as sums of products of these ---- */
+/* ---- elsewhere.c: a model at other values of its tunable params, and how its entries follow from these ---- */
 
-enum { WHOLE_POINTS = FIT_POINTS + 1 };         /* of which all entries are kept: what is equal at them stays */
+enum { PLACES = 2 };                /* where it is looked at; what is equal at both is equal for all values */
 struct difference {                 /* two models may not have it; with another value of a param ... */
 	bool (*same)(const struct model *, const struct model *);
 	const char *text, *note;
@@ -21,29 +22,26 @@ struct elsewhere {
 	const struct request *request;
 	struct tuning *tuning;      /* params, the spec's values */
 	const bool *factor;         /* as in struct request */
-	const mpq_t *near;          /* as in struct fit */
+	const mpq_t *near;          /* places lie about these values, within 1e-7 of their size; NULL: anywhere */
 	int differences;
 	const struct difference *difference;
 	mpq_t *(*read)(struct elsewhere *s, const struct model *model);     /* its entries */
-	ptrdiff_t entries, changing;
-	const struct model *other;  /* the first of them */
+	ptrdiff_t entries;
+	const struct model *other;  /* at the first place */
 	struct model *found;
-	mpq_t *values, **point;     /* params at points looked at so far */
-	int points;
-	mpq_ptr **seen;             /* entries there, NULL: 0; of the first points all, of others those that change */
-	ptrdiff_t *place;           /* per entry: which of those that change; -1: it does not. NULL: not known yet */
+	mpq_t *values;              /* params there */
+	int places;                 /* looked at so far */
+	mpq_ptr *seen[PLACES];      /* entries there, NULL: 0 */
 	mpq_t zero;
-	struct fit fit;             /* of the last entry */
 };
 /* Waves, their order, times at which they change; any_rate: frequencies may differ */
 bool same_loads(const struct linear *a, const struct linear *b, bool any_rate);
 _Noreturn void tell_difference(struct elsewhere *s, const struct difference *difference);
 void look_elsewhere(struct elsewhere *s);
-mpq_srcptr entry_seen(const struct elsewhere *s, int point, ptrdiff_t index);
+mpq_srcptr entry_seen(const struct elsewhere *s, int place, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
-/* its terms; false: it is no such sum, as refuse_fit says */
-bool fit_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
-_Noreturn void refuse_fit(const struct elsewhere *s, const char *what, const char *way);
+/* into the equations, as it was recorded; what is 0 is left out */
+void add_tuned_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
 void add_tuned_unit(struct tuned_equations *all, int row, int column);
 
 struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */

@@ -17,7 +17,7 @@ static void build_attempt(void *context)
 	struct request request = *a->b->request;
 	request.again.tunable = a->nominal;
 	request.again.factor = a->factor;
-	if (!model_build(spec_again(a->b->spec), &request))
+	if (!model_build(parse_spec(a->b->spec->source), &request))
 		abandon();
 }
 

@@ -100,7 +100,7 @@ static mpq_t *read_rows(struct elsewhere *s, const struct model *model)
 {
 	struct tuning *t = s->tuning;
 	struct listing l = list_rows(model, &t->x);
-	if (s->points == 0) {
+	if (s->places == 0) {
 		t->rows = l.rows;
 		t->row = l.row;
 		s->entries = (ptrdiff_t)l.rows * t->x.size;
@@ -128,7 +128,7 @@ static bool row_changes(const struct elsewhere *s, int row)
 static bool entries_agree(const struct elsewhere *s, ptrdiff_t a, ptrdiff_t b)
 {
 	bool same = true;
-	for (int i = 0; i < s->points && same; i++)
+	for (int i = 0; i < s->places && same; i++)
 		same = mpq_equal(entry_seen(s, i, a), entry_seen(s, i, b));
 	return same;
 }
@@ -169,27 +169,13 @@ static void merge_systems(struct elsewhere *s)
 	w->systems = kept;
 }
 
-/* ---- terms ---- */
+/* ---- entries ---- */
 
 /* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
-static bool fit_row(struct elsewhere *s, struct tuned_equations *all, int row, int to, int from, int columns)
+static void take_row(struct elsewhere *s, struct tuned_equations *all, int row, int to, int from, int columns)
 {
-	bool fits = true;
-	for (int j = 0; j < columns && fits; j++)
-		fits = fit_entry(s, index_of(s, row, j), all, to, from + j);
-	return fits;
-}
-
-static void need_fit(const struct elsewhere *s, bool fits)
-{
-	if (!fits && !s->model->spec->derives_sums && !s->model->relative)
-		abandon();              /* it is tried again */
-	if (!fits && s->model->switching)
-		refuse_fit(s, "regions", "only masses in equations may be sums");
-	if (!fits)
-		refuse_fit(s, "equations",
-			   s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
-						   : "multiply an equation by what divides it");
+	for (int j = 0; j < columns; j++)
+		add_tuned_entry(s, index_of(s, row, j), all, to, from + j);
 }
 
 /* Is the row one of a system: its slopes, and what reads them? */
@@ -242,78 +228,131 @@ static void add_block(struct elsewhere *s, int system)
 		struct retuned_row *row = &t->row[i];
 		if (!is_of_system(s, i, system))
 			continue;
-		need_fit(s, fit_row(s, all, row_apart(s, i, false), all->rows, 0, size));
+		take_row(s, all, row_apart(s, i, false), all->rows, 0, size);
 		if (row->kind != RETUNED_FREQUENCY)
-			need_fit(s, fit_row(s, all, row_apart(s, i, true), all->rows, size, s->model->n));
+			take_row(s, all, row_apart(s, i, true), all->rows, size, s->model->n);
 		if (row->kind != RETUNED_SLOPE)
 			add_tuned_unit(all, all->rows, size + all->rows);
 		row->place = add_row(t, all);
 	}
 }
 
-/* As it is; false: it is no sum of products */
-static bool place_row(struct elsewhere *s, int row)
+static void place_row(struct elsewhere *s, int row)
 {
 	struct tuning *t = s->tuning;
-	const int terms = t->all.terms, monomials = t->monomials;
-	if (!fit_row(s, &t->all, row, t->all.rows, 0, t->x.size)) {
-		t->all.terms = terms;
-		t->monomials = monomials;
-		return false;
-	}
+	take_row(s, &t->all, row, t->all.rows, 0, t->x.size);
 	t->row[row].place = t->all.rows++;
 	t->row[row].positive = mpq_sgn(entry_seen(s, 0, index_of(s, row, 0))) > 0;
-	return true;
 }
 
-/* Of a stop's impact: its answer, a sum of parts that masses divide, divides them. */
-static void add_divided(struct elsewhere *s, int row)
+/* Each mass that changes stands alone in its row and its column of W, so that nothing but it divides. */
+static bool masses_stand_alone(const struct elsewhere *s, int system)
 {
-	struct tuning *t = s->tuning;
-	struct retuned_row *r = &t->row[row];
-	int answer = row;
-	while (t->row[answer].kind != RETUNED_ANSWER || t->row[answer].of != r->of)
-		answer--;
-	struct tuned_equations *all = new_block(t);
-	r->place = add_row(t, all);
-	need_fit(s, fit_row(s, all, row + 1, 0, 0, t->x.size));
-	need_fit(s, fit_row(s, all, answer, 0, t->x.size, 1));
+	const int n = s->model->n;
+	int first = 0;
+	while (s->tuning->row[first].kind != RETUNED_SLOPE || s->tuning->row[first].of != system)
+		first++;
+	SCRATCH int *rows = ARRAY(int, n), *columns = ARRAY(int, n);
+	for (int cell = 0; cell < n * n; cell++)
+		if (mpq_sgn(entry_seen(s, 0, index_of(s, row_apart(s, first + cell / n, true), cell % n))) != 0) {
+			rows[cell / n]++;
+			columns[cell % n]++;
+		}
+	bool alone = true;
+	for (int cell = 0; cell < n * n && alone; cell++)
+		alone = entry_stays(s, index_of(s, row_apart(s, first + cell / n, true), cell % n)) ||
+			(rows[cell / n] == 1 && columns[cell % n] == 1);
+	return alone;
 }
 
 /* All rows of a system or none; of a linear model the slopes are always there */
-static void fit_system(struct elsewhere *s, int system)
+static void take_system(struct elsewhere *s, int system)
 {
 	struct tuning *t = s->tuning;
-	bool changes = !s->model->switching, direct = true;
-	const int rows = t->all.rows, terms = t->all.terms, monomials = t->monomials;
+	bool changes = !s->model->switching;
 	for (int i = 0; i < t->rows && !changes; i++)
 		changes = is_of_system(s, i, system) && row_changes(s, i);
-	for (int i = 0; i < t->rows && changes && direct; i++)
-		direct = !is_of_system(s, i, system) || place_row(s, i);
-	if (direct)
+	if (changes && !masses_stand_alone(s, system)) {
+		add_block(s, system);
 		return;
-	t->all.rows = rows;
-	t->all.terms = terms;
-	t->monomials = monomials;
-	add_block(s, system);
+	}
+	for (int i = 0; i < t->rows && changes; i++)
+		if (is_of_system(s, i, system))
+			place_row(s, i);
 }
 
-static void fit_rows(struct elsewhere *s)
+static void take_rows(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
 	t->all.columns = t->x.size;
 	for (int k = 0; k < (s->model->switching ? s->model->switching->systems : 1); k++)
-		fit_system(s, k);
+		take_system(s, k);
 	for (int i = 0; i < t->rows; i++) {
 		const enum retuned_kind kind = t->row[i].kind;
-		const bool apart = kind <= RETUNED_FREQUENCY || kind == RETUNED_TIMES || kind == RETUNED_ANSWER ||
-				   (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
-		const bool jumps = kind == RETUNED_JUMP || kind == RETUNED_STILL || kind == RETUNED_BACK;
-		if (apart || !row_changes(s, i) || place_row(s, i))
-			continue;
-		need_fit(s, jumps);
-		add_divided(s, i);
+		const bool apart = kind <= RETUNED_FREQUENCY || (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
+		if (!apart && row_changes(s, i))
+			place_row(s, i);
 	}
+}
+
+/* Per number of the record the given params that it follows from, a bit each */
+static unsigned *params_of_record(const struct elsewhere *s)
+{
+	const struct tuning *t = s->tuning;
+	unsigned *params = ARRAY(unsigned, (size_t)t->numbers);
+	for (int i = 0; i < t->numbers; i++) {
+		const struct traced *n = &t->number[i];
+		if (n->op == TRACED_GIVEN)
+			params[i] = params_of_tunable(s->model->spec, n->a.number);
+		else
+			params[i] = (n->a.number < 0 ? 0 : params[n->a.number]) |
+				    (n->b.number < 0 ? 0 : params[n->b.number]);
+	}
+	return params;
+}
+
+static void mark_part(bool *behind, const struct traced_part *part)
+{
+	if (part->number >= 0)
+		behind[part->number] = true;
+}
+
+bool *numbers_behind(const struct tuning *t, const struct tuned_equations *all)
+{
+	bool *behind = ARRAY(bool, (size_t)t->numbers + 1);
+	for (int i = 0; i < all->entries; i++)
+		mark_part(behind, &all->entry[i].value);
+	for (int i = t->numbers - 1; i >= 0; i--)
+		if (behind[i] && t->number[i].op != TRACED_GIVEN) {
+			mark_part(behind, &t->number[i].a);
+			mark_part(behind, &t->number[i].b);
+		}
+	return behind;
+}
+
+void count_operations(const struct tuning *t, struct tuned_equations *all)
+{
+	SCRATCH bool *behind = numbers_behind(t, all);
+	all->operations = 0;
+	for (int i = 0; i < t->numbers; i++)
+		all->operations += behind[i] && t->number[i].op != TRACED_GIVEN;
+}
+
+static void mark_params(const struct tuning *t, struct tuned_equations *all, const unsigned *params)
+{
+	for (struct tuned_entry *entry = all->entry; entry < all->entry + all->entries; entry++)
+		entry->params = entry->value.number < 0 ? 0 : params[entry->value.number];
+	count_operations(t, all);
+}
+
+static void keep_record(struct elsewhere *s)
+{
+	struct tuning *t = s->tuning;
+	t->number = trace_record(&t->numbers);
+	SCRATCH unsigned *params = params_of_record(s);
+	mark_params(t, &t->all, params);
+	for (int b = 0; b < t->blocks; b++)
+		mark_params(t, &t->block[b].all, params);
 }
 
 static void mark_acting(struct elsewhere *s)
@@ -418,19 +457,11 @@ static void find(void *context)
 		merge_systems(s);
 		check_size(s->tuning, regions->systems);
 	}
-	fit_rows(s);
+	take_rows(s);
+	keep_record(s);
 	mark_acting(s);
 	if (!regions)
 		number_rows(s);
-}
-
-static struct model *find_by_sums(const struct model *model, const struct request *request)
-{
-	struct spec *spec = spec_again(model->spec);
-	spec->derives_sums = true;
-	struct model *again = model_build(spec, request);
-	again = again ? model_reduce(again) : NULL;
-	return again ? find_tuning(again, request) : NULL;
 }
 
 struct model *find_tuning(struct model *model, const struct request *request)
@@ -449,7 +480,7 @@ struct model *find_tuning(struct model *model, const struct request *request)
 		model->tuning = t;
 	}
 	if ((model->factor || !model->keeps_params) && !statement_guard(find, &s))
-		return diagnostics_errors() ? NULL : find_by_sums(model, request);
+		return NULL;
 	warn_of_unread(model);
 	return model;
 }

@@ -177,21 +177,11 @@ static void list_region(struct listing *l, int index)
 	}
 }
 
-static void list_times(struct listing *l, mpq_srcptr answer)
-{
-	int size = l->x->size, from = (l->rows - 1) * size;
-	mpq_t *times = add_row(l, RETUNED_TIMES, 0, 0);
-	for (int j = 0; j < size; j++)
-		mpq_mul(times[j], l->entry[from + j], answer);
-}
-
 static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct strike *strike,
 		       const struct jump *jump)
 {
-	for (int k = 0; k < strike->jumps; k++) {
+	for (int k = 0; k < strike->jumps; k++)
 		list_output(l, kind, index, k, jump[k].row, 0);
-		list_times(l, strike->answer);
-	}
 }
 
 /* One of them in a segment of time; the number of both is `index` */
@@ -200,7 +190,6 @@ static void list_impact(struct listing *l, int index)
 	const struct switching *s = l->model->switching;
 	const struct impact *impact = &s->impact[index % s->impacts];
 	const struct strike *strike = &impact->in[index / s->impacts];
-	add_number(l, RETUNED_ANSWER, index, 0, strike->answer);
 	list_jumps(l, index, RETUNED_JUMP, strike, strike->jump);
 	if (impact->bounces) {
 		list_jumps(l, index, RETUNED_STILL, strike, strike->still);
@@ -208,7 +197,6 @@ static void list_impact(struct listing *l, int index)
 		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
 		for (int j = 0; j < l->model->n; j++)
 			mpq_mul(back[j], strike->direction[j], strike->factor);
-		list_times(l, strike->answer);
 		add_number(l, RETUNED_RESTITUTION, index, 0, strike->restitution);
 		add_number(l, RETUNED_LEAST, index, 0, strike->gap);
 	}

@@ -7,18 +7,18 @@
 
 /* ---- retuned.c: how equations, outputs and regions follow from tunable params that are no inputs of them ---- */
 
-/* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
-struct tuned_monomial { int from, param; bool divides; };
-struct tuned_term {
-	int row, column, monomial;
-	mpq_t factor;
+struct tuned_entry {
+	int row, column;
+	struct traced_part value;   /* of the record of struct tuning */
+	unsigned params;            /* the given ones that it follows from, a bit each */
 };
 /* W a = R x, exactly, for all values of the params */
 struct tuned_equations {
 	int rows, columns;          /* entries of a, of x */
 	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
-	int terms;
-	struct tuned_term *term;    /* the same entry's one after the other */
+	int entries;
+	struct tuned_entry *entry;
+	int operations;             /* by which these follow from params */
 };
 enum retuned_kind {                 /* of rows: */
 	RETUNED_SLOPE,              /* of system: coordinate's highest derivative over x, */
@@ -30,7 +30,6 @@ enum retuned_kind {                 /* of rows: */
 	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_GRIP, /* of region: one of its holds, releases; friction */
 	RETUNED_RELEASE_R, RETUNED_RELEASE_W, RETUNED_GRIP_R, RETUNED_GRIP_W,
 	RETUNED_JUMP, RETUNED_STILL, /* of impact: one of its jumps, of those without restitution */
-	RETUNED_TIMES, RETUNED_ANSWER, /* answer times the row before; that number */
 	RETUNED_SPEED, RETUNED_BACK, RETUNED_RESTITUTION, /* of impact; restitution is a number */
 	RETUNED_LEAST,              /* a number that is at least 0: a force of friction, the gap of a stop */
 	RETUNED_SIGN                /* a number that stays above, or below, 0 */
@@ -41,7 +40,7 @@ struct retuned_row {
 	bool positive;
 };
 struct retuned_block {              /* a system that the target solves, and what reads its highest derivatives */
-	struct tuned_equations all;       /* products of params are those of the whole */
+	struct tuned_equations all;
 	int place;                  /* of its first row */
 };
 struct tuning {
@@ -60,21 +59,22 @@ struct tuning {
 	int outputs, frequencies;   /* of a linear model: of its rows, behind those of coordinates */
 	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
 	bool *acts;                 /* rows x columns, solved: whether it is anything but 0 for some values */
-	int monomials;
-	struct tuned_monomial *monomial;
+	int numbers;                /* how entries follow from params: base/traced.c */
+	const struct traced *number;
 	const struct model *other;  /* at values that are related by nothing: what holds there holds for all */
 };
-/* model->tuning, or held and retuned, where something is tunable: of this model, or of one whose sums of params are
- * params of their own; NULL: it was said why not */
+/* model->tuning, or held and retuned, where something is tunable; NULL: it was said why not */
 struct model *find_tuning(struct model *model, const struct request *request);
+void count_operations(const struct tuning *t, struct tuned_equations *all);
+/* Of the record: which these are made of */
+bool *numbers_behind(const struct tuning *t, const struct tuned_equations *all);
 int  retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int index);
 
 /* ---- derived.c: what is computed from tunable params as if it were one ---- */
 
-/* Puts names of further params, spec->derived of them, in the place of what no sum of products is. Again it finds
+/* Puts names of further params, spec->derived of them, in the place of functions and conditions. Again it finds
  * nothing. */
 void derive_params(struct spec *spec);
-struct spec *spec_again(const struct spec *spec);   /* from its text, where the same params are put there */
 void warn_of_unread(const struct model *model);
 void check_tuned(const struct model *model);    /* what is left of it leaves the statement */
 

@@ -56,11 +56,11 @@ static int *components(const struct step *step)
 	int *parent = numbers_up_to(2 * n);
 	for (int i = 0; i < n && !t->all.solves; i++)
 		join_nodes(parent, i, n + i);
-	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
-		if (term->row < n && term->column < system->states)
-			join_nodes(parent, term->row, n + system->coord[term->column]);
-		else if (term->row < n && term->column >= t->x.size)
-			join_nodes(parent, term->row, n + term->column - t->x.size);
+	for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++)
+		if (entry->row < n && entry->column < system->states)
+			join_nodes(parent, entry->row, n + system->coord[entry->column]);
+		else if (entry->row < n && entry->column >= t->x.size)
+			join_nodes(parent, entry->row, n + entry->column - t->x.size);
 	return parent;
 }
 
@@ -96,9 +96,9 @@ bool *touched_states(const struct step *step)
 		return NULL;
 	int *parent = components(step);
 	bool *root = ARRAY(bool, 2 * (size_t)n), *touched = ARRAY(bool, (size_t)system->states);
-	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
-		if (term->row < n && term->monomial != 0)
-			root[root_of_node(parent, term->row)] = true;
+	for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++)
+		if (entry->row < n && entry->params != 0)
+			root[root_of_node(parent, entry->row)] = true;
 	for (int l = 0; l < system->loads; l++)
 		for (int c = 0; c < n; c++)
 			if (t->frequency[l] >= 0 && load_reaches(step, l, c))
@@ -141,15 +141,6 @@ static void add_component(struct tuned_part *part, const struct step *step, int 
 	}
 }
 
-static unsigned params_of(const struct step *step, int monomial)
-{
-	const struct tuning *t = step->model->tuning;
-	unsigned params = 0;
-	for (; monomial != 0; monomial = t->monomial[monomial - 1].from)
-		params |= params_of_tunable(step->model->spec, t->monomial[monomial - 1].param);
-	return params;
-}
-
 /* Where its x has a column of that of struct tuning: loads in each segment of time. NULL: it has all */
 static int column_in(const struct step *step, const struct tuned_block *b, const int *place, int column)
 {
@@ -163,8 +154,9 @@ static int column_in(const struct step *step, const struct tuned_block *b, const
 	return at < 0 ? at : at + segment * b->group->loads;
 }
 
-/* Its terms: those of its rows. place: per x of the whole, that in the block's */
-static void take_terms(struct tuned_part *part, const struct step *step, const struct tuned_block *b, const int *place)
+/* Its entries: those of its rows. place: per x of the whole, that in the block's */
+static void take_entries(struct tuned_part *part, const struct step *step, const struct tuned_block *b,
+			 const int *place)
 {
 	const struct tuning *t = step->model->tuning;
 	struct tuned_equations *all = &part->all;
@@ -175,21 +167,22 @@ static void take_terms(struct tuned_part *part, const struct step *step, const s
 	}
 	all->solves = t->all.solves;
 	all->columns = b ? b->size + (t->x.segments - 1) * b->group->loads : t->x.size;
-	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++) {
-		if (row[term->row] < 0)
+	for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++) {
+		if (row[entry->row] < 0)
 			continue;
-		const bool of_w = term->column >= t->x.size, rate = term->row >= left;
-		const int at = of_w   ? unknown[term->column - t->x.size]
+		const bool of_w = entry->column >= t->x.size, rate = entry->row >= left;
+		const int at = of_w   ? unknown[entry->column - t->x.size]
 			       : rate ? 0
-				      : column_in(step, b, place, term->column);
+				      : column_in(step, b, place, entry->column);
 		if (at < 0)
-			internal_error(step, "a term of tunable params leaves its independent block");
-		struct tuned_term *own = MORE(all->term, all->terms);
-		*own = *term;
-		own->row = row[term->row];
+			internal_error(step, "an entry of tunable params leaves its independent block");
+		struct tuned_entry *own = MORE(all->entry, all->entries);
+		*own = *entry;
+		own->row = row[entry->row];
 		own->column = of_w ? all->columns + at : at;
-		part->params |= params_of(step, term->monomial);
+		part->params |= entry->params;
 	}
+	count_operations(t, all);
 }
 
 int width_of_equations(const struct tuned_equations *all)
@@ -266,7 +259,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	}
 	take_slopes(&b, place, count, fixed);
 	take_turns(&b, step, place);
-	take_terms(&b.part, step, &b, place);
+	take_entries(&b.part, step, &b, place);
 	return b;
 }
 
@@ -279,10 +272,10 @@ static void add_read_components(struct tuned_part *part, const struct step *step
 	const int n = step->branch->system.n;
 	int *parent = components(step);
 	bool *read = ARRAY(bool, 2 * (size_t)n);
-	for (const struct tuned_term *term = t->all.term; term < t->all.term + t->all.terms; term++)
-		if (term->row >= n && term->row < t->all.rows - t->frequencies && term->column >= t->x.size &&
-		    term->column < t->x.size + n)
-			read[root_of_node(parent, n + term->column - t->x.size)] = true;
+	for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++)
+		if (entry->row >= n && entry->row < t->all.rows - t->frequencies && entry->column >= t->x.size &&
+		    entry->column < t->x.size + n)
+			read[root_of_node(parent, n + entry->column - t->x.size)] = true;
 	for (int root = 0; root < 2 * n; root++)
 		if (read[root])
 			add_component(part, step, parent, root);
@@ -303,7 +296,7 @@ static void plan_others(struct tuned_blocks *p, const struct step *step)
 			p->frequency[l] = p->others.all.rows;
 			add_row(&p->others, t->frequency[l], t->frequency[l]);
 		}
-	take_terms(&p->others, step, NULL, NULL);
+	take_entries(&p->others, step, NULL, NULL);
 }
 
 /* ---- the whole ---- */
@@ -318,7 +311,7 @@ static void measure_block(struct tuned_blocks *p, const struct step *step, const
 	const int rows = b->part.all.rows * width_of_equations(&b->part.all), square = b->size * b->size;
 	const int increments = step->branch->system.segments * b->group->states * b->size;
 	int further = square + PL_INCREMENT_WORK(b->size), advance = square + further;
-	larger_of(&further, step->model->tuning->monomials + 1);
+	larger_of(&further, b->part.all.operations);
 	larger_of(&advance, further);
 	larger_of(&p->more, rows + advance);
 	if (b->group->tuned)
@@ -387,7 +380,7 @@ void plan_tuned_blocks(struct step *step)
 	p->frequency = t->frequency;
 	if (!p->solved)
 		plan_others(p, step);
-	larger_of(&p->work, t->monomials + 1);
+	larger_of(&p->work, p->others.all.operations + 1);
 	stack = p->others.all.rows * width_of_equations(&p->others.all) + p->work;
 	larger_of(&stack, p->more);
 	p->kilobytes = 1 + real * (numbers + 2 * stack) / 1024;
