@@ -12,7 +12,7 @@
 #include "model/checks.h"
 #include "model/linear/shortening.h"
 #include "report/report.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 #include "step/cost.h"
 #include "step/linear/images.h"
 

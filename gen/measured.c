@@ -8,7 +8,7 @@
 #include "measuring.h"
 #include "model/checks.h"
 #include "report/report.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "measuring.h"
 #include "measuring.h"
 #include "model/checks.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "measuring.h"
 #include "model/checks.h"
 #include "model/linear/shortening.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 #include "step/linear/images.h"
 
 #include <math.h>

@@ -5,12 +5,11 @@
 #include "emit.h"
 #include "kinds.h"
 #include "emit/many/many.h"
-#include "emit/linear/modes.h"
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 

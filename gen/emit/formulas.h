@@ -28,7 +28,6 @@ void emit_formulas(struct formulas *f, int indent);
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */
 
-bool many_operators(const struct emitter *e);
 bool any_of(const bool *flag, int count);
 /* What a leftover, an operator, is handed in a step: samples at its start, their slopes [1/s] */
 const char *samples_of_step(const struct emitter *e);
@@ -41,21 +40,8 @@ void emit_leftover(const struct emitter *e);                      /* and of a ba
 
 const char *selection_call(const struct emitter *e);              /* of a bank: which operator serves now */
 
-/* ---- loops.c: a step with a leftover that loops over its tables ---- */
-
-void emit_loop_tables(const struct emitter *e);
-const char *matrix_text(const struct emitter *e, const char *name); /* its first entry, of the operator that serves */
-const char *vector_name(int stage);
-bool flows_apart(const struct emitter *e);                        /* where a change of the loads may interrupt them */
-void emit_operands(const struct emitter *e);                      /* declares load, input, which the tables multiply */
-/* target = Phi y + loads + inputs over the time of table t; from rest: the loads and inputs alone */
-void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
-void emit_sum_loop(const struct emitter *e, const struct action *a);
-
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 
-void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
-void emit_predictor(const struct emitter *e);                      /* NAME_predict: states at nodes */
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 
@@ -64,7 +50,6 @@ void emit_samples(const struct emitter *e);                       /* start, slop
 bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
 /* Entry of an enum linear_table in a step, in outputs */
 const char *linear_entry(const struct emitter *e, const struct tape_node *n);
-int  place_in(int count, const int *list, int what);              /* count: it is not there */
 /* Its row of factors, in struct NAME_coeffs */
 const char *tuned_output_row(const struct emitter *e, const struct output *output);
 

@@ -2,7 +2,6 @@
 /* What the C of each kind of step has: a row for each of what it has of its own, functions and words. */
 #include "declarations.h"
 #include "kinds.h"
-#include "emit/linear/modes.h"
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"
 #include "steps.h"

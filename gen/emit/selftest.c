@@ -3,7 +3,7 @@
  * every factor of a sample has a part in; held, u = 1. */
 #include "declarations.h"
 #include "emit/tunable/tunable.h"
-#include "step/certify/references.h"
+#include "step/certify/certify.h"
 
 static void emit_table(const struct emitter *e, const char *note, const char *name, int rows, int columns,
 		       const double *value)

@@ -12,14 +12,9 @@ const char *phase_rate_text(const struct emitter *e);             /* of the mode
 void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
-void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
-void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
-void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
 bool outputs_read(const struct emitter *e, int load);
 void emit_anchor_tables(const struct emitter *e);                 /* of anchors: tables, and NAME_anchor */
 void emit_anchor_members(const struct emitter *e);
-/* as emit_load_states, in a step: at the anchor, to be multiplied with turned[...]; elsewhere: of now */
-void emit_anchored_loads(const struct emitter *e, const bool *loads);
 void emit_loads_at_anchor(const struct emitter *e, const bool *loads);    /* where one stands now */
 void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
@@ -33,9 +28,6 @@ const char *growth_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
-/* declares load states, and i where one is `looped` over; x[...] = what the series advances */
-void emit_series_vector(const struct emitter *e, bool looped);
-void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
@@ -50,7 +42,6 @@ void emit_step(const struct emitter *e);
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
-const char *step_parameters(const struct emitter *e);
 const char *head_of_step(const struct emitter *e);
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
@@ -64,5 +55,10 @@ void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
 bool rhs_needs_math(const struct emitter *e);
+
+/* ---- emit_normal.c: steps in normal modes ---- */
+
+void emit_normal_members(const struct emitter *e);
+void emit_normal_tables(const struct emitter *e);
 
 #endif

@@ -3,7 +3,7 @@
 #include "model/checks.h"
 #include "model/linear/shortening.h"
 #include "report/report.h"
-#include "step/certify/certificates.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "model/regions/regions.h"
 #include "report/report.h"
 #include "step/linear/images.h"
-#include "step/certify/references.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <string.h>

@@ -57,7 +57,6 @@ cp listing walled
 	sed 's|:#include "\([^"]*\)".*| \1|' >includes
 : >included
 for header in $(cd "$root/gen" && find . -mindepth 3 -name '*.h' | sed 's/^..//' | LC_ALL=C sort); do
-	case $header in emit/tunable/* | model/tunable/*) continue ;; esac
 	folder=${header%/*}
 	awk -v header="$header" -v inside="gen/$folder/" '$2 == header && index($1, inside) != 1' includes >outside
 	case $header in

@@ -8,7 +8,6 @@
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
-#include "step/series/unseen.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Schemes with a leftover from crossing to crossing: what the runtime's cut.h, which the model's file includes, is told
  * of the model, and a whole step by the scheme's own tables. */
+#include "inner.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "step/regions/guards.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of steps in normal modes: tables of a bank, between coordinates and modes, functions of time, forces on the modes. */
-#include "emit/linear/modes.h"
+#include "inner.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"

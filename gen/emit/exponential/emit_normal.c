@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are told of
  * them: tables, sums over them, sizes. */
-#include "emit/linear/modes.h"
+#include "inner.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "model/reads.h"

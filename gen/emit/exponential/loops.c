@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step with a leftover that loops over its tables: the tables, and products with them. */
+#include "inner.h"
 #include "emit/steps.h"
 
 /* ---- tables ---- */

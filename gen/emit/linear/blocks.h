@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Large models by their independent blocks. */
+/* Steps of large models by their independent blocks, and of modes. */
 #ifndef PLGEN_EMIT_BLOCKS_H
 #define PLGEN_EMIT_BLOCKS_H
 
@@ -22,5 +22,9 @@ int  alike_entry(const struct emitter *e, const struct group *g, bool changing, 
 
 bool is_blockwise(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
+
+/* ---- emit_modal.c: a step of modes ---- */
+
+void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 
 #endif

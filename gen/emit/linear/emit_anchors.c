@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads by anchors: NAME_anchor evaluates their functions every so many steps; the step reads its factors from a table,
  * and outputs turn the load states of the anchor into those of now. */
+#include "inner.h"
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/linear/forms.h"

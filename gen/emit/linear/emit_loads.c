@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads on the target: phases as turns, growths as exponents of 2, load states made of them at a step's start. */
+#include "inner.h"
 #include "emit/kinds.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"

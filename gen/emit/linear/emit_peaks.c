@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* output NAME = peak(x): a step looks for larger values inside, before it moves the state. */
+#include "inner.h"
 #include "emit/declarations.h"
 #include "emit/kinds.h"
 #include "emit/steps.h"

@@ -4,7 +4,6 @@
 #define PLGEN_EMIT_LINEAR_INNER_H
 
 #include "blocks.h"
-#include "modes.h"
 
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
 void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
@@ -17,5 +16,17 @@ int  states_of_largest_block(const struct emitter *e);
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modal_step(const struct emitter *e, const char *const *acting_text);
+
+/* ---- emit_loads.c, emit_anchors.c, emit_time.c, emit_step.c ---- */
+
+void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
+void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
+void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
+/* as emit_load_states, in a step: at the anchor, to be multiplied with turned[...]; elsewhere: of now */
+void emit_anchored_loads(const struct emitter *e, const bool *loads);
+/* declares load states, and i where one is `looped` over; x[...] = what the series advances */
+void emit_series_vector(const struct emitter *e, bool looped);
+void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
+const char *step_parameters(const struct emitter *e);
 
 #endif

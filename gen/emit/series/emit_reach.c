@@ -5,7 +5,6 @@
 #include "emit/state.h"
 #include "step/collocation/collocation.h"
 #include "step/series/expansion.h"
-#include "step/series/unseen.h"
 
 #include <math.h>
 

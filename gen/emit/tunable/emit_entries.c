@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How entries of equations follow from tunable params: what was recorded of them, as operations that the target carries
  * out in two words, those of each of the equations by themselves. */
+#include "inner.h"
 #include "model/tunable/tuning.h"
 #include "step/tunable/tuned.h"
-#include "tunable.h"
 
 static const char *two_words(struct coefficient number)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a model has of params that an instance holds: types, retune. */
+#include "inner.h"
 #include "emit/formulas.h"
 #include "emit/kinds.h"
 #include "emit/regions/regions.h"
-#include "tunable.h"
 #include "model/reads.h"
 #include "step/exponential/normal.h"
 #include "step/tunable/tuned.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions whose matrices tunable params change: an instance has the tables of its search, which NAME_retune, of
  * retuned.h, computes anew. Here is what both hold. */
+#include "inner.h"
 #include "emit/regions/regions.h"
 #include "step/regions/regions.h"
-#include "tunable.h"
 #include "model/contacts/contacts.h"
 #include "step/regions/guards.h"
 #include "step/tunable/tuned.h"

@@ -2,10 +2,10 @@
 /* Linear models with tunable params: an instance holds its own factors, of a large model those of independent blocks
  * that params touch, and NAME_retune, of retune.h, computes them anew on the target. What it is told: equations,
  * blocks, which it takes together in groups, sizes. */
+#include "inner.h"
 #include "emit/linear/blocks.h"
 #include "emit/declarations.h"
 #include "emit/steps.h"
-#include "tunable.h"
 #include "model/reads.h"
 #include "step/linear/rows.h"
 #include "step/tunable/tuned.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Factors that the instance has, in steps and in outputs. */
+#include "inner.h"
 #include "emit/formulas.h"
 #include "step/tunable/tuned.h"
 

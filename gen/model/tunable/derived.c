@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Params that are made of tunable ones by more than sums, products and quotients: sin(p), sqrt(k/m), p > 1 ? a : b.
  * Each is a tunable param of its own, behind those of the spec, which the target finds from these by its expression. */
-#include "tuning.h"
+#include "inner.h"
 
 /* ---- what is no sum, product or quotient ---- */
 

@@ -3,9 +3,8 @@
  * matrices, other params. So nothing is derived from its text: the model is built anew at values drawn at random, and
  * what is done to them on the way to its entries is recorded (base/traced.c). Functions and conditions of params are
  * params of their own (derived.c); where they hold more, they are refused before. */
-#include "elsewhere.h"
+#include "inner.h"
 #include "model/linear/shortening.h"
-#include "tuning.h"
 
 /* ---- places ---- */
 

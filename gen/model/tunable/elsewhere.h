@@ -34,15 +34,6 @@ struct elsewhere {
 	mpq_ptr *seen[PLACES];      /* entries there, NULL: 0 */
 	mpq_t zero;
 };
-/* Waves, their order, times at which they change; any_rate: frequencies may differ */
-bool same_loads(const struct linear *a, const struct linear *b, bool any_rate);
-_Noreturn void tell_difference(struct elsewhere *s, const struct difference *difference);
-void look_elsewhere(struct elsewhere *s);
-mpq_srcptr entry_seen(const struct elsewhere *s, int place, ptrdiff_t index);
-bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
-/* into the equations, as it was recorded; what is 0 is left out */
-void add_tuned_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
-void add_tuned_unit(struct tuned_equations *all, int row, int column);
 
 struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */
 	const struct model *model;
@@ -51,7 +42,6 @@ struct listing {                    /* retuned_rows.c: the numbers of one model,
 	struct retuned_row *row;
 	mpq_t *entry;               /* rows x columns */
 };
-struct listing list_rows(const struct model *model, const struct layout *x);
 /* An output, whose loads have so many segments of time, in one of these, or as x in all */
 void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
 		   int segment, mpq_t *row);

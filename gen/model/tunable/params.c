@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tunable params that the instance has: expressions read them, or they act like inputs. */
-#include "tuning.h"
+#include "inner.h"
 
 const struct node *first_tuned(const struct node *node)
 {

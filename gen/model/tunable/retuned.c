@@ -4,12 +4,11 @@
  * numbers of the model. It is looked at elsewhere (elsewhere.c), regions close to the spec's values, where breakpoints
  * keep their order and factors their sign: what decided on the way which region is which has to keep its sign on the
  * target. */
-#include "elsewhere.h"
+#include "inner.h"
 #include "model/capability.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "model/linear/shortening.h"
-#include "tuning.h"
 
 #include <string.h>
 

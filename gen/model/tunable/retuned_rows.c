@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* All numbers of a model that params may change, row by row over x, in one order for all values of params: what of them
  * changes is found by comparing such lists. Highest derivatives, outputs of linear models, what regions have. */
+#include "inner.h"
 #include "model/contacts/contacts.h"
-#include "elsewhere.h"
-#include "tuning.h"
 
 /* ---- of any model ---- */
 

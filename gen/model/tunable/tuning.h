@@ -75,18 +75,13 @@ int  retuned_place(const struct tuning *t, enum retuned_kind kind, int of, int i
 /* Puts names of further params, spec->derived of them, in the place of functions and conditions. Again it finds
  * nothing. */
 void derive_params(struct spec *spec);
-void warn_of_unread(const struct model *model);
-void check_tuned(const struct model *model);    /* what is left of it leaves the statement */
 
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
 const struct node *first_tuned(const struct node *node);
-unsigned params_read(const struct node *node);  /* the given ones it follows from, a bit each */
-unsigned params_of_tunable(const struct spec *spec, int tunable);
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
-struct tuning *list_tunables(const struct model *model);
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
 /* at values related by nothing; NULL: no param is tunable in this way */
 const struct model *model_elsewhere(const struct model *model);

@@ -3,9 +3,8 @@
 #ifndef PLGEN_STEP_CERTIFY_INNER_H
 #define PLGEN_STEP_CERTIFY_INNER_H
 
-#include "certificates.h"
+#include "certify.h"
 #include "kept.h"
-#include "references.h"
 
 /* ---- rounding.c: how far an output of the emitted program may be off ---- */
 

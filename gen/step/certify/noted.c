@@ -2,7 +2,7 @@
 /* Of a way through crossings: the list of them, and where expressions stand. */
 #include "model/regions/expressions.h"
 #include "model/regions/regions.h"
-#include "references.h"
+#include "certify.h"
 #include "through.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: the first event of a piece, and what is behind it. */
 #include "model/contacts/contacts.h"
-#include "references.h"
+#include "certify.h"
 #include "through.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
  * target, runtime/contacts.h, over enclosures: the nearest number of each, and 0 where it has 0. What that decides
  * while it is more than rounding is not known, and more bits are asked for. */
 #include "model/contacts/contacts.h"
-#include "references.h"
+#include "certify.h"
 #include "through.h"
 
 #include <float.h>

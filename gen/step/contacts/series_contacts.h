@@ -58,4 +58,7 @@ bool is_bare(const struct sequencing *w, int state);         /* its slope withou
 struct sum held_slope(struct sequencing *w, int state);
 int  held_force(struct sequencing *w, int channel);         /* what is left over, with what holds: a sequence */
 
+/* divided.c: those whose way counts stand first */
+void sort_watches(struct contacts *c);
+
 #endif

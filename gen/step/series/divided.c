@@ -234,3 +234,48 @@ void check_divided(const struct step *step)
 		      "scheme %s: '%s' has no Taylor series where %s", scheme_name(model->scheme),
 		      text_between(smooth->singular->start, smooth->singular->end), smooth->singular_where);
 }
+
+/* ---- what the search looks at besides ---- */
+
+static bool has_way(const struct contacts *c, int watch)
+{
+	bool any = false;
+	for (int i = 0; i < c->holds; i++)
+		any = any || c->hold[i].pull[0] == watch || c->hold[i].pull[1] == watch;
+	for (int i = 0; i < c->strikes; i++)
+		any = any || (c->strike[i].hold != NONE && c->strike[i].speed == watch);
+	return any;
+}
+
+static void renumber(const int *place, int *watch)
+{
+	if (*watch != NONE)
+		*watch = place[*watch];
+}
+
+void sort_watches(struct contacts *c)
+{
+	int *place = ARRAY(int, c->watches), places = 0;
+	struct watch *sorted = ARRAY(struct watch, c->watches);
+	for (int way = 1; way >= 0; way--) {
+		for (int i = 0; i < c->watches; i++) {
+			if (has_way(c, i) != way)
+				continue;
+			sorted[places] = c->watch[i];
+			place[i] = places++;
+		}
+		c->ways = way ? places : c->ways;
+	}
+	c->watch = sorted;
+	for (int i = 0; i < c->holds; i++) {
+		renumber(place, &c->hold[i].velocity);
+		renumber(place, &c->hold[i].pull[0]);
+		renumber(place, &c->hold[i].pull[1]);
+	}
+	for (int i = 0; i < c->strikes; i++) {
+		renumber(place, &c->strike[i].place);
+		renumber(place, &c->strike[i].speed);
+	}
+	for (int i = 0; i < c->assignments; i++)
+		renumber(place, &c->assignment[i].watch);
+}

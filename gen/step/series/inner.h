@@ -6,7 +6,6 @@
 #include "divided.h"
 #include "expansion.h"
 #include "sequences.h"
-#include "unseen.h"
 
 /* ---- divided.c: formulas that the state chooses ---- */
 

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of emit/tunable have from one another, and nobody else. */
+#ifndef PLGEN_EMIT_TUNABLE_INNER_H
+#define PLGEN_EMIT_TUNABLE_INNER_H
+
+#include "tunable.h"
+
+/* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
+
+void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */
+
+/* ---- emit_entries.c: how entries follow from params ---- */
+
+void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
+/* Operations by which all of the list follow from params; of each what a pl_equations has */
+const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
+			    const struct tuned_equations *const *list);
+
+/* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
+
+void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
+int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
+int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
+
+/* ---- emit_held.c: params that an instance holds; of models without, nothing is printed ---- */
+
+void emit_retune(const struct emitter *e);                        /* the equations, retune, use */
+
+/* ---- tuned_terms.c: factors that the instance has ---- */
+
+int  place_in(int count, const int *list, int what);              /* count: it is not there */
+
+#endif
