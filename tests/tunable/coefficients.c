@@ -4,13 +4,17 @@
  *
  *     coefficients [-n SETS] [-m SETS] [-s SEED] [-v] MODEL.spec ...
  *
- * n sets of params for each family of pair.spec, m for each other model.  The generator builds each model anew from the
+ * n sets of params for each family of pair.spec, m for each other model. The generator builds each model anew from the
  * spec without its statement `tunable`, with the values as -D and --step, all exact.  Bounds, in units in the last
- * place (ulp): states x states    16 ulp of the largest entry of Phi a load, an input   16 ulp of the largest entry of
- * its column, in each segment of time outputs            16 ulp of the largest factor of the row phases, growths    bit
- * for bit; where a frequency is 2 pi f, within 2^-104, in floats 2^-45 of itself NAME_nominal is what the generator has
- * for the spec's values, bit for bit. The largest met is printed for each family; for states also in ulp of the largest
- * entry of Phi - I, for ramps in ulp of the largest entry of both columns.
+ * place (ulp):
+ *
+ *     states x states      16 ulp of the largest entry of Phi
+ *     a load, an input     16 ulp of the largest entry of its column, in each segment of time
+ *     outputs              16 ulp of the largest factor of the row
+ *     phases, growths      bit for bit; where a frequency is 2 pi f, within 2^-104, in floats 2^-45 of itself
+ *
+ * NAME_nominal is what the generator has for the spec's values, bit for bit. The largest met is printed for each
+ * family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of that of both columns.
  */
 #include "tuned.h"
 #include "cases.h"
