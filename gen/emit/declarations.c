@@ -2,7 +2,6 @@
 /* What a header has: the struct of the state, the functions. */
 #include "declarations.h"
 #include "kinds.h"
-#include "emit/many/many.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"

@@ -4,7 +4,6 @@
 #include "declarations.h"
 #include "emit.h"
 #include "kinds.h"
-#include "emit/many/many.h"
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Delayed inputs: the model is NAME_core, which has them as inputs; around it NAME, which keeps the samples. */
 #include "declarations.h"
-#include "emit/many/many.h"
 #include "steps.h"
 
 #include <string.h>

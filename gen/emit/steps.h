@@ -61,4 +61,9 @@ bool rhs_needs_math(const struct emitter *e);
 void emit_normal_members(const struct emitter *e);
 void emit_normal_tables(const struct emitter *e);
 
+/* ---- emit_batch.c: many instances in one call ---- */
+
+void emit_batch_declarations(const struct emitter *e);
+void emit_batch(const struct emitter *e);
+
 #endif

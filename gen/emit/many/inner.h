@@ -3,7 +3,20 @@
 #ifndef PLGEN_EMIT_MANY_INNER_H
 #define PLGEN_EMIT_MANY_INNER_H
 
-#include "many.h"
+#include "emit/steps.h"
+
+struct batch {
+	const struct emitter *e;
+	int shared;                     /* numbers that instances share in a step: `now` */
+	const char **shared_text;       /* first those that the step reads, before it; */
+	int after;                      /* from here on those of the outputs, after it */
+	struct tape *step, *out;        /* what lanes compute */
+	int forced;                     /* index of the forced part; -1: none */
+	bool sampled;                   /* of peaks: nothing acts on the states but polynomials through samples */
+	int lanes;                      /* factors of the instance that lanes have; */
+	int factors;                    /* of an instance, that its params decide */
+	const char **factor_text;       /* s->coeffs.step[0][1] */
+};
 
 struct batch plan_batch(const struct emitter *e);
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
