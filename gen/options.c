@@ -103,7 +103,8 @@ static void take_accuracy(struct options *options, const char *value)
 
 static void take_loads(struct options *options, const char *value)
 {
-	options->request.loads_left = is_second("--loads", value, "exact", "leftover");
+	const char *name = strcmp(value, "leftover") == 0 ? "remainder" : value; /* its name in earlier versions */
+	options->request.loads_left = is_second("--loads", name, "exact", "remainder");
 }
 
 /* 0: it is none from 1 to `most` */
@@ -239,7 +240,7 @@ static const struct row {
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", .take = take_form },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  .take = take_accuracy },
-	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
+	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
 	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", .take = take_anchors },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", .take = take_definition },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
@@ -421,7 +422,7 @@ static void note_all(struct options *options)
 	note_value(options, "--modes", request->modes ? format("\"%s\"", request->modes) : NULL);
 	note_value(options, "--step", request->step);
 	note_value(options, "--prefix", request->prefix);
-	note_flag(options, "--loads leftover", request->loads_left);
+	note_flag(options, "--loads remainder", request->loads_left);
 	note_flag(options, "--real float", request->single);
 	note_value(options, "--form", request->form != FORM_AUTO ? step_form_name(request->form) : NULL);
 	note_flag(options, "--accuracy compensated", request->compensated);

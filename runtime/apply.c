@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Matrices times vectors: what the steps of the schemes with a leftover are made of. */
+/* Matrices times vectors: what the steps of the schemes with a remainder are made of. */
 #include "real.h"
 
 void pl_multiply(int rows, int columns, const real *table, const real *x, real *y)

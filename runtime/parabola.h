@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* parabola.h: states inside a step of a scheme whose leftovers are those of points in it: what is exact goes on under
+/* parabola.h: states inside a step of a scheme whose remainders are those of points in it: what is exact goes on under
  * the parabola through what is left over at both ends and in the middle, where the state is that under the chord.  Off
  * by the fourth power of h, as a step of the fourth order is over all, times the third derivative of what is left over;
  * what it misses at the end of the step is taken back by the cube of the time, so that values meet those of the steps.
@@ -7,7 +7,7 @@
  *
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_CHANNEL on of each of
- *     PL_FORCES                  leftovers its value and two derivatives
+ *     PL_FORCES                  remainders its value and two derivatives
  *     PL_MIDDLE, PL_END          points of the step: as PL(left_at) counts them, whose first is 0
  *     PL_BARE                    the step that looks for no peaks
  *     PL_CHOICE(s, u)            operator that serves
@@ -17,7 +17,7 @@
  *     PL(left_at)(s, which, point, u, y, left)   what is left over at state y */
 #include "numbers.h"
 
-/* x, part of h after now, of leftovers at 0, 1/2 and 1 h */
+/* x, part of h after now, of remainders at 0, 1/2 and 1 h */
 static void PL(under)(const PL_TYPE *s, const real *u, int which, real left[3][PL_FORCES], real part, real x[PL_SIZE])
 {
     int i;

@@ -523,7 +523,7 @@ void pl_region_reach(int size, PL_REAL h, int halvings, int spacing, const PL_RE
                      PL_REAL *reach, PL_REAL *work);
 #define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
 
-/* ---- cut.c: a part of a step of a scheme with a leftover ------------------------------------------------------ */
+/* ---- cut.c: a part of a step of a scheme with a remainder ------------------------------------------------------ */
 
 /* e^{A tau} of x' = A x, of what is set up for one tau */
 typedef struct pl_cut {

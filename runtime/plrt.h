@@ -10,13 +10,13 @@
  *     series.c    x(tau) for 0 <= tau <= h: NAME_at
  *     power.c     the state n steps on in log n time: NAME_jump
  *     until.c     the time to a change of the loads
- *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
+ *     apply.c     matrices times vectors, and whether all is finite: schemes with a remainder
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     guards.c    the same with dry friction and jumps: events that each region has its own of
  *     crossings_kept.c, guards_kept.c
  *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
- *     cut.c       a part of a step: schemes with a leftover, from crossing to crossing
+ *     cut.c       a part of a step: schemes with a remainder, from crossing to crossing
  *     rate.c      the rate of a load's phase from another frequency; phases that go on where one changes
  *     root.c      rough roots: the length of a step by its error
  *     dense.c     linear equations: Newton's method of implicit schemes

@@ -7,7 +7,7 @@
  *     PL_DRIVEN                  1: loads and inputs have a part in them
  *     PL_CUT                     1: a step of cut.h, of the forces of given intervals, which that says
  *
- *     PL(leftover)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
+ *     PL(remainder)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
  *     PL(slope_of)(which, z, left, dz)                 A z + B left */
 #include "numbers.h"
 
@@ -43,7 +43,7 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
         PL(forces_at)(s, u, slope, k < 2 ? tau / 2 : tau, when, which, interval, y, left);
         PL(slope_of)(0, z, left, dz);
 #else
-        PL(leftover)(s, which, k < 2 ? half : end, u, slope, y, left);
+        PL(remainder)(s, which, k < 2 ? half : end, u, slope, y, left);
         PL(slope_of)(which, z, left, dz);
 #endif
         for (i = 0; i < PL_STATES; i++) {

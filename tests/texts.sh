@@ -25,7 +25,7 @@ each='--header
 --form delta --accuracy compensated
 --form kick-drift-kick --real float
 --scheme pl
---scheme etd1 --loads leftover
+--scheme etd1 --loads remainder
 --scheme etdrk4
 --scheme bm3 --rhs --real float
 --reduce --prefix small

@@ -148,12 +148,12 @@ struct literals {
 };
 void *literals_load(const struct literals *literals);
 /* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step), made by variant.sh,
- * which keeps in it the options it was made with: by these generated_open knows a float, and the leftover evaluations
+ * which keeps in it the options it was made with: by these generated_open knows a float, and the remainder evaluations
  * of a scheme. Setting: its step, which must divide the unit; NULL where it does not, or where there is no such
  * file. */
 struct run *generated_open(const struct method *method, const struct problem *problem, const char *file);
 const char *generated_between(const struct run *run);   /* how it finds what is inside a step, for its settings */
-int leftover_evaluations(const char *scheme);   /* in a step; -1: it has none (exact) */
+int remainder_evaluations(const char *scheme);   /* in a step; -1: it has none (exact) */
 /* Where plgen refused a variant, variant.sh leaves its message in FILE.refused: its first line, or NULL. The caller
  * frees it. */
 char *variant_refused(const char *file);

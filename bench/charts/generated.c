@@ -20,13 +20,13 @@ struct generated {
 	bool rows_are_states;       /* NAME_run then writes what is wanted */
 	float *row;                 /* of a float: rows on their way to double */
 	int rows;                   /* room in row */
-	int evaluations;            /* of the leftover in a step, or -1 */
+	int evaluations;            /* of the remainder in a step, or -1 */
 	long taken;                 /* steps since the start */
 };
 
 /* etd1 and pl: r0. etdrk2: r at two states, etdrk4: at four. The quadratures: r at each node, and at those after the
  * first three more right-hand sides of an RK4 step that begins at r0. */
-int leftover_evaluations(const char *scheme)
+int remainder_evaluations(const char *scheme)
 {
 	static const struct { const char *name; int evaluations; } schemes[] = {
 		{ "pl", 1 }, { "etd1", 1 }, { "etdrk2", 2 }, { "etdrk4", 4 }, { "nc2", 3 + 2 * 3 },
@@ -231,7 +231,7 @@ static int evaluations_of(const char *options)
 	const char *found = options ? strstr(options, "--scheme ") : NULL;
 	if (found)
 		sscanf(found, "--scheme %31s", scheme);
-	return leftover_evaluations(scheme);
+	return remainder_evaluations(scheme);
 }
 
 static bool load(struct generated *g, const char *file)

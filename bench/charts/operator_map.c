@@ -8,7 +8,7 @@
  *   pl: two equal masses, each on a spring k1 and with k2 between them; each one's own (k1 + k2) x is exact, k2 times
  *   the other one is held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map_raw.csv
  * rho: growth per step; growth: of the amplitude within one true period 2 pi/w, 0: none.  Both by the schemes of
- * tests/leftover/hand.c in long double; generated code at a few points beside it: operator_check.csv.  Where stability
+ * tests/remainder/hand.c in long double; generated code at a few points beside it: operator_check.csv.  Where stability
  * ends: operator_boundary.csv.
  */
 #include "amplification.h"

@@ -27,7 +27,7 @@ static const struct history {
 	const char *recovered[SCHEMES], *recovered_rk4, *operator_of;
 } histories[] = {
 	{ "linear2dof", 5, 10, 1, true, { "4.61e-06", "8.18e-06", "1.61e-05", "1.84e-05" }, "4.2e-3",
-	  "load left to the scheme (--loads leftover) as its source has it; the scheme exact has no error" },
+	  "load left to the scheme (--loads remainder) as its source has it; the scheme exact has no error" },
 	{ "pendulum", 10, 10, 1, false, { "1.4e-8", "3.2e-8", "5.4e-8", "6.9e-8" }, NULL,
 	  "operator: Jacobian at 0; g/l = 1 chosen" },
 	{ "vanderpol", 10, 10, 1, false, { NULL }, NULL, "mu = 1, x(0) = 2 chosen" },
@@ -69,8 +69,8 @@ static void compare(const struct papers *papers, FILE *table, const struct histo
 		                               largest(papers_run(papers, &schemes[i], p,
 		                                                  text("%s_%s_%d", h->model, schemes[i].name, h->rate)),
 		                                                  truth, h->first) };
-		snprintf(settings, sizeof settings, "%s; %d evaluations of the leftover a step", h->operator_of,
-		         leftover_evaluations(schemes[i].name));
+		snprintf(settings, sizeof settings, "%s; %d evaluations of the remainder a step", h->operator_of,
+		         remainder_evaluations(schemes[i].name));
 		put_row(table, h->model, schemes[i].name, quantity, NULL, h->recovered[i], number(placing[i].error),
 			settings);
 	}

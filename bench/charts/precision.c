@@ -106,7 +106,7 @@ static const int parts_inlined[] = { 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 0
 
 struct ours {
 	const char *name, *options;
-	bool exact;                     /* else with a leftover */
+	bool exact;                     /* else with a remainder */
 	bool series;                    /* of smooth models with few states */
 	bool modes;                     /* of large ones, with a bank of their own: specs/modes_NAME.spec */
 	bool tolerance;                 /* settings are tolerances, not steps */
@@ -136,7 +136,7 @@ static const struct ours ours[] = {
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
-/* Linear models leave nothing over but to pl; clearances are exact in every region, or else a leftover. Of series the
+/* Linear models leave nothing over but to pl; clearances are exact in every region, or else a remainder. Of series the
  * half car has those by tolerance, to see what they are worth where sixteen regions meet. */
 static bool applies(const struct charted *m, const struct ours *o)
 {

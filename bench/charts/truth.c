@@ -7,7 +7,7 @@
  *                  (truth_by_extrapolation, which tests hold against it) by extrapolation (Gragg, Bulirsch, Stoer) in
  *                  long double (19 digits).
  *   the beams      the same on their matrices' decimals (quad_beam.c); beside it on matrices found by quadrature of
- *                  their definition (tests/leftover/cantilever.c).
+ *                  their definition (tests/remainder/cantilever.c).
  *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
  *   the half car   the equations by hand, by extrapolation in long double, whose steps shrink at its kinks.
  *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
@@ -18,7 +18,7 @@
 #include "gears.h"
 #include "quad_taylor.h"
 
-#include "../../tests/leftover/elliptic.h"
+#include "../../tests/remainder/elliptic.h"
 
 #include <math.h>
 #include <quadmath.h>
@@ -188,7 +188,7 @@ static void NAME##_of(const struct problem *p, real t, const real *y, real *dydt
 }
 EQUATIONS(SMOOTH)
 
-/* tests/leftover/cantilever.h, whose folder has a hand.h of its own */
+/* tests/remainder/cantilever.h, whose folder has a hand.h of its own */
 real cantilever_speed(real Om, real t, real *slope);
 void cantilever_slopes(real w, real dw, const real *y, real *dydt);
 

@@ -181,7 +181,7 @@ papers() {
 		done
 	done
 	for scheme in nc2 nc3 dq4 bm3; do
-		echo "linear2dof_${scheme}_5 models/linear2dof.spec --scheme $scheme --loads leftover --step 1/5"
+		echo "linear2dof_${scheme}_5 models/linear2dof.spec --scheme $scheme --loads remainder --step 1/5"
 		for at in pendulum/10 vanderpol/10 quad2dof/10 quad2dof/2 vanderpol_stiff/100 vanderpol_stiff/1000; do
 			echo "${at%/*}_${scheme}_${at#*/} models/${at%/*}.spec --scheme $scheme --step 1/${at#*/}"
 		done
@@ -217,7 +217,7 @@ papers() {
 	for scheme in etdrk2 etdrk4; do
 		[ "$fine_rates" = 100 ] || beam 15 15 $scheme 1000
 		for rate in $fine_rates; do
-			beam 15 15 $scheme "$rate" left --loads leftover
+			beam 15 15 $scheme "$rate" left --loads remainder
 		done
 	done
 	beam 15 15 etdrk4 10000

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is not linear, as atoms: expressions over forms, each made once. A form may then hold atoms beside coordinates
- * and loads, so that linear terms are found, and leftovers shared, wherever they stand. */
+ * and loads, so that linear terms are found, and remainders shared, wherever they stand. */
 #include "collect/collect.h"
 
 #include <string.h>

@@ -114,7 +114,7 @@ struct collector {
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;
 };
-bool keeps(const struct collector *c);                      /* atoms, as a scheme with a leftover takes them */
+bool keeps(const struct collector *c);                      /* atoms, as a scheme with a remainder takes them */
 bool keeps_piecewise(const struct collector *c);            /* those that are piecewise linear */
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);

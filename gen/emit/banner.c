@@ -54,7 +54,7 @@ static void banner_poles(const struct emitter *e)
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(e->step->written, B);
 	say(e, " *\n");
-	if (is_nonlinear(e->step) && has_leftover(e->step))
+	if (is_nonlinear(e->step) && has_remainder(e->step))
 		say(e, " * Of the terms that are linear with constant coefficients:\n");
 	say(e, " *     B(s) = %s\n", polynomial_text(length, (const mpq_t *)B));
 	struct pole_report *pole;
@@ -143,7 +143,7 @@ static const char *operator_text(const struct model *model)
 	return own ? "own terms of each coordinate" : "linear terms with constant coefficients";
 }
 
-void banner_leftover(const struct emitter *e)
+void banner_remainder(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
 	banner_scheme(e);
@@ -168,7 +168,7 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 void banner_cut(const struct emitter *e)
 {
 	const struct cut *cut = e->step->cut;
-	banner_leftover(e);
+	banner_remainder(e);
 	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
 			"cubic through an expression's values and slopes at both ends; there the formulas change.");
 	banner_breakpoints(e, cut->look);

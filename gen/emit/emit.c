@@ -38,14 +38,14 @@ static void look_for_wave(void *context, const struct form *form)
 	}
 }
 
-static bool leftovers_read(const struct model *model, const struct wave *wave)
+static bool remainders_read(const struct model *model, const struct wave *wave)
 {
 	struct wave_search search = { wave, false };
-	visit_leftovers(model, look_for_wave, &search);
+	visit_remainders(model, look_for_wave, &search);
 	return search.found;
 }
 
-/* Elsewhere than in the system, leftovers, outputs */
+/* Elsewhere than in the system, remainders, outputs */
 static bool step_reads_load(const struct emitter *e, int load)
 {
 	const struct step *step = e->step;
@@ -62,7 +62,7 @@ static bool step_reads_load(const struct emitter *e, int load)
 static bool load_is_needed(const struct emitter *e, int load)
 {
 	return step_reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
-	       leftovers_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
+	       remainders_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
 }
 
 static void number_loads(struct emitter *e)
@@ -205,8 +205,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_access(e);
 	emit_held_retune(e);
 	emit_if_any(e->kind->pass, e);
-	if (e->step->kind == KIND_LEFTOVER || reads_channels(e->model))
-		emit_leftover(e);
+	if (e->step->kind == KIND_REMAINDER || reads_channels(e->model))
+		emit_remainder(e);
 	emit_if_any(e->kind->step, e);
 	emit_out(e);
 	emit_peak_step(e);

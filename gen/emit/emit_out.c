@@ -125,7 +125,7 @@ void emit_out(const struct emitter *e)
 	emit_turned_loads(e, r.load, r.time);
 	if (left)
 		say(e, "    double left[%d];\n"
-		       "    %s\n", model->channels, leftover_of_outputs(e));
+		       "    %s\n", model->channels, remainder_of_outputs(e));
 	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");

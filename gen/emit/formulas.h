@@ -26,24 +26,24 @@ struct reads reads_of_formulas(const struct formulas *f);         /* of what is 
 void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */
 void emit_formulas(struct formulas *f, int indent);
 
-/* ---- leftover.c: what a scheme leaves over, as a function ---- */
+/* ---- remainder.c: what a scheme leaves over, as a function ---- */
 
 bool any_of(const bool *flag, int count);
-/* What a leftover, an operator, is handed in a step: samples at its start, their slopes [1/s] */
+/* What a remainder, an operator, is handed in a step: samples at its start, their slopes [1/s] */
 const char *samples_of_step(const struct emitter *e);
 /* A call at a node of the step, and one in the outputs, into `left` */
-const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left);
-const char *leftover_of_outputs(const struct emitter *e);
+const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left);
+const char *remainder_of_outputs(const struct emitter *e);
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
-void emit_leftover(const struct emitter *e);                      /* and of a bank the choice of an operator */
+void emit_remainder(const struct emitter *e);                      /* and of a bank the choice of an operator */
 
 const char *selection_call(const struct emitter *e);              /* of a bank: which operator serves now */
 
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 
-void emit_leftover_step(const struct emitter *e);
-void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+void emit_remainder_step(const struct emitter *e);
+void emit_samples(const struct emitter *e);                       /* start, slope: what remainders read of ramps */
 
 /* ---- tuned_terms.c: factors that the instance has ---- */
 

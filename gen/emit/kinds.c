@@ -92,7 +92,7 @@ static const struct kind parts = {
 	.at = emit_parts_at
 };
 
-/* ---- leftover: a list of actions ---- */
+/* ---- remainder: a list of actions ---- */
 
 static bool flows_whole(const struct step *step)
 {
@@ -103,14 +103,14 @@ static bool flows_whole(const struct step *step)
 	return whole && program->loops;
 }
 
-static const struct kind leftover = {
-	.banner = banner_leftover,
+static const struct kind with_remainder = {
+	.banner = banner_remainder,
 	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.reads_phi = flows_whole,
 	.pass = emit_pass_of_changes,
-	.step = emit_leftover_step,
-	.held = emit_held_leftover,
+	.step = emit_remainder_step,
+	.held = emit_held_remainder,
 	.at = emit_at
 };
 
@@ -179,8 +179,8 @@ const struct kind *row_of_kind(enum step_kind kind)
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned,
 		[KIND_REGIONS] = &regions,
-		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_CUT] = &cut, [KIND_EXPANDED] = &expanded,
-		[KIND_COLLOCATED] = &collocated,
+		[KIND_PARTS] = &parts, [KIND_REMAINDER] = &with_remainder, [KIND_CUT] = &cut,
+		[KIND_EXPANDED] = &expanded, [KIND_COLLOCATED] = &collocated,
 		[KIND_NORMAL] = &normal_modes
 	};
 	return row[kind];

@@ -26,7 +26,7 @@ void emit_phase_rates(const struct emitter *e);                   /* rows of ini
 const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
 const char *growth_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
-void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
+void emit_held_remainder(const struct emitter *e);                /* which operator serves, and the remainder now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);

@@ -22,7 +22,7 @@ struct building {                   /* what the builders share */
 	const struct request *request;
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
-	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no remainder */
 	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
 	int nominals;               /* its intervals */
 	const bool *factor;         /* per tunable param: a number of regions, and no input; NULL: none is */

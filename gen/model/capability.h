@@ -11,7 +11,7 @@ enum { MOST_ROW_LOADS = 16 };       /* each column takes numbers of its own to b
 
 enum flow {                         /* how a state goes on, without events */
 	FLOW_LINEAR,                /* e^{A tau}: nothing is left over */
-	FLOW_RECIPE,                /* a list of actions on stages and leftovers */
+	FLOW_RECIPE,                /* a list of actions on stages and remainders */
 	FLOW_SERIES,                /* the Taylor series of the solution */
 	FLOW_COLLOCATION,           /* polynomials that solve the equations at nodes; beside them a series, or none */
 	FLOW_NORMAL                 /* normal modes, and what is left over as forces on them */

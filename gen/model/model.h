@@ -5,7 +5,7 @@
 
 #include "collect/collect.h"
 #include "math/math.h"
-#include "model/series/leftover.h"
+#include "model/series/remainder.h"
 #include "model/linear/linear.h"
 #include "request.h"
 #include "tape/tape.h"
@@ -46,7 +46,7 @@ struct model {
 	int *owner;                 /* per coordinate: the row of its equation */
 	int channels;               /* of what is left over, of each operator: one for each equation that has some */
 	int *channel_row;           /* its equation */
-	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
+	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the remainder's derivative */
 	const struct atoms *atoms;
 	int bearings;
 	struct bearing *bearing;    /* friction without mass, by what it bears */

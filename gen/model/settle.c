@@ -313,8 +313,8 @@ static void keep_loads(struct building *b, const char *why)
 {
 	if (!b->request->loads_left)
 		return;
-	stand_aside(b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at, "--loads leftover",
-		    why);
+	stand_aside(b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at,
+		    "--loads remainder", why);
 	struct request *request = NEW(struct request);
 	*request = *b->request;
 	request->loads_left = b->model->asked.loads_left = false;

@@ -309,7 +309,7 @@ struct scheme_row {
 	bool leaves;                /* a quadrature of its own treats what it leaves over */
 	bool by_default;            /* where exact is not possible and no scheme is asked for */
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
-	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
+	bool holds_remainder;        /* over the step: there is a value of its order at any time between steps */
 	bool cuts;                  /* its steps end where the state chooses other formulas: see follows_crossings() */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
 	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
@@ -327,7 +327,7 @@ bool chooses_operator(enum scheme scheme);                  /* `operator at` has
 const char *scheme_name(enum scheme scheme);
 bool scheme_of(const char *name, enum scheme *scheme);      /* false: there is none of this name */
 const char *nearest_scheme(const char *name);               /* or NULL */
-enum scheme default_scheme(void);                           /* with a leftover */
+enum scheme default_scheme(void);                           /* with a remainder */
 const char *all_schemes(const char *separator);             /* their names */
 const char *leaving_schemes(const char *last);              /* of those with a quadrature: a, b<last>c */
 const char *stopping_schemes(void);                         /* of those that go from event to event by events.c */

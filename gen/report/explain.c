@@ -155,7 +155,7 @@ static void person_step(FILE *to, const struct step *step)
 	else
 		fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
 			model->switching     ? " of region 0"
-			: !has_leftover(step) ? ""
+			: !has_remainder(step) ? ""
 			: step->branches > 1 ? " = e^{A h} of the first operator"
 					     : " = e^{A h}");
 	for (int i = 0; i < model->system.states && !step->shown->no.phi; i++) {
@@ -212,7 +212,7 @@ static void person_collocation(FILE *to, const struct step *step)
 		step->iteration.additions, step->iteration.calls);
 }
 
-/* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
+/* What went where: the operators, then the remainder of the first; those of the others differ in linear terms only. */
 static void person_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -343,7 +343,7 @@ void person_course(FILE *to, const struct step *step)
 		person_held(to, step);
 	if (model->switching)
 		person_regions(to, step);
-	else if (has_leftover(step))
+	else if (has_remainder(step))
 		person_split(to, step);
 	else if (!scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "%s: every constant is its closed form, correctly rounded.\n",
@@ -362,7 +362,7 @@ static void person_left_out(FILE *to, const struct step *step)
 {
 	fputc('\n', to);
 	person_nonlinear(to, step);
-	if (!has_leftover(step) || step->normal || step->shown->model->operators == 0 ||
+	if (!has_remainder(step) || step->normal || step->shown->model->operators == 0 ||
 	    *step->shown->model->operator[0].text)
 		return;
 	fputs("\nOf those terms alone, which are the operator A of the scheme:\n", to);

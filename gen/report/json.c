@@ -115,7 +115,7 @@ static void json_loads(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
-/* Operators as what multiplies q' and q, and their poles; the leftover of the first, as text */
+/* Operators as what multiplies q' and q, and their poles; the remainder of the first, as text */
 static void json_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -131,7 +131,7 @@ static void json_split(FILE *to, const struct step *step)
 		json_pole_list(to, count, pole);
 		fputs("}", to);
 	}
-	fputs("],\n  \"leftover\": [", to);
+	fputs("],\n  \"remainder\": [", to);
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
 			model->coord_name[coordinate_of_row(model, model->channel_row[c])],
@@ -287,7 +287,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_bounds(to, model);
 	if (step->model->switching)
 		json_regions(to, step);
-	if (has_leftover(step))
+	if (has_remainder(step))
 		json_split(to, step);
 	struct drift drift = drift_of(step);
 	if (drift.known)

@@ -185,7 +185,7 @@ static bool has_transfers(const struct step *step)
 static bool has_response(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	return !model->switching && !has_leftover(step) && model->system.inputs == 0;
+	return !model->switching && !has_remainder(step) && model->system.inputs == 0;
 }
 
 static void print_gains(FILE *to, const struct step *step)

@@ -363,7 +363,7 @@ static unsigned long interval_of_samples(const struct model *model, double span,
 static void need_responses(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	if (model->switching || has_leftover(step))
+	if (model->switching || has_remainder(step))
 		error(model->asked.step_at, "plrun --plot draws a run of any model",
 		      "the model is not linear: its response has no closed form that could be drawn");
 	if (model->system.inputs)

@@ -41,7 +41,7 @@ static const char *powers_text(const struct kernel_part *part)
 	return text;
 }
 
-/* What a unit leftover adds: e^{A tau} B times a number, the response to a force over a part of the step */
+/* What a unit remainder adds: e^{A tau} B times a number, the response to a force over a part of the step */
 static const char *kernel_text(const struct kernel *kernel)
 {
 	const char *text = "";
@@ -122,7 +122,7 @@ static void print_action(FILE *to, const struct step *step, const struct action 
 {
 	const struct program *program = step->program;
 	switch (a->kind) {
-	case ACTION_LEFTOVER:
+	case ACTION_REMAINDER:
 		fprintf(to, "    left%d = r(%s, %s)\n", a->target, node_text(program, a->node), stage_text(a->from));
 		break;
 	case ACTION_COMBINE:
@@ -148,7 +148,7 @@ static void print_nodes(FILE *to, const struct step *step)
 			table == NONE ? "" : format(" (loads: %s)", step->branch->table[table]->wanted->name);
 		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i), loads);
 	}
-	fprintf(to, "\nStages: %d; leftovers: %d, each of %d number%s\n", program->stages, program->lefts,
+	fprintf(to, "\nStages: %d; remainders: %d, each of %d number%s\n", program->stages, program->lefts,
 		step->branch->system.channels, step->branch->system.channels == 1 ? "" : "s");
 }
 
@@ -478,7 +478,7 @@ static void print_reads(FILE *to, const struct step *step)
 	for (int k = 0; k < step->branch->whole->columns; k++)
 		if (program->uses[k])
 			loads = format("%s%s %s", loads, *loads ? "," : "", text_of_column(&step->branch->system, k));
-	if (step->model->switching || has_leftover(step))
+	if (step->model->switching || has_remainder(step))
 		states = " all states";
 	fprintf(to, "Reads:%s%s%s\n", *states ? states : " no state", *loads ? "; loads" : "", loads);
 }
@@ -486,7 +486,7 @@ static void print_reads(FILE *to, const struct step *step)
 static const char *kind_text(const struct step *step)
 {
 	return step->parts ? "regions of independent parts"
-	       : step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
+	       : step->model->switching ? "regions" : has_remainder(step) ? "with a remainder"
 	       : step->program->tuned ? "linear, tunable" : "linear";
 }
 
@@ -503,7 +503,7 @@ void explain_program(FILE *to, const struct step *step)
 		print_expansion(to, step);
 	else if (step->normal)
 		program_normal(to, step);
-	else if (has_leftover(step))
+	else if (has_remainder(step))
 		print_actions(to, step);
 	else
 		print_list(to, step);

@@ -286,7 +286,7 @@ bool can_be_swept(const struct step *step)
 static void need_sweeps(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	if (has_leftover(step))
+	if (has_remainder(step))
 		tell_left_over(model);
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every program of a step keeps to, whichever scheme wrote it: emitters and the report take it as given. Each
- * stage and each leftover is written once, and before it is read; what is named is there. */
+ * stage and each remainder is written once, and before it is read; what is named is there. */
 #include "model/regions/regions.h"
 #include "step/collocation/collocation.h"
 #include "step/series/expansion.h"
@@ -142,13 +142,13 @@ static void check_stage_read(const struct check *c, int stage)
 
 static void check_left_read(const struct check *c, int left)
 {
-	need(c, among(left, c->program->lefts), "it reads a leftover that is out of range");
-	need(c, c->left[left], "it reads a leftover that is not written");
+	need(c, among(left, c->program->lefts), "it reads a remainder that is out of range");
+	need(c, c->left[left], "it reads a remainder that is not written");
 }
 
 static void check_left_target(struct check *c, int left)
 {
-	need(c, among(left, c->program->lefts), "its target is no leftover");
+	need(c, among(left, c->program->lefts), "its target is no remainder");
 	need(c, !c->left[left], "its target is written before");
 	c->left[left] = true;
 }
@@ -185,7 +185,7 @@ static void check_sum(struct check *c, const struct action *a)
 	check_stage_target(c, a->target);
 }
 
-/* It starts with the leftover that was evaluated first. */
+/* It starts with the remainder that was evaluated first. */
 static void check_prediction(struct check *c, const struct action *a)
 {
 	need(c, c->program->predicts, "a prediction in a step that is not marked for them");
@@ -199,7 +199,7 @@ static void check_action(struct check *c, const struct action *a)
 {
 	need(c, !c->ended, "it comes after the state is written");
 	switch (a->kind) {
-	case ACTION_LEFTOVER:
+	case ACTION_REMAINDER:
 		check_node(c, a->node);
 		check_stage_read(c, a->from);
 		check_left_target(c, a->target);
@@ -294,7 +294,7 @@ void program_check(const struct step *step)
 		check_collocation(&c);
 	else if (step->kind == KIND_NORMAL)
 		need(&c, step->normal && step->normal->banks > 0, "there are no normal modes");
-	else if (has_leftover(step))
+	else if (has_remainder(step))
 		check_actions(&c);
 	else
 		check_list(&c);

@@ -301,11 +301,11 @@ static void tally_prediction(struct tally *t, bool first)
 	t->program->additions += slopes * terms + 6 * rows;
 }
 
-static int leftovers_evaluated(const struct program *program)
+static int remainders_evaluated(const struct program *program)
 {
 	int count = 0;
 	for (int i = 0; i < program->actions; i++)
-		count += program->action[i].kind == ACTION_LEFTOVER  ? 1
+		count += program->action[i].kind == ACTION_REMAINDER  ? 1
 			 : program->action[i].kind == ACTION_PREDICT ? 3
 								     : 0;
 	return count;
@@ -328,7 +328,7 @@ void count_program(const struct step *step, struct program *program)
 			first = false;
 		}
 	}
-	int count = leftovers_evaluated(program);
+	int count = remainders_evaluated(program);
 	program->multiplications += count * left.multiplications;
 	program->additions += count * left.additions;
 	program->calls = count * left.calls;

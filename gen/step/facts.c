@@ -40,7 +40,7 @@ const char *step_objection(const struct step *step, enum capability asked)
 	return objection_to(asked, &facts, step->model).why;
 }
 
-bool has_leftover(const struct step *step)
+bool has_remainder(const struct step *step)
 {
 	return flow_of(step->model) != FLOW_LINEAR;
 }

@@ -7,14 +7,14 @@
 
 enum step_kind kind_of_step(const struct model *model)
 {
-	static const enum step_kind of_flow[] = { KIND_LINEAR, KIND_LEFTOVER, KIND_EXPANDED, KIND_COLLOCATED,
+	static const enum step_kind of_flow[] = { KIND_LINEAR, KIND_REMAINDER, KIND_EXPANDED, KIND_COLLOCATED,
 						  KIND_NORMAL };
 	if (model->switching)
 		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
 	const enum step_kind kind = of_flow[flow_of(model)];
-	return kind == KIND_LEFTOVER && follows_crossings(model) ? KIND_CUT : kind;
+	return kind == KIND_REMAINDER && follows_crossings(model) ? KIND_CUT : kind;
 }
 
 bool is_anchored(const struct step *step, int load)

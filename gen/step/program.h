@@ -42,12 +42,12 @@ struct group {
 	bool tuned;                 /* tunable params touch its factors: the instance has them */
 };
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
- * itself), lefts are leftovers. */
+ * itself), lefts are remainders. */
 enum { STAGE_STATE = 0, NONE = -1, SUM_KERNELS = 4 };
 struct action {
-	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
-	int target;                 /* LEFTOVER, COMBINE: a left; SUM, PREDICT: a stage */
-	int node, from;             /* LEFTOVER: when, and of which stage; PREDICT: when it ends */
+	enum { ACTION_REMAINDER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
+	int target;                 /* REMAINDER, COMBINE: a left; SUM, PREDICT: a stage */
+	int node, from;             /* REMAINDER: when, and of which stage; PREDICT: when it ends */
 	int half;                   /* PREDICT: the node in the middle */
 	int plus, minus;            /* COMBINE: lefts; minus NONE: twice `plus`; `added` adds instead */
 	bool added;
@@ -78,7 +78,7 @@ struct program {
 	int actions;                /* 0: assignments */
 	struct action *action;
 	int stages, lefts;          /* vectors, the state not counted */
-	int nodes;                  /* times at which leftovers are evaluated, as parts of h; the first is 0 */
+	int nodes;                  /* times at which remainders are evaluated, as parts of h; the first is 0 */
 	mpq_t *node;
 	int *node_table;            /* per node: the table of loads and inputs that a predictor adds, or NONE */
 	bool predicts;

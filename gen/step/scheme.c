@@ -101,7 +101,7 @@ static void build_exact(struct step *step)
 	plan_rest(step);
 }
 
-static void build_with_leftover(struct step *step)
+static void build_with_remainder(struct step *step)
 {
 	struct recipe *recipe = NEW(struct recipe);
 	recipe->step = step;
@@ -146,17 +146,17 @@ static void build_tuned_step(struct step *step)
 	plan_tuned_blocks(step);
 }
 
-static void build_leftover_step(struct step *step)
+static void build_remainder_step(struct step *step)
 {
-	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover ? 1
-							: step->kind == KIND_LEFTOVER ? PARABOLA : 0);
-	build_with_leftover(step);
+	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_remainder ? 1
+							: step->kind == KIND_REMAINDER ? PARABOLA : 0);
+	build_with_remainder(step);
 	series_plan(step);
 }
 
 static void build_cut_step(struct step *step)
 {
-	build_leftover_step(step);
+	build_remainder_step(step);
 	plan_cut(step);
 }
 
@@ -345,7 +345,7 @@ static void build(void *context)
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
-		[KIND_LEFTOVER] = build_leftover_step, [KIND_CUT] = build_cut_step,
+		[KIND_REMAINDER] = build_remainder_step, [KIND_CUT] = build_cut_step,
 		[KIND_EXPANDED] = build_expanded_step,
 		[KIND_COLLOCATED] = build_collocated_step,
 		[KIND_NORMAL] = build_normal_step

@@ -33,7 +33,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_TUNED,                 /* the same, with factors that the instance has; of a large one, of some blocks */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
-	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KIND_REMAINDER,              /* a list of actions on stages and remainders */
 	KIND_CUT,                   /* the same, from crossing to crossing */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
@@ -112,7 +112,7 @@ bool *loads_of_regions(const struct step *step);
 
 struct facts facts_of_step(const struct step *step);
 const char *step_objection(const struct step *step, enum capability asked); /* NULL: nothing does */
-bool has_leftover(const struct step *step);
+bool has_remainder(const struct step *step);
 
 /* ---- scheme.c: the step of a model ---- */
 

@@ -25,7 +25,7 @@ _plgen() {
         --explain) mapfile -t COMPREPLY < <(compgen -W 'json program' -- "$current"); return ;;
         --real) mapfile -t COMPREPLY < <(compgen -W 'double float' -- "$current"); return ;;
         --accuracy) mapfile -t COMPREPLY < <(compgen -W 'compensated' -- "$current"); return ;;
-        --loads) mapfile -t COMPREPLY < <(compgen -W 'exact leftover' -- "$current"); return ;;
+        --loads) mapfile -t COMPREPLY < <(compgen -W 'exact remainder' -- "$current"); return ;;
         -o | --depfile | --input | --sweep | --plot)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --anchors | --solution | --until | --every | --jobs | \

@@ -2,14 +2,14 @@
  *
  * Every number of the schemes that leave something over, against the judge, bit for bit: the transfer matrices e^{A h}
  * and e^{A h/2}, the load columns of every segment of time and the input columns at every fraction of the step, and
- * what multiplies the leftover, each combination rounded once.  A number carries the mark of zero if and only if it is
+ * what multiplies the remainder, each combination rounded once.  A number carries the mark of zero if and only if it is
  * zero.
  *
  *     kernels [-n RANDOM] [-l LARGE] [-e EVERY] [-s SEED] [-w] [-v] MODEL.spec ...
  *
  * EVERY: of the specs that stand here, each so many-th.
  * Shared with the generator: its parser, the matrices M, C, K, loads and inputs that it reads from a spec, the C and K
- * of each operator, and which equations have a leftover.  From there on the judge has its own algebra and its own list
+ * of each operator, and which equations have a remainder.  From there on the judge has its own algebra and its own list
  * of what each scheme needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of
  * its own.
  */
@@ -574,12 +574,12 @@ static void compare_defined(const struct model *model, struct judge *judge, cons
     }
 }
 
-/* ---- the leftover of each node meets the kernel of its node ---- */
+/* ---- the remainder of each node meets the kernel of its node ---- */
 
 static mpq_srcptr node_of_left(const struct program *program, int left)
 {
     for (int i = 0; i < program->actions; i++)
-        if (program->action[i].kind == ACTION_LEFTOVER && program->action[i].target == left)
+        if (program->action[i].kind == ACTION_REMAINDER && program->action[i].target == left)
             return program->node[program->action[i].node];
     return NULL;
 }
@@ -684,7 +684,7 @@ static void check_tables(const struct model *model, const struct step *step, str
     for (int i = 0; i < quadratures[model->scheme].nodes; i++)
         defined += quadratures[model->scheme].weight[i].p != 0;
     if (kernels != defined)
-        complain("", format("%d factors of leftovers, expected %d", kernels, defined));
+        complain("", format("%d factors of remainders, expected %d", kernels, defined));
     for (int i = 0; i < step->program->nodes; i++)
         if (step->program->node_table[i] != NONE &&
             !mpq_equal(step->program->node[i], tables[step->program->node_table[i]]->wanted->fraction))
@@ -901,9 +901,9 @@ static const struct { const char *name, *text;
       "2*x'' + 0.5*y'' + 0.1*x' + 0.4*(x' - y')^3 + 30*x + 5*(x - y)^3 = sin(3*t)\n"
       "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\n"
       "operator at x = 0.5, y = -0.2, x' = 1, y' = 0\nstep 0.02\n" },
-    { "independent blocks, coupled by the leftover alone",
+    { "independent blocks, coupled by the remainder alone",
       THREE "x'' + 4*x + x*y = 0\ny'' + 0.1*y' + 9*y + y*z = cos(2*t)\nz' + z = x^2\nstep 0.1\n" },
-    { "independent blocks, one without a leftover",
+    { "independent blocks, one without a remainder",
       TWO "x'' + 4*x + x^3 = sin(t)\ny'' + 0.2*y' + 9*y = cos(2*t)\nstep 0.1\n" },
     { "one drives the other", TWO "x'' + 4*x + x^3 = 0\ny'' + 0.2*y' + 9*y = x\nstep 0.1\n" },
     { "a load that changes its formula",
@@ -913,7 +913,7 @@ static const struct { const char *name, *text;
       "step 0.05\n" },
     { "powers, growths and waves",
       ONE "x'' + 0.2*x' + 4*x + x^3 = t^3 + t*exp(-0.2*t)*cos(2*t + 0.3) + exp(0.1*t) - 2\nstep 0.05\n" },
-    { "waves that the leftover alone reads",
+    { "waves that the remainder alone reads",
       TWO "x'' + x + x*cos(3*t) = 0\ny'' + 2*y - x + sin(y*exp(-t)) = 0\nstep 0.1\n" },
     { "held inputs",
       "model m\ncoord x, y\ninput u, v\ninit x = 0.3\n1.5*x'' + 0.3*x' + 40*x + 200*x^3 - 10*y = 2*u - v\n"
@@ -967,7 +967,7 @@ static char *nonlinear_force(unsigned i, unsigned j)
     return format("force -%s*(x%u - x%u)^3 on x%u\nforce %s*(x%u - x%u)^3 on x%u\n", k, i, j, i, k, i, j, j);
 }
 
-static char *leftovers(unsigned n)
+static char *remainders(unsigned n)
 {
     char *text = "";
     for (unsigned k = 1 + below(n); k; k--)
@@ -994,7 +994,7 @@ static char *random_text(uint64_t seed)
     below(2);
     while (strstr(linear, format(", x%u", n + 1)))
         n++;
-    char *text = format("%.*s\n%s", (int)(step - linear), linear, leftovers(n));
+    char *text = format("%.*s\n%s", (int)(step - linear), linear, remainders(n));
     return format("%s%sstep %s\n", text, chance(40) ? operator_at(n) : "", number(chance(10) ? -9 : -3, -1));
 }
 
@@ -1016,7 +1016,7 @@ static char *large_text(uint64_t seed)
         text = format("%sspring %s between x%u, x%u\n", text, number(0, 2), i, i + 1);
         text = format("%s%s", text, damped ? format("damper %s between x%u, x%u\n", number(-2, 0), i, i + 1) : "");
     }
-    text = format("%s%s%s", text, free_ends ? "" : "spring 3 between x1, ground\n", leftovers(n));
+    text = format("%s%s%s", text, free_ends ? "" : "spring 3 between x1, ground\n", remainders(n));
     return format("%s%sstep %s\n", text, chance(40) ? operator_at(n) : "", number(-3, -1));
 }
 

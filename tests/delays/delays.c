@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Delayed inputs: an oscillator against the closed form of what its input is, jump by jump and corner by corner, at
- * step ends and inside of steps; beside a stop and beside a leftover against the model without a delay whose input is
+ * step ends and inside of steps; beside a stop and beside a remainder against the model without a delay whose input is
  * given late, in steps of the common part. */
 #include "models.h"
 #include "tap.h"

@@ -151,7 +151,7 @@ bundles 'impacts' "$root/models/bouncing_ball.spec"
 bundles 'delays' "$root/tests/delays/echo.spec"
 bundles 'tunable' "$root/tests/tunable/changes.spec"
 bundles 'many instances' "$root/models/quarter_car.spec" --batch
-bundles 'a leftover' "$root/models/beam4.spec" --scheme etdrk4
+bundles 'a remainder' "$root/models/beam4.spec" --scheme etdrk4
 bundles 'series' "$root/models/pendulum.spec"
 bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
 bundles 'friction by series' "$root/tests/contacts/rubbed.spec" --tolerance 1e-5

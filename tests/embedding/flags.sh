@@ -18,7 +18,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 "$plgen" --form direct "$root/models/scs.spec" >direct.c || exit 99
 "$plgen" --accuracy compensated "$root/models/scs.spec" >compensated.c || exit 99
 "$plgen" --accuracy compensated --real float "$root/models/scs.spec" >compensatedf.c || exit 99
-"$plgen" "$root/models/pendulum.spec" >leftover.c || exit 99
+"$plgen" "$root/models/pendulum.spec" >remainder.c || exit 99
 cp "$root"/runtime/*.c .
 # All go through plrt.h; these stand for the others.
 doubles='double.c turns.c until.c'
@@ -119,7 +119,7 @@ accepted gcc '-std=c11 -O2' "double.c float.c"
 # What only gcc has; clang passes over it and leaves constants as they are
 for compiler in gcc g++ arm-none-eabi-gcc; do
     refused $compiler '-O2 -freciprocal-math' '-freciprocal-math' "$doubles $floats"
-    refused $compiler '-O2 -fsingle-precision-constant' 'fsingle.precision.constant' "$doubles leftover.c"
+    refused $compiler '-O2 -fsingle-precision-constant' 'fsingle.precision.constant' "$doubles remainder.c"
     accepted $compiler '-O2 -fsingle-precision-constant' "$floats compensatedf.c"
 done
 for compiler in clang clang++; do

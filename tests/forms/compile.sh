@@ -16,7 +16,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $double in /*) ;; *) double=$PWD/$double ;; esac
 case $float in /*) ;; *) float=$PWD/$float ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-leftover='pendulum duffing vanderpol beam4'
+remainder='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../tap.sh"
@@ -107,7 +107,7 @@ no_double_instruction "$float" 'linear models in float' -DREAL_FLOAT
 
 # ---- what is complete in itself ----
 
-for m in $leftover $switching; do
+for m in $remainder $switching; do
     "$plgen" --real float --rhs "$root/models/$m.spec" >"$m.c" 2>log
     result $? "$m: plgen takes it for float"
     compiles "$work/$m.c" "$m in float"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# map.sh PLGEN LIST FOLDER ...: the struct and the step of every variant in LIST (see ../leftover/variants.sh; the step
+# map.sh PLGEN LIST FOLDER ...: the struct and the step of every variant in LIST (see ../remainder/variants.sh; the step
 # is given, no further options of its own than as=), with each float or double as `wide`, and a table of them with what
 # --explain=json says of their drift.
 set -eu

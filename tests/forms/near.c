@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * near > DOUBLE, near DOUBLE: models with a leftover and with switching in float beside the same in double.  Without a
+ * near > DOUBLE, near DOUBLE: models with a remainder and with switching in float beside the same in double.  Without a
  * file this writes the states of the one, as hexadecimal fractions; the other compares its own with them.
  *
  * u is half a unit in the last place of 1 in float, W_i the largest |y_i|, Phi the transfer matrix of a step (of the

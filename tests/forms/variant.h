@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Variants of models, as ../leftover/variants.sh makes them; for double or, with REAL_FLOAT, for float. */
+/* Variants of models, as ../remainder/variants.sh makes them; for double or, with REAL_FLOAT, for float. */
 #ifndef VARIANT_H
 #define VARIANT_H
 

@@ -20,8 +20,8 @@ cd "$work"
 set -- "$source/tests/fuzz/drive.c"
 [ -n "$runtime" ] || set -- "$source"/runtime/*.c "$@"
 "$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
-	-I"$source/tests/leftover" -c "$@"
-"$cc" -std=gnu11 -O0 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
+	-I"$source/tests/remainder" -c "$@"
+"$cc" -std=gnu11 -O0 -I"$source/tests/remainder" -c "$source/tests/remainder/truth.c"
 rm -f "$out"
 # the archive of the build folder only names its objects
 [ -z "$runtime" ] || ar t "$runtime" | while IFS= read -r object; do cp "$object" .; done

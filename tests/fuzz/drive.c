@@ -4,7 +4,7 @@
  * differences.
  *
  * Bounds, over the largest value of any state in the run (of an output: of any output, or state):
- * states against CVODE, rtol 1e-10 or 1e-13: exact 1e-6; a smooth leftover 1e-4, 3e-3 and 5e-2 in order 4,
+ * states against CVODE, rtol 1e-10 or 1e-13: exact 1e-6; a smooth remainder 1e-4, 3e-3 and 5e-2 in order 4,
  *                                        2 and 1; with kinks 1e-2, in order 1 5e-2, and as much more as neighbours
  *                                        spread
  *     further from CVODE a smooth model of a fixed order may be up to 100 bounds, or as far as its status tells,

@@ -64,10 +64,10 @@ options()       # SEED: sets the arguments, printed
 	6) set -- --reduce ;;
 	7) set -- --reduce --explain=json; printed=json ;;
 	8) set -- --reduce --solution 0.03; printed=csv ;;
-	9) set -- --loads leftover ;;
+	9) set -- --loads remainder ;;
 	10) set -- --scheme "$scheme" ;;
-	11) set -- --scheme "$scheme" --rhs --loads leftover ;;
-	12) set -- --scheme "$scheme" --explain=json --loads leftover; printed=json ;;
+	11) set -- --scheme "$scheme" --rhs --loads remainder ;;
+	12) set -- --scheme "$scheme" --explain=json --loads remainder; printed=json ;;
 	13) set -- --scheme "$scheme" --explain; printed=text ;;
 	*) set -- ;;
 	esac

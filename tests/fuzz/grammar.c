@@ -2,7 +2,7 @@
 /* grammar SEED SPEC [C]: a valid spec of a small model, and what it says once more as C, both written from one tree of
  * random choices; the same for the same seed.  Lines of comment at its head are for grammar.sh:
  *     # options: of plgen, besides --rhs and --prefix
- *     # class: linear, piecewise (linear in each region), smooth or kinked (a leftover; kinked: a slope of it jumps)
+ *     # class: linear, piecewise (linear in each region), smooth or kinked (a remainder; kinked: a slope of it jumps)
  *     # changes: times at which a load changes its formula [s]
  *     # retune: NAME=VALUE ... step=VALUE, for models with tunable params
  * Outputs named inner... read what is between coordinates that move as a whole: they are judged by their own size.
@@ -304,7 +304,7 @@ static struct both regional(int depth)
 	}
 }
 
-static struct both leftover(void)
+static struct both remainder(void)
 {
 	const struct both k = factor(0.2, 3), x = position(), w = any_state();
 	switch (below(18)) {
@@ -346,7 +346,7 @@ static struct both kinked(void)
         case 5:
             return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
 	case 6: case 7: return JOIN("@*@", fixed(0.5, 5), extreme_in_extreme(x));
-        default: return JOIN("@ + @", regional(1), leftover());
+        default: return JOIN("@ + @", regional(1), remainder());
 	}
 }
 
@@ -357,9 +357,9 @@ static struct both force(void)
 	if (class == PIECEWISE && kind < 55)
 		return regional(2);
 	if (class == SMOOTH && kind < 55)
-		return leftover();
+		return remainder();
 	if (class == KINKED && kind < 60)
-		return kind < 40 ? kinked() : leftover();
+		return kind < 40 ? kinked() : remainder();
 	if (inputs && kind < 80)
 		return JOIN("@*@", factor(0.5, 4), sampled());
 	return load(class == PIECEWISE && chance(85) ? 0 : 2);
@@ -682,7 +682,7 @@ static char *scheme_statement(void)
 	return chance(50) ? all : text("%stolerance %s\n", all, tolerance[below(3)]);
 }
 
-/* The operator of a scheme with a leftover, sometimes. */
+/* The operator of a scheme with a remainder, sometimes. */
 static char *operator_statement(void)
 {
 	if (class < SMOOTH || !chance(30))
@@ -717,7 +717,7 @@ static char *options(const char *stated)
 	if (class == LINEAR ? chance(25) : chance(1))
 		add(&all, " --selftest");
 	if (chance(class >= SMOOTH ? 20 : 5))
-		add(&all, " --loads leftover");
+		add(&all, " --loads remainder");
 	if (chance(10))
 		add(&all, text(" --step %s", (const char *const[]){ "0.01", "1/128", "0.0075" }[below(3)]));
 	if (params && !tunable && chance(15))
@@ -897,7 +897,7 @@ int main(int argc, char **argv)
 		write_outputs();
 	const char *const operator = operator_statement(), *const stated = class >= SMOOTH && chance(20) ?
 		scheme_statement() : "", *const given = options(stated);
-	if (class != PIECEWISE && *changes && strstr(given, "--loads leftover"))
+	if (class != PIECEWISE && *changes && strstr(given, "--loads remainder"))
 		class = KINKED;         /* the quadrature goes over the changes */
 	FILE *const spec = fopen(argv[2], "w"), *const c = argc > 3 ? fopen(argv[3], "w") : NULL;
 	if (!spec || (argc > 3 && !c)) {

@@ -231,7 +231,7 @@ linear() {
 linear 'as it is' "x'' + x' + k*x = u"
 linear 'a load of no known kind' "x'' + x' + k*x = u + sqrt(1 + t)"
 linear 'a load that changes' "x'' + x' + k*x = u + (t < 1 ? sin(t) : t)"
-linear 'a scheme with a leftover' "x'' + x' + k*x = u" --scheme etdrk4
+linear 'a scheme with a remainder' "x'' + x' + k*x = u" --scheme etdrk4
 linear 'scheme pl' "x'' + x' + k*x = u" --scheme pl
 linear 'scheme taylor, and a tunable param' "x'' + x' + k*x = u
 tunable k" --scheme taylor
@@ -253,7 +253,7 @@ if command -v gnuplot >log; then
 			grep -q '<svg ' page
 		result $? "the page of $name"
 	done
-	for name in models/bilinear models/quarter_car_bumps models/beam4 models/pendulum tests/leftover/gated; do
+	for name in models/bilinear models/quarter_car_bumps models/beam4 models/pendulum tests/remainder/gated; do
 		"$plgen" --report "$root/$name.spec" >page 2>log &&
 			awk -v nonlinear=1 -f "$here/page.awk" page >log 2>&1 && ! grep -q '<svg ' page
 		result $? "the page of $name, which is not linear"

@@ -76,21 +76,21 @@ static struct action *action_of(struct step *step, int kind, int which)
     return NULL;
 }
 
-static void stage_unwritten(struct step *s) { action_of(s, ACTION_LEFTOVER, 1)->from = s->program->stages; }
-static void stage_range(struct step *s) { action_of(s, ACTION_LEFTOVER, 1)->from = s->program->stages + 1; }
-static void stage_negative(struct step *s) { action_of(s, ACTION_LEFTOVER, 1)->from = -1; }
+static void stage_unwritten(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->from = s->program->stages; }
+static void stage_range(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->from = s->program->stages + 1; }
+static void stage_negative(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->from = -1; }
 static void plain_unwritten(struct step *s) { action_of(s, ACTION_SUM, 2)->plain = s->program->stages; }
 static void left_unwritten(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].left = s->program->lefts - 1; }
 static void left_range(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].left = s->program->lefts; }
 static void plus_unwritten(struct step *s) { action_of(s, ACTION_COMBINE, 0)->plus = s->program->lefts - 1; }
 static void minus_unwritten(struct step *s) { action_of(s, ACTION_COMBINE, 0)->minus = s->program->lefts - 1; }
 static void left_twice(struct step *s) { action_of(s, ACTION_COMBINE, 0)->target = 0; }
-static void left_target(struct step *s) { action_of(s, ACTION_LEFTOVER, 0)->target = s->program->lefts; }
+static void left_target(struct step *s) { action_of(s, ACTION_REMAINDER, 0)->target = s->program->lefts; }
 static void stage_target(struct step *s) { action_of(s, ACTION_SUM, 0)->target = s->program->stages + 1; }
 static void stage_twice(struct step *s) { action_of(s, ACTION_SUM, 2)->target = action_of(s, ACTION_SUM, 1)->target; }
 static void state_early(struct step *s) { action_of(s, ACTION_SUM, 0)->target = STAGE_STATE; }
 static void state_never(struct step *s) { s->program->actions--; }
-static void node_range(struct step *s) { action_of(s, ACTION_LEFTOVER, 1)->node = s->program->nodes; }
+static void node_range(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->node = s->program->nodes; }
 static void table_range(struct step *s) { action_of(s, ACTION_SUM, 0)->flow = s->tables; }
 static void no_Phi(struct step *s) { s->branch->table[1]->Phi = NULL; }
 static void kernel_table(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].table = s->tables; }
@@ -146,12 +146,12 @@ static const struct fault {
     { left_spec, "etdrk4", stage_range, "reads a stage that is out of range" },
     { left_spec, "etdrk4", stage_negative, "reads a stage that is out of range" },
     { left_spec, "etdrk4", plain_unwritten, "reads a stage that is not written" },
-    { left_spec, "etdrk4", left_unwritten, "reads a leftover that is not written" },
-    { left_spec, "etdrk4", left_range, "reads a leftover that is out of range" },
-    { left_spec, "etdrk4", plus_unwritten, "reads a leftover that is not written" },
-    { left_spec, "etdrk4", minus_unwritten, "reads a leftover that is not written" },
+    { left_spec, "etdrk4", left_unwritten, "reads a remainder that is not written" },
+    { left_spec, "etdrk4", left_range, "reads a remainder that is out of range" },
+    { left_spec, "etdrk4", plus_unwritten, "reads a remainder that is not written" },
+    { left_spec, "etdrk4", minus_unwritten, "reads a remainder that is not written" },
     { left_spec, "etdrk4", left_twice, "its target is written before" },
-    { left_spec, "etdrk4", left_target, "its target is no leftover" },
+    { left_spec, "etdrk4", left_target, "its target is no remainder" },
     { left_spec, "etdrk4", stage_target, "its target is no stage" },
     { left_spec, "etdrk4", stage_twice, "its target is written before" },
     { left_spec, "etdrk4", state_early, "it comes after the state is written" },
@@ -261,7 +261,7 @@ static void nine_tables(void *context)
 static void five_terms(void *context)
 {
     int table = add_table(context, "full", 1, 1, true), p = add_phi(context, table, "p", 1, 1, 1, (long[]){ 1 });
-    int r0 = add_leftover(context, add_node(context, 0, 1), STAGE_STATE);
+    int r0 = add_remainder(context, add_node(context, 0, 1), STAGE_STATE);
     struct action *sum = add_sum(context, STAGE_STATE, table, NONE, "");
     for (int k = 0; k < 5; k++)
         times_left(context, sum, table, p, r0);
@@ -276,7 +276,7 @@ static void all_that_fits(void *context)
         add_table(r, "t", 1, 1, true);
     for (int k = 0; k < TABLE_KERNELS; k++)
         add_phi_part(r, 0, add_phi(r, 0, names[k], 1, 1, 3, (long[]){ 1, 2, 3 }), 1, 2, 3, (long[]){ 1, 2, 3 });
-    int r0 = add_leftover(r, add_node(r, 0, 1), STAGE_STATE);
+    int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
     struct action *sum = add_sum(r, STAGE_STATE, 0, NONE, "");
     for (int k = 0; k < SUM_KERNELS; k++)
         times_left(r, sum, 0, k % TABLE_KERNELS, r0);
@@ -315,7 +315,7 @@ static void rows_are_whole(void **state)
         /* that of one that expands, or has stages, is asked for, or found */
         assert_int_equal(row->order > 0, i != SCHEME_EXACT && !row->expands && !row->stages);
         assert_int_equal(row->modes, row->points > 0 || row->stages > 0);
-        assert_true(!row->expands || (row->leaves && !row->predicts && !row->holds_leftover));
+        assert_true(!row->expands || (row->leaves && !row->predicts && !row->holds_remainder));
         assert_int_equal(row->leaves || row->holds_coupling, i != SCHEME_EXACT);
         if (i != SCHEME_EXACT) {
             assert_non_null(row->method);

@@ -98,7 +98,7 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
 		    e->system->segments > 1 ? "s->segment" : "0", state, a->target);
 	} else {
-		say(e, "    %s\n", leftover_of_step(e, a->node, state, format("left%d", a->target)));
+		say(e, "    %s\n", remainder_of_step(e, a->node, state, format("left%d", a->target)));
 	}
 	if (a->target == 0 && e->step->program->predicts)
 		say(e, "    $n_slope_of(%s, s->y, left0, first);\n", many_operators(e) ? "which" : "0");
@@ -107,7 +107,7 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 static void emit_action(const struct emitter *e, const struct action *a)
 {
 	switch (a->kind) {
-	case ACTION_LEFTOVER:
+	case ACTION_REMAINDER:
 		emit_evaluation(e, a);
 		break;
 	case ACTION_COMBINE:
@@ -306,7 +306,7 @@ void emit_actions_of_step(const struct emitter *e)
 	emit_take_back(e);
 }
 
-void emit_leftover_step(const struct emitter *e)
+void emit_remainder_step(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	if (program->loops)

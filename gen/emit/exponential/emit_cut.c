@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Schemes with a leftover from crossing to crossing: what the runtime's cut.h, which the model's file includes, is told
+/* Schemes with a remainder from crossing to crossing: what the runtime's cut.h, which the model's file includes, is
  * of the model, and a whole step by the scheme's own tables. */
 #include "inner.h"
 #include "emit/series/series.h"

@@ -18,7 +18,7 @@ void emit_from_modes(const struct emitter *e);                    /* NAME_of_mod
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
 
-/* ---- leftover.c, loops.c: what a scheme leaves over; a step that loops over its tables ---- */
+/* ---- remainder.c, loops.c: what a scheme leaves over; a step that loops over its tables ---- */
 
 bool many_operators(const struct emitter *e);
 void emit_loop_tables(const struct emitter *e);

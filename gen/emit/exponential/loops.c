@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A step with a leftover that loops over its tables: the tables, and products with them. */
+/* A step with a remainder that loops over its tables: the tables, and products with them. */
 #include "inner.h"
 #include "emit/steps.h"
 
@@ -74,7 +74,7 @@ static void emit_tables_of(const struct emitter *e, int t)
 		emit_table(e, format("%s_input", wanted->name), "what the inputs add", 0, input);
 	for (int k = 0; k < wanted->kernels; k++) {
 		struct picked kernel = { .kind = PICK_KERNEL, .table = t, .index = k, .columns = e->model->channels };
-		emit_table(e, wanted->kernel[k].name, "what leftovers add", 0, kernel);
+		emit_table(e, wanted->kernel[k].name, "what remainders add", 0, kernel);
 	}
 }
 
@@ -90,7 +90,7 @@ void emit_loop_tables(const struct emitter *e)
 	struct picked A = { .kind = PICK_SLOPE, .columns = e->system->states, .slopes = slopes };
 	struct picked B = { .kind = PICK_FORCE, .columns = e->model->channels, .slopes = slopes };
 	emit_table(e, "A", "y' = A y + B r", 0, A);
-	emit_table(e, "B", "the force of each leftover", 0, B);
+	emit_table(e, "B", "the force of each remainder", 0, B);
 }
 
 /* ---- the matrix of the operator that serves now ---- */

@@ -115,10 +115,10 @@ static const char *input_parameter(const struct emitter *e)
 	return given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 }
 
-static void emit_leftover_now(const struct emitter *e)
+static void emit_remainder_now(const struct emitter *e)
 {
 	if (e->step->layout.powers == 1)
-		say(e, "    %s\n", leftover_of_step(e, 0, "s->y", "left"));
+		say(e, "    %s\n", remainder_of_step(e, 0, "s->y", "left"));
 }
 
 void emit_series_vector(const struct emitter *e, bool looped)
@@ -130,7 +130,7 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	if (looped || channels)
 		say(e, "    int i;\n");
 	if (e->system->segments == 1)
-		emit_leftover_now(e);
+		emit_remainder_now(e);
 	say(e, "    $n_%s(s, x);\n", whole ? "kept" : "kept_state");
 	emit_held(e);
 	store_loads(e, layout->load, "");
@@ -231,7 +231,7 @@ void emit_changes(const struct emitter *e)
 	close_function(e, "");
 }
 
-void emit_held_leftover(const struct emitter *e)
+void emit_held_remainder(const struct emitter *e)
 {
 	emit_samples(e);
 	if (e->step->branches > 1)
@@ -297,7 +297,7 @@ static void emit_passing_at(const struct emitter *e)
 	const char *which = e->step->branches > 1 ? "which, " : "", *u = given_inputs(e) ? "u, " : "";
 	const char *left = e->step->layout.powers == 1 ? "left, " : "", *whole = e->step->forced ? "1, " : "";
 	bool relative = e->model->relative != NULL;
-	emit_leftover_now(e);
+	emit_remainder_now(e);
 	if (relative)
 		say(e, "    double x[$N_STATES];\n");
 	if (e->step->forced)            /* of what is kept and its forced part $n_get takes what rounding loses too */
@@ -328,7 +328,7 @@ static void emit_series_at(const struct emitter *e)
 	emit_hand_over(e);
 }
 
-/* The point of a step that is p/2 h after its start, as the leftover counts them */
+/* The point of a step that is p/2 h after its start, as the remainder counts them */
 static int point_at(const struct step *step, int p)
 {
 	RATIONAL part = ZERO;
@@ -345,7 +345,7 @@ static void emit_left_at(const struct emitter *e)
 	open_function(e, NULL, "static void $n_left_at(const $n *s, int which, int point, const double *u, "
 		      "const double y[$N_STATES], double left[%d])", e->system->channels);
 	emit_samples(e);
-	say(e, "    $n_leftover(s, which, point, %s, y, left);\n", samples_of_step(e));
+	say(e, "    $n_remainder(s, which, point, %s, y, left);\n", samples_of_step(e));
 	close_function(e, "u");
 }
 

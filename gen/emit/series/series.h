@@ -58,7 +58,7 @@ void emit_frozen_function(const struct emitter *e);               /* NAME_forces
 void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
 
-/* ---- emit_cut.c: schemes with a leftover, from crossing to crossing ---- */
+/* ---- emit_cut.c: schemes with a remainder, from crossing to crossing ---- */
 
 void emit_cut_members(const struct emitter *e);
 void emit_cut_place(const struct emitter *e);

@@ -523,7 +523,7 @@ static int *felt_in_segments(struct building *b, const struct switching *s, cons
 }
 
 /* An acceleration follows from its equation, and so reads what is left over; that is computed of all equations. */
-static bool reads_leftover(const struct model *model)
+static bool reads_remainder(const struct model *model)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs; i++)
@@ -541,7 +541,7 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			feel(s, seen, model->output[i].left);
-	for (int c = 0; c < model->channels && reads_leftover(model); c++)
+	for (int c = 0; c < model->channels && reads_remainder(model); c++)
 		feel(s, seen, model->operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].grip = ARRAY(struct output *, s->felts);

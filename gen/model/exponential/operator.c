@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The linear operator A of y' = A y + loads + inputs + r(t, y), and the leftover r. Without a statement A is what the
+/* The linear operator A of y' = A y + loads + inputs + r(t, y), and the remainder r. Without a statement A is what the
  * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that
  * still depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
 #include "model/building.h"
@@ -314,8 +314,8 @@ static struct form *inputs_carried(struct building *b, const struct form *equati
 	return more;
 }
 
-/* The force that the leftover is on an equation: A's terms minus the equation's own, which stand on the left side */
-static struct form *leftover_of(struct building *b, const struct operator *operator, int row)
+/* The force that the remainder is on an equation: A's terms minus the equation's own, which stand on the left side */
+static struct form *remainder_of(struct building *b, const struct operator *operator, int row)
 {
 	const struct linear *system = &b->model->system;
 	const struct form *equation = b->whole->residual[row].form;
@@ -355,7 +355,7 @@ static void find_channels(struct building *b)
 	for (int i = 0; i < n; i++) {
 		bool any = is_pressed(model, i);
 		for (int k = 0; k < model->operators; k++) {
-			all[k * n + i] = leftover_of(b, &model->operator[k], i);
+			all[k * n + i] = remainder_of(b, &model->operator[k], i);
 			any = any || all[k * n + i]->terms > 0;
 		}
 		if (any)
@@ -385,7 +385,7 @@ static void differentiate_left(void *context)
 	}
 }
 
-/* ---- waves that the leftover reads get load states, as loads do ---- */
+/* ---- waves that the remainder reads get load states, as loads do ---- */
 
 struct visit {
 	bool *seen;                 /* per atom */
@@ -406,7 +406,7 @@ static void visit_form(const struct visit *v, const struct form *form)
 	v->visit(v->context, form);
 }
 
-void visit_leftovers(const struct model *model, void (*visit)(void *, const struct form *), void *context)
+void visit_remainders(const struct model *model, void (*visit)(void *, const struct form *), void *context)
 {
 	if (model->operators == 0)
 		return;
@@ -569,9 +569,9 @@ void build_operators(struct building *b)
 	}
 	if (scheme_row(model->scheme)->collocates)
 		statement_guard(differentiate_left, b);
-	visit_leftovers(model, place_waves, b);
+	visit_remainders(model, place_waves, b);
 	if (scheme_row(model->scheme)->modes)
-		split_leftover(b);
+		split_remainder(b);
 }
 
 struct linear operator_system(const struct model *model, int k)

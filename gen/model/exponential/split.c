@@ -256,7 +256,7 @@ static void find_course(struct split_work *w)
 	c->interval = 0;
 }
 
-void split_leftover(struct building *b)
+void split_remainder(struct building *b)
 {
 	struct model *model = b->model;
 	struct splitting *s = NEW(struct splitting);

@@ -83,7 +83,7 @@ const char **layout_names(const struct layout *x, const struct linear *system, c
 			name[x->input[i] + m] = format("%s'", name[x->input[i] + m - 1]);
 	}
 	for (int c = 0; c < system->channels * x->powers; c++)
-		name[x->channel + c] = format("leftover %d", c + 1);
+		name[x->channel + c] = format("remainder %d", c + 1);
 	return name;
 }
 

@@ -87,10 +87,10 @@ struct layout {
 	int segments;               /* of time that have load states of their own: 1, or all */
 	int *load;                  /* per load: index of its first state, in the first of them; -1: it has none */
 	int *input;                 /* index of each input (then of its slope, if of first order) */
-	/* index of the first leftover; each is a chain of so many integrators, its force the first */
+	/* index of the first remainder; each is a chain of so many integrators, its force the first */
 	int channel, powers;
 };
-enum { PARABOLA = 3 };              /* powers of a leftover: its value and two derivatives */
+enum { PARABOLA = 3 };              /* powers of a remainder: its value and two derivatives */
 struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */
 /* the same, in all segments of time where that is at most twice as large */
 struct layout layout_of_segments(const struct linear *system, int powers);

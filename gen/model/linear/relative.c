@@ -9,7 +9,7 @@
  * A coordinate is measured from one that acts on it, and so is carried along wherever that goes. From one that does not
  * it is not: b of a'' + a' = 0, b' = b - a may grow without bound while a rests, and a = (a - b) + b would be lost.
  *
- * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
+ * The model is built a second time over these coordinates, so that regions, remainders, Jacobians and tunable params
  * are derived in them from the start; where the user looks, states are the written ones. */
 #include "inner.h"
 #include "model/building.h"

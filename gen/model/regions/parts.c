@@ -132,7 +132,7 @@ static void number_expressions(struct switching *s)
 		s->part[of].expression[next[of]++] = i;
 		regions *= e->breaks + 1;
 		if (regions > INT_MAX)
-			error(e->node->at, "a scheme with a leftover, such as etdrk4, needs no regions",
+			error(e->node->at, "a scheme with a remainder, such as etdrk4, needs no regions",
 			      "more regions of independent parts together than the limit of %d", INT_MAX);
 	}
 	s->regions = (int)regions;

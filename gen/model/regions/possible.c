@@ -14,19 +14,19 @@ static const struct node *last_term(const struct switching *s)
 _Noreturn void too_many_in_time(const struct switching *s)
 {
 	error(last_term(s)->at,
-	      "a load that is sampled can be an input; a scheme with a leftover, such as etdrk4, needs no regions",
+	      "a load that is sampled can be an input; a scheme with a remainder, such as etdrk4, needs no regions",
 	      "more regions than the limit of %d, in %d segments of time together", LIMIT_REGIONS_IN_TIME, s->segments);
 }
 
 _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
 	bool together = b->model->relative || b->request->again.undivided;
-	const char *hint = "a scheme with a leftover, such as etdrk4, needs no regions";
+	const char *hint = "a scheme with a remainder, such as etdrk4, needs no regions";
 	if (has_events(s))
 		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
 	else if (together)
 		hint = "some coordinates move as a whole, and then independent parts have their regions together; a "
-		       "scheme with a leftover, such as etdrk4, needs no regions";
+		       "scheme with a remainder, such as etdrk4, needs no regions";
 	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
 }
 

@@ -29,8 +29,8 @@ static bool same_but_loads(const struct linear *p, const struct linear *q, bool 
 
 /* ---- what is not linear ---- */
 
-/* Texts of leftovers that are cut short say nothing. */
-static bool same_leftovers(const struct model *a, const struct model *b)
+/* Texts of remainders that are cut short say nothing. */
+static bool same_remainders(const struct model *a, const struct model *b)
 {
 	if (a->operators != b->operators || a->channels != b->channels)
 		return false;
@@ -97,6 +97,6 @@ bool differ_in_loads(const struct model *a, const struct model *b)
 {
 	bool loads = false;
 	return mpq_equal(a->h, b->h) && same_but_loads(&a->system, &b->system, &loads) &&
-	       rationals_equal(a->system.states, a->initial, b->initial) && same_leftovers(a, b) &&
+	       rationals_equal(a->system.states, a->initial, b->initial) && same_remainders(a, b) &&
 	       same_regions(a, b, &loads) && loads;
 }

@@ -10,7 +10,7 @@ static struct basis basis_of_state(const struct linear *system, int state)
 	return (struct basis){ .kind = BASIS_COORD, .index = system->coord[state], .order = state >= system->n };
 }
 
-/* Row of A and the leftovers; what depends on time alone is apart */
+/* Row of A and the remainders; what depends on time alone is apart */
 static const struct form *force_of(const struct step *step, const struct layout *layout, const mpq_t *row)
 {
 	const struct linear *system = &step->branch->system;

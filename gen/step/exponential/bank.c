@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A bank: linear terms of the leftover that differ from operator to operator, and what all operators leave alike. */
+/* A bank: linear terms of the remainder that differ from operator to operator, and what all operators leave alike. */
 #include "weights.h"
 
 static mpq_srcptr linear_factor(const struct form *form, int coord, int order)

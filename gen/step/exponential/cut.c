@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scheme with a leftover that goes from crossing to crossing: between two of them the formulas are those of given
+/* A scheme with a remainder that goes from crossing to crossing: between two of them the formulas are those of given
  * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
  * crosses a breakpoint is made again in parts, whose tables the target makes. */
 #include "model/contacts/contacts.h"

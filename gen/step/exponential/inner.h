@@ -32,7 +32,7 @@ void need_loads_at(struct recipe *r, int node);
 int  new_stage(struct recipe *r);
 /* valid until the next is added, as that of add_sum is */
 struct action *add_action(struct recipe *r, struct action action);
-int  add_leftover(struct recipe *r, int node, int stage);
+int  add_remainder(struct recipe *r, int node, int stage);
 int  add_combination(struct recipe *r, int plus, int minus, bool added);
 struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);
 void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left); /* one term more of the sum */

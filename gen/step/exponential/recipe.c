@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, leftovers. A recipe
+/* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, remainders. A recipe
  * that asks for more than there is room for is told so. */
 #include "inner.h"
 
@@ -117,10 +117,10 @@ struct action *add_action(struct recipe *r, struct action action)
 	return added;
 }
 
-int add_leftover(struct recipe *r, int node, int stage)
+int add_remainder(struct recipe *r, int node, int stage)
 {
 	int left = r->program->lefts++;
-	add_action(r, (struct action){ .kind = ACTION_LEFTOVER, .target = left, .node = node, .from = stage });
+	add_action(r, (struct action){ .kind = ACTION_REMAINDER, .target = left, .node = node, .from = stage });
 	return left;
 }
 

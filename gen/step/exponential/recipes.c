@@ -6,7 +6,7 @@
 static void recipe_etd1(struct recipe *r)
 {
 	int full = add_table(r, "full", 1, 1, true), p1 = add_phi(r, full, "p1", 1, 1, 1, (long[]){ 1 });
-	int r0 = add_leftover(r, add_node(r, 0, 1), STAGE_STATE);
+	int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
 	times_left(r, add_sum(r, STAGE_STATE, full, NONE, "y = E y + p1 r0"), full, p1, r0);
 }
 
@@ -15,9 +15,9 @@ static void recipe_etdrk2(struct recipe *r)
 {
 	int full = add_table(r, "full", 1, 1, true), p1 = add_phi(r, full, "p1", 1, 1, 1, (long[]){ 1 });
 	int p2 = add_phi(r, full, "p2", 1, 1, 2, (long[]){ 0, 1 }), a = new_stage(r);
-	int r0 = add_leftover(r, add_node(r, 0, 1), STAGE_STATE);
+	int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
 	times_left(r, add_sum(r, a, full, NONE, "a = E y + p1 r0"), full, p1, r0);
-	int ra = add_leftover(r, add_node(r, 1, 1), a), difference = add_combination(r, ra, r0, false);
+	int ra = add_remainder(r, add_node(r, 1, 1), a), difference = add_combination(r, ra, r0, false);
 	times_left(r, add_sum(r, STAGE_STATE, NONE, a, "y = a + p2 (r(t+h, a) - r0)"), full, p2, difference);
 }
 
@@ -33,16 +33,16 @@ static void recipe_etdrk4(struct recipe *r)
 	int b3 = add_phi(r, full, "b3", 1, 1, 3, (long[]){ 0, -1, 2 });
 	int start = add_node(r, 0, 1), middle = add_node(r, 1, 2), end = add_node(r, 1, 1);
 	int flow = new_stage(r), a = new_stage(r), b = new_stage(r), c = new_stage(r);
-	int r0 = add_leftover(r, start, STAGE_STATE);
+	int r0 = add_remainder(r, start, STAGE_STATE);
 	add_sum(r, flow, full, NONE, "w = E y");
 	times_left(r, add_sum(r, a, half, NONE, "a = F y + q1 r0"), half, q1, r0);
-	int ra = add_leftover(r, middle, a), step = add_combination(r, ra, r0, false);
+	int ra = add_remainder(r, middle, a), step = add_combination(r, ra, r0, false);
 	times_left(r, add_sum(r, b, NONE, a, "b = F y + q1 r(t+h/2, a)"), half, q1, step);
-	int rb = add_leftover(r, middle, b), twice = add_combination(r, rb, NONE, false);
+	int rb = add_remainder(r, middle, b), twice = add_combination(r, rb, NONE, false);
 	struct action *sum = add_sum(r, c, NONE, flow, "c = F a + q1 (2 r(t+h/2, b) - r0)");
 	times_left(r, sum, full, c0, r0);
 	times_left(r, sum, half, q1, twice);
-	int rc = add_leftover(r, end, c), both = add_combination(r, ra, rb, true);
+	int rc = add_remainder(r, end, c), both = add_combination(r, ra, rb, true);
 	sum = add_sum(r, STAGE_STATE, NONE, flow, "y = E y + b1 r0 + b2 (r(t+h/2, a) + r(t+h/2, b)) + b3 r(t+h, c)");
 	times_left(r, sum, full, b1, r0);
 	times_left(r, sum, full, b2, both);
@@ -72,14 +72,14 @@ static int add_predicted(struct recipe *r, long p, unsigned long q)
 		need_loads_at(r, end);
 	}
 	add_action(r, (struct action){ .kind = ACTION_PREDICT, .target = stage, .node = end, .half = half });
-	return add_leftover(r, end, stage);
+	return add_remainder(r, end, stage);
 }
 
 static void add_quadrature(struct recipe *r, const struct quadrature *q)
 {
 	static const char *const names[] = { "w1", "w2", "w3", "w4" };
 	int full = add_table(r, "full", 1, 1, true), kernel[4], left[4];
-	int r0 = add_leftover(r, add_node(r, 0, 1), STAGE_STATE);
+	int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
 	r->program->predicts = true;
 	for (int i = 0; i < q->count; i++) {
 		long p = q->node[i].p;

@@ -102,7 +102,7 @@ void check_turns(const struct step *step)
 		double turn = (fabs(nearest_double(wave->a)) + nearest_double(wave->w)) * h;
 		if (!(turn <= LIMIT_WITHIN))
 			error(step->model->asked.step_at,
-			      "a shorter step can; with --loads leftover it is a polynomial",
+			      "a shorter step can; with --loads remainder it is a polynomial",
 			      "scheme %s follows loads that turn or grow by at most %d in a step, which that of "
 			      "%s 1/s exceeds", scheme_name(step->model->scheme), LIMIT_WITHIN,
 			      readable_text(mpq_sgn(wave->w) ? wave->w : wave->a));

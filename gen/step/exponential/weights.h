@@ -25,12 +25,12 @@ struct mode_flow {                  /* of one mode over theta h */
 
 int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
 
-/* ---- bank.c: what the leftovers of a bank's operators have in common ---- */
+/* ---- bank.c: what the remainders of a bank's operators have in common ---- */
 
 struct excess {                     /* a linear term in which they differ: a coordinate or its velocity, on a channel */
 	int channel, coord, order;
 };
-struct bank {                       /* the leftover of an operator = common + sum of factor times term */
+struct bank {                       /* the remainder of an operator = common + sum of factor times term */
 	int count;                  /* 0: of one operator */
 	struct excess *excess;
 	double *factor;             /* [operator][excess] */

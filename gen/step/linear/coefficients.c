@@ -358,7 +358,7 @@ static struct coefficient immediate(struct filling *f, const struct kernel *kern
 	RATIONAL value = ZERO;
 	mpq_mul(value, impulse_of(f, channel)[f->row], kernel->part[0].impulse);
 	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
-	check_range(f->model, &c, 0, NULL, "a factor of the leftover");
+	check_range(f->model, &c, 0, NULL, "a factor of the remainder");
 	return c;
 }
 
@@ -395,7 +395,7 @@ static void fill_row(struct filling *f, struct table *table)
 				is_immediate(&wanted->kernel[j])
 					? immediate(f, &wanted->kernel[j], e)
 					: number_of(f, wanted->two_words, SOUGHT_KERNEL, j, e,
-						    format("leftover %d", e + 1));
+						    format("remainder %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
 			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);

@@ -166,7 +166,7 @@ struct drift drift_of(const struct step *step)
 	struct ringing *eigenvalue, *pole;
 	if (step->modal)
 		return step->modal->drift;
-	if (step->program->loops || has_leftover(step) || step->model->switching ||
+	if (step->program->loops || has_remainder(step) || step->model->switching ||
 	    scheme_row(step->model->scheme)->holds_coupling)
 		return drift;
 	struct spectrum *map = spectrum_of(characteristic(step));

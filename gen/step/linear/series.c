@@ -152,7 +152,7 @@ void series_plan(struct step *step)
 	REAL angle = WITH_BITS(BITS);
 	largest_angle(step, 0, step->branches, angle);
 	/* what is left over is a polynomial in the step, or there is none */
-	bool known = !has_leftover(step) || step->layout.powers > 0;
+	bool known = !has_remainder(step) || step->layout.powers > 0;
 	series->emitted = known && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)

@@ -16,7 +16,7 @@ struct coefficient {
 	double value, low;
 	bool zero;                  /* exactly: no trace in the code */
 };
-/* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
+/* What multiplies a remainder, as a sum of parts: at tau = fraction h, B the force of its channel,
  *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
  * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
 enum { PART_POWERS = 3, KERNEL_PARTS = 2, TABLE_KERNELS = 4 };

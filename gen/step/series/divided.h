@@ -35,7 +35,7 @@ int  regions_of_series(const struct expansion *x);
 /* Leaves the statement where what is chosen by the state is not treated */
 void check_divided(const struct step *step);
 
-/* ---- cut.c: a scheme with a leftover, from crossing to crossing ---- */
+/* ---- cut.c: a scheme with a remainder, from crossing to crossing ---- */
 
 struct cut {
 	struct expansion *look;     /* of the solution, as far as where it is heading */

@@ -28,7 +28,7 @@ static void blows_up(const char *scheme)
     const pl_model *m = variant_of(status, "blowup_%s_0", scheme)->model;
     void *state = calloc(1, m->size), *saved = calloc(1, m->size);
     int steps = 0;
-    if (!ok(m->status != NULL, "%s: a model with a leftover has a status", scheme))
+    if (!ok(m->status != NULL, "%s: a model with a remainder has a status", scheme))
         return;
     m->init(state);
     same(m->status(state), 0, scheme, "after init");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The schemes with a leftover a second time, by hand: in long double, on equations written by hand.  Loads and inputs
+/* The schemes with a remainder a second time, by hand: in long double, on equations written by hand.  Loads and inputs
  * are carried as further entries of w, so that e^{A tau} w is their exact response too. */
 #ifndef HAND_H
 #define HAND_H

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* ---- what the leftover reads, and how it is called ---- */
+/* ---- what the remainder reads, and how it is called ---- */
 
 bool many_operators(const struct emitter *e)
 {
@@ -57,7 +57,7 @@ static bool is_asked(const struct emitter *e, int channel)
 	return e->model->drags == 0 || reads_channel(e->model, channel);
 }
 
-static struct reads reads_of_leftover(const struct emitter *e)
+static struct reads reads_of_remainder(const struct emitter *e)
 {
 	int channels = e->model->channels, all = channels * e->model->operators, asked = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
@@ -80,15 +80,15 @@ const char *samples_of_step(const struct emitter *e)
 	return e->ramps ? "start, slope" : given_inputs(e) ? "u, NULL" : "NULL, NULL";
 }
 
-const char *leftover_of_step(const struct emitter *e, int node, const char *state, const char *left)
+const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left)
 {
-	return spell(e, "$n_leftover(s, %s, %d, %s, %s, %s);", many_operators(e) ? "which" : "0", node,
+	return spell(e, "$n_remainder(s, %s, %d, %s, %s, %s);", many_operators(e) ? "which" : "0", node,
 		     samples_of_step(e), state, left);
 }
 
-const char *leftover_of_outputs(const struct emitter *e)
+const char *remainder_of_outputs(const struct emitter *e)
 {
-	return spell(e, "$n_leftover(s, 0, 0, %s, %s, %s, left);", given_inputs(e) ? "s->u" : "NULL",
+	return spell(e, "$n_remainder(s, 0, 0, %s, %s, %s, left);", given_inputs(e) ? "s->u" : "NULL",
 		     e->ramps ? "s->slope" : "NULL", e->step->normal ? "now" : "s->y");
 }
 
@@ -132,7 +132,7 @@ static void emit_nodes(const struct emitter *e, const struct reads *r)
 		emit_node_phases(e, r->load);
 }
 
-static void emit_leftover_locals(const struct emitter *e, const struct reads *r, const char *vector, bool node)
+static void emit_remainder_locals(const struct emitter *e, const struct reads *r, const char *vector, bool node)
 {
 	emit_locals_of(e, r->state, vector);
 	emit_param_locals(e, r->param);
@@ -177,7 +177,7 @@ static void emit_selection(const struct emitter *e)
 	int last = e->model->operators - 1;
 	open_function(e, "The first operator whose value is not below the current one",
 		      "static int $n_operator(const $n *s, const double u[], const double slope[])");
-	emit_leftover_locals(e, &r, "s->y", false);
+	emit_remainder_locals(e, &r, "s->y", false);
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 1, &selector);
 	tape_set(formulas_tape(f), "const double now", formula(f, selector), 8, NULL);
 	emit_formulas(f, 4);
@@ -196,9 +196,9 @@ const char *selection_call(const struct emitter *e)
 	return spell(e, "$n_operator(s, %s)", samples_of_step(e));
 }
 
-void emit_leftover(const struct emitter *e)
+void emit_remainder(const struct emitter *e)
 {
-	struct reads r = reads_of_leftover(e);
+	struct reads r = reads_of_remainder(e);
 	struct bank bank = bank_of(e->step);
 	bool node = needs_node(e, &r);
 	if (node)
@@ -206,9 +206,9 @@ void emit_leftover(const struct emitter *e)
 	if (bank.count)
 		emit_excess(e, &bank);
 	open_function(e, "What is left over at state y: a force on each equation that has some",
-		      "static void $n_leftover(const $n *s, int which, int node, const double u[],\n"
+		      "static void $n_remainder(const $n *s, int which, int node, const double u[],\n"
 		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
-	emit_leftover_locals(e, &r, "y", node);
+	emit_remainder_locals(e, &r, "y", node);
 	if (bank.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");
 	emit_lefts(e, &bank);

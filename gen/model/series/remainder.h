@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs, a scheme's operators, and what they leave over. */
-#ifndef PLGEN_MODEL_LEFTOVER_H
-#define PLGEN_MODEL_LEFTOVER_H
+#ifndef PLGEN_MODEL_REMAINDER_H
+#define PLGEN_MODEL_REMAINDER_H
 
 #include "collect/collect.h"
 #include "math/math.h"
@@ -24,11 +24,11 @@ struct output {
 };
 struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
 	mpq_t *C, *K;
-	struct form **left;         /* per channel: the leftover, a force on its equation */
+	struct form **left;         /* per channel: the remainder, a force on its equation */
 	mpq_t at;                   /* of a bank: the value up to which it serves */
 	const char *text;           /* x = 2, x' = 0 */
 };
-struct time_function {              /* what stands with it in the leftover of the first operator */
+struct time_function {              /* what stands with it in the remainder of the first operator */
 	const struct form *form;    /* of time alone */
 	/* n x n: force on the equation of coordinate i of coordinate j, of its velocity; NULL: none */
 	mpq_t *position, *velocity;
@@ -43,7 +43,7 @@ struct wave_force {                 /* of a wave alone, of its cos and its sin: 
 	struct wave *wave;
 	mpq_t *force[2];
 };
-struct splitting {                  /* the leftover, sorted: see split.c */
+struct splitting {                  /* the remainder, sorted: see split.c */
 	int functions;
 	struct time_function *function; /* the first is 1 */
 	int rests;                  /* forces that are neither */
@@ -72,12 +72,12 @@ struct smoothness {                 /* of what is left over, else of the equatio
 void build_operators(struct building *b);
 /* the model's, with the operator's C and K and the channels */
 struct linear operator_system(const struct model *model, int k);
-/* Every form that the leftovers and the selector are made of, once, operands before what they make. */
-void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
+/* Every form that the remainders and the selector are made of, once, operands before what they make. */
+void visit_remainders(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
 
 /* ---- split.c: what is left over as matrices times functions of time, and the rest ---- */
 
-void split_leftover(struct building *b);                    /* model->split; after the operators */
+void split_remainder(struct building *b);                    /* model->split; after the operators */
 
 /* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
 

@@ -9,7 +9,7 @@
 
 static const real nowhere[HAND_MOST];
 
-/* The operator by default of a model whose leftover has no linear part at the origin. */
+/* The operator by default of a model whose remainder has no linear part at the origin. */
 static void at_origin(const struct system *s, int which, real *A)
 {
     (void)which;

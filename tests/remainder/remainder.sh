@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The emitted C of models with a leftover: the same bytes twice, nothing from <math.h> that the model does not call, and
-# what plgen says while it makes them; with LONG=1 no warning in any compiler (without, ../warnings asks that).
+# The emitted C of models with a remainder: the same bytes twice, nothing from <math.h> that the model does not call,
+# and what plgen says while it makes them; with LONG=1 no warning in any compiler (without, ../warnings asks that).
 #
-#     leftover.sh PLGEN SOURCE_ROOT NAME_variants.c ...
+#     remainder.sh PLGEN SOURCE_ROOT NAME_variants.c ...
 set -u
 plgen=$1
 root=$2
@@ -19,7 +19,7 @@ for file; do
         *) files="$files $PWD/$file" ;;
     esac
 done
-here=$root/tests/leftover
+here=$root/tests/remainder
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"
@@ -54,7 +54,7 @@ series() {
     "$plgen" --rhs --prefix kind_taylor --scheme 'taylor 4' --tolerance 1e-6 kind.spec 2>log >>all.c
 }
 
-# Each line a model: what its leftover needs (inputs, slopes, times, loads, banks) differs.
+# Each line a model: what its remainder needs (inputs, slopes, times, loads, banks) differs.
 cat >kinds <<'END'
 coord x; input u hold first; x'' + x + x^3 + u*x = 0
 coord x; input u hold first; x'' + x + x^3 + u'*x = 0

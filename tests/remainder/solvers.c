@@ -101,7 +101,7 @@ static void by_solver(const struct subject *s)
         const double from = row * every * m->h, to = (row + 1) * every * m->h;
         double sample[MOST];
         for (int i = 0; i < m->inputs; i++) {
-            /* held: anything; a ramp: smooth but for its corners, since the leftover has its cube */
+            /* held: anything; a ramp: smooth but for its corners, since the remainder has its cube */
             sample[i] = s->ramp ? sin(2 * to + i) : random_number();
             u[i] = s->ramp ? before[i] : sample[i];
             u[m->inputs + i] = s->ramp ? (sample[i] - before[i]) / m->h : 0;
