@@ -468,7 +468,8 @@ static void tell_dear(const struct choosing *c, const struct alternative *taken)
 				: "nothing that there is takes so few";
 	say_error(c->stepped->spec->budget.at, fits,
 		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
-		  "%.0f", taken->cost, alternative_text(taken), taken->cost - c->stepped->budget, c->stepped->budget);
+		  "%.0f, or %.3g times as many", taken->cost, alternative_text(taken), taken->cost - c->stepped->budget,
+		  c->stepped->budget, taken->cost / c->stepped->budget);
 }
 
 /* ---- the choice ---- */

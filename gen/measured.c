@@ -180,8 +180,8 @@ static bool is_over_budget(const struct measuring *m, const struct alternative *
 		return false;
 	say_error(m->model->spec->budget.at, "a shorter step of a scheme of lower order may take fewer each",
 		  "over budget: the cheapest that meets the need takes some %.0f instructions a step (%s), %.0f more "
-		  "than %.0f", taken->step_cost, alternative_text(taken), taken->step_cost - m->model->budget,
-		  m->model->budget);
+		  "than %.0f, or %.3g times as many", taken->step_cost, alternative_text(taken),
+		  taken->step_cost - m->model->budget, m->model->budget, taken->step_cost / m->model->budget);
 	return true;
 }
 

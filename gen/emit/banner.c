@@ -462,7 +462,7 @@ static void banner_form(const struct emitter *e)
 		say(e, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n",
 		       carried_text(e), e->step->carried.count > 1 ? "each" : "it");
 	if (drift.known)
-		say(e, " * %s.\n", drift_text(&drift));
+		say(e, " * %s.\n", drift_text(&drift, e->model->h));
 	if (e->step->rounding.known)
 		say(e, " * %s.\n", rounding_text(e->step));
 	if (e->model->asked.single)

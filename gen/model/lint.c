@@ -501,6 +501,60 @@ static void check_drift(const struct lint *lint)
 			    model->coord_name[coordinate_of_row(model, row)]);
 }
 
+/* ---- powers that a negative number does not have ---- */
+
+static bool is_never_negative(struct building *b, struct node *node)
+{
+	RATIONAL value = ZERO;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return is_never_negative(b, node->symbol->value);
+	if (node->kind == NODE_POWER)
+		return constant_of_node(b, node->child[1], value) && mpz_even_p(mpq_numref(value));
+	if (node->kind == NODE_CALL && node->function == FN_MAX)
+		return is_never_negative(b, node->child[0]) || is_never_negative(b, node->child[1]);
+	if (node->kind == NODE_CALL)
+		return node->function == FN_ABS || node->function == FN_EXP || node->function == FN_SQRT;
+	bool never = node->kind == NODE_SUM || node->kind == NODE_PRODUCT;
+	for (int i = 0; i < node->children && never; i++)
+		never = !(node->kind == NODE_SUM && node->inverse[i]) && is_never_negative(b, node->child[i]);
+	return never || (constant_of_node(b, node, value) && mpq_sgn(value) >= 0);
+}
+
+/* x^1.5 of a coordinate x: the first in each equation is named. */
+static bool check_powers(struct building *b, struct node *node, int *left)
+{
+	RATIONAL exponent = ZERO;
+	if (--*left < 0)
+		return true;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return check_powers(b, node->symbol->value, left);
+	if (node->kind == NODE_POWER && reads_coordinate(node->child[0], left) &&
+	    constant_of_node(b, node->child[1], exponent) && mpz_cmp_ui(mpq_denref(exponent), 1) != 0 &&
+	    !is_never_negative(b, node->child[0])) {
+		const char *base = text_between(node->child[0]->start, node->child[0]->end);
+		say_note(node->start, "where '%s' is negative it has no such power, and the step leaves the finite "
+			 "numbers; max(%s, 0) and abs(%s) are never negative", base, base, base);
+		return true;
+	}
+	bool found = node->kind == NODE_CHOOSE;         /* x > 0 ? x^1.5 : 0 has looked */
+	for (int i = 0; i < node->children && !found; i++)
+		found = check_powers(b, node->child[i], left);
+	return found;
+}
+
+static void check_equations(struct building *b)
+{
+	for (int i = 0; i < b->spec->equations; i++) {
+		int left = MOST_NODES;
+		if (!check_powers(b, b->spec->equation[i].left, &left))
+			check_powers(b, b->spec->equation[i].right, &left);
+	}
+	for (int i = 0; i < b->spec->elements; i++) {
+		int left = MOST_NODES;
+		check_powers(b, b->spec->element[i].value, &left);
+	}
+}
+
 /* ---- the whole ---- */
 
 void lint(struct building *b)
@@ -509,6 +563,7 @@ void lint(struct building *b)
 	struct lint lint = { .b = b, .model = model, .system = &model->system };
 	check_names(b->spec);
 	check_elements(&lint);
+	check_equations(b);
 	if (model->switching || model->operators || model->channels || model->scheme != SCHEME_EXACT)
 		return;
 	int states = model->system.states;

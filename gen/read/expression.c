@@ -42,6 +42,9 @@ void check_component(const struct symbol *symbol, int component, struct place at
 		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
 }
 
+#define NO_ACCELERATION "a let may use coordinates and their first derivatives; an output may use accelerations: " \
+			"output NAME = x''"
+
 /* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
 static struct node *read_inlined(struct parser *p, const struct symbol *symbol, struct token token)
 {
@@ -53,14 +56,26 @@ static struct node *read_inlined(struct parser *p, const struct symbol *symbol, 
 		error(token.at, format("it is one by itself: output %s", token.name),
 		      "a peak is an output, and no part of an expression");
 	if (p->no_acceleration && has_acceleration(symbol->value))
-		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+		error(token.at, NO_ACCELERATION, "an acceleration in a let");
 	return inlined(symbol->value, token.at, p->end);
+}
+
+/* x(0) = 2 in a statement by itself, as textbooks give an initial value */
+static bool is_initial_value(const struct parser *p, struct token token)
+{
+	const char *text = p->lexer.source->text, *at = text + p->token.at.offset;
+	size_t zero = 1 + strspn(at + 1, " \t0.");
+	return token.at.offset == p->statement && at[zero] == ')' && zero > 1 &&
+	       at[zero + 1 + strspn(at + zero + 1, " \t")] == '=';
 }
 
 /* delayed: NAME { ' } ( expression ), an input as it was: an input by itself, which the text does not declare */
 static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, struct token token)
 {
 	struct spec *spec = p->spec;
+	if (symbol->kind == SYMBOL_COORD && is_initial_value(p, token))
+		error(token.at, init_note(p, token),
+		      "an initial value stands in a statement 'init'");
 	if (symbol->kind == SYMBOL_COORD)
 		error(token.at,
 		      format("an input can take its place, to which the caller gives what %s was", token.name),
@@ -112,7 +127,7 @@ struct node *resolve_name(struct parser *p, struct token token)
 		error(token.at, NULL, "input '%s' has no second derivative", token.name);
 	check_component(symbol, component, token.at);
 	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
-		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+		error(token.at, NO_ACCELERATION, "an acceleration in a let");
 	struct node *node = node_new(NODE_NAME, token.at);
 	/* of others a bracket behind them is a missing operator */
 	if (is_op(p, "(") && (symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT))

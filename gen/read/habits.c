@@ -92,10 +92,13 @@ static const char *derived_coordinate(const struct parser *p, const char *name, 
 	return NULL;
 }
 
-/* der(x1), diff(diff(x1)), diff(x1, t, 2): the argument, and how often it is derived; or NULL */
+/* der(x1), ddot(x1), diff(diff(x1)), diff(x1, t, 2): the argument, and how often it is derived; or NULL */
 static const char *derived_argument(const struct parser *p, struct token name, is_coordinate *is, int *primes)
 {
-	static const char *const habit[] = { "der", "diff", "d", "dt", "ddt", "deriv", "derivative", "D", "Dt" };
+	static const char *const habit[] = {
+		"ddot", "der2", "der", "diff", "d", "dot", "dt", "ddt", "deriv", "derivative", "D", "Dt"
+	};
+	enum { TWICE = 2 };         /* of these take the second derivative */
 	const char *at = name.at.source->text + name.at.offset;
 	for (*primes = 0; *primes < 2; ++*primes) {
 		size_t word = strspn(at, WORD), i = 0, count = sizeof habit / sizeof *habit;
@@ -103,6 +106,7 @@ static const char *derived_argument(const struct parser *p, struct token name, i
 			i++;
 		if (i == count || at[word] != '(')
 			break;
+		*primes += i < TWICE;
 		at += word + 1;
 	}
 	const char *coord = format("%.*s", (int)strspn(at, WORD), at);
@@ -130,6 +134,8 @@ static const char *exponent_text(const char *caret)
 	return format("%.*s", (int)(to - from) + (*to == ')'), from);
 }
 
+#define INTEGRAL "an integral is a coordinate of first order: coord z, and the equation z' = x"
+
 /* Words of other programs for what has another name here */
 static const char *function_note(const char *name)
 {
@@ -143,7 +149,8 @@ static const char *function_note(const char *name)
 		{ "interp1", "a curve through points is written table(x; x0, y0; x1, y1)" },
 		{ "lookup", "a curve through points is written table(x; x0, y0; x1, y1)" },
 		{ "if", "a condition is written t < 1 ? 2 : 3" },
-		{ "heaviside", "a step in time is a condition: t < 1 ? 0 : 2" }
+		{ "heaviside", "a step in time is a condition: t < 1 ? 0 : 2" },
+		{ "integral", INTEGRAL }, { "integrate", INTEGRAL }, { "int", INTEGRAL }, { "integ", INTEGRAL }
 	};
 	static const char *const records[] = { "csv", "file", "load", "read", "readcsv", "read_csv", "record", "wav" };
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
@@ -175,6 +182,15 @@ const char *habit_note(const struct parser *p, struct token name, is_coordinate 
 	if (strcmp(name.name, "time") == 0)
 		return "time is t";
 	return call ? function_note(name.name) : NULL;
+}
+
+const char *init_note(const struct parser *p, struct token name)
+{
+	const char *value = strchr(p->lexer.source->text + p->token.at.offset, '=');
+	size_t blanks = value ? 1 + strspn(value + 1, " \t") : 0;
+	int length = value ? (int)strcspn(value + blanks, " ,#\r\n") : 0;
+	return format("init %s%.*s = %.*s", name.name, name.primes, "''", length > 0 ? length : 3,
+		      length > 0 ? value + blanks : "...");
 }
 
 /* ---- statements ---- */

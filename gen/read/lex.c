@@ -133,6 +133,34 @@ static void lex_string(struct token *token, const char *text)
 	token->length = (size_t)(end - text) + 1;
 }
 
+/* Omega and omega: U+0391 to U+03C9 in UTF-8, by their names; NULL: it is no Greek letter */
+static const char *greek_name(const char *text)
+{
+	static const char *const names[] = {
+		"alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu",
+		"nu", "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"
+	};
+	const unsigned char *u = (const unsigned char *)text;
+	unsigned code = u[0] == 0xce || u[0] == 0xcf ? (u[0] & 0x1fu) << 6 | (u[1] & 0x3fu) : 0, first = 0x391;
+	if (code < first || code > 0x3c9 || (code > 0x3a9 && code < 0x3b1) || code == 0x3a2)
+		return NULL;
+	return code > 0x3a9 ? names[code - 0x3b1]
+			    : format("%c%s", names[code - first][0] - 'a' + 'A', names[code - first] + 1);
+}
+
+/* A letter that stands in many places is reported at the first of them; comments are not looked into. */
+static bool stands_before(const struct token *token, int bytes)
+{
+	const char *text = token->at.source->text, *at = text + token->at.offset;
+	for (const char *c = text; c < at; c++) {
+		if (*c == '#')
+			c += strcspn(c, "\n");
+		else if (strncmp(c, at, (size_t)bytes) == 0)
+			return true;
+	}
+	return false;
+}
+
 static const char *character_note(const char *text)
 {
 	if (strncmp(text, "\xe2\x80\x99", 3) == 0 || strncmp(text, "\xe2\x80\xb2", 3) == 0)
@@ -158,6 +186,8 @@ static const char *character_note(const char *text)
 		return "a comment starts with #";
 	if (strncmp(text, "\xcf\x80", 2) == 0)
 		return "it is written pi";
+	if (greek_name(text))
+		return format("names are made of the letters a to z, digits and _: %s", greek_name(text));
 	if ((unsigned char)text[0] >= 0x80)
 		return "names are made of the letters a to z, digits and _";
 	return NULL;
@@ -194,6 +224,8 @@ static void lex_operator(struct token *token, const char *text, bool needs)
 		bytes++;
 	if ((unsigned char)text[0] < ' ')
 		error(token->at, NULL, "unexpected byte 0x%02x", (unsigned char)text[0]);
+	if (greek_name(text) && stands_before(token, bytes))
+		abandon();
 	error(token->at, character_note(text), "unexpected character '%.*s'", bytes, text);
 }
 

@@ -126,6 +126,8 @@ void read_stop(struct parser *p);
 extern const char WORD[];           /* the characters of names */
 typedef bool is_coordinate(const struct parser *p, const char *name);
 const char *stray_unit_note(const struct parser *p);        /* at the N of 100 N/m, where that is no name */
+/* of `x(0) = 2` and `init x(0) = 2`, at the bracket: init x = 2 */
+const char *init_note(const struct parser *p, struct token name);
 /* at an unknown name: x1dot, der(x1), Pi, csv(...) */
 const char *habit_note(const struct parser *p, struct token name, is_coordinate *is);
 const char *statement_habit(const char *word);              /* parameter: param */

@@ -283,6 +283,9 @@ void read_init(struct parser *p)
 		struct symbol *coord;
 		int component;
 		struct token name = read_state_name(p, &coord, &component, "initial value");
+		if (is_op(p, "("))
+			error(p->token.at, init_note(p, name),
+			      "an initial value is the one at t = 0, which is not written");
 		expect_op(p, "=", "'='");
 		add_initial(p, name, coord, component, read_expression(p));
 	} while (take_op(p, ","));
@@ -325,12 +328,23 @@ static bool take_peak(struct parser *p)
 	return true;
 }
 
+/* The note of `output x, 2*x` gives the expression a name. */
+static _Noreturn void unnamed_output(const struct parser *p)
+{
+	const char *at = p->lexer.source->text + p->token.at.offset;
+	size_t length = strcspn(at, ",(#\r\n");
+	if (p->token.kind == TOKEN_END)
+		unexpected(p, "the name of an output");
+	error(p->token.at, at[length] == '(' ? "output NAME = ..." : format("output NAME = %.*s", (int)length, at),
+	      "an output that is an expression needs a name");
+}
+
 /* output: output ( NAME = expression | NAME = peak ( expression ) | name ) { , ... } */
 void read_output(struct parser *p)
 {
 	do {
 		if (p->token.kind != TOKEN_NAME)
-			unexpected(p, "the name of an output");
+			unnamed_output(p);
 		struct token name = take(p);
 		if (!is_op(p, "=")) {
 			read_plain_output(p, name);

@@ -132,7 +132,7 @@ static void person_operations(FILE *to, const struct step *step)
 			relative_text(step->model));
 	struct drift drift = drift_of(step);
 	if (drift.known)
-		fprintf(to, ".\n%s", drift_text(&drift));
+		fprintf(to, ".\n%s", drift_text(&drift, step->model->h));
 	if (step->rounding.known)
 		fprintf(to, ".\n%s", rounding_text(step));
 }

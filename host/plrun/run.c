@@ -157,6 +157,18 @@ static void tell_sizes(const struct sizes *z, const struct machine *m)
 			"measures it otherwise", z->from, name, z->size, z->missed, name));
 }
 
+static bool is_at_zero(const struct job *job, struct instance *s)
+{
+	const size_t n = (size_t)job->machine->states;
+	double *y = need(calloc(n + 1, sizeof *y));
+	bool zero = true;
+	instance_get(s, y);
+	for (size_t i = 0; i < n; i++)
+		zero = zero && y[i] == 0;
+	free(y);
+	return zero;
+}
+
 static void tell(const struct job *job, uint64_t k)
 {
 	char line[120];
@@ -171,6 +183,7 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 			void *who)
 {
 	struct sizes sizes = sizes_new(job);
+	const bool starts_at_zero = is_at_zero(job, s);
 	char *error = NULL;
 	instance_out(s, out);
 	each(who, 0, out);
@@ -189,6 +202,9 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 		tell(job, k);
 	}
 	tell_sizes(&sizes, job->machine);
+	if (job->told && !error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
+		say_note("nothing starts and nothing drives the model, so every state has stayed 0: give it an initial "
+			 "value (init x = 1) or a load");
 	free(sizes.y);
 	return error;
 }

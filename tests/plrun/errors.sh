@@ -202,6 +202,13 @@ refuses 'a column of no input' 2 "plrun: error: --column: the model has no input
 $usage" in.spec --input r.csv --column wind=push
 
 # ---- runs ----
+printf "model still\ncoord x\nx'' + x = 0\nstep 0.1\n" >still.spec
+run still.spec 0.2 >out
+[ $? -eq 0 ] && [ "$(cat said)" = "note: nothing starts and nothing drives the model, so every state has stayed 0: \
+give it an initial value (init x = 1) or a load" ]
+status=$?
+cat said >log
+result $status 'a run in which nothing moves says so'
 run hard.spec 10 >out
 [ $? -eq 1 ] && [ "$(cat said)" = 'hard: error: t = 0.4: the step has left the finite numbers' ] && [ -s out ]
 status=$?

@@ -70,7 +70,7 @@ struct drift {                      /* per step, of the mode where it is largest
 	bool known;                 /* nothing is left over, and the step does not loop over Phi */
 };
 struct drift drift_of(const struct step *step);
-const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
+const char *drift_text(const struct drift *drift, mpq_srcptr h);    /* over one hour of steps of h [s] */
 
 /* ---- modal.c: a step of modes instead of states ---- */
 
