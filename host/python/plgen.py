@@ -568,7 +568,7 @@ class Model:
         start  True: the record starts now, and the first row of the result is now, so there are n + 1. False: it goes
                on from the run before, n rows; so pieces put together are one run. By default True for a new model and
                after reset and set, else False
-        blocks True: by NAME_run, which is faster where it takes many steps at once (spec.md); rounding is then its own,
+        blocks True: by NAME_run, which is faster where it takes many steps at once (api.md); rounding is then its own,
                and depends on where pieces begin
 
         RunError, with the rows so far, where a step leaves the finite numbers or its bounds."""

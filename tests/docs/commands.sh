@@ -140,8 +140,8 @@ try() {
 
 mkdir made
 
-for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/accuracy.md \
-	doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
+for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/contacts.md doc/api.md \
+	doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
 	ln -s "$root/runtime" "$root/models" "$root/tests" page
@@ -160,7 +160,7 @@ options_in() {
 : >log
 plgen --help | sed -n '/^  -/p' | cut -c 1-26 | options_in >asked
 sed -n '/^\.SH OPTIONS/,/^\.SH GENERATED/{/^\.B/{s/\\f.//g;s/\\//gp}}' "$root/doc/plgen.1" | options_in >man
-sed -n '/^## The command/,/^## Mistakes/s/^\(| `-.*`[^|]*\)|.*/\1/p' "$root/doc/spec.md" | options_in >spec
+sed -n '/^## The command/,/^### Frequency/s/^\(| `-.*`[^|]*\)|.*/\1/p' "$root/doc/spec.md" | options_in >spec
 for place in man spec; do
 	diff asked $place >>log || echo "$place" >>log
 done
