@@ -10,7 +10,23 @@ build=$2
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 . "${0%/*}/../tap.sh"
-anchors=$root/tests/docs/anchors.awk
+
+# The anchors of a page: of headings as GitHub makes them, of HTML the ids
+cat >anchors.awk <<'END'
+{
+	if ($0 ~ /^```/)
+		inside = !inside
+	if (!inside && $0 ~ /^#+ /) {
+		anchor = tolower($0)
+		sub(/^#+ */, "", anchor)
+		gsub(/[^a-z0-9 _-]/, "", anchor)
+		gsub(/ /, "-", anchor)
+		print anchor
+	}
+	for (rest = $0; match(rest, / id="[^"]*"/); rest = substr(rest, RSTART + RLENGTH))
+		print substr(rest, RSTART + 5, RLENGTH - 6)
+}
+END
 
 # links PAGE: TARGET of each [..](TARGET), one a line
 links() {
@@ -29,7 +45,7 @@ follow() {
 		case $target in
 			http*) continue ;;
 			*'#'*)
-				[ -f "$path" ] && awk -f "$anchors" "$path" | grep -qx -e "${target#*#}" ||
+				[ -f "$path" ] && awk -f anchors.awk "$path" | grep -qx -e "${target#*#}" ||
 					echo "$1: no heading for $target" >>log ;;
 			*) [ -e "$path" ] || echo "$1: no file $target" >>log ;;
 		esac
