@@ -136,7 +136,7 @@ firmware-report: tests
 faults: check-deps
 	sh tests/faults/faults.sh -j 2
 
-# README and tutorial, typed by one who has nothing but make, in a Debian of its own under $(BARE): doc/first_minute.md
+# README and tutorial, typed by one who has nothing but make, in a Debian of its own under $(BARE): doc/tests.md
 BARE = $(BUILD)-bare
 bare:
 	sh tests/bare/bare.sh $(BARE) .

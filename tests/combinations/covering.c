@@ -393,12 +393,29 @@ static void print_pairs_table(void)
 		printf("| %c | %s | %s |\n", letter(i), capability[i].name, capability[i].words);
 }
 
-static void add_names(char *text, size_t size, const char *before, const bool *row)
+static bool of_three(int r, int k)
 {
-	strncat(text, before, size - strlen(text) - 1);
+	return refusal[k].size > 2 && strcmp(refusal[k].reason, refusal[r].reason) == 0;
+}
+
+/* The capabilities of all rows with the reason of r, unless one before has told them */
+static void print_three(int r)
+{
+	char item[8 * LINE];
+	bool together[MOST] = { false };
+	for (int k = 0; k < refusals; k++)
+		for (int i = 0; i < count; i++)
+			if (of_three(r, k) && k < r)
+				return;
+			else if (of_three(r, k))
+				together[i] = together[i] || refusal[k].has[i];
+	snprintf(item, sizeof item, "%s:", refusal[r].reason);
 	for (int i = 0; i < count; i++)
-		if (row[i])
-			snprintf(text + strlen(text), size - strlen(text), " %s", capability[i].name);
+		if (together[i]) {
+			strncat(item, " ", sizeof item - strlen(item) - 1);
+			strncat(item, capability[i].name, sizeof item - strlen(item) - 1);
+		}
+	print_words(item, printf("- "));
 }
 
 static void print_refusals(void)
@@ -406,21 +423,10 @@ static void print_refusals(void)
 	puts("\n## Refusals\n");
 	for (int i = 0; i < reasons_count; i++)
 		print_words(strcpy((char[LINE]){ "" }, reasons[i]), printf("%d. ", i + 1));
-	puts("\nRefused only with three or more together:\n");
-	for (int r = 0; r < refusals; r++) {
-		char item[8 * LINE];
-		bool told = false;
-		for (int before = 0; before < r; before++)
-			told = told || (refusal[before].size > 2 &&
-					strcmp(refusal[before].reason, refusal[r].reason) == 0);
-		if (refusal[r].size < 3 || told)
-			continue;
-		snprintf(item, sizeof item, "%s:", refusal[r].reason);
-		for (int k = r; k < refusals; k++)
-			if (refusal[k].size > 2 && strcmp(refusal[k].reason, refusal[r].reason) == 0)
-				add_names(item, sizeof item, k > r ? ";" : "", refusal[k].has);
-		print_words(item, printf("- "));
-	}
+	puts("\nRefused only with three or more together, of these names (`--pairs`, below, has each set):\n");
+	for (int r = 0; r < refusals; r++)
+		if (refusal[r].size > 2)
+			print_three(r);
 }
 
 /* What the table says of what no cell is about, an item for each that is asked */
@@ -446,12 +452,12 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
 	     "# What goes with what\n\n"
-	     "Made by `tests/combinations/combinations.sh` from `gen/model/capability.def`, of which plgen's messages\n"
-	     "are made too, and from the list beside it; do not edit. `+`: works, in a row of a covering array that\n"
-	     "has every pair (of the first ones every triple), and agrees with CVODE or the closed form within the\n"
-	     "bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and restored,\n"
-	     "with `--rhs`. A number: refused, with the message below; N is a number there, X a name. Blank: one\n"
-	     "excludes the other. A column has the letter of its row.\n");
+	     "You want to know whether two features or options go together: a row and a column have the letter of\n"
+	     "each. `+`: they work. A number: plgen refuses them with that message below, where N is a number and X\n"
+	     "a name. Blank: one excludes the other. Every `+` is tested: a covering array has every pair, of the\n"
+	     "first ones every triple, and `step`, `run`, `jump`, `at`, `set` at odd times, copies and `--rhs` agree\n"
+	     "with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`. The page is made by\n"
+	     "`tests/combinations/combinations.sh` from `gen/model/capability.def`, as are plgen's messages.\n");
 	print_pairs_table();
 	print_refusals();
 	print_asides();

@@ -141,7 +141,7 @@ try() {
 mkdir made
 
 for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/contacts.md doc/api.md \
-	doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
+	doc/accuracy.md doc/performance.md doc/firmware.md doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
 	ln -s "$root/runtime" "$root/models" "$root/tests" page

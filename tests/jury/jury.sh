@@ -236,17 +236,16 @@ print_page() {
 		key "$name" source
 	done | LC_ALL=C sort -u >sources
 	cat <<'END'
-# Cases that others have published
+# Published cases
 
-What others have published is entered here as they have it, before it is run: the equations as a spec, the values with
-their digits. plgen makes C of it by each scheme, the C is compiled and run, and the digits that it reaches are counted.
-A test does this anew and holds this page, which `tests/jury/jury.sh` prints, against it; `plrun` has the same rows.
-A name leads to the file in which its spec and its values stand.
+You want to see plgen reproduce values that others have published, with their digits. Each case was entered from its
+source before it was run: the equations as a spec, the values with their digits. The test `jury` makes C by each scheme,
+compiles and runs it, counts the digits reached and compares them with this page, which `tests/jury/jury.sh` prints;
+`plrun` gives the same rows. A name links to the file with its spec and values.
 
 - **published**: the fewest digits of a value of that case.
-- **exact, taylor, radau, auto**: `all` where every value has every published digit, of at most 15, which a double
-  holds, within half a unit of the last; else the fewest that one has, and below is said why. `-`: plgen refuses this
-  scheme, or it is not run.
+- **exact, taylor, radau, auto**: `all` where every value has every published digit within half a unit of the last (of
+  at most 15, which a double holds); else the fewest digits of a value, with the reason below. `-`: refused or not run.
 
 | case | source | published | exact | taylor | radau | auto |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -256,11 +255,12 @@ END
 	done
 	printf '\n## Where fewer digits are reached, or a scheme is not run\n\n'
 	for name in $(cases); do
-		short=$(key "$name" short)
-		[ -z "$short" ] || echo "- $name: $short" | fold_item
-		key "$name" without | while read -r scheme reason; do
-			echo "- $name without ${scheme%:}: $reason" | fold_item
-		done
+		key "$name" short | sed "s/^/$name	/"
+		key "$name" without | sed "s/^\\([a-z]*\\): /$name without \\1	/"
+	done >short
+	cut -f 2- short | awk '!said[$0]++' | while IFS= read -r reason; do
+		awk -F '\t' -v reason="$reason" '$2 == reason { printf "%s%s", n++ ? ", " : "- ", $1 }
+			END { print ": " reason }' short | fold_item
 	done
 	printf '\n## What cannot be written today\n\n'
 	for name in $(cases); do

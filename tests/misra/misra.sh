@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the MISRA C 2012 addon of cppcheck finds in generated code or in the runtime, whose headers with algorithms are
-# read where models include them: of each rule no more than doc/misra.md has in its table, and no rule that is not
+# read where models include them: of each rule no more than doc/firmware.md has in its table, and no rule that is not
 # there. A case for each file, once it has been read, and for each rule.
 #
 #     misra.sh PLGEN SOURCE_ROOT models | runtime
@@ -72,7 +72,7 @@ fi
 
 # The page: | 15.6 | advisory | in the models | in the runtime | why |
 awk -F'|' '$2 ~ /^ [0-9]+\.[0-9]+ $/ { gsub(/ /, "", $2); print $2, $4 + 0, $5 + 0 }' \
-	"$root/doc/misra.md" >allowed
+	"$root/doc/firmware.md" >allowed
 column=2
 [ "$part" = models ] || column=3
 while read -r rule models runtime; do
@@ -81,7 +81,7 @@ while read -r rule models runtime; do
 	most=$(awk -v rule="$rule" -v column=$column '$1 "" == rule "" { print $column }' allowed)
 	echo "rule $rule: $times, on the page ${most:-nothing}" >log
 	[ "$times" -le "${most:--1}" ]
-	result $? "$part: rule $rule, $times times, not more than doc/misra.md says"
+	result $? "$part: rule $rule, $times times, not more than doc/firmware.md says"
 done <found
 [ "$(wc -l <found)" -gt 15 ] || result 1 "$part: only $(wc -l <found) rules were found"
 tap_end
