@@ -195,6 +195,11 @@ FILE *file_in(const char *folder, const char *name, const char *mode);
 FILE *table_open(const char *folder, const char *name, const char *head);
 void table_close(FILE *csv, const char *name);
 void put_quoted(FILE *out, const char *text);           /* NULL: nothing, within quotes */
+/* A cell and its comma: the number, or where it is not finite the word */
+void put_number(FILE *out, const char *format, double x, const char *word);
+const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
+/* The fields of a line between tabs, which is cut up; it has to be so many, else the program is left */
+void split_line(const char *of, char *line, int count, char **field);
 void *variant_symbol(const char *folder, const char *file, const char *name);  /* of FOLDER/FILE.so, never closed */
 const pl_model *variant_model(const char *folder, const char *file);
 bool same_names(int states, int outputs, const char *const *state, const char *const *output);

@@ -40,10 +40,8 @@ static void follow(struct curve *curve, const struct problem *p, const struct tr
 {
 	const struct method *method = curve->method;
 	const bool ours = method->family == OURS;
-	char file[4096];
 	for (int k = 0; intervals[k]; k++) {
-		snprintf(file, sizeof file, "%s/convergence_%s_%s_%d.so", variants, p->name, method->name,
-			intervals[k]);
+		const char *file = text("%s/convergence_%s_%s_%d.so", variants, p->name, method->name, intervals[k]);
 		struct run *run = ours ? generated_open(method, p, file) : method->open(method, p,
 			whole / intervals[k]);
 		if (!run) {
@@ -79,11 +77,10 @@ static void write_curve(FILE *csv, const struct curve *curve, const char *system
 			const double error = curve->error[i][k];
 			fprintf(csv, "%s,%g,%d,%.6g,%s,", system, whole * horizons[i] / COMMON, intervals[k],
 				whole / intervals[k], curve->method->name);
-			if (isfinite(error))
-				fprintf(csv, "%.6g,", error);
-			else
-				fputs(isnan(error) ? "refused,none" : "diverged,none", csv);
-			if (isfinite(error) && k > 0)
+			put_number(csv, "%.6g", error, isnan(error) ? "refused" : "diverged");
+			if (!isfinite(error))
+				fputs("none", csv);
+			else if (k > 0)
 				print_order(csv, curve, i, intervals, k - 1, k);
 			fprintf(csv, ",\"%s\"\n", curve->refused ? curve->refused : curve->method->settings);
 		}
@@ -97,10 +94,7 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 		count++;
 	for (int i = 0; i < HORIZONS; i++) {
 		fprintf(csv, "%s,%g,%s,", system, whole * horizons[i] / COMMON, curve->method->name);
-		if (curve->method->order)
-			fprintf(csv, "%d,", curve->method->order);
-		else
-			fputs("exact,", csv);
+		put_number(csv, "%g", curve->method->order ? curve->method->order : NAN, "exact");
 		print_order(csv, curve, i, intervals, 0, count - 1);
 		fputc(',', csv);
 		print_order(csv, curve, i, intervals, count - 2, count - 1);
@@ -111,9 +105,7 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 static void converge(const char *system, double frequency, const char *variants, const int *intervals, FILE *csv,
                      FILE *orders)
 {
-	char file[4096];
-	snprintf(file, sizeof file, "%s/convergence_%s_exact_%d.so", variants, system, intervals[0]);
-	struct problem *p = problem_load(file, system, whole / COMMON, COMMON, true, frequency);
+	struct problem *p = problem_load(text("%s/convergence_%s_exact_%d.so", variants, system, intervals[0]), system, whole / COMMON, COMMON, true, frequency);
 	struct truth *truth = truth_of(p);
 	const struct method *methods[METHODS] = { &readings[0], &readings[1], method_find("explicit Euler"),
 	                                          method_find("explicit trapezoid"), method_find("RK4") };

@@ -19,10 +19,7 @@
 
 enum { PER_DECADE = 5, STATES = 4 };    /* every case has two coordinates */
 
-struct code {
-	char test[32], method[64], real[16], file[1024];
-	double h;
-};
+struct code { const char *test, *method, *real, *file; double h; };
 
 /* ---- what must stay ---- */
 
@@ -53,37 +50,7 @@ static double change_since(const char *test, const double *start, const double *
 	return (double)((momentum_of_pair(y) - momentum_of_pair(start)) / (fabsl(start[2]) + 2 * fabsl(start[3])));
 }
 
-/* ---- the list ---- */
-
-static struct code *codes_read(const char *folder, int *count)
-{
-	char line[2048];
-	FILE *in = file_in(folder, "energy.list", "r");
-	struct code *all = NULL;
-	for (*count = 0; fgets(line, sizeof line, in); ++*count) {
-		all = realloc(all, ((size_t)*count + 1) * sizeof *all);
-		struct code *v = all + *count;
-		if (!all || sscanf(line, "%31[^\t]\t%63[^\t]\t%15[^\t]\t%lf\t%1023[^\n]", v->test, v->method, v->real,
-		                   &v->h, v->file) != 5) {
-			fprintf(stderr, "energy: in the list: %s", line);
-			exit(1);
-		}
-	}
-	fclose(in);
-	return all;
-}
-
 /* ---- one method over all steps ---- */
-
-static void print_change(FILE *out, const struct code *v, const char *method, enum family family, double steps,
-                         double change, double largest)
-{
-	fprintf(out, "%s,\"%s\",%s,%s,%g,%.0f,", v->test, method, family_names[family], v->real, v->h, steps);
-	if (isfinite(change))
-		fprintf(out, "%.6g,%.6g,\n", change, largest);
-	else
-		fputs("failed,failed,nan\n", out);
-}
 
 /* Samples at 1, 2, 3, 4, 6, 10, ... steps.  `largest`: of the samples so far, since a change passes through 0 now and
  * then. */
@@ -102,7 +69,11 @@ static void follow(struct run *run, const struct code *v, double steps, FILE *ou
 		run->get(run, y);
 		const double change = good ? change_since(v->test, start, y) : NAN;
 		largest = fmax(largest, fabs(change));
-		print_change(out, v, run->method->name, run->method->family, (double)done, change, largest);
+		fprintf(out, "%s,\"%s\",%s,%s,%g,%ld,", v->test, run->method->name, family_names[run->method->family],
+		        v->real, v->h, done);
+		put_number(out, "%.6g", change, "failed");
+		put_number(out, "%.6g", isfinite(change) ? largest : NAN, "failed");
+		fputs(isfinite(change) ? "\n" : "nan\n", out);
 		if (!isfinite(change))
 			break;
 	}
@@ -124,20 +95,18 @@ static void decay(struct run *run, const struct code *v, double steps, FILE *out
 		                        time : NAN;
 		fprintf(out, "\"%s\",%s,%s,%g,%.0f,%g,%.6g,", run->method->name, family_names[run->method->family],
 			v->real, v->h, steps, sign > 0 ? 10 : sqrt(300), rate);
-		if (isfinite(measured))
-			fprintf(out, "%.6g,%.4g,\n", measured, 100 * (measured - rate) / rate);
-		else
-			fputs("failed,failed,nan\n", out);
+		put_number(out, "%.6g", measured, "failed");
+		put_number(out, "%.4g", 100 * (measured - rate) / rate, "failed");
+		fputs(isfinite(measured) ? "\n" : "nan\n", out);
 	}
 }
 
 static void enter_refusal(const struct code *v, const char *why, FILE *changes, FILE *decays)
 {
-	if (strcmp(v->test, "damped") == 0)
-		fprintf(decays, "\"%s\",ours,%s,%g,0,0,0,refused,refused,", v->method, v->real, v->h);
-	else
-		fprintf(changes, "%s,\"%s\",ours,%s,%g,0,refused,refused,", v->test, v->method, v->real, v->h);
-	FILE *out = strcmp(v->test, "damped") == 0 ? decays : changes;
+	const bool damped = strcmp(v->test, "damped") == 0;
+	FILE *out = damped ? decays : changes;
+	fprintf(out, "%s%s\"%s\",ours,%s,%g,0,%srefused,refused,", damped ? "" : v->test, damped ? "" : ",", v->method,
+	        v->real, v->h, damped ? "0,0," : "");
 	put_quoted(out, why);
 	putc('\n', out);
 }
@@ -177,25 +146,28 @@ int main(int argc, char **argv)
 {
 	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "energy [--quick] VARIANTS FOLDER");
 	const double steps = quick ? 1e6 : 1e8;
-	int count;
-	const struct code *all = codes_read(argv[0], &count);
+	char line[2048], *field[5];
+	FILE *list = file_in(argv[0], "energy.list", "r");
 	FILE *changes = table_open(argv[1], "energy_raw.csv",
 		"case,method,family,real,step_s,steps,change,largest,word");
 	FILE *decays = table_open(argv[1], "decay.csv", "method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,"
 	                          "measured_per_s,error_percent,word");
 	struct problem *p = NULL;               /* the latest given */
-	for (const struct code *v = all; v < all + count; v++) {
-		char *refusal = variant_refused(v->file);
+	while (fgets(line, sizeof line, list)) {
+		split_line("energy", line, 5, field);
+		const struct code v = { field[0], field[1], field[2], field[4], atof(field[3]) };
+		char *refusal = variant_refused(v.file);
 		if (refusal) {
-			enter_refusal(v, refusal, changes, decays);
-		} else if (strcmp(v->method, "problem") == 0) {
-			p = problem_load(v->file, v->test, v->h, (int)steps, true, 0);
-			measure_peers(p, v, steps, changes, decays);
+			enter_refusal(&v, refusal, changes, decays);
+		} else if (strcmp(v.method, "problem") == 0) {
+			p = problem_load(v.file, "energy", v.h, (int)steps, true, 0);
+			measure_peers(p, &v, steps, changes, decays);
 		} else {
-			measure_ours(p, v, steps, changes, decays);
+			measure_ours(p, &v, steps, changes, decays);
 		}
 		free(refusal);
 	}
+	fclose(list);
 	table_close(changes, "energy_raw.csv");
 	table_close(decays, "decay.csv");
 	return 0;

@@ -244,14 +244,13 @@ static void rk4_close(struct run *run)
 static void way_open(struct way *way, const char *variants, const struct truth_of_friction *truth)
 {
 	static const double start[2];
-	char file[4096];
 	way->problem = (struct problem){.name = "friction", .n = 1, .rhs_of = slope_of, .of = way, .jacobian = jacobian,
 	                                .start = start, .unit = unit, .units = UNITS, .scale_q = truth->peak,
 	                                .scale_v = truth->fastest};
 	way->eps = way->how == ROOTS ? 0 : way->setting;
 	const double setting = way->how == ROOTS ? way->setting : way->how == SMOOTH ? fmax(1e-10, way->eps / 100)
 	                       : unit / ceil(unit * hold / (mass * way->eps));
-	snprintf(file, sizeof file, "%s/friction-%ld.so", variants, lround(unit / way->setting));
+	const char *file = text("%s/friction-%ld.so", variants, lround(unit / way->setting));
 	way->steps = (struct run){.problem = &way->problem, .setting = setting, .restart = rk4_restart,
 	                          .advance = rk4_advance, .evaluations = run_evaluations, .close = rk4_close};
 	way->run = way->how == STEPS ? &way->steps

@@ -30,7 +30,7 @@
 typedef __float128 quad;
 enum { MOST_STATES = 4 };
 
-/* ---- what is true: q, then their velocities ---- */
+/* ---- what is true: q, then their velocities; `off`: by how much a case is off the one that it is near to ---- */
 
 static void add_wave(quad *y, int n, const quad *shape, quad w, quad t)
 {
@@ -42,8 +42,9 @@ static void add_wave(quad *y, int n, const quad *shape, quad w, quad t)
 
 /* From rest at a: x'' + (1 + S) x1 - S x2 = 0, x2'' + S (x2 - x1) = 0, S = 1e8; the slow root as product over fast
  * root */
-static void stiff_spring(quad t, quad *y)
+static void stiff_spring(quad off, quad t, quad *y)
 {
+	(void)off;
 	const quad S = 1e8Q, fast = (1 + 2 * S + sqrtq(1 + 4 * S * S)) / 2, slow = S / fast;
 	const quad roots[] = { slow, fast };
 	for (int k = 0; k < 2; k++) {
@@ -60,44 +61,31 @@ static void driven(quad w, quad u, quad t, quad *x, quad *v)
 	*v = (half == 0 ? 0.5Q : cosq(half * t) / 2) * sinq(sum * t) / sum + s * cosq(sum * t);
 }
 
-static void resonance(quad t, quad *y)
+static void resonance(quad off, quad t, quad *y)
 {
-	driven(10, 10, t, y, y + 1);
+	driven(10, 10 + off, t, y, y + 1);
 }
 
-static void resonance_near(quad t, quad *y)
+static void confluent(quad off, quad t, quad *y)
 {
-	driven(10, 10 + 1e-9Q, t, y, y + 1);
-}
-
-static void confluent_pair(quad w2, quad t, quad *y)
-{
-	driven(w2, 10, t, y + 1, y + 3);
+	driven(10 + off, 10, t, y + 1, y + 3);
 	y[0] = 0.01Q * cosq(10 * t);
 	y[1] *= 0.01Q;
 	y[2] = -0.1Q * sinq(10 * t);
 	y[3] *= 0.01Q;
 }
 
-static void confluent(quad t, quad *y)
+static void critical(quad off, quad t, quad *y)
 {
-	confluent_pair(10, t, y);
-}
-
-static void confluent_near(quad t, quad *y)
-{
-	confluent_pair(10 + 1e-10Q, t, y);
-}
-
-static void critical(quad t, quad *y)
-{
+	(void)off;
 	y[0] = (1 + 10 * t) * expq(-10 * t);
 	y[1] = -100 * t * expq(-10 * t);
 }
 
 /* Masses 1 and 2, spring 100, force 1 on the first: their centre, and the stretch r = x1 - x2, r'' + 150 r = 1 */
-static void rigid(quad t, quad *y)
+static void rigid(quad off, quad t, quad *y)
 {
+	(void)off;
 	const quad W = sqrtq(150), r = (1 - cosq(W * t)) / 150, u = sinq(W * t) / W, x = t * t / 6, v = t / 3;
 	y[0] = x + 2 * r / 3;
 	y[1] = x - r / 3;
@@ -105,15 +93,17 @@ static void rigid(quad t, quad *y)
 	y[3] = v - u / 3;
 }
 
-static void long_run(quad t, quad *y)
+static void long_run(quad off, quad t, quad *y)
 {
+	(void)off;
 	add_wave(y, 2, (quad[]){ 0.005Q, 0.005Q }, 10, t);
 	add_wave(y, 2, (quad[]){ 0.005Q, -0.005Q }, sqrtq(300), t);
 }
 
 /* Poles a = -1e8 and b = -1e-3, x(0) = 1 */
-static void fast_slow(quad t, quad *y)
+static void fast_slow(quad off, quad t, quad *y)
 {
+	(void)off;
 	const quad a = -1e8Q, b = -1e-3Q;
 	y[0] = (a * expq(b * t) - b * expq(a * t)) / (a - b);
 	y[1] = a * b * (expq(b * t) - expq(a * t)) / (a - b);
@@ -121,8 +111,9 @@ static void fast_slow(quad t, quad *y)
 
 /* x'' + x = 0 up to the stop at b = 1 - 1e-6, reached with speed v; inside, e = x - b: e'' + (1 + K) e + b = 0. A
  * period is from -1 to -1, symmetric about the deepest point, where tan(W t) = v W / b. */
-static void graze(quad t, quad *y)
+static void graze(quad off, quad t, quad *y)
 {
+	(void)off;
 	const quad b = 1 - 1e-6Q, W = sqrtq(1 + 1e8Q), v = sqrtq((1 - b) * (1 + b));
 	const quad reach = acosq(-b), touch = atanq(v * W / b) / W, period = 2 * (reach + touch);
 	quad s = t - floorq(t / period) * period;
@@ -149,26 +140,28 @@ static const struct hard_case {
 	int units, quick_units;
 	double frequency;                       /* of its load */
 	bool linear;
-	void (*exact)(quad t, quad *y);         /* NULL: truth_of models/vanderpol_stiff.spec; y comes as zeros */
+	/* NULL: truth_of models/vanderpol_stiff.spec; y comes as zeros */
+	void (*exact)(quad off, quad t, quad *y);
+	quad off;
 	/* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls between them */
 	double least_v;
 	double steps[3];                        /* to take, 0 at the end */
-	double tolerance;                       /* of adaptive methods */
 	long most_evaluations;
 } cases[] = {
-	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 133, { 0.1, 0.01 }, 1e-10, 5000000 },
-	{ "stiff spring", 0.125, 800, 80, 0, true, stiff_spring, 0, { 0.125, 1.0 / 128 }, 1e-10, 20000000 },
-	{ "resonance", 0.125, 8000, 800, 10, true, resonance, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, resonance_near, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "equal poles", 0.125, 8000, 800, 0, true, confluent, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, confluent_near, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "critical damping", 0.125, 80, 80, 0, true, critical, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "rigid body", 0.125, 8000, 800, 0, true, rigid, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "long run", 1, 9766, 98, 0, true, long_run, 0, { 1.0 / 1024 }, 1e-10, 200000000 },
-	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, { 1.0 / 128 }, 1e-10, 5000000 },
-	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, fast_slow, 1e-3, { 1024 }, 1e-10, 5000000 },
-	{ "the same, long step", 1048576, 8, 8, 0, true, fast_slow, 1e-3, { 1048576 }, 1e-10, 5000000 },
+	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 0, 133, { 0.1, 0.01 }, 5000000 },
+	{ "stiff spring", 0.125, 800, 80, 0, true, stiff_spring, 0, 0, { 0.125, 1.0 / 128 }, 20000000 },
+	{ "resonance", 0.125, 8000, 800, 10, true, resonance, 0, 0, { 1.0 / 128 }, 5000000 },
+	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, resonance, 1e-9Q, 0, { 1.0 / 128 }, 5000000 },
+	{ "equal poles", 0.125, 8000, 800, 0, true, confluent, 0, 0, { 1.0 / 128 }, 5000000 },
+	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, confluent, 1e-10Q, 0, { 1.0 / 128 }, 5000000 },
+	{ "critical damping", 0.125, 80, 80, 0, true, critical, 0, 0, { 1.0 / 128 }, 5000000 },
+	{ "rigid body", 0.125, 8000, 800, 0, true, rigid, 0, 0, { 1.0 / 128 }, 5000000 },
+	{ "long run", 1, 9766, 98, 0, true, long_run, 0, 0, { 1.0 / 1024 }, 200000000 },
+	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, 0, { 1.0 / 128 }, 5000000 },
+	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, fast_slow, 0, 1e-3, { 1024 }, 5000000 },
+	{ "the same, long step", 1048576, 8, 8, 0, true, fast_slow, 0, 1e-3, { 1048576 }, 5000000 },
 };
+static const double tolerance = 1e-10;          /* of adaptive methods */
 
 static const struct hard_case *case_find(const char *name)
 {
@@ -207,7 +200,7 @@ static struct history history_of(const struct hard_case *c, struct problem *p)
 	if (c->exact) {
 		for (int k = 0; k < h.units; k++) {
 			quad y[MOST_STATES] = { 0 };
-			c->exact((k + 1) * (quad)c->unit, y);
+			c->exact(c->off, (k + 1) * (quad)c->unit, y);
 			for (int i = 0; i < h.states; i++)
 				h.y[k * h.states + i] = (double)y[i];
 		}
@@ -253,15 +246,12 @@ static void counted(const void *of, double t, const double *y, double *dydt)
 
 /* ---- a cell of the table ---- */
 
-struct cell {
-	double error;
-	const char *word;
-};
+struct cell { double error; const char *word; };        /* NAN where it has failed */
 
 static struct cell cell_of_error(double error)
 {
 	if (!isfinite(error) || error > 10)
-		return (struct cell){ error, "diverged" };
+		return (struct cell){ NAN, "diverged" };
 	return (struct cell){ error, error < 1e-3 ? "ok" : error < 0.1 ? "poor" : "wrong" };
 }
 
@@ -311,10 +301,8 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 {
 	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, family_names[m->family], m->tolerance ? "tolerance"
 		: "step", setting);
-	if (isfinite(cell.error) && strcmp(cell.word, "diverged") != 0)
-		fprintf(out, "%.3g,%s,", cell.error, cell.word);
-	else
-		fprintf(out, "failed,%s,", cell.word);
+	put_number(out, "%.3g", cell.error, "failed");
+	fprintf(out, "%s,", cell.word);
 	put_quoted(out, settings);
 	putc('\n', out);
 	say_progress("hard: %s: %s %g: %s", c->name, m->name, setting, cell.word);
@@ -323,13 +311,9 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h,
                      const struct method *m)
 {
-	if (m->tolerance) {
-		print_cell(out, c, m, c->tolerance, try_method(m, p, h, c->tolerance, NULL, c->most_evaluations),
-		           m->settings);
-		return;
-	}
-	for (const double *step = c->steps; *step > 0; step++)
-		print_cell(out, c, m, *step, try_method(m, p, h, *step, NULL, c->most_evaluations), m->settings);
+	const double once[] = { tolerance, 0 };
+	for (const double *setting = m->tolerance ? once : c->steps; *setting > 0; setting++)
+		print_cell(out, c, m, *setting, try_method(m, p, h, *setting, NULL, c->most_evaluations), m->settings);
 }
 
 static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h)
@@ -368,28 +352,24 @@ int main(int argc, char **argv)
 	const unsigned flags = flags_of(argc, &argv, "--quick --scales", 1, 2, "hard [--quick] VARIANTS FOLDER\n"
 	                                "       hard --scales [--quick] VARIANTS");
 	const bool quick = flags & 1, scales = flags & 2;
-	char name[64], method[64], file[1024], line[2048];
-	double step;
+	char line[2048], *field[4];             /* case, method, step, file */
 	gsl_set_error_handler_off();            /* its statuses say it too */
 	FILE *list = file_in(argv[0], "hard.list", "r"), *out = scales ? stdout : table_open(argv[1], "hard_raw.csv",
 		"case,method,family,setting_kind,setting,error,word,settings");
 	struct problem *p = NULL;
 	struct history h = { 0 };
 	while (fgets(line, sizeof line, list)) {
-		if (sscanf(line, "%63[^\t]\t%63[^\t]\t%lf\t%1023[^\n]", name, method, &step, file) != 4) {
-			fprintf(stderr, "hard: in the list: %s", line);
-			return 1;
-		}
-		const struct hard_case *c = case_find(name);
-		if (strcmp(method, "problem") == 0) {
-			p = problem_of(c, file, quick);
+		split_line("hard", line, 4, field);
+		const struct hard_case *c = case_find(field[0]);
+		if (strcmp(field[1], "problem") == 0) {
+			p = problem_of(c, field[3], quick);
 			h = history_of(c, p);
 			if (scales)
-				put_scales(out, p, name, file);
+				put_scales(out, p, c->name, field[3]);
 			else
 				try_peers(out, c, p, &h);
 		} else if (p && !scales) {
-			try_ours(out, c, p, &h, method, step, file);
+			try_ours(out, c, p, &h, field[1], atof(field[2]), field[3]);
 		}
 	}
 	fclose(list);

@@ -23,20 +23,16 @@ enum { CHUNK = 1000, MOST_STATES = 4, MOST_ROWS = 80 };         /* units from on
 
 struct ours { const char *name, *file, *options; };
 static const struct ours ours[] = {
-	{ "exact", "exact", "--scheme exact" },
-	{ "exact, direct", "direct", "--form direct" },
-	{ "exact, delta", "delta", "--form delta" },
-	{ "exact, kick-drift-kick", "kick", "--form kick-drift-kick" },
-	{ "exact, compensated", "compensated", "--accuracy compensated" },
-	{ "exact, float", "float", "--real float" },
+	{ "exact", "", "--scheme exact" }, { "exact, direct", "-direct", "--form direct" },
+	{ "exact, delta", "-delta", "--form delta" }, { "exact, kick-drift-kick", "-kick", "--form kick-drift-kick" },
+	{ "exact, compensated", "-compensated", "--accuracy compensated" }, { "exact, float", "-float", "--real float" },
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
 /* Frequencies 10 and 10 (1 + gap) rad/s. Twins: scs whose masses hardly feel each other; its modes stay apart however
  * near the frequencies. One-way: the first mass drives the second and feels nothing; the modes become one, and A
  * defective at gap 0. */
-struct meeting { const char *gap, *twins, *one_way; };
-static const struct meeting meetings[] = {
+static const struct meeting { const char *gap, *twins, *one_way; } meetings[] = {
 	{ "1e-4", "k2=1e-2", "w2=10.001" }, { "1e-6", "k2=1e-4", "w2=10.00001" },
 	{ "1e-8", "k2=1e-6", "w2=10.0000001" },
 	{ "1e-10", "k2=1e-8", "w2=10.000000001" }, { "0", "k2=0", "w2=10" }
@@ -45,22 +41,16 @@ enum { MEETINGS = sizeof meetings / sizeof *meetings };
 
 static void list_one(const char *base, const char *spec, const char *options)
 {
-	printf("%s.so %s --step 1/100 --scheme exact%s\n", base, spec, options);
-	for (int i = 1; i < OURS_COUNT; i++)
-		printf("%s-%s.so %s --step 1/100 %s%s\n", base, ours[i].file, spec, ours[i].options, options);
+	for (int i = 0; i < OURS_COUNT; i++)
+		printf("%s%s.so %s --step 1/100 %s%s\n", base, ours[i].file, spec, ours[i].options, options);
 }
 
 static void list(void)
 {
-	char base[100], options[100];
 	list_one("scs", "models/scs.spec", "");
-	for (int i = 0; i < MEETINGS; i++) {
-		snprintf(base, sizeof base, "twins-%s", meetings[i].gap);
-		snprintf(options, sizeof options, " -D %s", meetings[i].twins);
-		list_one(base, "models/scs.spec", options);
-		snprintf(base, sizeof base, "one-way-%s", meetings[i].gap);
-		snprintf(options, sizeof options, " -D %s", meetings[i].one_way);
-		list_one(base, "bench/charts/specs/confluent.spec", options);
+	for (const struct meeting *m = meetings; m < meetings + MEETINGS; m++) {
+		list_one(text("twins-%s", m->gap), "models/scs.spec", text(" -D %s", m->twins));
+		list_one(text("one-way-%s", m->gap), "bench/charts/specs/confluent.spec", text(" -D %s", m->one_way));
 	}
 }
 
@@ -109,20 +99,14 @@ static struct found find_tolerance(const struct method *method, const struct pro
 		double setting = pow(10, -k / 10.0), error = error_with(method, p, t, setting);
 		if (error < best.error)
 			best = (struct found){ setting, error, error <= target, 0 };
-		if (error <= target)
-			reaches = k;
+		reaches = error <= target ? k : 0;
 	}
-	if (!reaches)
-		return best;
-	for (int low = COARSEST, high = reaches; high - low > 1;) {
+	for (int low = COARSEST, high = reaches; reaches && high - low > 1;) {
 		int k = high - low > 2 * DECADE ? high - DECADE : (low + high) / 2;
 		double setting = pow(10, -k / 10.0), error = error_with(method, p, t, setting);
-		if (error <= target) {
+		if (error <= target)
 			best = (struct found){ setting, error, true, 0 };
-			high = k;
-		} else {
-			low = k;
-		}
+		*(error <= target ? &high : &low) = k;
 	}
 	return best;
 }
@@ -132,18 +116,17 @@ static struct found find_tolerance(const struct method *method, const struct pro
 static struct found find_step(const struct method *method, const struct problem *p, const struct truth *t,
                               double target, int most)
 {
-	const double unit = p->unit;
 	struct found best = { 0, INFINITY, false, 0 };
 	int low = 0, high = 0, parts = 1;
 	for (int tries = 0; tries < 12 && !high; tries++) {
-		double error = error_with(method, p, t, unit / parts);
+		double error = error_with(method, p, t, p->unit / parts);
 		if (error <= target) {
 			high = parts;
-			best = (struct found){ unit / parts, error, true, 0 };
+			best = (struct found){ p->unit / parts, error, true, 0 };
 			break;
 		}
 		if (error < best.error)
-			best = (struct found){ unit / parts, error, false, 0 };
+			best = (struct found){ p->unit / parts, error, false, 0 };
 		else if (tries > 0 && low >= 16)
 			return best;                    /* finer steps only add rounding */
 		low = parts;
@@ -157,13 +140,10 @@ static struct found find_step(const struct method *method, const struct problem 
 	}
 	while (high - low > 1 && high - low > high / 50) {
 		parts = (low + high) / 2;
-		double error = error_with(method, p, t, unit / parts);
-		if (error <= target) {
-			best = (struct found){ unit / parts, error, true, 0 };
-			high = parts;
-		} else {
-			low = parts;
-		}
+		double error = error_with(method, p, t, p->unit / parts);
+		if (error <= target)
+			best = (struct found){ p->unit / parts, error, true, 0 };
+		*(error <= target ? &high : &low) = parts;
 	}
 	return best;
 }
@@ -180,6 +160,7 @@ struct row {
 	struct samples samples;
 };
 struct rows { int count; struct row row[MOST_ROWS]; struct method ours[OURS_COUNT]; };
+#define EACH_ROW(rows) struct row *row = (rows)->row; row < (rows)->row + (rows)->count; row++
 
 static struct row *add_row(struct rows *rows, const struct method *method, struct run *run)
 {
@@ -188,32 +169,23 @@ static struct row *add_row(struct rows *rows, const struct method *method, struc
 	return row;
 }
 
-static bool is_float(const struct method *method)
+/* What is exact at any step, a step an output: matrices of a step, then ours */
+static void add_exact(struct rows *rows, const struct problem *p, const char *folder, const char *base)
 {
-	return strstr(method->name, "float") != NULL;
-}
-
-/* What is exact at any step, a step an output: matrices of a step, then ours, of which `first` is that of "exact" */
-static struct row *add_exact(struct rows *rows, const struct problem *p, const char *folder, const char *base)
-{
-	char file[4096];
-	struct row *first = NULL;
 	for (const struct method *const *m = propagator_methods; *m; m++)
 		add_row(rows, *m, (*m)->open(*m, p, p->unit));
 	for (int i = 0; i < OURS_COUNT; i++) {
+		const char *file = text("%s/%s%s.so", folder, base, ours[i].file);
 		rows->ours[i] = (struct method){ .name = ours[i].name, .family = OURS, .settings = ours[i].options };
-		snprintf(file, sizeof file, "%s/%s%s%s.so", folder, base, i ? "-" : "", i ? ours[i].file : "");
 		struct row *row = add_row(rows, &rows->ours[i], NULL);
 		row->refused = variant_refused(file);
 		row->run = row->refused ? NULL : generated_open(row->method, p, file);
-		first = i == 0 ? row : first;
 	}
-	return first;
 }
 
 static void close_rows(struct rows *rows)
 {
-	for (struct row *row = rows->row; row < rows->row + rows->count; row++) {
+	for (EACH_ROW(rows)) {
 		if (row->run)
 			row->run->close(row->run);
 		free(row->refused);
@@ -223,16 +195,16 @@ static void close_rows(struct rows *rows)
 static void sample_rows(struct rows *rows, double seconds)
 {
 	struct run *run[MOST_ROWS];
-	struct samples samples[MOST_ROWS];
+	struct samples samples[MOST_ROWS], *next = samples;
 	int count = 0;
-	for (int i = 0; i < rows->count; i++)
-		if (rows->row[i].run)
-			run[count++] = rows->row[i].run;
+	for (EACH_ROW(rows))
+		if (row->run)
+			run[count++] = row->run;
 	say_progress("scs: time");
 	sample_runs(count, run, seconds, samples);
-	for (int i = 0, k = 0; i < rows->count; i++)
-		if (rows->row[i].run)
-			rows->row[i].samples = samples[k++];
+	for (EACH_ROW(rows))
+		if (row->run)
+			row->samples = *next++;
 }
 
 static void put_times(FILE *out, const struct row *row, double of_exact)
@@ -243,6 +215,7 @@ static void put_times(FILE *out, const struct row *row, double of_exact)
 	else
 		fprintf(out, "%.4g,%.4g,%.4g,%d,%.4g,", s->min, s->median, s->max, s->count, s->median / of_exact);
 	put_quoted(out, row->refused ? row->refused : row->method->settings);
+	putc('\n', out);
 }
 
 /* ---- the first table ---- */
@@ -282,7 +255,7 @@ static void find_settings(const struct problem *p, const struct truth *t, const 
 		look_for(&rows, adaptive_methods, p, t, targets[k], quick ? 64 : 1024);
 	}
 	FILE *out = file_in(variants, "settings", "w");
-	for (const struct row *row = rows.row; row < rows.row + rows.count; row++)
+	for (EACH_ROW(&rows))
 		fprintf(out, "%g %.17g %.17g %d %.17g %s\n", row->target, row->found.setting, row->found.error,
 		        row->found.reached, row->found.estimate, row->method->name);
 	table_close(out, "settings");
@@ -299,10 +272,10 @@ static void read_settings(struct rows *rows, const struct problem *p, const char
 		name) == 6) {
 		struct row *row = add_row(rows, method_find(name), NULL);
 		row->target = target;
+		f.reached = reached;
 		row->found = f;
-		row->found.reached = reached;
 		if (reached && row->method)
-			row->run = row->method->open(row->method, p, row->found.setting);
+			row->run = row->method->open(row->method, p, f.setting);
 		if (!row->method || (reached && !row->run))
 			leave(name, "has settings, and is not there");
 	}
@@ -316,51 +289,48 @@ static void put_row(FILE *out, const struct row *row, double of_exact)
 	put_quoted(out, row->method->name);
 	fprintf(out, ",%s,%s,%.6g,", family_names[row->method->family], row->method->tolerance ? "tolerance" : "step",
 		f->setting);
-	if (isfinite(f->error))
-		fprintf(out, "%.4g,", f->error);
-	else
-		fputs("failed,", out);
+	put_number(out, "%.4g", f->error, "failed");
 	fputs(f->reached ? "reached," : "not reached,", out);
-	if (f->estimate > 0)
-		fprintf(out, "%.2g,", f->estimate);
-	else
-		fputs("none,", out);
+	put_number(out, "%.2g", f->estimate > 0 ? f->estimate : NAN, "none");
 	put_times(out, row, of_exact);
-	putc('\n', out);
+}
+
+/* What takes one step per output: what it reaches, a row for each target; its time stands in both. In float none comes
+ * near these errors; the next table has them */
+static void add_targets(struct rows *rows, struct rows *exact, const struct truth *t, double unit)
+{
+	for (EACH_ROW(exact)) {
+		if (!row->run || strstr(row->method->name, "float"))
+			continue;
+		const double error = error_at_outputs(row->run, t);
+		for (int k = 0; k < 2; k++) {
+			struct row *to = add_row(rows, row->method, k == 0 ? row->run : NULL);
+			to->target = targets[k];
+			to->found = (struct found){ unit, error, error <= targets[k], 0 };
+		}
+	}
 }
 
 static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
                         bool quick)
 {
 	static struct rows rows, exact;
-	read_settings(&rows, p, variants);
-	const struct method *chosen = add_exact(&exact, p, variants, "scs")->method;
 	double of_exact = NAN;
-	/* At one step per output: what it reaches, a row for each target; its time stands in both. In float none comes
-	 * near these errors; the next table has them */
-	for (struct row *row = exact.row; row < exact.row + exact.count; row++) {
-		if (!row->run || is_float(row->method))
-			continue;
-		const double error = error_at_outputs(row->run, t);
-		for (int k = 0; k < 2; k++) {
-			struct row *to = add_row(&rows, row->method, k == 0 ? row->run : NULL);
-			to->target = targets[k];
-			to->found = (struct found){ p->unit, error, error <= targets[k], 0 };
-		}
-	}
+	read_settings(&rows, p, variants);
+	add_exact(&exact, p, variants, "scs");
+	add_targets(&rows, &exact, t, p->unit);
 	sample_rows(&rows, quick ? 1 : 20);
-	for (int i = 0; i < rows.count; i++) {
-		struct row *row = &rows.row[i];
-		if (!row->run && i > 0 && row->method == row[-1].method && row->found.setting == p->unit)
+	for (EACH_ROW(&rows)) {
+		if (!row->run && row > rows.row && row->method == row[-1].method && row->found.setting == p->unit)
 			row->samples = row[-1].samples;
-		if (row->method == chosen && row->run)
+		if (row->method == &exact.ours[0] && row->run)
 			of_exact = row->samples.median;
 	}
 	FILE *out = table_open(folder, "headline_integrators.csv",
 		"target,method,family,setting_kind,setting,error,reached,parts_estimated,ns_min,ns_median,ns_max,"
 		"ns_samples,ns_over_exact,settings");
-	for (int i = 0; i < rows.count; i++)
-		put_row(out, &rows.row[i], of_exact);
+	for (EACH_ROW(&rows))
+		put_row(out, row, of_exact);
 	table_close(out, "headline_integrators.csv");
 	close_rows(&exact);
 }
@@ -376,22 +346,19 @@ static double energy(const double *y)
 
 static double drift(struct run *run, int units)
 {
-	double y[MOST_STATES], start;
+	double y[MOST_STATES];
 	run->restart(run);
 	run->get(run, y);
-	start = energy(y);
+	const double start = energy(y);
 	if (!run->advance(run, units, NULL))
 		return NAN;
 	run->get(run, y);
 	return (energy(y) - start) / start;
 }
 
-static void put_number(FILE *out, const struct row *row, double value)
+static void put_found(FILE *out, const struct row *row, double value)
 {
-	if (row->run && isfinite(value))
-		fprintf(out, "%.4g,", value);
-	else
-		fputs(row->refused ? "refused," : row->run ? "failed," : "cannot,", out);
+	put_number(out, "%.4g", row->run ? value : NAN, row->refused ? "refused" : row->run ? "failed" : "cannot");
 }
 
 static void equal_step(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
@@ -399,8 +366,9 @@ static void equal_step(const struct problem *p, const struct truth *t, const cha
 {
 	static struct rows rows;
 	const int long_steps = quick ? 1000000 : 10000000;
-	const struct row *exact = add_exact(&rows, p, variants, "scs");
-	for (struct row *row = rows.row; row < rows.row + rows.count; row++) {
+	double of_exact = NAN;
+	add_exact(&rows, p, variants, "scs");
+	for (EACH_ROW(&rows)) {
 		if (!row->run)
 			continue;
 		say_progress("scs: drift of %s", row->method->name);
@@ -412,15 +380,17 @@ static void equal_step(const struct problem *p, const struct truth *t, const cha
 	FILE *out = table_open(folder, "headline_equal_step.csv",
 		"method,family,step,error,energy_drift,energy_drift_long,long_steps,ns_min,ns_median,ns_max,"
 		"ns_samples,ns_over_exact,settings");
-	for (const struct row *row = rows.row; row < rows.row + rows.count; row++) {
+	for (EACH_ROW(&rows))
+		if (row->method == &rows.ours[0] && row->run)
+			of_exact = row->samples.median;
+	for (EACH_ROW(&rows)) {
 		put_quoted(out, row->method->name);
 		fprintf(out, ",%s,%g,", family_names[row->method->family], p->unit);
-		put_number(out, row, row->found.error);
-		put_number(out, row, row->drift);
-		put_number(out, row, row->long_drift);
+		put_found(out, row, row->found.error);
+		put_found(out, row, row->drift);
+		put_found(out, row, row->long_drift);
 		fprintf(out, "%d,", long_steps);
-		put_times(out, row, exact->run ? exact->samples.median : NAN);
-		putc('\n', out);
+		put_times(out, row, of_exact);
 	}
 	table_close(out, "headline_equal_step.csv");
 	close_rows(&rows);
@@ -431,18 +401,17 @@ static void equal_step(const struct problem *p, const struct truth *t, const cha
 static void meet(FILE *out, const char *kind, const char *gap, const char *variants)
 {
 	static struct rows rows;
-	char base[100], path[4096];
+	char base[100];         /* the problem's name for as long as it is there */
 	snprintf(base, sizeof base, "%s-%s", kind, gap);
-	snprintf(path, sizeof path, "%s/%s.so", variants, base);
-	struct problem *p = problem_load(path, base, 0.01, 10000, true, 0);
+	struct problem *p = problem_load(text("%s/%s.so", variants, base), base, 0.01, 10000, true, 0);
 	struct truth *t = truth_of(p);
 	rows.count = 0;
 	add_exact(&rows, p, variants, base);
-	for (const struct row *row = rows.row; row < rows.row + rows.count; row++) {
+	for (EACH_ROW(&rows)) {
 		fprintf(out, "%s,%s,", kind, gap);
 		put_quoted(out, row->method->name);
 		fprintf(out, ",%s,", family_names[row->method->family]);
-		put_number(out, row, row->run ? error_at_outputs(row->run, t) : NAN);
+		put_found(out, row, row->run ? error_at_outputs(row->run, t) : NAN);
 		put_quoted(out, row->refused ? row->refused : row->method->settings);
 		fprintf(out, ",%.2g\n", t->agreement);
 	}
@@ -451,32 +420,25 @@ static void meet(FILE *out, const char *kind, const char *gap, const char *varia
 	problem_free(p);
 }
 
-static void confluence(const char *variants, const char *folder)
-{
-	FILE *out = table_open(folder, "headline_confluence.csv",
-	                       "case,gap,method,family,error,settings,truth_agreement");
-	for (int i = 0; i < 2 * MEETINGS; i++)
-		meet(out, i < MEETINGS ? "twins" : "one-way", meetings[i % MEETINGS].gap, variants);
-	table_close(out, "headline_confluence.csv");
-}
-
 int main(int argc, char **argv)
 {
 	const unsigned flags = flags_of(argc, &argv, "--quick --find --list", 0, 2,
 	                                "headline --list\n       headline [--find] [--quick] VARIANTS OUTDIR");
 	const bool quick = flags & 1;
-	char path[4096];
 	if (flags & 4) {
 		list();
 		return 0;
 	}
-	snprintf(path, sizeof path, "%s/scs.so", argv[0]);
-	struct problem *p = problem_load(path, "scs", 0.01, quick ? 10000 : 100000, true, 0);
+	struct problem *p = problem_load(text("%s/scs.so", argv[0]), "scs", 0.01, quick ? 10000 : 100000, true, 0);
 	struct truth *t = truth_of(p);
 	fprintf(stderr, "\ntwo roads to the truth agree to %.2g\n", t->agreement);
 	if (flags & 2) {
 		find_settings(p, t, argv[0], quick);
-		confluence(argv[0], argv[1]);
+		FILE *out = table_open(argv[1], "headline_confluence.csv",
+		                       "case,gap,method,family,error,settings,truth_agreement");
+		for (int i = 0; i < 2 * MEETINGS; i++)
+			meet(out, i < MEETINGS ? "twins" : "one-way", meetings[i % MEETINGS].gap, argv[0]);
+		table_close(out, "headline_confluence.csv");
 	} else {
 		integrators(p, t, argv[0], argv[1], quick);
 		equal_step(p, t, argv[0], argv[1], quick);

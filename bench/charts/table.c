@@ -61,15 +61,12 @@ void *room_for(size_t count, size_t size)
 /* Without a slash dlopen would look in the system's places */
 void *object_open(const char *file)
 {
-	char path[4096];
-	snprintf(path, sizeof path, "%s%s", strchr(file, '/') ? "" : "./", file);
-	return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	return dlopen(text("%s%s", strchr(file, '/') ? "" : "./", file), RTLD_NOW | RTLD_LOCAL);
 }
 
 FILE *file_in(const char *folder, const char *name, const char *mode)
 {
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
+	const char *path = text(*folder ? "%s/%s" : "%s%s", folder, name);
 	FILE *f = fopen(path, mode);
 	if (!f) {
 		perror(path);
@@ -102,10 +99,45 @@ void put_quoted(FILE *out, const char *text)
 	putc('"', out);
 }
 
+void put_number(FILE *out, const char *format, double x, const char *word)
+{
+	if (isfinite(x))
+		fprintf(out, format, x);
+	else
+		fputs(word, out);
+	putc(',', out);
+}
+
+const char *text(const char *format, ...)
+{
+	enum { KEPT = 16, LENGTH = 4096 };
+	static char kept[KEPT][LENGTH];
+	static int last;
+	va_list arguments;
+	last = (last + 1) % KEPT;
+	va_start(arguments, format);
+	vsnprintf(kept[last], LENGTH, format, arguments);
+	va_end(arguments);
+	return kept[last];
+}
+
+void split_line(const char *of, char *line, int count, char **field)
+{
+	int found = 0;
+	line[strcspn(line, "\n")] = '\0';
+	for (char *at = line; at && found < count; found++) {
+		field[found] = at;
+		at = strchr(at, '\t');
+		if (at)
+			*at++ = '\0';
+	}
+	if (found < count)
+		leave(of, "a line of its list has too few fields");
+}
+
 void *variant_symbol(const char *folder, const char *file, const char *name)
 {
-	char path[4096];
-	snprintf(path, sizeof path, "%s/%s.so", folder, file);
+	const char *path = text("%s/%s.so", folder, file);
 	void *handle = object_open(path), *symbol = handle ? dlsym(handle, name) : NULL;
 	if (!symbol)
 		leave(path, dlerror());
@@ -119,10 +151,9 @@ const pl_model *variant_model(const char *folder, const char *file)
 
 char *variant_refused(const char *file)
 {
-	char name[4096], *line = NULL;
+	char *line = NULL;
 	size_t room = 0;
-	snprintf(name, sizeof name, "%s.refused", file);
-	FILE *f = fopen(name, "r");
+	FILE *f = fopen(text("%s.refused", file), "r");
 	if (!f)
 		return NULL;
 	ssize_t length = getline(&line, &room, f);
