@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Reading CSV: -f csv.awk before the program. A line into fields; quotes keep commas. Fields are strings, also those
-# that look like numbers: "1e-2" is not "0.01", and "0" is not false.
+# Reading CSV, and numbers in sentences: -f csv.awk before the program. A line into fields; quotes keep commas. Fields
+# are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false.
 function split_row(line, field,    n, text, pieces, piece, parts, part, i, j) {
 	if (index(line, "\"") == 0) {
 		n = split(line, field, ",")
@@ -19,9 +19,51 @@ function split_row(line, field,    n, text, pieces, piece, parts, part, i, j) {
 	return n
 }
 function is_number(text) { return text ~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/ }
-# Of a head: column["name"] is its number.
-function read_head(line, column,    n, i, head) {
+# Of a head: column["name"] is its number, head[number] its name.
+function read_head(line, column,    n, i) {
 	n = split_row(line, head)
 	for (i = 1; i <= n; i++) column[head[i]] = i
 	return n
+}
+# Of a section of tables.txt or findings.txt: what its row has there; `low` and `high` of all x so far
+function of(name) { return f[column[name]] }
+function span(x) { if (low == "" || x < low) low = x; if (high == "" || x > high) high = x }
+function quoted(text) { return text ~ /[,"]/ ? "\"" text "\"" : text }
+function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); gsub(/>/, "\\&gt;", text); return text }
+# The place of k among n by rising values
+function place_of(k, n, value,    i, at) {
+	for (i = at = 1; i <= n; i++) at += value[i] < value[k] || (value[i] == value[k] && i < k)
+	return at
+}
+# palette.list, named by -v palette=
+function read_palette(    line, part, n) {
+	while ((getline line < palette) > 0) {
+		n = split(line, part, " ")
+		if (n > 1 && line !~ /^#/) { colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
+	}
+}
+
+# Two digits, an exponent where zeros would hide the size
+function short(x) {
+	x += 0
+	if (x == 0) return "0"
+	if (x < 0) return "-" short(-x)
+	if (x >= 9.95 && x < 1e5) return sprintf("%.0f", x)
+	if (x >= 0.001 && x < 9.95) return sprintf("%.2g", x)
+	x = sprintf("%.1e", x)
+	sub(/e\+?/, "e", x); sub(/e-0/, "e-", x); sub(/e0/, "e", x); sub(/\.0e/, "e", x)
+	return x
+}
+function three(x) {
+	x += 0
+	return x < 9.995 ? sprintf("%.2g", x) : x < 99.95 ? sprintf("%.0f", x) : sprintf("%.3g", x)
+}
+function time_text(ns) {
+	ns += 0
+	return ns < 1000 ? three(ns) " ns" : ns < 1e6 ? three(ns / 1e3) " us" : ns < 1e9 ? three(ns / 1e6) " ms" : \
+		three(ns / 1e9) " s"
+}
+function times_text(x) {
+	x += 0
+	return x < 9.95 ? sprintf("%.1f", x) : x < 1e5 ? sprintf("%.0f", x) : short(x)
 }

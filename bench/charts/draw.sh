@@ -13,34 +13,33 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 
-# derive TABLE TABLES PROGRAM [OPTION...]: TABLE by PROGRAM.awk of others, if they are there
+# derive TABLE TABLES SECTION [OPTION...]: TABLE by SECTION of tables.txt of others, if they are there
 derive() {
-	table=$1 from=$2 program=$3
+	table=$1 from=$2 section=$3
 	shift 3
 	for name in $from; do
 		[ -f "$folder/$name" ] || return 0
 	done
 	# Words
 	# shellcheck disable=SC2086
-	(cd "$folder" && exec awk "$@" -f "$csv" -f "$here/$program.awk" $from) >"$work/$table"
+	(cd "$folder" && exec sh "$here/table.sh" "$section" "$@" $from) >"$work/$table"
 	mv "$work/$table" "$folder/$table"
 }
 here=$PWD/$charts
-csv=$here/csv.awk
 
 derive precision.csv precision_raw.csv fold -v lists=setting,largest,ns_median \
 	-v by=model,method,family,setting_kind,unit_s,history_s,truth_agreement
-derive precision_methods.csv precision_raw.csv told -v columns=method,family,setting_kind,settings
+derive precision_methods.csv precision_raw.csv once -v columns_of=method,family,setting_kind,settings
 derive energy.csv energy_raw.csv fold -v by=case,method,family,real,step_s -v lists=steps,largest
-derive hard.csv hard_raw.csv told -v columns=case,method,family,setting_kind,setting,error,word
-derive hard_methods.csv hard_raw.csv told -v columns=method,family,settings
+derive hard.csv hard_raw.csv once -v columns_of=case,method,family,setting_kind,setting,error,word
+derive hard_methods.csv hard_raw.csv once -v columns_of=method,family,settings
 derive stability_map.csv stability_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.01 -1e-12 1e-12 0.01 0.1 1 10'
 derive operator_map.csv operator_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.001 -1e-6 1e-6 0.001 0.1 1 10'
 derive pl_map.csv pl_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.001 0 1e-6 0.001 0.1 1 10'
 derive plmap.csv plmap_raw.csv ratios
 derive matrix.csv precision.csv matrix
-derive break_even.csv 'generation.csv precision.csv' break_even
-derive precision_check.csv precision_raw.csv precision_check
+derive break_even.csv 'generation.csv precision.csv' after
+derive precision_check.csv precision_raw.csv within
 
 mkdir "$work/pictures"
 # shellcheck disable=SC2016

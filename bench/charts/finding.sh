@@ -19,8 +19,4 @@ for table in ${said#*: }; do
 	tables="$tables $folder/$table"
 done
 # shellcheck disable=SC2086
-awk -v head="$rest:" '
-	BEGIN { print "FNR == 1 { file++; split(\"\", column); read_head($0, column); next } { split_row($0, f) }" }
-	$1 == "===" { on = $2 == head; next } on' "$here/findings.txt" |
-	awk -v name="$name" -f "$here/csv.awk" -f "$here/words.awk" -f /dev/stdin $tables | fold -s -w "$columns" |
-	sed 's/ *$//'
+sh "$here/table.sh" "$rest" -v name="$name" $tables | fold -s -w "$columns" | sed 's/ *$//'

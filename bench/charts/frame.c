@@ -128,9 +128,7 @@ static void peer(const struct method *m, const struct building *b, int parts, in
 
 static void ours(const char *folder, const struct building *b, int parts, double *roof)
 {
-	char file[40];
-	snprintf(file, sizeof file, "frame-%d", parts);
-	const pl_model *model = variant_model(folder, file);
+	const pl_model *model = variant_model(folder, text("frame-%d", parts));
 	void *state = calloc(1, model->size);
 	double y[SIZE];
 	model->init(state);

@@ -323,10 +323,8 @@ static void exact_entry(FILE *csv, const struct history *s, const char *variants
 	static const char *const steps[] = {"0.1", "1", "10"};
 	bool good = true;
 	for (int k = 0; k < 3; k++) {
-		char file[100];
 		double y[HAND_MOST];
-		snprintf(file, sizeof file, "%s_step%s", s->model->name, steps[k]);
-		const pl_model *model = variant_model(variants, file);
+		const pl_model *model = variant_model(variants, text("%s_step%s", s->model->name, steps[k]));
 		void *state = calloc(1, model->size);
 		model->init(state);
 		for (double t = 0; t < s->model->seconds && good; t += model->h) {
@@ -375,10 +373,8 @@ int main(int argc, char **argv)
 	                       "model,method,largest_step_s,growth_per_s_at_step_0.01,criterion");
 	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
 		const struct model *m = &models[i];
-		char path[4096];
-		snprintf(path, sizeof path, "%s/%s.so", argv[1], m->name);
-		struct problem *p = problem_load(path, m->name, 0.01, 1, m->linear, strcmp(m->name, "sdcsf") == 0 ? 5
-		                                 : 0);
+		struct problem *p = problem_load(text("%s/%s.so", argv[1], m->name), m->name, 0.01, 1, m->linear,
+		                                 strcmp(m->name, "sdcsf") == 0 ? 5 : 0);
 		say_progress("largest_step: %s", m->name);
 		if (m->linear)
 			linear_model(csv, p);

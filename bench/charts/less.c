@@ -222,13 +222,11 @@ static struct modal truncated(const struct modal *m, int kept, bool with_static)
 struct list { FILE *file; const char *folder; int count; };
 
 static FILE *spec_open(struct list *list, const struct scene *s, const char *model, const char *options, int kept,
-                       int states, char *name, size_t room)
+                       int states)
 {
-	char file[60];
-	snprintf(name, room, "less_%d", ++list->count);
+	const char *name = text("less_%d", ++list->count);
 	fprintf(list->file, "%s\t%s\t%s\t%d\t%d\t%s --step %s\n", name, s->name, model, kept, states, options, s->step);
-	snprintf(file, sizeof file, "%s.spec", name);
-	FILE *f = file_in(list->folder, file, "w");
+	FILE *f = file_in(list->folder, text("%s.spec", name), "w");
 	fprintf(f, "# %s: %s, %d kept\nmodel less\ninput u hold first\n", s->name, model, kept);
 	return f;
 }
@@ -236,8 +234,7 @@ static FILE *spec_open(struct list *list, const struct scene *s, const char *mod
 static void put_modal(struct list *list, const struct scene *s, const char *model, const char *options,
                       const struct modal *m, int kept)
 {
-	char name[40];
-	FILE *f = spec_open(list, s, model, options, kept, 2 * m->modes, name, sizeof name);
+	FILE *f = spec_open(list, s, model, options, kept, 2 * m->modes);
 	fputs("coord ", f);
 	for (int i = 0; i < m->modes; i++)
 		fprintf(f, "%sq%d", i ? ", " : "", i + 1);
@@ -254,8 +251,7 @@ static void put_modal(struct list *list, const struct scene *s, const char *mode
 
 static void put_poles(struct list *list, const struct scene *s, const char *model, const struct poles *b, int states)
 {
-	char name[40];
-	FILE *f = spec_open(list, s, model, "", states, states, name, sizeof name);
+	FILE *f = spec_open(list, s, model, "", states, states);
 	fputs("coord ", f);
 	for (int i = 0; i < b->count; i++)
 		fprintf(f, cimag(b->p[i]) > 0 ? "%sq%d, r%d" : "%sq%d", i ? ", " : "", i + 1, i + 1);
@@ -344,10 +340,8 @@ static void run_generated(const char *folder, const char *name, const struct sce
 /* The file NAME.cost has plgen's own count */
 static int multiplications(const char *folder, const char *name)
 {
-	char file[60];
 	int count = -1;
-	snprintf(file, sizeof file, "%s.cost", name);
-	FILE *f = file_in(folder, file, "r");
+	FILE *f = file_in(folder, text("%s.cost", name), "r");
 	if (fscanf(f, "%d", &count) != 1)
 		count = -1;
 	fclose(f);
@@ -358,8 +352,7 @@ static int write_table(const char *variants, const char *folder)
 {
 	static struct scene s[SCENES];
 	static double truth[SCENES][MOST_SAMPLES], y[MOST_SAMPLES];
-	char line[400], name[40], scene[40], model[80];
-	int kept, states;
+	char line[400], *field[5];                      /* file, scene, model, kept, states */
 	FILE *csv = table_open(folder, "less.csv",
 	                       "scene,model,kept,states,multiplications,error_over_peak,anyway,error_anyway");
 	double anyway[SCENES];
@@ -371,14 +364,13 @@ static int write_table(const char *variants, const char *folder)
 	}
 	FILE *list = file_in(variants, "less.list", "r");
 	while (fgets(line, sizeof line, list)) {
-		if (sscanf(line, "%39[^\t]\t%39[^\t]\t%79[^\t]\t%d\t%d", name, scene, model, &kept, &states) != 5)
-			return 1;
+		split_line("less", line, 5, field);
 		int i = 0;
-		while (strcmp(s[i].name, scene) != 0)
+		while (strcmp(s[i].name, field[1]) != 0)
 			i++;
-		run_generated(variants, name, &s[i], y);
-		fprintf(csv, "%s,\"%s\",%d,%d,%d,%.3g,%s,%.3g\n", scene, model, kept, states,
-		        multiplications(variants, name), error_over_peak(s[i].samples, y, truth[i]), s[i].anyway_is,
+		run_generated(variants, field[0], &s[i], y);
+		fprintf(csv, "%s,\"%s\",%s,%s,%d,%.3g,%s,%.3g\n", field[1], field[2], field[3], field[4],
+		        multiplications(variants, field[0]), error_over_peak(s[i].samples, y, truth[i]), s[i].anyway_is,
 		        anyway[i]);
 	}
 	fclose(list);

@@ -3,7 +3,6 @@
  * one output to the next. Compiled as variant.sh compiles what plgen emits, and loaded. */
 #include "charts.h"
 
-#include <dlfcn.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,23 +47,20 @@ static void put_code(FILE *c, const struct literals *l)
 
 static bool compile(const struct literals *l, const char *folder)
 {
-	char path[4096], command[10000];
 	const char *cc = getenv("CC");
-	snprintf(path, sizeof path, "%s/step.c", folder);
-	FILE *c = fopen(path, "w");
+	FILE *c = fopen(text("%s/step.c", folder), "w");
 	if (!c)
 		return false;
 	put_code(c, l);
 	if (fclose(c) != 0)
 		return false;
-	snprintf(command, sizeof command, "%s -std=gnu11 -O2 -fPIC -shared '%s' -o '%s/step.so'", cc && *cc ? cc : "cc",
-	         path, folder);
-	return system(command) == 0;
+	return system(text("%s -std=gnu11 -O2 -fPIC -shared '%s/step.c' -o '%s/step.so'", cc && *cc ? cc : "cc", folder,
+	                   folder)) == 0;
 }
 
 void *literals_load(const struct literals *l)
 {
-	char folder[2000], path[4096];
+	char folder[2000];
 	const char *tmp = getenv("TMPDIR");
 	for (int i = 0; i < l->size * l->size; i++)
 		if (!isfinite(l->Phi[i]))
@@ -72,11 +68,9 @@ void *literals_load(const struct literals *l)
 	snprintf(folder, sizeof folder, "%s/literals.XXXXXX", tmp && *tmp ? tmp : "/tmp");
 	if (!mkdtemp(folder))
 		return NULL;
-	snprintf(path, sizeof path, "%s/step.so", folder);
-	void *handle = compile(l, folder) ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
-	unlink(path);
-	snprintf(path, sizeof path, "%s/step.c", folder);
-	unlink(path);
+	void *handle = compile(l, folder) ? object_open(text("%s/step.so", folder)) : NULL;
+	unlink(text("%s/step.so", folder));
+	unlink(text("%s/step.c", folder));
 	rmdir(folder);
 	return handle;
 }

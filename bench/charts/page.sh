@@ -10,28 +10,48 @@ charts=bench/charts
 shown=$(mktemp)
 trap 'rm -f "$shown"' EXIT
 stories='headline_integrators headline_equal_step energy_double hard less needs'
-
-escaped() {
-	sed 's/&/\&amp;/g; s/</\&lt;/g; s/"/\&quot;/g'
-}
+# The topics: NAME|short title, for links|title|what is shown, as `show` reads it
+topics='stability|Stability and failures|Stability, quality, and where methods fail|hard hard_table +hard.csv
+ hard_methods.csv friction friction_times.csv friction.csv stability_map +stability_map.csv stability_boundary.csv
+ stability_check.csv quality quality_small quality.csv quality_check.csv operator_map +operator_map.csv
+ operator_boundary.csv pl_map +pl_map.csv operator_check.csv The_largest_stable_step=largest_step
+structural|Structural dynamics|Time integrators of structural dynamics|frame frame.csv frame_history.csv
+ frame_record.csv integrators integrators.csv =integrators_orders integrators_check.csv
+energy|Energy|Energy and momentum in long runs|energy_double energy_float energy_float_short momentum_double
+ +energy.csv Light_damping=decay
+papers|The papers|What the papers found, and what is measured|Source_000=papers_000 papers_times papers_times.csv
+ plmap +plmap.csv plmap_check.csv Source_001=papers_001 Source_002=papers_002 Source_004=papers_004
+ papers_beam_tip papers_beam_tip.csv
+convergence|Convergence|Convergence, and where frequencies meet|convergence_scs@convergence.csv:system=scs
+ convergence_sdcs@convergence.csv:system=sdcs convergence_sdcsf@convergence.csv:system=sdcsf
+ convergence_orders.csv headline_confluence headline_confluence.csv
+limits|Generating, machine, clocks|What generating costs, how near to the machine, how times agree|break_even
+ break_even.csv =generation limits limits.csv How_times_agree=precision_check
+more|More|More|'
 
 there() {
 	[ -f "$folder/$1" ]
 }
 
+# made SECTION [OPTION...] FILE.csv: by tables.txt
+made() {
+	sh $charts/table.sh "$@"
+}
+
+escaped() {
+	sed 's/&/\&amp;/g; s/</\&lt;/g; s/"/\&quot;/g'
+}
+
 # text_of NAME: its caption
 text_of() {
 	name=$1
-	while [ -n "$name" ]; do
-		if grep -qx "=== $name" $charts/captions.txt; then
-			awk -v name="$name" '/^=== / { here = $2 == name; next } here' $charts/captions.txt | escaped
-			return
-		fi
+	while ! grep -qx "=== $name" $charts/captions.txt; do
 		case $name in
 			*_*) name=${name%_*} ;;
-			*) name= ;;
+			*) return 0 ;;
 		esac
 	done
+	awk -v name="$name" '/^=== / { here = $2 == name; next } here' $charts/captions.txt | escaped
 }
 
 # caption NAME: as a paragraph
@@ -63,7 +83,7 @@ picture() {
 table() {
 	there "$1" || return 0
 	echo "$1" >>"$shown"
-	awk -v name="$1" -v where="$2" -f $charts/csv.awk -f $charts/table.awk "$folder/$1"
+	made table -v name="$1" -v where="$2" "$folder/$1"
 }
 
 # numbers FILE.csv: a link to it; what it has in its rows is for programs
@@ -73,143 +93,88 @@ numbers() {
 	printf '<p class=numbers>Numbers: <a href="%s">%s</a></p>\n' "$1" "$1"
 }
 
-# rows FILE.csv COLUMN VALUE HEADING: the table of those rows, if there are any
-rows() {
-	there "$1" || return 0
-	awk -v column="$2" -v value="$3" -f $charts/csv.awk -f $charts/rows_of.awk "$folder/$1" || return 0
-	printf '<h2>%s</h2>\n' "$4"
-	caption "${1%.csv}"
-	table "$1" "$2=$3"
-}
-
-# head_of TITLE
-head_of() {
-	cat <<-EOT
-	<!DOCTYPE html>
-	<html lang="en">
-	<meta charset="utf-8">
-	<meta name="viewport" content="width=device-width, initial-scale=1">
-	<title>$1</title>
-	<link rel="stylesheet" href="style.css">
-	<h1>$1</h1>
-	EOT
-}
-
-# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables; its titles,
-# the short one for links
-titles='stability|Stability and failures|Stability, quality, and where methods fail
-structural|Structural dynamics|Time integrators of structural dynamics
-energy|Energy|Energy and momentum in long runs
-papers|The papers|What the papers found, and what is measured
-convergence|Convergence|Convergence, and where frequencies meet
-limits|Generating, machine, clocks|What generating costs, how near to the machine, how times agree
-more|More|More'
-topics='stability structural energy papers convergence limits'
-
-# title_of TOPIC FIELD: 2, the short one, or 3
-title_of() {
-	echo "$titles" | sed -n "s/^$1|//p" | cut -d '|' -f "$(($2 - 1))"
-}
-
-# headed HEADING NAME: the table NAME.csv with its caption below a heading
+# headed HEADING NAME [COLUMN=VALUE]: the table NAME.csv with its caption below a heading, if there is one
 headed() {
 	there "$2.csv" || return 0
-	printf '<h2>%s</h2>\n' "$1"
+	[ -z "$1" ] || printf '<h2>%s</h2>\n' "$1"
 	caption "$2"
-	table "$2.csv"
+	table "$2.csv" "$3"
 }
 
-# show ITEM...: NAME, a picture; NAME.csv, a table; +NAME.csv, a link to its numbers
+# show ITEM...: NAME, a picture; NAME.csv, a table; +NAME.csv, a link to its numbers; HEADING=NAME, a table below its
+# caption; NAME@FILE.csv:COLUMN=VALUE, a picture and, where it is there, those rows
 show() {
 	for item; do
 		case $item in
+			*@*)
+				name=${item%%@*} item=${item#*@}
+				! there "$name.svg" || { picture "$name"; table "${item%%:*}" "${item#*:}"; } ;;
 			+*) numbers "${item#+}" ;;
+			*=*) headed "$(echo "${item%%=*}" | tr _ ' ')" "${item#*=}" ;;
 			*.csv) table "$item" ;;
+			hard_table) ! there hard.csv || { caption hard_table; made hard_table "$folder/hard.csv"; } ;;
 			*) picture "$item" ;;
 		esac
 	done
 }
 
-stability() {
-	show hard
-	there hard.csv && caption hard_table && awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
-	show +hard.csv hard_methods.csv friction friction_times.csv friction.csv \
-		stability_map +stability_map.csv stability_boundary.csv stability_check.csv \
-		quality quality_small quality.csv quality_check.csv \
-		operator_map +operator_map.csv operator_boundary.csv pl_map +pl_map.csv operator_check.csv
-	headed 'The largest stable step' largest_step
+# topic NAME FIELD: of the list; 2: the short title, 3: the title, 4: what is shown
+topic() {
+	echo "$topics" | awk -F '|' -v name="$1" -v field="$2" '
+		!/^ / { on = $1 == name; if (on) print $field; next } on && field == 4'
 }
 
-structural() {
-	show frame frame.csv frame_history.csv frame_record.csv integrators integrators.csv
-	there integrators_orders.csv && caption integrators_orders
-	show integrators_orders.csv integrators_check.csv
-}
-
-energy() {
-	show energy_double energy_float energy_float_short momentum_double +energy.csv
-	headed 'Light damping' decay
-}
-
-papers() {
-	for source in 000 001 002 004; do
-		headed "Source $source" papers_$source
-		[ $source != 000 ] || show papers_times papers_times.csv plmap +plmap.csv plmap_check.csv
-	done
-	show papers_beam_tip papers_beam_tip.csv
-}
-
-convergence() {
-	for file in "$folder"/convergence_*.svg; do
-		[ -f "$file" ] || continue
-		system=$(basename "$file" .svg)
-		show "$system"
-		table convergence.csv "system=${system#convergence_}"
-	done
-	show convergence_orders.csv headline_confluence headline_confluence.csv
-}
-
-limits() {
-	show break_even break_even.csv
-	there generation.csv && caption generation
-	show generation.csv limits limits.csv
-	headed 'How times agree' precision_check
-}
-
-# What no page has shown
-more() {
+# content TOPIC; of more: what no page has shown
+content() {
+	# Words
+	# shellcheck disable=SC2046
+	[ "$1" = more ] || { show $(topic "$1" 4); return; }
 	for file in "$folder"/*.svg "$folder"/*.csv; do
 		name=$(basename "$file")
-		if [ -f "$file" ] && ! grep -qxF "$name" "$shown"; then
-			case $name in
-				*_narrow.svg | *_raw.csv) ;;
-				*.svg) picture "${name%.svg}" ;;
-				*) caption "${name%.csv}"; table "$name" ;;
-			esac
-		fi
+		[ -f "$file" ] && ! grep -qxF "$name" "$shown" || continue
+		case $name in
+			*_narrow.svg | *_raw.csv) ;;
+			*.svg) picture "${name%.svg}" ;;
+			*) caption "${name%.csv}"; table "$name" ;;
+		esac
 	done
 }
 
-links() {
-	echo '<nav>'
+# page NAME TITLE: what comes in, as a page
+page() {
+	cat <<-EOT
+	<!DOCTYPE html>
+	<html lang="en">
+	<meta charset="utf-8">
+	<meta name="viewport" content="width=device-width, initial-scale=1">
+	<title>$2</title>
+	<link rel="stylesheet" href="style.css">
+	<h1>$2</h1>
+	<nav>
+	EOT
 	[ "$1" = index ] || echo '<a href="index.html">All models</a>'
-	for other in $topics more; do
+	for other in $names; do
 		[ "$other" = "$1" ] || [ ! -f "$folder/$other.html" ] ||
-			printf '<a href="%s.html">%s</a>\n' "$other" "$(title_of "$other" 2)"
+			printf '<a href="%s.html">%s</a>\n' "$other" "$(topic "$other" 2)"
 	done
 	echo '</nav>'
+	cat
+	echo '</html>'
+}
+
+# of_model NAME COLUMN: what its first row in precision.csv has there
+of_model() {
+	made first -v where=model -v is="$1" -v wanted="$2" "$folder/precision.csv"
 }
 
 # model NAME: its page
 model() {
-	head_of "$1: time against error"
-	links model
 	about=$(sed -n "s/^$1	//p" $charts/models.list | escaped)
 	spec=$charts/specs/$1.spec
 	[ -f "$spec" ] || spec=models/$1.spec
 	printf '<p>%s The model: <code>%s</code>; %s s, an output every %s s.</p>\n' "$about" "$spec" \
 		"$(of_model "$1" history_s)" "$(of_model "$1" unit_s)"
-	awk -v only="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
+	made grid -v only="$1" "$folder/matrix.csv"
 	picture "precision_$1"
 	for file in "$folder/$1"_*.svg; do
 		name=$(basename "$file" .svg)
@@ -221,23 +186,17 @@ model() {
 		esac
 	done
 	printf '<h2>Every method at its cheapest setting</h2>\n<p>Time of an output.</p>\n'
-	awk -v model="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/ranking.awk "$folder/precision.csv"
+	made ranking -v model="$1" "$folder/precision.csv"
 	numbers precision.csv
-	rows largest_step.csv model "$1" 'The largest stable step'
-	echo '</html>'
-}
-
-# of_model NAME COLUMN: what its first row in precision.csv has there
-of_model() {
-	awk -v model="$1" -v wanted="$2" -f $charts/csv.awk -f $charts/value.awk "$folder/precision.csv"
+	! there largest_step.csv ||
+		[ -z "$(made first -v where=model -v is="$1" -v wanted=model "$folder/largest_step.csv")" ] ||
+		headed 'The largest stable step' largest_step "model=$1"
 }
 
 index() {
-	head_of 'plgen: the cheapest way to a wanted error, and where methods fail'
-	links index
 	if there matrix.csv; then
-		awk -f $charts/csv.awk -f $charts/verdict.awk "$folder/matrix.csv"
-		awk -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
+		made verdict "$folder/matrix.csv"
+		made grid "$folder/matrix.csv"
 		numbers matrix.csv
 	fi
 	for name in $stories; do
@@ -269,32 +228,29 @@ index() {
 	no place as a gap. Parameters of the models from the four papers are chosen, since those of the sources did not
 	survive; what is deduced and what is chosen is said in each model's file.</p>
 	EOT
-	echo '</html>'
 }
 
 rm -f "$folder"/*.html
 cp $charts/style.css "$folder"
+names=$(echo "$topics" | sed -n 's/^\([a-z]*\)|.*/\1/p')
 # Which topics have something, so that each page links to them; then the pages
-for topic in $topics; do
-	[ -z "$($topic)" ] || : >"$folder/$topic.html"
+for topic in $names; do
+	[ "$topic" = more ] || [ -z "$(content "$topic")" ] || : >"$folder/$topic.html"
 done
 if there precision.csv; then
-	models=$(awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv")
-	for name in $models; do
-		model "$name" >"$folder/model_$name.html"
+	for name in $(awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv"); do
+		model "$name" | page model "$name: time against error" >"$folder/model_$name.html"
 	done
 fi
 index >"$folder/index.html.new"
-rest=$(more)
+rest=$(content more)
 [ -z "$rest" ] || : >"$folder/more.html"
-for topic in $topics more; do
+for topic in $names; do
 	[ -f "$folder/$topic.html" ] || continue
-	{
-		head_of "$(title_of "$topic" 3)"
-		links "$topic"
-		if [ "$topic" = more ]; then printf '%s\n' "$rest"; else $topic; fi
-		echo '</html>'
-	} >"$folder/$topic.html.new"
+	if [ "$topic" = more ]; then printf '%s\n' "$rest"; else content "$topic"; fi |
+		page "$topic" "$(topic "$topic" 3)" >"$folder/$topic.html.new"
 	mv "$folder/$topic.html.new" "$folder/$topic.html"
 done
-mv "$folder/index.html.new" "$folder/index.html"
+page index 'plgen: the cheapest way to a wanted error, and where methods fail' <"$folder/index.html.new" \
+	>"$folder/index.html"
+rm "$folder/index.html.new"

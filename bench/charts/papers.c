@@ -4,24 +4,10 @@
  * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS: what variants.sh made. The
  * sources' parameter values did not survive: those of the models are chosen. */
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "papers.h"
-
-const char *text(const char *format, ...)
-{
-	enum { KEPT = 16, LENGTH = 512 };
-	static char kept[KEPT][LENGTH];
-	static int turn;
-	va_list arguments;
-	turn = (turn + 1) % KEPT;
-	va_start(arguments, format);
-	vsnprintf(kept[turn], LENGTH, format, arguments);
-	va_end(arguments);
-	return kept[turn];
-}
 
 const char *percent(double part)
 {
@@ -86,22 +72,16 @@ double *rows_of(struct run *run)
 struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,
                                int units, double frequency)
 {
-	char file[4096];
-	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
-	return problem_load(file, name, unit, units, frequency >= 0, frequency >= 0 ? frequency : 0);
+	return problem_load(text("%s/papers_%s.so", papers->variants, variant), name, unit, units, frequency >= 0, frequency >= 0 ? frequency : 0);
 }
 
 struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p,
                        const char *variant)
 {
-	char file[4096];
-	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
+	const char *file = text("%s/papers_%s.so", papers->variants, variant);
 	struct run *run = generated_open(method, p, file);
-	if (!run) {
-		fprintf(stderr, "papers: %s: %s\n", file, variant_refused(file) ? variant_refused(file)
-			: "cannot be used");
-		exit(1);
-	}
+	if (!run)
+		leave(file, variant_refused(file) ? variant_refused(file) : "cannot be used");
 	return run;
 }
 

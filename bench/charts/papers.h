@@ -41,7 +41,6 @@ double *rows_of(struct run *run);
 #define put_row(table, ...) row_of(table, source, __VA_ARGS__)
 #define put_time(papers, ...) time_of(papers, source, __VA_ARGS__)
 #define put_times(papers, ...) times_of(papers, source, __VA_ARGS__)
-const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
 const char *percent(double part);
 /* frequency: of a linear model's load, 0 where it has none; below 0: the model is not linear */
 struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,

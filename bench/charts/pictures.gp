@@ -12,10 +12,8 @@ set bmargin 0
 # At the right end of a curve: its order between the last two N
 ends(model, horizon) = "< awk -F, '$1 == \"".model."\" && $2 == ".horizon." && FNR > 1 { if (NR == FNR) { n[$5] = ".\
 	"$3; e[$5] = $6 } else if ($6 ~ /^[0-9]/) print n[$3], e[$3], $6 }' OFS=, '".csv."' '".orders."'"
-# As in series.awk, but above the edge at the edge
-clipped(model, horizon) = "< awk -F, 'NR == 1 || ($1 == \"".model."\" && $2 == ".horizon.") { if (NR > 1 && ($6 == ".\
-	"\"diverged\" || $6 > 5e2)) $6 = 5e2; print }' OFS=, '".csv."' | awk -v palette='".here."/palette.list' ".\
-	"-f '".here."/csv.awk' -f '".here."/series.awk' -v x=intervals_in_30_s -v y=error_over_initial_displacement"
+clipped(model, horizon) = series(csv, "-v 'where=system=".model.";horizon_s=".horizon."' -v edge=500 ".\
+	"-v x=intervals_in_30_s -v y=error_over_initial_displacement")
 panel(model, horizon) = "load clipped('".model."', '".horizon."'); eval 'plot '.clauses.', ends(\"".model."\", ".\
 	"\"".horizon."\") using 1:2:(sprintf(\"  %.2f\", $3)) with labels left font \",9\" notitle'"
 do for [model in first_words(csv, 1)] {
@@ -113,7 +111,7 @@ eval write
 # For each model, after how many steps generating and compiling is won back
 names = first_words(csv, 1)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + 24*words(names))
-load "< awk -f '".here."/csv.awk' -f '".here."/pays.awk' '".csv."'"
+load made('pays', '', csv)
 set xlabel 'steps of the generated code'
 unset logscale y
 set yrange [words(names) + 0.6:0.4]
@@ -130,7 +128,7 @@ eval write
 
 === hard: hard.csv narrow
 # Methods down, cases across, what came of it
-load "< awk -v narrow=".narrow." -f '".here."/csv.awk' -f '".here."/hard_grid.awk' '".csv."'"
+load made('hard_grid', '-v narrow='.narrow, csv)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + (narrow ? 19 : 23)*rows)
 unset logscale; unset grid; unset border; unset xtics
 set xrange [0.5:cases + 0.5]; set x2range [0.5:cases + 0.5]; set yrange [rows + 0.5:0.5]
@@ -154,7 +152,7 @@ eval write
 
 === headline_integrators: headline_integrators.csv narrow
 # Each integrator at the setting that reaches an error
-load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/headline.awk' '".csv."'"
+load made('headline', '', csv)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 70 : 0) + 25*rows)
 set xlabel 'CPU time per output [ns]'
 unset logscale y
@@ -169,7 +167,7 @@ eval "plot ".clauses
 eval write
 
 === headline_equal_step: headline_equal_step.csv narrow
-load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/equal_step.awk' '".csv."'"
+load made('equal_step', '', csv)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + 26*rows)
 found = finding(name, size)
 top = 1 - (34.0 + 17*lines_of(found))/(150 + 26*rows)

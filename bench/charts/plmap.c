@@ -129,12 +129,13 @@ static struct errors compare(const struct chain *c, real h)
 
 static const struct layout { const char *name; real k3; } layouts[] = { { "k3 = k1", 1 }, { "k3 = k1/2", 0.5L } };
 
-static void print_error(FILE *csv, real error)
+/* A cell with what ends it; the word has its own end, which is a comma's or a line's */
+static void put(FILE *csv, real x, bool is_word, const char *word)
 {
-	if (error >= beyond)
-		fputs("diverged,", csv);
+	if (is_word)
+		fputs(word, csv);
 	else
-		fprintf(csv, "%.5Lg,", error);
+		fprintf(csv, "%.5Lg%c", x, word[strlen(word) - 1]);
 }
 
 static void map_layout(FILE *csv, const struct layout *layout, int per_decade)
@@ -145,12 +146,10 @@ static void map_layout(FILE *csv, const struct layout *layout, int per_decade)
 			const struct errors e = compare(&(struct chain){ 1, coupling, layout->k3 }, wh);
 			for (int horizon = 0; horizon < HORIZONS; horizon++) {
 				fprintf(csv, "%s,%d,%.5Lg,%.5Lg,", layout->name, periods[horizon], wh, coupling);
-				print_error(csv, e.of[PL][horizon]);
-				print_error(csv, e.of[RK4][horizon]);
-				if (e.of[PL][horizon] >= beyond && e.of[RK4][horizon] >= beyond)
-					fputs("none\n", csv);
-				else
-					fprintf(csv, "%.5Lg\n", e.of[PL][horizon] / e.of[RK4][horizon]);
+				const real pl = e.of[PL][horizon], rk4 = e.of[RK4][horizon];
+				put(csv, pl, pl >= beyond, "diverged,");
+				put(csv, rk4, rk4 >= beyond, "diverged,");
+				put(csv, pl / rk4, pl >= beyond && rk4 >= beyond, "none\n");
 			}
 		}
 }
@@ -166,11 +165,9 @@ static const struct point { const char *name; struct chain c; real h; } points[]
 /* Column by column: a step from a unit state */
 static void check_point(FILE *csv, const struct point *point, const char *variants)
 {
-	char file[40];
 	double off = 0, largest = 0;
 	matrix P;
-	snprintf(file, sizeof file, "plmap_%s", point->name);
-	const pl_model *model = variant_model(variants, file);
+	const pl_model *model = variant_model(variants, text("plmap_%s", point->name));
 	void *state = calloc(1, model->size);
 	pl_step(&point->c, point->h, P);
 	for (int j = 0; j < STATES; j++) {

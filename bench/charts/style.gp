@@ -6,14 +6,15 @@
 #     load series(csv, "-v where='model=scs' -v x=ns_median -v y=largest")
 #     eval "plot ".clauses
 #     eval write                          # OUTDIR/name.svg and OUTDIR/name.png; narrow: OUTDIR/name_narrow.svg
-# clauses: one for each method in the CSV, with colours and marks by series.awk. Colours of text and axes are those that
+# clauses: one for each method in the CSV, with colours and marks by series (drawn.txt). Colours of text and axes are those that
 # draw.sh turns light in dark style; what stands on a filled area is '#000001', which it leaves.
 
 set datafile separator ','
 set encoding utf8
 
-series(file, options) = "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/series.awk' ".\
-	options." '".file."'"
+made(section, options, file) = "< sh '".here."/table.sh' ".section." -v palette='".here."/palette.list' ".options.\
+	" '".file."'"
+series(file, options) = made('series', options, file)
 # A mark on some points of a curve
 marked(every, options) = series(csv, options)." | sed 's/ pt / pi ".every." pt /g'"
 # What stands in a column, each once, where it has no blanks
@@ -61,7 +62,7 @@ heading = found_label."; set tmargin 1.2 + 1.15*lines_of(found)"
 
 # Maps: classes of growth in eleven colours, blue below and orange to red above, neutral in grey; x is log10. Between
 # the classes stand the bounds by which draw.sh makes letters of growth.
-cells(file, name, options) = "< awk -F, -v name='".name."' ".options." -f '".here."/cells.awk' '".file."'"
+cells(file, name, options) = made('cells', "-v name='".name."' ".options, file)
 set palette defined (-0.5 '#08306b', 0.5 '#08306b', 0.5 '#2f79b5', 1.5 '#2f79b5', 1.5 '#73b2d8', 2.5 '#73b2d8', \
 	2.5 '#b2d4ea', 3.5 '#b2d4ea', 3.5 '#e2eff8', 4.5 '#e2eff8', 4.5 '#c8c8c8', 5.5 '#c8c8c8', 5.5 '#fff0c0', \
 	6.5 '#fff0c0', 6.5 '#fdc070', 7.5 '#fdc070', 7.5 '#f08030', 8.5 '#f08030', 8.5 '#c83c14', 9.5 '#c83c14', \

@@ -50,10 +50,9 @@ awk -v list="$here/methods.list" -f "$csv" -f "$here/hard.awk" "$out/hard.csv" >
 result $? "hard.csv: every method on every case, each failure with its word"
 awk -f "$csv" -f "$here/orders.awk" "$out/convergence_orders.csv" >"$log" 2>&1
 result $? "convergence_orders.csv: orders within 0.15"
-awk -v by=model,method,family,setting_kind,unit_s -v lists=setting,largest,ns_median -f "$csv" \
-    -f bench/charts/fold.awk "$here/break_even/precision.csv" >"$work/folded.csv" 2>&1
-awk -f "$csv" -f bench/charts/break_even.awk "$here/break_even/generation.csv" "$work/folded.csv" \
-    >"$work/break_even.csv" 2>&1
+sh bench/charts/table.sh fold -v by=model,method,family,setting_kind,unit_s -v lists=setting,largest,ns_median \
+    "$here/break_even/precision.csv" >"$work/folded.csv" 2>&1
+sh bench/charts/table.sh after "$here/break_even/generation.csv" "$work/folded.csv" >"$work/break_even.csv" 2>&1
 diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
 result $? "break-even of given times: as worked out by hand"
 awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even.csv" >"$log" 2>&1

@@ -105,12 +105,13 @@ sed 's/^other #....../other #c8c8c8/' "$charts/palette.list" | awk -f "$here/pal
 grep -q 'contrast 1.6.* with paper' log
 result $? 'palette: a pale colour is noticed'
 
-awk -v by=model,method,family -v lists=setting,largest,ns_median -f "$csv" -f "$charts/fold.awk" \
-	"$here/matrix/precision.csv" >folded.csv 2>log
-awk -f "$csv" -f "$charts/matrix.awk" folded.csv >given.csv 2>>log
+made=$charts/table.sh
+sh "$made" fold -v by=model,method,family -v lists=setting,largest,ns_median "$here/matrix/precision.csv" \
+	>folded.csv 2>log
+sh "$made" matrix folded.csv >given.csv 2>>log
 diff given.csv "$here/matrix/expect.csv" >>log
 result $? 'matrix of given times: as worked out by hand'
-awk -f "$csv" -f "$charts/words.awk" -f "$charts/matrix_html.awk" given.csv | grep -o '<td class=[a-z]*>\(<b>[^<]*\)*' |
+sh "$made" grid given.csv | grep -o '<td class=[a-z]*>\(<b>[^<]*\)*' |
 	sed 's/<td class=//; s/><b>/ /; s/>$//' | tr '\n' ';' >cells
 echo 'ahead 2.0×;behind DOP853;behind RADAU5;nobody;even even;even even;ahead alone;ahead alone;' | tr -d '\n' >words
 cmp cells words >log 2>&1 || cat cells words >>log
@@ -138,8 +139,8 @@ if [ -n "${LONG:-}" ]; then
 	(cd "$root" && sh bench/charts/draw.sh "$work/again") >log 2>&1
 else
 	cp "$kept"/*.svg again
-	(cd again && awk -f "$csv" -f "$charts/matrix.awk" precision.csv >matrix.csv &&
-		awk -f "$csv" -f "$charts/break_even.awk" generation.csv precision.csv >break_even.csv &&
+	(cd again && sh "$made" matrix precision.csv >matrix.csv &&
+		sh "$made" after generation.csv precision.csv >break_even.csv &&
 		cd "$root" && sh bench/charts/page.sh "$work/again") >log 2>&1
 fi
 for file in "$kept"/*.html "$kept"/style.css "$kept"/matrix.csv "$kept"/break_even.csv; do

@@ -7,6 +7,8 @@
 #include "../literals.c"
 #include "subject_regions.h"
 
+#include <dlfcn.h>
+
 #if REGIONS > 0
 #include "subject_pl.c"
 
