@@ -167,6 +167,36 @@ done
 [ "$(wc -l <asked)" -gt 15 ] || cat asked >>log
 [ ! -s log ]
 result $? "$(wc -l <asked) options: --help, doc/plgen.1 and doc/spec.md have the same"
+
+# Words of the reference: statements, functions and schemes of the reader, bits of the runtime
+# as_code PAGE: what stands in that page as code; named PAGE: which of `words` does not stand in `written`
+as_code() {
+	awk '/^```/ { block = !block; next }
+		block { print; next }
+		{ for (; match($0, /`[^`]*`/); $0 = substr($0, RSTART + RLENGTH))
+			print substr($0, RSTART, RLENGTH) }' "$root/doc/$1" | sed 's/#.*//'
+}
+named() {
+	tr -c 'A-Za-z0-9_' '\n' <written | sort -u >there
+	sort -u words | comm -23 - there | sed "s,\$, is not in doc/$1," >>log
+	[ "$(wc -l <words)" -gt "$2" ] || cat words >>log
+}
+: >log
+grep -o '{ "[a-z]*", read_' "$root/gen/read/parse.c" | cut -d '"' -f 2 >words
+sed -n '/^## Statements/,/^## Expressions/s/^| \(`.*`\) | .*/\1/p' "$root/doc/spec.md" >written
+named spec.md 20
+{
+	grep -o '"[a-z0-9]*"' "$root/gen/read/names.c" | tr -d '"' | sed -n '/^atan2$/,/^friction$/p'
+	sed -n 's/^REAL_FUNCTION([A-Z0-9]*, \([a-z0-9]*\),.*/\1/p' "$root/gen/read/functions.def"
+	sed -n 's/^SCHEME(.*\.name = "\([a-z0-9]*\)".*/\1/p' "$root/gen/read/schemes.def"
+} >words
+as_code spec.md >written
+named spec.md 30
+sed -n '/^enum {$/,/^}/s/^ *\(PL_[A-Z_]*\) = [0-9].*/\1/p' "$root/runtime/plrt.h" >words
+as_code api.md >written
+named api.md 9
+[ ! -s log ]
+result $? 'every statement, function and scheme is in doc/spec.md, every bit of a status in doc/api.md'
 : >log
 plrun --help | sed -n '/^  /p' | options_in | grep -v -e '^--help$' -e '^--version$' >asked
 sed -n '/^\.SH OPTIONS/,/^\.SH ENVIRON/{/^\.B/{s/\\f.//g;s/\\//gp}}' "$root/doc/plrun.1" | options_in |
