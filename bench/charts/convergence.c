@@ -105,7 +105,8 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 static void converge(const char *system, double frequency, const char *variants, const int *intervals, FILE *csv,
                      FILE *orders)
 {
-	struct problem *p = problem_load(text("%s/convergence_%s_exact_%d.so", variants, system, intervals[0]), system, whole / COMMON, COMMON, true, frequency);
+	struct problem *p = problem_load(text("%s/convergence_%s_exact_%d.so", variants, system, intervals[0]), system,
+	                                 whole / COMMON, COMMON, true, frequency);
 	struct truth *truth = truth_of(p);
 	const struct method *methods[METHODS] = { &readings[0], &readings[1], method_find("explicit Euler"),
 	                                          method_find("explicit trapezoid"), method_find("RK4") };

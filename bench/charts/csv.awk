@@ -39,7 +39,8 @@ function place_of(k, n, value,    i, at) {
 function read_palette(    line, part, n) {
 	while ((getline line < palette) > 0) {
 		n = split(line, part, " ")
-		if (n > 1 && line !~ /^#/) { colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
+		if (n < 2 || line ~ /^#/) continue
+		colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4]
 	}
 }
 

@@ -25,7 +25,8 @@ struct ours { const char *name, *file, *options; };
 static const struct ours ours[] = {
 	{ "exact", "", "--scheme exact" }, { "exact, direct", "-direct", "--form direct" },
 	{ "exact, delta", "-delta", "--form delta" }, { "exact, kick-drift-kick", "-kick", "--form kick-drift-kick" },
-	{ "exact, compensated", "-compensated", "--accuracy compensated" }, { "exact, float", "-float", "--real float" },
+	{ "exact, compensated", "-compensated", "--accuracy compensated" },
+	{ "exact, float", "-float", "--real float" },
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 

@@ -72,7 +72,8 @@ double *rows_of(struct run *run)
 struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,
                                int units, double frequency)
 {
-	return problem_load(text("%s/papers_%s.so", papers->variants, variant), name, unit, units, frequency >= 0, frequency >= 0 ? frequency : 0);
+	return problem_load(text("%s/papers_%s.so", papers->variants, variant), name, unit, units, frequency >= 0,
+	                    frequency >= 0 ? frequency : 0);
 }
 
 struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p,

@@ -67,7 +67,8 @@ enum { MODELS = sizeof models / sizeof *models };
 
 /* Steps, as the unit over these, by kind. A step of the beams must be below 2.7e-4 s for RK4; their implicit methods,
  * which solve for 30 unknowns, and their schemes stay at the first. */
-static const char *const steps_fixed[] = { "1 2 4 8 16 32 64", "4 16 64 256 1024", "1 4 16 40 80", "16 64 256 1024 4096" };
+static const char *const steps_fixed[] = { "1 2 4 8 16 32 64", "4 16 64 256 1024", "1 4 16 40 80",
+                                            "16 64 256 1024 4096" };
 static const char *const steps_fixed_quick[] = { "1 8 64", "16 256", "1 16 40", "16 4096" };
 static const char *const steps_scheme[] = { "1 2 4 8 16 32", "1 4 16 64 256 1024", "1 4 16", "1 4 16 64 256 1024" };
 static const char *const steps_scheme_quick[] = { "1 8", "4 64", "1 8", "4 64" };
@@ -101,8 +102,8 @@ struct ours {
 #define OVER(NAME) {.name = "taylor " NAME, .options = "'--scheme=taylor " NAME "'", .series = true, .over = true}
 #define MODES(NAME, OPTIONS) {.name = NAME, .options = OPTIONS, .modes = true}
 static const struct ours ours[] = {
-	EXACT("exact", "--scheme exact"), EXACT("exact, direct", "--form direct"), EXACT("exact, delta", "--form delta"),
-	EXACT("exact, kick-drift-kick", "--form kick-drift-kick"),
+	EXACT("exact", "--scheme exact"), EXACT("exact, direct", "--form direct"),
+	EXACT("exact, delta", "--form delta"), EXACT("exact, kick-drift-kick", "--form kick-drift-kick"),
 	EXACT("exact, compensated", "--accuracy compensated"),
 	EXACT("exact, float", "--real float"), EXACT("exact, float, delta", "--real float --form delta"),
 	EXACT("exact, float, kick-drift-kick", "--real float --form kick-drift-kick"),
@@ -232,12 +233,12 @@ static void list_model(const struct charted *m, bool quick)
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const char *at = ladder_of_ours(m, o, quick); next_word(&at, word);)
 			if (o->tolerance)
-				printf("%s %s/%s.spec --step %s %s --tolerance %s\n", file_of(m, o, word), folder, m->name,
-				       m->unit, o->options, word);
+				printf("%s %s/%s.spec --step %s %s --tolerance %s\n", file_of(m, o, word), folder,
+				       m->name, m->unit, o->options, word);
 			else
 				printf("%s %s/%s%s.spec --step %s/%s %s\n", file_of(m, o, word),
-				       o->modes ? "bench/charts/specs" : folder, o->modes ? "modes_" : "", m->name, m->unit,
-				       word, o->options);
+				       o->modes ? "bench/charts/specs" : folder, o->modes ? "modes_" : "", m->name,
+				       m->unit, word, o->options);
 }
 
 /* ---- the runs of one model: a row of the table each ---- */
@@ -405,9 +406,9 @@ static void read_errors(struct lines *lines, const struct problem *p, FILE *in)
 
 /* ---- times: once errors are known, of what did not fail ----
  *
- * A ladder is a peer's tolerances from the widest on, and a narrower one takes no less time. So where a pass is long and
- * one setting takes 20 times what is cheapest at the error of the next, that and all after it are left without a time:
- * they could only be dearer still. */
+ * A ladder is a peer's tolerances from the widest on, and a narrower one takes no less time. So where a pass is long
+ * and one setting takes 20 times what is cheapest at the error of the next, that and all after it are left without a
+ * time: they could only be dearer still. */
 
 enum { DEAR = 20 };
 static const double long_pass = 0.25e9;         /* ns of a history */

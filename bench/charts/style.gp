@@ -6,7 +6,7 @@
 #     load series(csv, "-v where='model=scs' -v x=ns_median -v y=largest")
 #     eval "plot ".clauses
 #     eval write                          # OUTDIR/name.svg and OUTDIR/name.png; narrow: OUTDIR/name_narrow.svg
-# clauses: one for each method in the CSV, with colours and marks by series (drawn.txt). Colours of text and axes are those that
+# clauses: one for each method in the CSV, with colours and marks by drawn.txt. Colours of text and axes are those that
 # draw.sh turns light in dark style; what stands on a filled area is '#000001', which it leaves.
 
 set datafile separator ','

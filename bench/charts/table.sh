@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # table.sh NAME [OPTION...] TABLE...: what a section of tables.txt, drawn.txt or findings.txt makes of tables, as their
-# heads say; OPTION: of awk. A section is awk after csv.awk, for each row, `f` its fields, `file` which of the tables it is of.
+# heads say; OPTION: of awk. A section is awk after csv.awk, for each row; `f`: its fields; `file`: the number of its
+# table.
 here=$(dirname "$0")
 name=$1
 shift
