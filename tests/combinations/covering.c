@@ -388,9 +388,9 @@ static void print_pairs_table(void)
 			printf("%s|", j <= i ? cell(i, j) : "");
 		putchar('\n');
 	}
-	puts("\n| | name | what it is |\n| --- | --- | --- |");
+	puts("\n| |name|what it is|\n|-|---|---|");
 	for (int i = 0; i < count; i++)
-		printf("| %c | %s | %s |\n", letter(i), capability[i].name, capability[i].words);
+		printf("|%c|%s|%s|\n", letter(i), capability[i].name, capability[i].words);
 }
 
 static bool of_three(int r, int k)

@@ -202,32 +202,32 @@ done
 {
     echo "\`$arm-gcc\` $($arm-gcc -dumpfullversion), \`-O2 -ffp-contract=off\`:"
     echo
-    echo '| model | form | type | operations | RAM | M0: flash | stack | instr. | M4F: flash | stack | instr. |'
-    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
+    echo '|model|form|type|operations|RAM|M0: flash|stack|instr.|M4F: flash|stack|instr.|'
+    echo '|---|---|---|---|---|---|---|---|---|---|---|'
     awk -F, '$1 == "matvec" || $1 == "scs" && $2 ~ /^kick/ ||
              $1 ~ /^(sdcs|sdcsf|retuned)$/ && $2 == "delta" && $3 == "plain" {
                  form = $2 ($3 == "compensated" ? ", compensated" : "")
-                 print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $9 " | " $10 " | " $11 " | " \
-                     $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
+                 print "|" $1 "|" form "|" $4 "|" $5 " + " $6 "|" $7 "|" $9 "|" $10 "|" $11 "|" \
+                     $15 "|" $16 "|" $17 "|" }' "$doc/firmware/figures.csv"
 } >"$work/figures"
 {
-    echo '| model | M0: step | at | retune | selftest | M4F: step | at | retune | selftest |'
-    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- |'
+    echo '|model|M0: step|at|retune|selftest|M4F: step|at|retune|selftest|'
+    echo '|---|---|---|---|---|---|---|---|---|'
     awk -F, 'BEGIN { count = split("scs retuned gear1 pendulum beam15", models, " ") }
              { m0[$1] = $3; m4f[$1] = $5 }
              function of(table, f) { return f in table ? table[f] : "" }
              function row(m) {
-                 print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_retune") " | " \
-                     of(m0, m "_selftest") " | " of(m4f, m "_step") " | " of(m4f, m "_at") " | " \
-                     of(m4f, m "_retune") " | " of(m4f, m "_selftest") " |" }
+                 print "|" m "|" of(m0, m "_step") "|" of(m0, m "_at") "|" of(m0, m "_retune") "|" \
+                     of(m0, m "_selftest") "|" of(m4f, m "_step") "|" of(m4f, m "_at") "|" \
+                     of(m4f, m "_retune") "|" of(m4f, m "_selftest") "|" }
              END { for (i = 1; i <= count; i++) { row(models[i] "_double"); row(models[i] "_float") } }' \
         "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
-    echo '| type | RAM | \|pole\| h | M0: flash | stack | instr. | M4F: flash | stack | instr. |'
-    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, '$2 == "delta" { print "| " $3 " | " $4 " | " $5 " | +" $8 " | " $9 " | " $10 " | +" $14 " | " $15 " | " \
-        $16 " |" }' "$doc/firmware/retune.csv"
+    echo '|type|RAM|\|pole\| h|M0: flash|stack|instr.|M4F: flash|stack|instr.|'
+    echo '|---|---|---|---|---|---|---|---|---|'
+    awk -F, '$2 == "delta" { print "|" $3 "|" $4 "|" $5 "|+" $8 "|" $9 "|" $10 "|+" $14 "|" $15 "|" \
+        $16 "|" }' "$doc/firmware/retune.csv"
 } >"$work/retune"
 # One multiplication and one addition of soft float, calls included
 for name in m0 m4f; do

@@ -195,10 +195,10 @@ try() {
 		elif [ $scheme = exact ]; then
 			poles_of "$1"
 		fi
-		line="$line | $cell"
+		line="$line|$cell"
 		told "$1" $scheme
 	done
-	echo " $published$line" >"cells_$1"
+	echo "$published$line" >"cells_$1"
 	[ "$mode" = --page ] || grep -q '^hertz\|^rad' "$here/$1.jury" && return
 	by_plrun "$1"
 	result $? "$1: plrun has the rows of the C"
@@ -222,8 +222,8 @@ cases() {
 
 # row NAME NUMBER_OF_SOURCE: its line of the table; digits of what was not run as the page has them
 row() {
-	[ -s "cells_$1" ] || grep -F -e "| [$1](" "$page" | cut -d '|' -f 4-8 | sed 's/ $//' >"cells_$1"
-	printf '| %s | %s |%s |\n' "$(link "$1")" "$2" "$(cat "cells_$1")"
+	[ -s "cells_$1" ] || grep -F -e "|[$1](" "$page" | cut -d '|' -f 4-8 >"cells_$1"
+	printf '|%s|%s|%s|\n' "$(link "$1")" "$2" "$(cat "cells_$1")"
 }
 
 # source_number NAME
@@ -247,8 +247,8 @@ compiles and runs it, counts the digits reached and compares them with this page
 - **exact, taylor, radau, auto**: `all` where every value has every published digit within half a unit of the last (of
   at most 15, which a double holds); else the fewest digits of a value, with the reason below. `-`: refused or not run.
 
-| case | source | published | exact | taylor | radau | auto |
-| --- | --- | --- | --- | --- | --- | --- |
+|case|source|published|exact|taylor|radau|auto|
+|---|---|---|---|---|---|---|
 END
 	for name in $(cases); do
 		[ -n "$(key "$name" refused)" ] || row "$name" "$(source_number "$name")"
@@ -285,7 +285,7 @@ fold_item() {
 
 # words_alone FILE: the page without the digits, which `told` compares
 words_alone() {
-	sed 's/^\(| \[.*cases) | [0-9]* |\).*/\1/' "$1"
+	sed 's/^\(|\[.*cases)|[0-9]*|\).*/\1/' "$1"
 }
 
 spare=1

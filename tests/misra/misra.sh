@@ -70,8 +70,8 @@ if [ "$part" = --table ]; then
 	exit 0
 fi
 
-# The page: | 15.6 | advisory | in the models | in the runtime | why |
-awk -F'|' '$2 ~ /^ [0-9]+\.[0-9]+ $/ { gsub(/ /, "", $2); print $2, $4 + 0, $5 + 0 }' \
+# The page: |15.6|required|in the models|in the runtime|why|
+awk -F'|' '$2 ~ /^[0-9]+\.[0-9]+$/ { gsub(/ /, "", $2); print $2, $4 + 0, $5 + 0 }' \
 	"$root/doc/firmware.md" >allowed
 column=2
 [ "$part" = models ] || column=3
