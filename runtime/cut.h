@@ -14,12 +14,12 @@
  *
  *     PL(column)[]               of each expression: where it stands in the series, of order 2
  *     PL(passing)                a pl_divided of cubics of each
- *     PL(flow)[][][]             of each segment: A [1/s], x' = A x where no force changes but by its derivatives
+ *     PL(slope_matrix)[][][]     of each segment: A [1/s], x' = A x where no force changes but by its derivatives
  *     PL(acting)(s, start, slope, tau, acting)       what acts, tau [s] after now
  *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      what is left over
  *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of all that is watched the value and
  *                                h times the slope; the sizes of the terms of the value
- *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme
+ *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme; PL_IN_MODES: of normal.h
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
  *     PL(events), PL(along)      where there are contacts: a pl_events of the series; of polynomials along a part
  *
@@ -39,6 +39,12 @@
 #else
 #define PL_LEAST_PART 1e-9
 #define PL_NOISE 1e-14
+#endif
+
+#if PL_IN_MODES
+#define PL_LONGEST ((real)0.25) /* [h] of a part, whose scheme is of lower order than the step's */
+#else
+#define PL_LONGEST 1
 #endif
 
 typedef struct PL(piece) { /* a part of a step */
@@ -62,7 +68,8 @@ static inline void PL(begin)(PL(piece) *p, const PL_TYPE *s, const real u[], PL(
     p->first = NULL;
     PL(inputs_now)(s, u, p->start, p->slope);
     p->done = 0;
-    p->limit = p->longest = 1;
+    p->limit = 1;
+    p->longest = PL_LONGEST;
     p->segment = PL(segment_of)(s);
     p->splits = PL_MAX_SPLITS;
 }
@@ -117,7 +124,7 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
     real r[PL_FORCES], ra[PL_FORCES], rb[PL_FORCES], rc[PL_FORCES], work[PL_CUT_WORK(PL_SIZE)];
     pl_two room[PL_CUT_ROOM(PL_SIZE)];
     pl_cut cut;
-    int i, status = pl_cut_begin(&cut, PL_SIZE, PL(flow)[p->segment][0], PL_FASTEST, tau, work, room);
+    int i, status = pl_cut_begin(&cut, PL_SIZE, PL(slope_matrix)[p->segment][0], PL_FASTEST, tau, work, room);
     if (status != 0) {
         return status;
     }
@@ -368,7 +375,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
         found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, PL(column)[found.expression],
                                PL(breakpoint_of)(&found), found.upward, next);
     }
-    p->longest = PL_SWIFT ? 2 * size : 1;
+    p->longest = PL_SWIFT && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
     for (i = 0; i < PL_STATES && found.time != 0; i++) {
         y[i] = next[i];
     }
@@ -403,6 +410,10 @@ static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
 }
 
 /* ---- the step ---- */
+
+#if PL_IN_MODES
+#include "normal.h"
+#endif
 
 #if !PL_CONTACTS
 
@@ -482,6 +493,17 @@ static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_TERMS], const re
 #endif
 }
 
+/* Forces of the steps before are of no use any more. */
+static inline void PL(begin_anew)(PL_TYPE *s)
+{
+#if PL_IN_MODES
+    PL(take_modes)(s);
+    s->known = 0;
+#else
+    (void)s;
+#endif
+}
+
 /* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where
  * one is passed. */
 static inline void PL(serve)(PL_TYPE *s, const real u[])
@@ -502,13 +524,20 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
         carry[i] = s->carry[i];
     }
 #endif
+#if PL_IN_MODES
+    PL(whole)(s);
+#else
     PL(whole)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
+#endif
     PL(look)(&p, 1, s->y, d, spare);
     if (PL(stands)(&p, c, (const real (*)[PL_TERMS])d, terms, &crossing)) {
         s->contact.last.expression = -1;
 #if PL_CONTACTS
         if (PL(put_back)(&s->contact, (const real (*)[PL_TERMS])d, s->y)) {
             PL(look)(&p, 1, s->y, d, spare);
+#if PL_IN_MODES
+            PL(take_modes)(s);
+#endif
         }
 #endif
         PL(keep_look)(s, (const real (*)[PL_TERMS])d, spare);
@@ -524,10 +553,13 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
         PL(keep_look)(s, NULL, NULL);
         p.first = !PL_SWIFT && crossing.time >= 0 ? &crossing : NULL;
         s->status |= p.splits < 0 ? PL_TOO_MANY_EVENTS : PL(between)(&p, 1, s->y);
+        PL(begin_anew)(s);
     }
     (void)carry;
     PL(pass_time)(s, u);
-    (void)PL(change_loads)(s);
+    if (PL(change_loads)(s)) {
+        PL(begin_anew)(s);
+    }
 }
 
 /* What follows from a state that was set */
@@ -535,6 +567,7 @@ static void PL(place)(PL_TYPE *s)
 {
     PL(forget)(&s->contact);
     PL(keep_look)(s, NULL, NULL);
+    PL(begin_anew)(s);
 }
 
 /* y tau after now */

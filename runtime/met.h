@@ -136,7 +136,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
         p->at.status |= pl_events_places(&PL(along), &p->at, end, 0);
         p->contact->last.expression = -1;
     }
-    p->longest = PL_SWIFT ? 2 * size : 1;
+    p->longest = PL_SWIFT && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
     for (i = 0; i < PL_STATES && end > 0; i++) {
         y[i] = next[i];
     }

@@ -20,11 +20,14 @@
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
+ *     PL_IN_MODES                1: part of cut.h, whose step is PL(whole), by collocation: s->y is the state, and
+ *                                functions of time are the time of the node alone
  *     PL_PEAKS                   above 0: peaks.h has PL(step), and its PL(one_step) is here
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
  *     PL(waves)(s, wave)                 values of known loads now
- *     PL(forces)(s, which, f, eta, rate, force)   on the modes
+ *     PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in cut.h PL(on_modes)(which, left, force): those
+ *                                of what is left over
  *     PL(modes_of)(which, q, mode), PL(of_modes)(which, mode, q)   modes of coordinates, and back
  *     PL(node_modes)(s, which, node, force, wave, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
  *     PL(forces_ahead)(s, force)         of collocation: those at the nodes that go on from the step before
@@ -38,12 +41,20 @@
 #include "numbers.h"
 
 #define PL_NODES (PL_STAGES + 1)
-#define PL_SERVING (PL_BANKS > 1 ? s->which : 0) /* compilers know the only one */
+#if PL_BANKS > 1
+#define PL_SERVING s->which
+#else
+#define PL_SERVING 0
+#endif
 
 /* At a node, with the formulas that hold in the step; `ended`: at its start, with those of the step before */
 static inline void PL(functions_at)(const PL_TYPE *s, int node, int ended, real f[])
 {
-#if PL_FUNCTIONS > 0
+#if PL_IN_MODES
+    (void)s;
+    (void)ended;
+    f[0] = PL(node)[node];
+#elif PL_FUNCTIONS > 0
     PL(functions)(s, node, ended ? PL(time)(s) - PL_H / 2 : PL(time)(s) + PL_H / 2, f);
 #else
     (void)s;
@@ -123,9 +134,22 @@ static void PL(serve)(PL_TYPE *s, int which)
         for (d = 0; d < 2; d++) {
             PL(turn)(s->which, which, s->past[k][d]);
         }
-        PL(forces)(s, which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);
+        PL(mode_forces)(s, which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);
     }
     s->which = which;
+}
+#endif
+
+#if PL_IN_MODES
+/* At f[0] after the start of the step, by the formulas that hold over it */
+static void PL(mode_forces)(const PL_TYPE *s, int which, const real f[], const real eta[], const real rate[],
+                            real force[PL_WIDTH])
+{
+    real y[PL_STATES], left[PL_FORCES];
+    PL(of_modes)(which, eta, y);
+    PL(of_modes)(which, rate, y + PL_MODES);
+    PL(forces_at)(s, NULL, NULL, f[0], PL(time_between)(s, 0, 1), PL(segment_of)(s), s->contact.interval, y, left);
+    PL(on_modes)(which, left, force);
 }
 #endif
 
@@ -141,7 +165,7 @@ static inline int PL(first_forces)(const PL_TYPE *s, int which, const real f[], 
         return PL_SWEEPS;
     }
 #endif
-    PL(forces)(s, which, f, s->eta, s->rate, force[0]);
+    PL(mode_forces)(s, which, f, s->eta, s->rate, force[0]);
     for (k = 1; k < PL_NODES; k++) {
         for (i = 0; i < PL_WIDTH; i++) {
             force[k][i] = force[0][i];
@@ -196,14 +220,13 @@ static void PL(collocate)(PL_TYPE *s)
     for (sweep = 0; sweep < sweeps; sweep++) {
         for (k = 1; k < PL_NODES; k++) {
             PL(node_modes)(s, which, k, force, wave, eta[k], rate[k]);
-            PL(forces)(s, which, f[k], eta[k], rate[k], force[k]);
+            PL(mode_forces)(s, which, f[k], eta[k], rate[k], force[k]);
         }
     }
     for (i = 0; i < PL_WIDTH; i++) {
         s->eta[i] = eta[PL_STAGES][i];
         s->rate[i] = rate[PL_STAGES][i];
     }
-    PL(pass_time)(s, NULL);
 #if PL_POINTS > 0
     PL(keep_point)(s, f[PL_STAGES], force[PL_STAGES]);
 #else
@@ -234,7 +257,7 @@ static void PL(advance)(PL_TYPE *s, real first[PL_WIDTH])
     PL(predict)(s, which, wave, eta, rate, expected);
     PL(pass_time)(s, NULL);
     PL(functions_at)(s, 0, 1, f);
-    PL(forces)(s, which, f, eta, rate, force);
+    PL(mode_forces)(s, which, f, eta, rate, force);
     for (i = 0; i < PL_WIDTH; i++) {
         const real excess = force[i] - expected[i];
         s->eta[i] = eta[i] + PL(correct)[which][0][i] * excess;
@@ -244,7 +267,7 @@ static void PL(advance)(PL_TYPE *s, real first[PL_WIDTH])
     for (i = 0; i < PL_WIDTH; i++) {
         first[i] = force[i];
     }
-    PL(forces)(s, which, f, s->eta, s->rate, force);
+    PL(mode_forces)(s, which, f, s->eta, s->rate, force);
 #else
     (void)first;
 #endif
@@ -281,6 +304,23 @@ static void PL(settled_step)(PL_TYPE *s)
 #endif
 
 /* ---- the whole ---- */
+
+#if PL_IN_MODES
+/* The modes of the state */
+static void PL(take_modes)(PL_TYPE *s)
+{
+    PL(modes_of)(0, s->y, s->eta);
+    PL(modes_of)(0, s->y + PL_MODES, s->rate);
+}
+
+/* The step, of which cut.h asks whether it stands */
+static inline void PL(whole)(PL_TYPE *s)
+{
+    PL(collocate)(s);
+    PL(of_modes)(0, s->eta, s->y);
+    PL(of_modes)(0, s->rate, s->y + PL_MODES);
+}
+#else
 
 /* Nothing is known of the steps before. */
 static inline void PL(forget)(PL_TYPE *s)
@@ -349,11 +389,13 @@ static inline void PL(changing_step)(PL_TYPE *s)
     real force[PL_NODES][PL_WIDTH]; /* of the first steps */
     if (s->known < PL_POINTS) {
         PL(collocate)(s, force);
+        PL(pass_time)(s, NULL);
     } else {
         PL(advance)(s, force[0]);
     }
 #else
     PL(collocate)(s);
+    PL(pass_time)(s, NULL);
 #endif
 #if PL_BANKS > 1
     PL(choose)(s);
@@ -386,3 +428,4 @@ void PL(step)(PL_TYPE *s)
 #endif
 
 #include "undef.h"
+#endif

@@ -95,6 +95,7 @@
 #undef PL_HUGE
 #undef PL_IMPACTS
 #undef PL_INPUTS
+#undef PL_IN_MODES
 #undef PL_INSIDE
 #undef PL_INSTANCES
 #undef PL_INTERVAL
@@ -117,6 +118,7 @@
 #undef PL_LISTED
 #undef PL_LOAD_STATES
 #undef PL_LOCATES
+#undef PL_LONGEST
 #undef PL_LOOKS
 #undef PL_LOSES
 #undef PL_LOST

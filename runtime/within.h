@@ -89,7 +89,7 @@ static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real po
         x[i] = v[i] = still[i] = 0;
     }
     if (f != NULL) {
-        PL(forces)(s, which, f, x, v, still);
+        PL(mode_forces)(s, which, f, x, v, still);
     }
     for (part = 0; part < parts; part++) {
         real scale = 1;
@@ -103,7 +103,7 @@ static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real po
         for (k = 0; k < PL_TERMS; k++) {
             const real by = d * PL_H / (real)(k + 1);
             if (f != NULL) {
-                PL(forces)(s, which, f, x, v, force);
+                PL(mode_forces)(s, which, f, x, v, force);
             }
             for (i = 0; i < PL_WIDTH; i++) {
                 force[i] = f != NULL ? force[i] - (k ? still[i] : 0) : k <= degree ? scale * power[k][i] : 0;

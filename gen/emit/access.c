@@ -89,7 +89,7 @@ void emit_access(const struct emitter *e)
 	const struct step *step = e->step;
 	emit_tables(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
-		   { "NORMAL", step->normal ? step->normal->modes : 0 }, { "MOMENTA", step->kicks.momenta },
+		   { "NORMAL", keeps_modes(e) ? step->normal->modes : 0 }, { "MOMENTA", step->kicks.momenta },
 		   { "FORCED", step->forced != NULL },
 		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },
 		   { "KEPT", step->program->compensated },

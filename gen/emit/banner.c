@@ -164,20 +164,6 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 		banner_sentence(e, region_number);
 }
 
-/* From crossing to crossing */
-void banner_cut(const struct emitter *e)
-{
-	const struct cut *cut = e->step->cut;
-	banner_remainder(e);
-	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
-			"cubic through an expression's values and slopes at both ends; there the formulas change.");
-	banner_breakpoints(e, cut->look);
-	banner_sentence(e, "Parts of such a step%s go by scheme etdrk4, with e^{A tau} made by the target: some %d KB "
-			"of stack. The look takes %d multiplications and %d additions beside the costs below.",
-			cut->certain < 1 ? ", so short that no pole turns by more than 1," : "", cut->kilobytes,
-			cut->multiplications, cut->additions);
-}
-
 static void tell_no_phi(const struct emitter *e)
 {
 	say(e, " * What rounding takes from the state is kept in rest.\n");
@@ -311,9 +297,23 @@ void banner_normal(const struct emitter *e)
 	banner_sentence(e, "Stability: %s.", stability_of_modes(e->step));
 	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
 			numbers_of_modes(e->step));
-	if (e->system->segments > 1)
+	if (e->system->segments > 1 && keeps_modes(e))
 		banner_sentence(e, "Where functions of time change their formula, the method starts anew%s.", m->settled
 				? "; after the last change steps are exact" : "");
+}
+
+/* From crossing to crossing */
+void banner_cut(const struct emitter *e)
+{
+	const struct cut *cut = e->step->cut;
+	(e->step->normal ? banner_normal : banner_remainder)(e);
+	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
+			"cubic through an expression's values and slopes at both ends; there the formulas change.");
+	banner_breakpoints(e, cut->look);
+	banner_sentence(e, "Parts of such a step%s go by scheme etdrk4, with e^{A tau} made by the target: some %d KB "
+			"of stack. The look takes %d multiplications and %d additions beside the costs below.",
+			cut->certain < 1 ? ", so short that no pole turns by more than 1," : "", cut->kilobytes,
+			cut->multiplications, cut->additions);
 }
 
 static void banner_expressions(const struct emitter *e)
@@ -523,7 +523,7 @@ static void banner_state(const struct emitter *e)
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
 	for (int i = 0; i < given_inputs(e); i++)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
-	if (changes > 0 && !e->step->normal)
+	if (changes > 0 && !keeps_modes(e))
 		say(e, " * The loads change their formula %d time%s; "
 		       "a step across a change is exact too, by %s that stops there.\n", changes,
 		    changes > 1 ? "s" : "", e->model->switching ? "a search" : "a series");

@@ -22,7 +22,7 @@ static void emit_state_struct(const struct emitter *e)
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
 	       "    double y[$N_STATES];  /* %s%s%s */\n",
-	    e->step->modal ? "modes" : e->step->normal ? "at the last set" : state_list(e->model), momenta,
+	    e->step->modal ? "modes" : keeps_modes(e) ? "at the last set" : state_list(e->model), momenta,
 	       e->step->forced ? "; less their forced part" : "");
 	if (e->step->modal)
 		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));

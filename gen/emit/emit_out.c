@@ -116,7 +116,7 @@ void emit_out(const struct emitter *e)
 	const bool *reads = kept_states(e, f), left = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
 	emit_locals(e, reads);
 	emit_param_locals(e, r.param);
-	if (left && e->step->normal && !any_of(reads, e->system->states))
+	if (left && keeps_modes(e) && !any_of(reads, e->system->states))
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_get(s, now);\n");
 	emit_input_locals(e, r.input);

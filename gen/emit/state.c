@@ -192,10 +192,15 @@ const char *place_in_loop(const struct emitter *e)
 	return e->part ? spell(e, "$o_state[i]") : "i";
 }
 
+bool keeps_modes(const struct emitter *e)
+{
+	return e->step->normal && !e->step->cut;
+}
+
 /* s->y is not the state as it is known outside: NAME_get makes that */
 static bool is_read_whole(const struct emitter *e)
 {
-	return (e->step->forced && !rows_sustained(e->step)) || e->step->modal || e->step->normal;
+	return (e->step->forced && !rows_sustained(e->step)) || e->step->modal || keeps_modes(e);
 }
 
 /* The states wanted. `velocities`: without masses; else as the struct has them. */

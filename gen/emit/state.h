@@ -46,6 +46,7 @@ const char *place_in_loop(const struct emitter *e);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
 const char *slope_of_samples(const struct emitter *e, const char *to, const char *from); /* samples a step apart */
 const char *ramp_slope(const struct emitter *e, int input);       /* of an input that ramps to u over the step */
+bool keeps_modes(const struct emitter *e);                         /* normal modes are the state; y is what was set */
 bool has_place(const struct emitter *e);                           /* NAME_place */
 /* a table of what a step adds: the instance's own, or the model's */
 const char *of_step(const struct emitter *e, const char *table);

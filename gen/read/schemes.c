@@ -63,7 +63,12 @@ enum scheme default_scheme(void)
 
 static bool is_any(const struct scheme_row *row) { return row->name; }
 static bool leaves(const struct scheme_row *row) { return row->leaves && !row->modes; }      /* anything */
-static bool stops(const struct scheme_row *row) { return leaves(row) || row->holds_coupling; } /* at events */
+/* At events, which end what a method knows of the steps behind it */
+static bool stops(const struct scheme_row *row)
+{
+	return (row->leaves && row->points == 0) || row->holds_coupling;
+}
+
 static bool holds(const struct scheme_row *row) { return row->holds_coupling; }
 
 /* a, b<last>c of those that are meant */

@@ -292,7 +292,7 @@ void program_check(const struct step *step)
 		need(&c, step->expansion, "there is no series");
 	else if (step->kind == KIND_COLLOCATED)
 		check_collocation(&c);
-	else if (step->kind == KIND_NORMAL)
+	else if (flow_of(step->model) == FLOW_NORMAL)
 		need(&c, step->normal && step->normal->banks > 0, "there are no normal modes");
 	else if (has_remainder(step))
 		check_actions(&c);

@@ -14,7 +14,7 @@ enum step_kind kind_of_step(const struct model *model)
 	if (model->tuning)
 		return KIND_TUNED;
 	const enum step_kind kind = of_flow[flow_of(model)];
-	return kind == KIND_REMAINDER && follows_crossings(model) ? KIND_CUT : kind;
+	return follows_crossings(model) ? KIND_CUT : kind;
 }
 
 bool is_anchored(const struct step *step, int load)

@@ -154,12 +154,6 @@ static void build_remainder_step(struct step *step)
 	series_plan(step);
 }
 
-static void build_cut_step(struct step *step)
-{
-	build_remainder_step(step);
-	plan_cut(step);
-}
-
 struct reading { struct step *step; unsigned long parts; };    /* h times 0, or 1 */
 
 /* e^{A h}, for readers of the table alone */
@@ -319,6 +313,13 @@ static void build_normal_step(struct step *step)
 	step->series.emitted = normal->within.angle <= LIMIT_WITHIN;
 }
 
+/* The scheme's own step, and what is cut of it */
+static void build_cut_step(struct step *step)
+{
+	(flow_of(step->model) == FLOW_NORMAL ? build_normal_step : build_remainder_step)(step);
+	plan_cut(step);
+}
+
 /* Where a model is stepped in several ways, that of the equations as written is made once. */
 static struct resolvent *resolvent_of_written(const struct model *model)
 {
@@ -358,7 +359,7 @@ static void build(void *context)
 	step->written = resolvent_of_written(model);
 	check_pole_size(model, step->written);
 	check_holds(step);
-	if (step->kind == KIND_NORMAL)
+	if (flow_of(model) == FLOW_NORMAL)
 		refuse(CAN_NORMAL, model, scheme_place(step));
 	if (model->asked.compensated)
 		refuse(CAN_COMPENSATED, model, model->asked.compensated_at);

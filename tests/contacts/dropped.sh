@@ -101,7 +101,7 @@ cat >still.spec <<-END
 	output w = y'
 	step 0.05
 END
-for scheme in etdrk4 nc3; do
+for scheme in etdrk4 nc3 etdcol; do
 	"$plgen" --scheme $scheme -o still.c still.spec >log 2>&1 &&
 		$run_cc -I"$root/runtime" -DMODEL=still "$root/runtime/host/plmain.c" still.c "$archive" -lm -o still \
 			>>log 2>&1 && ./still 200 >rows.csv 2>>log

@@ -39,7 +39,7 @@ static void bent_modes_of(int which, const real q[], real mode[]) { (void)which,
 static void bent_of_modes(int which, const real mode[], real q[]) { (void)which, q[0] = mode[0]; }
 static void bent_pass_time(bent *s, const real u[]) { (void)u, s->k++; }
 
-static void bent_forces(const bent *s, int which, const real f[], const real eta[], const real rate[],
+static void bent_mode_forces(const bent *s, int which, const real f[], const real eta[], const real rate[],
                            real force[])
 {
     (void)s, (void)which, (void)f, (void)rate;
@@ -161,7 +161,8 @@ static void plane_waves(const plane *s, real wave[])
     wave[1] = (real)sin((double)plane_time(s));
 }
 
-static void plane_forces(const plane *s, int which, const real f[], const real eta[], const real rate[], real force[])
+static void plane_mode_forces(const plane *s, int which, const real f[], const real eta[], const real rate[],
+			      real force[])
 {
     const real q[2] = {f[0], 0};
     (void)s, (void)eta, (void)rate;

@@ -18,6 +18,8 @@ static const struct cut *cut_of(const struct emitter *e)
 void emit_cut_members(const struct emitter *e)
 {
 	int count = terms_of_events(e);
+	if (e->step->normal)
+		emit_normal_members(e);
 	emit_divided_members(e);
 	if (e->system->inputs == 0 && e->system->segments <= 1)
 		say(e, "    double end[2][%d], terms[%d];  /* of what is watched at the end of the last step */\n"
@@ -47,7 +49,7 @@ static void emit_flow_tables(const struct emitter *e)
 	for (int i = 0; i < segments * size * size; i++)
 		value[i] = cut_of(e)->slopes[i / (size * size)][i % (size * size)];
 	emit_array(e, "x' = A x in each segment of time; x: y, what acts on it, each force with two derivatives",
-		   "flow", 3, (const int[]){ segments, size, size }, value, name);
+		   "slope_matrix", 3, (const int[]){ segments, size, size }, value, name);
 }
 
 static void emit_acting_inputs(const struct emitter *e)
@@ -92,6 +94,14 @@ static void emit_acting(const struct emitter *e)
 
 static void emit_whole(const struct emitter *e)
 {
+	if (e->step->normal) {
+		emit_mode_tables(e);
+		return;
+	}
+	if (e->step->program->loops)
+		emit_loop_tables(e);
+	if (e->step->program->predicts)
+		emit_predictor(e);
 	open_function(e, "The scheme's own step, with the formulas of these intervals",
 		      "static void $n_whole($n *s, const double u[], const double start[], const double slope[],\n"
 		      "    double when, const int interval[])");
@@ -109,7 +119,9 @@ static void emit_algorithm(const struct emitter *e)
 		   { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(by_series(e, e->step->cut->look)) },
 		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
-		   { "SWIFT", cut_of(e)->certain < 1 });
+		   { "SWIFT", cut_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });
+	if (e->step->normal)
+		emit_mode_sizes(e);
 	emit_divided_macros(by_series(e, e->step->cut->look));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
@@ -133,10 +145,6 @@ void emit_cut_step(const struct emitter *e)
 	emit_inputs_now(e);
 	emit_flow_tables(e);
 	emit_acting(e);
-	if (e->step->program->loops)
-		emit_loop_tables(e);
-	if (e->step->program->predicts)
-		emit_predictor(e);
 	emit_whole(e);
 	emit_pass_time(e);
 	emit_algorithm(e);

@@ -327,23 +327,25 @@ static int block_of_coordinate(const struct emitter *e, int coord, int *place)
 	return 0;
 }
 
-/* V's row of each coordinate with such a force: what that is on the modes */
-static void add_rest_forces(const struct emitter *e, struct summands *sum)
+/* V's row of a coordinate: what a force on it is on the modes, of which the text says what it is */
+static void add_force_on(const struct emitter *e, struct summands *sum, int k, int coord, const char *force)
 {
 	const struct normal *m = normal_of_step(e);
-	const struct splitting *split = e->model->split;
-	int n = m->modes, place;
-	for (int k = 0; k < split->rests; k++) {
-		int block = block_of_coordinate(e, split->rest[k].coord, &place), first = first_mode(e, block);
-		const struct mode_block *own = &m->block[block];
-		double *row = ARRAY(double, (size_t)(m->banks * own->rows));
-		for (int b = 0; b < m->banks; b++)
-			for (int j = 0; j < own->modes; j++)
-				row[b * own->rows + j] = m->from[(b * n + split->rest[k].coord) * n + first + j];
-		const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
-						   own->rows, row);
-		add_summand(&sum[block], format("%s[i] * rest%d", name, k + 1));
-	}
+	int n = m->modes, place, block = block_of_coordinate(e, coord, &place), first = first_mode(e, block);
+	const struct mode_block *own = &m->block[block];
+	double *row = ARRAY(double, (size_t)(m->banks * own->rows));
+	for (int b = 0; b < m->banks; b++)
+		for (int j = 0; j < own->modes; j++)
+			row[b * own->rows + j] = m->from[(b * n + coord) * n + first + j];
+	const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
+					   own->rows, row);
+	add_summand(&sum[block], format("%s[i] * %s", name, force));
+}
+
+static void add_rest_forces(const struct emitter *e, struct summands *sum)
+{
+	for (int k = 0; k < e->model->split->rests; k++)
+		add_force_on(e, sum, k, e->model->split->rest[k].coord, format("rest%d", k + 1));
 }
 
 /* The states that it reads, and its values times functions of time */
@@ -419,7 +421,7 @@ void emit_forces(const struct emitter *e)
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
 	open_function(e, "Forces on the modes: what is left over, loads among it",
-		      "static void $n_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
+		      "static void $n_mode_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
 		      "    const double rate[%d], double force[%d])", m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
@@ -430,4 +432,20 @@ void emit_forces(const struct emitter *e)
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
 	close_function(e, "s which f eta rate");
+}
+
+void emit_forces_on_modes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const struct model *model = e->model;
+	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
+	for (int c = 0; c < model->channels; c++)
+		add_force_on(e, sum, c, coordinate_of_row(model, model->channel_row[c]), format("left[%d]", c));
+	open_function(e, "What is left over, on the modes",
+		      "static void $n_on_modes(int which, const double left[%d], double force[%d])", model->channels,
+		      m->width);
+	say(e, "    int i;\n");
+	for (int b = 0; b < m->blocks; b++)
+		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
+	close_function(e, "which left");
 }

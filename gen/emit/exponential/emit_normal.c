@@ -4,6 +4,7 @@
 #include "inner.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
+#include "emit/tunable/tunable.h"
 #include "model/reads.h"
 #include "step/exponential/normal.h"
 #include "step/linear/rows.h"
@@ -283,6 +284,28 @@ static int turns_within(const struct emitter *e)
 
 /* ---- the whole ---- */
 
+/* Those of a step by collocation, part of one that is cut */
+void emit_mode_sizes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const struct size size[] = { { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", 0 },
+		{ "STAGES", m->stages }, { "SWEEPS", m->sweeps }, { "FIRST_SWEEPS", m->first_sweeps },
+		{ "FUNCTIONS", 0 }, { "WAVES", 0 }, { "BANKS", 1 } };
+	for (size_t i = 0; i < sizeof size / sizeof *size; i++)
+		say_macro(e, size[i].name, whole_text(size[i].value));
+}
+
+/* Tables and functions of the same */
+void emit_mode_tables(const struct emitter *e)
+{
+	emit_to_modes(e);
+	emit_from_modes(e);
+	emit_forces_on_modes(e);
+	emit_node_times(e);
+	emit_node_modes(e);
+	emit_forces_ahead(e);
+}
+
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
@@ -293,7 +316,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
 		   { "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
 		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL },
-		   { "PEAKS", peak_outputs(e->model) });
+		   { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
 	say(e, "#include \"normal.h\"\n");
 }
 
@@ -324,14 +347,15 @@ void emit_normal_members(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	const char *where = m->points ? "ends of the last steps" : "nodes of the last step";
-	bool past = m->points || has_bank(e);
+	bool past = m->points || has_bank(e), alone = keeps_modes(e);
 	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
 	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
 	if (past)
 		say(e, "    double past[%d][2][%d];  /* what they were there */\n", m->kept, m->width);
-	if (functions_of_time(e))
+	if (functions_of_time(e) && alone)
 		say(e, "    double f[%d][%d];       /* functions of time there */\n", m->kept, functions_of_time(e));
-	say(e, "    int which;            /* operator whose modes they are */\n");
+	if (alone)
+		say(e, "    int which;            /* operator whose modes they are */\n");
 	if (m->points)
 		say(e, "    int newest;           /* of those ends the last */\n");
 	say(e, "    int known;            /* how many there are */\n");

@@ -16,7 +16,14 @@ void say_row_sum(const struct emitter *e, const char *target, int rows, const st
 void emit_to_modes(const struct emitter *e);                      /* NAME_modes_of */
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
-void emit_forces(const struct emitter *e);                        /* NAME_forces */
+void emit_forces(const struct emitter *e);                        /* NAME_mode_forces */
+
+void emit_forces_on_modes(const struct emitter *e);               /* NAME_on_modes */
+
+/* ---- emit_normal.c: a step by collocation, part of one that is cut ---- */
+
+void emit_mode_tables(const struct emitter *e);
+void emit_mode_sizes(const struct emitter *e);
 
 /* ---- remainder.c, loops.c: what a scheme leaves over; a step that loops over its tables ---- */
 

@@ -141,7 +141,7 @@ static void emit_held(const struct emitter *e)
 	emit_sizes(e, { "PARAMS", held(e)->params }, { "DERIVED", e->model->spec->derived },
 		   { "RETUNED", e->model->retuned != NULL },
 		   { "LEADS", held_leads(e) },
-		   { "MODES", e->step->normal ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
+		   { "MODES", keeps_modes(e) ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
 	say(e, "#include \"held.h\"\n");
 }
 

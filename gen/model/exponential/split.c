@@ -3,6 +3,7 @@
  * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
  */
 #include "model/building.h"
+#include "model/capability.h"
 #include "model/reads.h"
 
 struct split_work {
@@ -81,10 +82,11 @@ static void add_product(struct split_work *w, const struct atom *a, int k, mpq_s
 	}
 }
 
-/* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known */
+/* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known.  What holds answers to it, too. */
 static bool is_wave(const struct split_work *w, const struct basis *basis)
 {
 	return basis->kind == BASIS_WAVE && basis->power == 0 && !w->b->request->loads_left &&
+	       !has_contacts(w->b->model) &&
 	       (mpq_sgn(basis->wave->w) != 0 || mpq_sgn(basis->wave->a) != 0);
 }
 
@@ -241,7 +243,7 @@ static void find_last_values(void *context)
 		else
 			s->settles = false;
 	}
-	s->settles = s->settles && s->rests == 0;
+	s->settles = s->settles && s->rests == 0 && !has_contacts(w->b->model);
 }
 
 static void find_course(struct split_work *w)

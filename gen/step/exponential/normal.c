@@ -328,8 +328,10 @@ struct normal *normal_of(struct step *step)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	struct normal *normal = NEW(struct normal);
 	struct normal_work w = { .step = step, .model = model, .normal = normal };
-	check_left(step);
-	check_changes(step);
+	if (!has_contacts(model)) {     /* from event to event, forces are those of the expressions, at any time */
+		check_left(step);
+		check_changes(step);
+	}
 	check_turns(step);
 	w.M = by_coordinates(model, model->system.M);
 	check_symmetry(&w);
