@@ -42,21 +42,24 @@ void check_component(const struct symbol *symbol, int component, struct place at
 		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
 }
 
-#define NO_ACCELERATION "a let may use coordinates and their first derivatives; an output may use accelerations: " \
-			"output NAME = x''"
+#define NO_ACCELERATION "what a component is given may use coordinates and their first derivatives"
 
 /* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
 static struct node *read_inlined(struct parser *p, const struct symbol *symbol, struct token token)
 {
-	if (symbol->kind == SYMBOL_LET)
-		return inlined(slope_of(symbol->value, symbol->value->start), token.at, p->end);
+	if (symbol->kind == SYMBOL_LET) {
+		struct node *slope = slope_of(symbol->value, symbol->value->start);
+		if (has_acceleration(slope))
+			error(symbol->value->start, NULL, "its slope is read, and holds an acceleration");
+		return inlined(slope, token.at, p->end);
+	}
 	if (token.primes > 0)
 		error(token.at, "only coordinates have derivatives", "output '%s' has no derivative", token.name);
 	if (symbol->peak)
 		error(token.at, format("it is one by itself: output %s", token.name),
 		      "a peak is an output, and no part of an expression");
 	if (p->no_acceleration && has_acceleration(symbol->value))
-		error(token.at, NO_ACCELERATION, "an acceleration in a let");
+		error(token.at, NO_ACCELERATION, "an acceleration is given to a component");
 	return inlined(symbol->value, token.at, p->end);
 }
 
@@ -99,6 +102,17 @@ static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, 
 	return delayed;
 }
 
+/* f', f'' of a let f: derivatives by its coordinates */
+static struct node *read_derivative(const struct parser *p, const struct symbol *let, struct token token)
+{
+	struct node *derivative = let->value;
+	for (int i = 0; i < token.primes; i++)
+		derivative = slope_of(derivative, token.at);
+	if (p->no_acceleration && has_acceleration(derivative))
+		error(token.at, NO_ACCELERATION, "an acceleration is given to a component");
+	return inlined(derivative, token.at, p->end);
+}
+
 /* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 struct node *resolve_name(struct parser *p, struct token token)
 {
@@ -117,6 +131,8 @@ struct node *resolve_name(struct parser *p, struct token token)
 	if (symbol->kind == SYMBOL_OUTPUT)
 		error(token.at, "a shorthand for use in expressions is a let",
 		      "output '%s' cannot be used in an expression", token.name);
+	if (token.primes > 0 && symbol->kind == SYMBOL_LET && component == 0)
+		return read_derivative(p, symbol, token);
 	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
 		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", symbol_kind(symbol),
 		      token.name);
@@ -127,7 +143,7 @@ struct node *resolve_name(struct parser *p, struct token token)
 		error(token.at, NULL, "input '%s' has no second derivative", token.name);
 	check_component(symbol, component, token.at);
 	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
-		error(token.at, NO_ACCELERATION, "an acceleration in a let");
+		error(token.at, NO_ACCELERATION, "an acceleration is given to a component");
 	struct node *node = node_new(NODE_NAME, token.at);
 	/* of others a bracket behind them is a missing operator */
 	if (is_op(p, "(") && (symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT))

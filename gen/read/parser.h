@@ -19,7 +19,7 @@ struct parser {
 	/* whether the statement, unfinished, goes on in the next line: parse.c knows statements */
 	bool (*goes_on)(const struct parser *p);
 	int nesting;
-	bool no_acceleration;       /* in a let */
+	bool no_acceleration;       /* in what a component is given */
 };
 
 struct binding {                    /* of `with NAME = value` */

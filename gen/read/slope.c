@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The derivative in time of an expression that a scene gives to an input of a part which reads the input's slope. Its
- * nodes stand at those of the expression. */
+/* The derivative in time of an expression: of a let, f' and f'', and of what an assembly gives to an input of a
+ * component which reads the input's slope. Its nodes stand at those of the expression. */
 #include "read/parser.h"
 
 static struct node *like(const struct node *node, enum node_kind kind)
@@ -71,16 +71,17 @@ static struct node *slope_of_name(struct node *node, struct place at)
 		return number(node, 0);
 	if (symbol->kind == SYMBOL_LET)
 		return slope_of(symbol->value, at);
-	if (node->primes > 0)
-		error(at, NULL, "its slope is read, and would hold the derivative of %s",
-		      text_between(node->start, node->end));
+	if (node->primes > (symbol->kind == SYMBOL_COORD))
+		error(at, NULL, "this derivative would hold that of %s, which is not known",
+		      format("%s%.*s", symbol->name, node->primes, "''"));
 	if (symbol->kind == SYMBOL_INPUT && !symbol->hold)
 		error(at, "an input with 'hold first' ramps between samples and has one",
-		      "its slope is read, and input '%s' is held over a step: it has none", symbol->name);
+		      "this derivative would hold that of input '%s', which is held over a step: it has none",
+		      symbol->name);
 	struct node *made = like(node, NODE_NAME);
 	made->symbol = node->symbol;
 	made->component = node->component;
-	made->primes = 1;
+	made->primes = node->primes + 1;
 	return made;
 }
 
@@ -117,7 +118,7 @@ static struct node *slope_of_power(struct node *node, struct place at)
 {
 	struct node *base = slope_of(node->child[0], at), *exponent = node->child[1];
 	if (!is_zero(slope_of(exponent, at)))
-		error(at, NULL, "its slope is read, and is not found: an exponent depends on time");
+		error(at, NULL, "this derivative is not found: an exponent depends on time");
 	if (is_zero(base))
 		return base;
 	struct node *less = like(exponent, NODE_SUM), *power = like(node, NODE_POWER);
@@ -147,7 +148,7 @@ static struct node *slope_of_call(struct node *node, struct place at)
 	case FN_ABS:  return times(call(node, FN_SGN, x), inner);
 	default:
 		error(at, "found are those of sums, products, powers, sin, cos, exp, log, sqrt, sinh, cosh, abs",
-		      "its slope is read, and that of %s is not found", function_name(node->function));
+		      "this derivative would hold that of %s, which is not found", function_name(node->function));
 	}
 }
 
@@ -170,6 +171,6 @@ struct node *slope_of(struct node *node, struct place at)
 		append(choice, slope_of(node->child[2], at), false);
 		return choice;
 	default:
-		error(at, NULL, "its slope is read, and is not found");
+		error(at, NULL, "this derivative is not found");
 	}
 }

@@ -104,7 +104,6 @@ void read_param(struct parser *p)
 
 void read_let(struct parser *p)
 {
-	p->no_acceleration = true;
 	read_definitions(p, SYMBOL_LET);
 }
 

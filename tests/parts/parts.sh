@@ -52,6 +52,30 @@ tests/parts/stops.spec --scheme etdrk4
 tests/parts/cells.spec --rhs
 END
 
+# Derivatives of lets, accelerations in lets: the C of the same terms written by hand
+while IFS='|' read -r name coord lets left right written_left written_right output written options; do
+    for way in let hand; do
+        printf 'model m\nparam k = 100, c = 3\ncoord %s\ninput u hold first\ninit x = 1\n' "$coord"
+        if [ $way = let ]; then
+            printf "%b\n%s = cos(3*t)\n%s = 0\noutput x, o = %s\n" "$lets" "$left" "$right" "$output"
+        else
+            printf "%s = cos(3*t)\n%s = 0\noutput x, o = %s\n" "$written_left" "$written_right" "$written"
+        fi
+        echo 'step 0.01'
+    done >both.spec
+    # shellcheck disable=SC2086
+    sed '/^step/q' both.spec >m.spec && "$plgen" $options m.spec >let.c 2>log && sed '1,/^step/d' both.spec >m.spec &&
+        "$plgen" $options m.spec >hand.c 2>>log && sed '1,/^ \*\/$/d' let.c >lets && sed '1,/^ \*\/$/d' hand.c >hand &&
+        [ "$(wc -l <hand)" -gt 50 ] && diff lets hand >>log 2>&1
+    result $? "$name: as written by hand"
+done <<'END'
+d'|x, y|let d = x - u|x'' + k*d + c*d'|y'' + y - d'|x'' + k*(x - u) + c*(x' - u')|y'' + y - (x' - u')|d'|x' - u'
+d''|x, y|let d = x - y|x'' + d'' + x|y'' + c*d'|x'' + (x'' - y'') + x|y'' + c*(x' - y')|d''|x'' - y''
+an acceleration|x, y|let a = x''\nlet f = 2*a|f + k*x|y'' + a + y|2*x'' + k*x|y'' + x'' + y|f|2*x''
+a product|x, y|let p = x*y|x'' + k*x + p'|y'' + y|x'' + k*x + x'*y + x*y'|y'' + y|x'|x'|--scheme radau
+a sine|x, y|let p = sin(x)|x'' + k*x + p'|y'' + y|x'' + k*x + cos(x)*x'|y'' + y|p'|cos(x)*x'|--scheme taylor
+END
+
 "$plgen" --depfile d "$here/cells.spec" >log 2>&1 &&
     sed "s|$here/||g" d >>log &&
     grep -qx 'cells_pl.c: cells.spec cell.spec stiffness.mtx' log
