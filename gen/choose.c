@@ -77,10 +77,10 @@ static void certify(struct choosing *c)
 {
 	struct alternative *a = c->now;
 	const struct step *exact = c->step->modal ? c->variant->modes : c->variant->states;
-	a->certificate = ARRAY(struct certificate, c->stepped->requirements);
-	a->cost = cost_of_step(c->step, c->stepped->target);
-	for (int i = 0; i < c->stepped->requirements; i++) {
-		const struct requirement *r = &c->stepped->requirement[i];
+	a->certificate = ARRAY(struct certificate, c->stepped->needs.requirements);
+	a->cost = cost_of_step(c->step, c->stepped->needs.target);
+	for (int i = 0; i < c->stepped->needs.requirements; i++) {
+		const struct requirement *r = &c->stepped->needs.requirement[i];
 		struct certificate *found = &a->certificate[i];
 		*found = exact ? certificate_of(c->step, exact, r)
 			       : (struct certificate){ .why = "the numbers of its step are not known in double" };
@@ -115,8 +115,9 @@ static bool try_one(struct choosing *c, bool single, bool compensated, enum step
 static bool loses_too_much(const struct choosing *c)
 {
 	bool loses = false;
-	for (int i = 0; i < c->stepped->requirements; i++)
-		loses = loses || c->variant->dropped[i] > needed_error(&c->stepped->requirement[i], c->largest[i]);
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
+		loses = loses ||
+			c->variant->dropped[i] > needed_error(&c->stepped->needs.requirement[i], c->largest[i]);
 	return loses;
 }
 
@@ -168,7 +169,7 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 {
 	struct variant *v = NEW(struct variant);
 	v->model = model;
-	v->dropped = ARRAY(double, c->stepped->requirements);
+	v->dropped = ARRAY(double, c->stepped->needs.requirements);
 	if (!model->shortened || c->request->form == FORM_MODAL)
 		v->modes = step_of(c, model, FORM_MODAL);
 	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
@@ -188,8 +189,8 @@ struct dropping {
 static bool loses_less(const struct choosing *c, const struct dropping *d, int count)
 {
 	bool less = true;
-	for (int i = 0; i < c->stepped->requirements; i++)
-		less = less && d->lost[i][count] <= needed_error(&c->stepped->requirement[i], c->largest[i]);
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
+		less = less && d->lost[i][count] <= needed_error(&c->stepped->needs.requirement[i], c->largest[i]);
 	return less;
 }
 
@@ -209,7 +210,7 @@ static void try_modes(struct choosing *c, const struct dropping *d, int count)
 	if (!model)
 		return;
 	c->variant = variant_of(c, model);
-	for (int i = 0; i < c->stepped->requirements; i++)
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
 		c->variant->dropped[i] = d->lost[i][count];
 	try_forms(c);
 }
@@ -219,7 +220,7 @@ static void try_modes(struct choosing *c, const struct dropping *d, int count)
 static const double *walk_beside(const struct choosing *c, const struct step *step)
 {
 	const char *why;
-	struct running *r = running_new(c->stepped->requirement[0].need->at, step, 0, &why);
+	struct running *r = running_new(c->stepped->needs.requirement[0].need->at, step, 0, &why);
 	const struct trial trial = r ? trial_of(r, c->exact, NULL, NULL) : (struct trial){ .why = why };
 	return trial.why ? NULL : trial.error;
 }
@@ -227,7 +228,7 @@ static const double *walk_beside(const struct choosing *c, const struct step *st
 /* Where loads change their formula: as walked in double, from one mode on to a few more than are enough */
 static void walk_losses(struct choosing *c, struct dropping *d)
 {
-	const int requirements = c->stepped->requirements, all = d->modes->count;
+	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
 	for (int i = 0; i < requirements; i++)
 		d->lost[i] = ARRAY(double, all + 1);
 	for (int count = 0, more = MORE_MODES; count < all && more >= 0; count++) {
@@ -242,11 +243,11 @@ static void walk_losses(struct choosing *c, struct dropping *d)
 
 static void drop_modes(struct choosing *c, struct dropping *d)
 {
-	const int requirements = c->stepped->requirements, all = d->modes->count;
+	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
 	target_double();
 	d->lost = ARRAY(double *, requirements);
 	for (int i = 0; i < requirements && c->stepped->system.segments == 1; i++)
-		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->requirement[i]);
+		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->needs.requirement[i]);
 	if (c->stepped->system.segments > 1)
 		walk_losses(c, d);
 	int fewest = all;
@@ -266,10 +267,10 @@ static void try_fewer(struct choosing *c)
 	c->now = NEW(struct alternative);
 	c->now->form = FORM_AUTO;
 	ask(c, whole);
-	whole->requirements = c->stepped->requirements;
-	whole->requirement = c->stepped->requirement;
-	whole->target = c->stepped->target;
-	whole->budget = c->stepped->budget;
+	whole->needs.requirements = c->stepped->needs.requirements;
+	whole->needs.requirement = c->stepped->needs.requirement;
+	whole->needs.target = c->stepped->needs.target;
+	whole->needs.budget = c->stepped->needs.budget;
 	target_double();
 	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
 	if (!modes || modes->count < 2)
@@ -293,9 +294,9 @@ static void count_written(struct choosing *c)
 	for (int i = 0; i < modes->count; i++)
 		kept += s->kept[i];
 	target_double();
-	for (int i = 0; i < c->stepped->requirements && kept < modes->count; i++)
+	for (int i = 0; i < c->stepped->needs.requirements && kept < modes->count; i++)
 		c->variant->dropped[i] =
-			losses_of(modes, order, s->statics, &c->stepped->requirement[i])[kept];
+			losses_of(modes, order, s->statics, &c->stepped->needs.requirement[i])[kept];
 }
 
 /* ---- as walked ---- */
@@ -305,7 +306,7 @@ static bool is_hopeful(const struct choosing *c, const struct alternative *a)
 {
 	static const double too_large = 1e5;
 	bool hopeful = !a->refused;
-	for (int i = 0; i < c->stepped->requirements && hopeful; i++) {
+	for (int i = 0; i < c->stepped->needs.requirements && hopeful; i++) {
 		const struct certificate *found = &a->certificate[i];
 		hopeful = !found->known || (found->dropped <= found->needed &&
 					    found->rounding <= too_large * found->needed);
@@ -322,7 +323,7 @@ static void walk(struct choosing *c, struct alternative *a)
 		return;
 	a->why = NULL;
 	a->excess = 0;
-	for (int i = 0; i < c->stepped->requirements; i++) {
+	for (int i = 0; i < c->stepped->needs.requirements; i++) {
 		a->certificate[i].walked = true;
 		a->certificate[i].error = error[i];
 		a->excess = fmax(a->excess, error[i] / a->certificate[i].needed);
@@ -368,11 +369,11 @@ static void try_all(struct choosing *c)
 		*whole = *full;
 		exact = step_of(c, whole, FORM_DIRECT);
 	}
-	c->largest = ARRAY(double, c->stepped->requirements);
+	c->largest = ARRAY(double, c->stepped->needs.requirements);
 	c->exact = exact_course_of(full, c->stepped);
-	for (int i = 0; i < c->stepped->requirements; i++)
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
 		c->largest[i] = c->exact ? largest_of(c->exact, i) * (1 - 0x1p-52)
-				: exact	 ? largest_of_output(exact, &c->stepped->requirement[i])
+				: exact	 ? largest_of_output(exact, &c->stepped->needs.requirement[i])
 					 : 0;
 	if (c->written->shortened)
 		count_written(c);
@@ -391,7 +392,7 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 {
 	int worst = 0;
 	double most = 0;
-	for (int i = 0; i < c->stepped->requirements; i++) {
+	for (int i = 0; i < c->stepped->needs.requirements; i++) {
 		const struct certificate *found = &a->certificate[i];
 		const double excess = error_told(found) / found->needed;
 		worst = excess > most ? i : worst;
@@ -451,25 +452,27 @@ static void tell_unmet(struct choosing *c)
 	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
 	const char *note = what_would_do(c);
 	if (!best) {
-		say_error(c->stepped->requirement[0].need->at, note, "the need cannot be certified: %s",
+		say_error(c->stepped->needs.requirement[0].need->at, note, "the need cannot be certified: %s",
 			  first->refused ? first->refused : first->why);
 		return;
 	}
 	const int i = worst_requirement(c, best);
-	say_error(c->stepped->requirement[i].need->at, note, "the need cannot be met: at best %s, and %.2g is needed",
-		  certified_text(best, i), best->certificate[i].needed);
+	say_error(c->stepped->needs.requirement[i].need->at, note,
+		  "the need cannot be met: at best %s, and %.2g is needed", certified_text(best, i),
+		  best->certificate[i].needed);
 }
 
 static void tell_dear(const struct choosing *c, const struct alternative *taken)
 {
-	const struct alternative *best = most_exact(c->choice, c->stepped->budget);
+	const struct alternative *best = most_exact(c->choice, c->stepped->needs.budget);
 	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
 					 alternative_text(best), best->cost, best->excess)
 				: "nothing that there is takes so few";
 	say_error(c->stepped->spec->budget.at, fits,
 		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
-		  "%.0f, or %.3g times as many", taken->cost, alternative_text(taken), taken->cost - c->stepped->budget,
-		  c->stepped->budget, taken->cost / c->stepped->budget);
+		  "%.0f, or %.3g times as many",
+		  taken->cost, alternative_text(taken), taken->cost - c->stepped->needs.budget,
+		  c->stepped->needs.budget, taken->cost / c->stepped->needs.budget);
 }
 
 /* ---- the choice ---- */
@@ -486,7 +489,7 @@ static bool find_taken(struct choosing *c)
 		return false;
 	}
 	const struct alternative *taken = &choice->alternative[choice->taken];
-	if (c->stepped->target && taken->cost > c->stepped->budget) {
+	if (c->stepped->needs.target && taken->cost > c->stepped->needs.budget) {
 		tell_dear(c, taken);
 		return false;
 	}

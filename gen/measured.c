@@ -105,9 +105,9 @@ static void try_schemes(struct measuring *m)
 		try_scheme(m, NULL);
 		return;
 	}
-	if (m->model->switching || m->model->channels == 0)
+	if (m->model->switching || m->model->remainder.channels == 0)
 		try_scheme(m, scheme_name(SCHEME_EXACT));
-	if (m->model->channels == 0 && !m->model->switching)
+	if (m->model->remainder.channels == 0 && !m->model->switching)
 		return;
 	/* What is likely to do comes first: what is dearer is not tried. */
 	for (int likely = 1; likely >= 0; likely--)
@@ -153,7 +153,7 @@ static void choose(struct measuring *m)
 static void tell_unmet(const struct measuring *m)
 {
 	const struct alternative *best = NULL, *any = NULL;
-	const struct place at = m->model->requirement[0].need->at;
+	const struct place at = m->model->needs.requirement[0].need->at;
 	for (int i = 0; i < m->choice->alternatives; i++) {
 		const struct alternative *a = &m->choice->alternative[i];
 		any = any ? any : a;
@@ -176,12 +176,13 @@ static void tell_unmet(const struct measuring *m)
 
 static bool is_over_budget(const struct measuring *m, const struct alternative *taken)
 {
-	if (!m->model->target || taken->step_cost <= m->model->budget)
+	if (!m->model->needs.target || taken->step_cost <= m->model->needs.budget)
 		return false;
 	say_error(m->model->spec->budget.at, "a shorter step of a scheme of lower order may take fewer each",
 		  "over budget: the cheapest that meets the need takes some %.0f instructions a step (%s), %.0f more "
-		  "than %.0f, or %.3g times as many", taken->step_cost, alternative_text(taken),
-		  taken->step_cost - m->model->budget, m->model->budget, taken->step_cost / m->model->budget);
+		  "than %.0f, or %.3g times as many",
+		  taken->step_cost, alternative_text(taken), taken->step_cost - m->model->needs.budget,
+		  m->model->needs.budget, taken->step_cost / m->model->needs.budget);
 	return true;
 }
 
@@ -192,7 +193,7 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 	const struct place at = stepped->spec->need[0].at;
 	if (!find_requirements(stepped))
 		return NULL;
-	m.largest = ARRAY(double, stepped->requirements);
+	m.largest = ARRAY(double, stepped->needs.requirements);
 	m.until = longest_need(stepped);
 	if (!(m.until > 0)) {
 		say_error(at, NULL, "a need that is measured ends after 0");

@@ -78,10 +78,10 @@ static void try_starts(struct measuring *m, struct alternative *a, struct ready 
 		const double as_written = start[i];
 		if (as_written == 0)
 			continue;
-		name_neighbour(a, written->state_name[i]);
+		name_neighbour(a, written->names.state[i]);
 		for (int up = 0; up < 2; up++) {
 			start[i] = as_written * (up ? 1.1 : 0.9);
-			try_near(m, a, ready, start, format("%s = %.3g at the start", written->state_name[i],
+			try_near(m, a, ready, start, format("%s = %.3g at the start", written->names.state[i],
 							    start[i]));
 		}
 		start[i] = as_written;

@@ -29,9 +29,9 @@ const char *round_step(double h)
 const char *first_step(const struct model *stepped)
 {
 	double end = HUGE_VAL;
-	for (int i = 0; i < stepped->requirements; i++)
-		if (mpq_sgn(stepped->requirement[i].until) > 0)
-			end = fmin(end, mpq_get_d(stepped->requirement[i].until));
+	for (int i = 0; i < stepped->needs.requirements; i++)
+		if (mpq_sgn(stepped->needs.requirement[i].until) > 0)
+			end = fmin(end, mpq_get_d(stepped->needs.requirement[i].until));
 	return round_step(end / SAMPLES);
 }
 

@@ -50,7 +50,7 @@ struct ready ready_of(struct measuring *m, const struct request *as, const char 
 	if (!found.step)
 		return found;
 	const char *refused;
-	found.r = running_new(m->model->requirement[0].need->at, found.step, WITH_RHS | WITH_COUNTS, &refused);
+	found.r = running_new(m->model->needs.requirement[0].need->at, found.step, WITH_RHS | WITH_COUNTS, &refused);
 	found.roads.h = mpq_get_d(found.step->model->h);
 	(m->single ? target_float : target_double)();
 	*why = refused ? refused : *why;
@@ -79,8 +79,8 @@ static double disagreement(struct measuring *m)
 	double worst = 0;
 	for (int which = 0; which < ROADS; which++)
 		course[which] = which && !course[0] ? NULL : road_of(&m->roads, which, NULL, &m->why);
-	for (int i = 0; i < m->model->requirements && course[0] && course[1]; i++) {
-		const struct requirement *r = &m->model->requirement[i];
+	for (int i = 0; i < m->model->needs.requirements && course[0] && course[1]; i++) {
+		const struct requirement *r = &m->model->needs.requirement[i];
 		m->largest[i] = fmax(m->drive ? m->largest[i] : 0, largest_of(course[0], i));
 		const double over = apart(course[0], course[1], i) / needed_error(r, m->largest[i]);
 		worst = over <= worst ? worst : over;
@@ -176,7 +176,8 @@ static void find_drives(struct measuring *m, const struct step *step)
 	m->drives = drive_kinds(count);
 	m->drive = ARRAY(struct sampled, m->drives);
 	for (int i = 0; i < m->drives; i++)
-		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h), m->model->requirement[0].most);
+		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h),
+				       m->model->needs.requirement[0].most);
 }
 
 bool open_reference(struct measuring *m)
@@ -235,17 +236,17 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 	struct trial trial = trial_of(ready->r, reference, start, roads->drive);
 	const struct model *model = ready->step->model;
 	double worst = 0;
-	for (int i = 0; i < model->requirements; i++) {
+	for (int i = 0; i < model->needs.requirements; i++) {
 		const double largest = m->drive ? m->largest[i] : largest_of(reference, i);
 		struct certificate found = { .known = true, .rounding = trial.error[i],
-					     .needed = needed_error(&model->requirement[i], largest) };
+					     .needed = needed_error(&model->needs.requirement[i], largest) };
 		const double over = found.rounding / found.needed;
 		worst = over <= worst ? worst : over;
 		if (spec && !(found.rounding <= a->certificate[i].rounding && a->certificate[i].known))
 			a->certificate[i] = found;
 	}
 	if (spec) {
-		a->step_cost = cost_of_trial(&trial, model->target, model->asked.single);
+		a->step_cost = cost_of_trial(&trial, model->needs.target, model->asked.single);
 		a->cost = a->step_cost / roads->h;
 	}
 	a->why = trial.why ? trial.why : a->why;
@@ -301,7 +302,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 	a->measured = true;
 	a->name = ready.step  ? scheme_name(ready.step->model->scheme)
 		  : a->scheme ? a->scheme : scheme_name(m->model->scheme);
-	a->certificate = ARRAY(struct certificate, m->model->requirements);
+	a->certificate = ARRAY(struct certificate, m->model->needs.requirements);
 	a->excess = HUGE_VAL;
 	if (ready.r)
 		try_inputs(m, a, &ready);

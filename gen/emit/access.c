@@ -99,7 +99,7 @@ void emit_access(const struct emitter *e)
 		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
-		   { "OWN", e->model->held || e->kind->own_factors }, { "RAMPS", e->ramps },
+		   { "OWN", e->model->params.held || e->kind->own_factors }, { "RAMPS", e->ramps },
 		   { "TAPS", most_taps_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (step->forced && step->forced->written) {

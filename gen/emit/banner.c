@@ -137,8 +137,8 @@ void banner_linear(const struct emitter *e)
 
 static const char *operator_text(const struct model *model)
 {
-	if (*model->operator[0].text)
-		return format("equations' Jacobian at %s", model->operator[0].text);
+	if (*model->schedule.operator[0].text)
+		return format("equations' Jacobian at %s", model->schedule.operator[0].text);
 	bool own = scheme_row(model->scheme)->holds_coupling;
 	return own ? "own terms of each coordinate" : "linear terms with constant coefficients";
 }
@@ -150,8 +150,8 @@ void banner_remainder(const struct emitter *e)
 	say(e, " * y' = A y + loads + inputs + r(t, y). A: the %s%s.\n", operator_text(model),
 	    e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
 	say(e, " * Exact: A%s, each constant correctly rounded; approximated: r, a force on %d equation%s.\n",
-	    model->loads_left ? " and the inputs" : ", the loads and the inputs", model->channels,
-	    model->channels == 1 ? "" : "s");
+	    model->remainder.loads ? " and the inputs" : ", the loads and the inputs", model->remainder.channels,
+	    model->remainder.channels == 1 ? "" : "s");
 	banner_growth(e);
 }
 
@@ -174,13 +174,13 @@ static void tell_no_phi(const struct emitter *e)
 static void banner_impacts(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
-	for (int i = 0; i < model->impacts; i++) {
-		const struct impact *impact = &model->impact[i];
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		const struct impact *impact = &model->contacts.impact[i];
 		const char *text = text_between(impact->when->at, impact->when->end);
 		say(e, " *     impact %d: %s%s\n", i, printable(text),
 		    impact->bounces ? format(", a bounce of restitution %s", restitution_text(model, impact)) : "");
 	}
-	if (model->impacts > 1)
+	if (model->contacts.impacts > 1)
 		say(e, " * Those of one instant act in this order, each from the state that the one before has "
 		       "left.\n");
 	if (has_bounces(model))
@@ -219,7 +219,7 @@ static void banner_floors(const struct emitter *e)
 	const char *list = "";
 	for (int i = 0; i < e->system->states && has_floors(e); i++)
 		if (mpq_sgn(e->model->truncation.absolute[i]) != 0)
-			list = format("%s%s%s %s", list, *list ? ", " : "", e->model->state_name[i],
+			list = format("%s%s%s %s", list, *list ? ", " : "", e->model->names.state[i],
 				      readable_text(e->model->truncation.absolute[i]));
 	if (*list)
 		banner_sentence(e, "Beside the tolerance of their size now states may be off by an absolute one: %s.",
@@ -233,7 +233,7 @@ static void banner_ranges(const struct emitter *e)
 	const char *list = "";
 	for (int i = 0; i < written->ranges; i++)
 		list = format("%s%s%s in [%s, %s]", list, i ? ", " : "",
-			      written->state_name[written->range[i].state], readable_text(written->range[i].low),
+			      written->names.state[written->range[i].state], readable_text(written->range[i].low),
 			      readable_text(written->range[i].high));
 	if (*list)
 		banner_sentence(e, "%s_status says PL_LEFT_RANGE once a state is outside at the end of a step: %s.",
@@ -292,7 +292,7 @@ void banner_normal(const struct emitter *e)
 	banner_sentence(e, "Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
 			operators_of_modes(e->step));
 	banner_sentence(e, "Exact: %s; approximated, by polynomials in time: all %s forces on the modes.",
-			exact_in_modes(e->step), model->split->waves ? "other" : "these");
+			exact_in_modes(e->step), model->remainder.split->waves ? "other" : "these");
 	banner_sentence(e, "Step: %s.", course_of_modes(e->step));
 	banner_sentence(e, "Stability: %s.", stability_of_modes(e->step));
 	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
@@ -364,7 +364,7 @@ static void banner_part(const struct emitter *e, int index)
 	const int *expression = e->model->switching->part[index].expression;
 	const char *text = format("part %d:", index), *divides = "";
 	for (int i = 0; i < part->model->n; i++)
-		text = format("%s%s %s", text, i ? "," : "", part->model->coord_name[i]);
+		text = format("%s%s %s", text, i ? "," : "", part->model->names.coord[i]);
 	for (int i = 0; i < s->expressions; i++)
 		divides = format("%s%s %d", divides, i ? "," : "", expression[i]);
 	if (s->expressions == 0)
@@ -405,7 +405,7 @@ static const char *centre_text(const struct relative *r)
 		for (int k = 0; r->link[j].kind == LINK_CENTRE && k < r->written->n; k++)
 			if (mpq_sgn(r->link[j].weight[k]) != 0)
 				text = format("%s%s%s*%s", text, *text ? " + " : format("; %s = ", r->name[j]),
-					      readable_text(r->link[j].weight[k]), r->written->coord_name[k]);
+					      readable_text(r->link[j].weight[k]), r->written->names.coord[k]);
 	return text;
 }
 
@@ -502,10 +502,10 @@ static void banner_cost(const struct emitter *e)
 /* Each need, and what is certified: two lines */
 static void banner_needs(const struct emitter *e)
 {
-	for (int i = 0; i < e->model->requirements && e->step->choice; i++)
+	for (int i = 0; i < e->model->needs.requirements && e->step->choice; i++)
 		say(e, " * Needed: %s;\n"
 		       " *     %s.\n",
-		    printable(need_text(&e->model->requirement[i])), margin_text(e->step, i));
+		    printable(need_text(&e->model->needs.requirement[i])), margin_text(e->step, i));
 }
 
 static const char *input_text(int hold)
@@ -579,7 +579,7 @@ void emit_banner(const struct emitter *e)
 	banner_poles(e);
 	say(e, " *\n");
 	e->kind->banner(e);
-	const char *irrationals = irrationals_text(&e->model->irrationals);
+	const char *irrationals = irrationals_text(&e->model->equations.irrationals);
 	if (irrationals)
 		say(e, " * %s\n", irrationals);
 	banner_cost(e);

@@ -17,7 +17,7 @@ void announce(const struct emitter *e, const char *text, const char *comment)
 
 static void emit_state_struct(const struct emitter *e)
 {
-	const char *first = e->model->coord_name[0];
+	const char *first = e->model->names.coord[0];
 	const char *momenta = e->step->kicks.momenta ? format("; velocities times mass / mass of %s", first) : "";
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
@@ -112,7 +112,7 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	const char *note = e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written";
 	if (e->model->reduction.place)
 		note = format("as written; y: all %d written states", e->model->written->system.states);
-	if (rhs && (e->model->drags > 0 || e->model->bearings > 0 ||
+	if (rhs && (e->model->contacts.drags > 0 || e->model->contacts.bearings > 0 ||
 		    (e->model->switching && rubs(e->model->switching))))
 		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
 		      "--rhs has no formula for friction, whose force is a set where it sticks");

@@ -14,7 +14,7 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	for (int i = 0; i < n * n; i++)
 		value[i] = step->branch->whole->Phi[i].value;
 	say(e, "\n%s[$N_STATES][$N_STATES] = {  /* columns: %s */\n", declaration, state_list(step->model));
-	emit_number_rows(e, n, n, value, step->model->state_name);
+	emit_number_rows(e, n, n, value, step->model->names.state);
 	say(e, "};\n");
 }
 
@@ -48,10 +48,10 @@ void emit_mode_matrices(const struct emitter *e)
 		return;
 	say(e, "\n/* The state of a full state x, what the modes that are kept have of it: y = from_whole x. */\n"
 	       "const double $n_from_whole[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
-	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->state_name);
+	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->names.state);
 	say(e, "\n/* The full state of a state, the part of the dropped modes left out: x = to_whole y. */\n"
 	       "const double $n_to_whole[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
-	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->state_name);
+	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->names.state);
 }
 
 static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
@@ -61,7 +61,7 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 	for (int i = 0; i < table->states * table->inputs; i++)
 		value[i] = table->input[i].value;
 	say(e, "\n%s[$N_STATES][%d] = {\n", declaration, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, step->model->state_name);
+	emit_number_rows(e, table->states, table->inputs, value, step->model->names.state);
 	say(e, "};\n");
 }
 
@@ -81,7 +81,7 @@ static void emit_start_samples(const struct emitter *e, int inputs)
 
 static void emit_names(const struct emitter *e, int inputs, const struct tuning *tunable)
 {
-	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
+	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->names.state);
 	if (inputs) {
 		emit_name_list(e, "input_names", inputs, names_of_inputs(e));
 		emit_start_samples(e, inputs);

@@ -49,7 +49,7 @@ static bool remainders_read(const struct model *model, const struct wave *wave)
 static bool step_reads_load(const struct emitter *e, int load)
 {
 	const struct step *step = e->step;
-	const struct splitting *split = e->model->split;
+	const struct splitting *split = e->model->remainder.split;
 	bool read = step->kind == KIND_TUNED;   /* for other params any may be */
 	if (e->model->switching)
 		read = step->parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
@@ -103,15 +103,15 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 static bool forms_need_math(const struct emitter *e)
 {
 	const struct model *model = e->model;
-	bool math = (model->selector && reads_of(model, 1, &model->selector).math) ||
-		    reads_of(model, model->spec->derived, model->derived).math;
+	bool math = (model->schedule.selector && reads_of(model, 1, &model->schedule.selector).math) ||
+		    reads_of(model, model->spec->derived, model->params.derived).math;
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		math = math || (left && reads_of(speaker(model), 1, &left).math);
 	}
-	for (int k = 0; k < model->operators; k++) {
-		const struct form *const *left = (const struct form *const *)model->operator[k].left;
-		math = math || reads_of(model, model->channels, left).math;
+	for (int k = 0; k < model->schedule.operators; k++) {
+		const struct form *const *left = (const struct form *const *)model->schedule.operator[k].left;
+		math = math || reads_of(model, model->remainder.channels, left).math;
 	}
 	return math;
 }
@@ -156,7 +156,7 @@ static void emit_all_tables(const struct emitter *e)
 	emit_mode_matrices(e);
 	emit_load_tables(e);
 	emit_anchor_tables(e);
-	if (!e->model->retuned)
+	if (!e->model->params.retuned)
 		emit_nominal(e);                /* else with the tables of regions */
 	if (e->system->segments > 1)
 		emit_changes(e);

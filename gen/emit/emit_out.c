@@ -8,9 +8,9 @@ static const struct output *output_of_row(const struct model *model, int row)
 {
 	if (row < model->outputs)
 		return &model->output[row];
-	for (int k = 0; model->highest && k < model->n; k++)
-		if (model->highest[k] && place_of_output(model, model->highest[k]) == row)
-			return model->highest[k];
+	for (int k = 0; model->equations.highest && k < model->n; k++)
+		if (model->equations.highest[k] && place_of_output(model, model->equations.highest[k]) == row)
+			return model->equations.highest[k];
 	return NULL;
 }
 
@@ -82,7 +82,8 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 	const struct reads r = reads_of(speaker(model), forms, form);
 	for (int k = 0; k < speaker(model)->n; k++)
 		if (r.highest[k])
-			tape_set_local(t, format("accel%d", k + 1), tape_of_row(t, e->step, model->highest[k]));
+			tape_set_local(t, format("accel%d", k + 1),
+				       tape_of_row(t, e->step, model->equations.highest[k]));
 	for (int i = 0; i < model->outputs; i++)
 		tape_set(t, format("out[%d]", i), value[i], 13, model->output[i].name);
 	formulas_finish(f);
@@ -125,7 +126,7 @@ void emit_out(const struct emitter *e)
 	emit_turned_loads(e, r.load, r.time);
 	if (left)
 		say(e, "    double left[%d];\n"
-		       "    %s\n", model->channels, remainder_of_outputs(e));
+		       "    %s\n", model->remainder.channels, remainder_of_outputs(e));
 	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");

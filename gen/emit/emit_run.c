@@ -15,7 +15,7 @@ static const char *operand_name(const struct emitter *e, const struct operand *o
 	const struct linear *system = e->system;
 	int column = operand->index, l = 0;
 	if (operand->kind == OPERAND_STATE)
-		return e->model->state_name[column];
+		return e->model->names.state[column];
 	if (operand->kind == OPERAND_LOAD)
 		return text_of_column(system, column);
 	for (; !system->input[l].hold || column-- > 0;)

@@ -166,6 +166,6 @@ struct identifiers *identifiers_of(const struct model *model, const char *upper,
 	}
 	for (int i = 0; i < model->system.states; i++)
 		if (!local[i])
-			local[i] = claim(c, identifier(model->state_name[i]));
+			local[i] = claim(c, identifier(model->names.state[i]));
 	return c;
 }

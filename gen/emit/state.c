@@ -25,8 +25,9 @@ bool outputs_read(const struct emitter *e, int load)
 		read = read || (left && reads_of(speaker(model), 1, &left).load[load]);
 		read = read || !rationals_zero(columns, model->output[o].load[load]);
 	}
-	for (int i = 0; model->highest && i < model->n; i++)
-		read = read || (model->highest[i] && !rationals_zero(columns, model->highest[i]->load[load]));
+	for (int i = 0; model->equations.highest && i < model->n; i++)
+		read = read || (model->equations.highest[i] &&
+				!rationals_zero(columns, model->equations.highest[i]->load[load]));
 	return read;
 }
 
@@ -70,7 +71,7 @@ const char *state_list(const struct model *model)
 {
 	const char *list = "";
 	for (int i = 0; i < model->system.states; i++)
-		list = format("%s%s%s", list, i ? ", " : "", model->state_name[i]);
+		list = format("%s%s%s", list, i ? ", " : "", model->names.state[i]);
 	return list;
 }
 
@@ -79,7 +80,7 @@ const char *carried_text(const struct emitter *e)
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++)
 		if (e->step->carried.place[i] >= 0)
-			list = format("%s%s%s", list, *list ? ", " : "", e->model->state_name[i]);
+			list = format("%s%s%s", list, *list ? ", " : "", e->model->names.state[i]);
 	return list;
 }
 

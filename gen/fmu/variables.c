@@ -41,7 +41,7 @@ struct fmu_variables variables_of(const struct step *step)
 		    round_rational(tuning->nominal[i]));
 	/* most outputs are named like the state that they are */
 	for (int i = 0; i < system->states; i++)
-		add(&v, FMU_STATE, format("state.%s", shown->state_name[i]), format("state.%s", shown->state_name[i]),
+		add(&v, FMU_STATE, format("state.%s", shown->names.state[i]), format("state.%s", shown->names.state[i]),
 		    round_rational(shown->initial[i]));
 	return v;
 }

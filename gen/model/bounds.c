@@ -56,7 +56,7 @@ static void take_range(struct building *b, const struct state_bound *bound, int 
 		error(bound->low->start, NULL, "the range is beyond that of %s", target_name());
 	if (mpq_cmp(model->initial[state], range->low) < 0 || mpq_cmp(model->initial[state], range->high) > 0)
 		error(bound->at, "its initial value has to be there", "%s starts at %s, outside of its range",
-		      model->state_name[state], readable_text(model->initial[state]));
+		      model->names.state[state], readable_text(model->initial[state]));
 }
 
 static void evaluate_absolute(struct building *b, struct node *node, mpq_ptr value)

@@ -12,20 +12,20 @@
 enum flow flow_of(const struct model *model)
 {
 	const struct scheme_row *row = scheme_row(model->scheme);
-	if (model->switching || model->tuning || (model->channels == 0 && !has_contacts(model)))
+	if (model->switching || model->params.tuning || (model->remainder.channels == 0 && !has_contacts(model)))
 		return FLOW_LINEAR;
 	return row->modes ? FLOW_NORMAL : row->collocates ? FLOW_COLLOCATION : row->expands ? FLOW_SERIES : FLOW_RECIPE;
 }
 
 bool has_contacts(const struct model *model)
 {
-	return model->drags > 0 || (model->impacts > 0 && !model->switching);
+	return model->contacts.drags > 0 || (model->contacts.impacts > 0 && !model->switching);
 }
 
 bool steps_exactly(const struct model *model)
 {
 	return model->scheme == SCHEME_EXACT ||
-	       (model->channels == 0 && !has_contacts(model) && !scheme_row(model->scheme)->holds_coupling);
+	       (model->remainder.channels == 0 && !has_contacts(model) && !scheme_row(model->scheme)->holds_coupling);
 }
 
 int output_named(const struct model *model, const char *name)
@@ -39,7 +39,7 @@ int output_named(const struct model *model, const char *name)
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
 bool is_measured(const struct model *model)
 {
-	bool measured = model->switching || model->obstacle || model->channels > 0;
+	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.channels > 0;
 	for (int i = 0; i < model->spec->needs && !measured; i++) {
 		const int o = output_named(model, model->spec->need[i].output);
 		const struct output *output = o < 0 ? NULL : &model->output[o];
@@ -68,7 +68,7 @@ bool has_peak(const struct model *model)
 /* Does an input that is held, or a slope, enter an output for some values of the params? */
 static bool jumps(const struct model *model, const struct output *output)
 {
-	const struct tuning *t = model->tuning;
+	const struct tuning *t = model->params.tuning;
 	int row = t && t->output ? t->output[output - model->output] : -1;
 	bool any = false;
 	for (int i = 0; i < model->system.inputs; i++) {
@@ -97,7 +97,7 @@ static const char *first_order_coordinate(const struct model *model)
 {
 	for (int i = 0; i < model->n && model->system.velocity; i++)
 		if (model->system.velocity[i] < 0)
-			return model->coord_name[i];
+			return model->names.coord[i];
 	return NULL;
 }
 

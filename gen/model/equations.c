@@ -151,7 +151,7 @@ static int order_of(const struct model *model, int coord)
 
 static const char *highest_name(const struct model *model, int coord)
 {
-	return format("%s%s", model->coord_name[coord], order_of(model, coord) == 2 ? "''" : "'");
+	return format("%s%s", model->names.coord[coord], order_of(model, coord) == 2 ? "''" : "'");
 }
 
 static bool has_coordinate_of_order(const struct form *form, int coord, int order)
@@ -212,7 +212,7 @@ static const char *plural(int count, const char *word)
 static const char *missing_name(const struct building *b, int coord)
 {
 	return find_in_equations(b->spec, coord, 1) ? highest_name(b->model, coord)
-						    : format("%s''", b->model->coord_name[coord]);
+						    : format("%s''", b->model->names.coord[coord]);
 }
 
 /* Of a part, or of the scene's own: counted and told where its text ends */
@@ -239,7 +239,7 @@ static void tell_missing(const struct building *b, int missing, int all)
 bool assign_equations(struct building *b)
 {
 	if (b->model->relative) {
-		b->owner = b->model->owner;
+		b->owner = b->model->equations.owner;
 		return true;
 	}
 	int n = b->model->n, written = b->snapshot->written, all = written, surplus = -1, missing = -1;
@@ -323,7 +323,7 @@ static void tell_singular(const struct building *b, int coord)
 	struct place at = highest ? highest->at : mass ? mass->at : model->frame.coord[coord]->at;
 	if (!highest && !mass)
 		say_error(at, "every coordinate needs a mass, or a first derivative",
-			  "singular mass matrix: no derivative of %s stands in an equation", model->coord_name[coord]);
+			  "singular mass matrix: no derivative of %s stands in an equation", model->names.coord[coord]);
 	else if (zero_column(model, coord))
 		say_error(at, "every coordinate needs a mass", "singular mass matrix: the factor of %s is 0",
 			  highest_name(model, coord));

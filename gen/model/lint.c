@@ -161,7 +161,7 @@ static const struct equation *equation_at(const struct spec *spec, struct place 
 
 static int sign_at(const struct lint *lint, const mpq_t *A, int coord)
 {
-	return mpq_sgn(A[lint->model->owner[coord] * lint->system->n + coord]);
+	return mpq_sgn(A[lint->model->equations.owner[coord] * lint->system->n + coord]);
 }
 
 /* Which of a coordinate's own terms pushes it away: of the sign that its mass does not have; NULL: none does */
@@ -227,13 +227,13 @@ static void check_stability(const struct lint *lint)
 		const char *term = pushing_term(lint, i);
 		if (!term)
 			continue;
-		const struct residual *residual = &model->residual[model->owner[i]];
+		const struct residual *residual = &model->equations.residual[model->equations.owner[i]];
 		const struct equation *equation = equation_at(model->spec, residual->at);
 		int left = MOST_NODES;
 		const struct symbol *param = equation ? negative_factor(equation->left, &left) : NULL;
 		param = equation && !param ? negative_factor(equation->right, &left) : param;
 		at = param ? param->at : residual->at;
-		why = format("the %s of %s has the sign that its mass has not%s", term, model->coord_name[i],
+		why = format("the %s of %s has the sign that its mass has not%s", term, model->names.coord[i],
 			     param ? format(": param '%s' is negative", param->name) : "");
 	}
 	say_warning(at, why, "an unstable pole: the motion grows e-fold in %.3g s", 1 / worst);
@@ -315,7 +315,7 @@ static struct place place_of_load(const struct lint *lint, const struct load *lo
 		for (int c = 0; c < load->columns; c++)
 			for (int k = 0; k < s->segments; k++)
 				row = mpq_sgn(load->force[c][k * s->n + i]) != 0 ? i : row;
-	struct place at = lint->model->residual[row].at;
+	struct place at = lint->model->equations.residual[row].at;
 	const struct equation *equation = equation_at(lint->model->spec, at);
 	const struct node *node = equation && oscillate == 1 ? oscillation(equation->right, &left) : NULL;
 	node = equation && oscillate == 1 && !node ? oscillation(equation->left, &left) : node;
@@ -352,7 +352,8 @@ static void check_resonance(const struct lint *lint)
 /* By how much coordinate j acts on i, of the sign that the mass of i gives its equation */
 static double action(const struct lint *lint, const mpq_t *A, int i, int j)
 {
-	return sign_at(lint, lint->system->M, i) * nearest_double(A[lint->model->owner[i] * lint->system->n + j]);
+	return sign_at(lint, lint->system->M, i) *
+	       nearest_double(A[lint->model->equations.owner[i] * lint->system->n + j]);
 }
 
 /* Where two coordinates act on each other, not one on the other alone, factors of the equations make both actions
@@ -374,11 +375,11 @@ static bool is_balanced(const struct lint *lint, const mpq_t *A, int i, int j, d
 static void tell_circulation(const struct lint *lint, const mpq_t *A, const char *matrix, int i, int j)
 {
 	const struct model *model = lint->model;
-	say_warning(model->residual[model->owner[j]].at,
+	say_warning(model->equations.residual[model->equations.owner[j]].at,
 		    "such are follower loads, flow, friction and control; else a sign or a term is wrong",
 		    "the %s matrix is not symmetric: %s acts on %s by %.4g, %s on %s by %.4g", matrix,
-		    model->coord_name[j], model->coord_name[i], action(lint, A, i, j), model->coord_name[i],
-		    model->coord_name[j], action(lint, A, j, i));
+		    model->names.coord[j], model->names.coord[i], action(lint, A, i, j), model->names.coord[i],
+		    model->names.coord[j], action(lint, A, j, i));
 }
 
 /* Each of second order, with a mass of its own, and none whose acceleration acts on another one-sidedly, as those of
@@ -495,10 +496,10 @@ static void check_drift(const struct lint *lint)
 	}
 	int row = unopposed_row(n, width, A);
 	if (row >= 0)
-		say_warning(model->residual[row].at, NULL,
+		say_warning(model->equations.residual[row].at, NULL,
 			    "a constant load drives %s off: neither stiffness nor damping holds what moves as a whole "
 			    "there",
-			    model->coord_name[coordinate_of_row(model, row)]);
+			    model->names.coord[coordinate_of_row(model, row)]);
 }
 
 /* ---- powers that a negative number does not have ---- */
@@ -564,7 +565,7 @@ void lint(struct building *b)
 	check_names(b->spec);
 	check_elements(&lint);
 	check_equations(b);
-	if (model->switching || model->operators || model->channels || model->scheme != SCHEME_EXACT)
+	if (model->switching || model->schedule.operators || model->remainder.channels || model->scheme != SCHEME_EXACT)
 		return;
 	int states = model->system.states;
 	if (states <= MOST_POLES) {

@@ -198,8 +198,8 @@ static void name_relative(struct building *b)
 	size_t n = (size_t)relative->n;
 	model->n = model->system.n = relative->n;
 	model->frame.coord = ARRAY(struct symbol *, n);
-	model->coord_name = relative->name;
-	model->owner = ARRAY(int, n);
+	model->names.coord = relative->name;
+	model->equations.owner = ARRAY(int, n);
 	for (int j = 0; j < relative->n; j++) {
 		const struct model *written = relative->written;
 		int like = j < written->n ? j : 0;
@@ -209,7 +209,7 @@ static void name_relative(struct building *b)
 							  .at = written->frame.coord[like]->at,
 							  .index = j,
 							  .highest = relative->order[j] };
-		model->owner[j] = j < written->n ? written->owner[j] : j;
+		model->equations.owner[j] = j < written->n ? written->equations.owner[j] : j;
 	}
 }
 
@@ -223,13 +223,13 @@ static void name_coordinates(struct building *b)
 	size_t n = (size_t)b->spec->components;
 	model->n = model->system.n = b->spec->components;
 	model->frame.coord = ARRAY(struct symbol *, n);
-	model->coord_name = ARRAY(const char *, n);
+	model->names.coord = ARRAY(const char *, n);
 	for (struct symbol *s = b->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_COORD)
 			continue;
 		for (int i = 0; i < (s->length ? s->length : 1); i++) {
 			model->frame.coord[s->index + i] = s;
-			model->coord_name[s->index + i] = s->length ? format("%s[%d]", s->name, i + 1) : s->name;
+			model->names.coord[s->index + i] = s->length ? format("%s[%d]", s->name, i + 1) : s->name;
 		}
 	}
 }
@@ -240,7 +240,7 @@ static void name_states(struct building *b)
 	struct model *model = b->model;
 	struct linear *system = &model->system;
 	size_t n = (size_t)model->n;
-	model->state_name = ARRAY(const char *, 2 * n);
+	model->names.state = ARRAY(const char *, 2 * n);
 	system->velocity = ARRAY(int, n);
 	system->coord = ARRAY(int, 2 * n);
 	system->states = model->n;
@@ -250,14 +250,14 @@ static void name_states(struct building *b)
 			order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
 	}
 	for (int j = 0; j < model->n; j++) {
-		model->state_name[j] = model->coord_name[j];
+		model->names.state[j] = model->names.coord[j];
 		system->coord[j] = j;
 		system->velocity[j] = model->frame.coord[j]->highest == 2 ? system->states : -1;
 		if (system->velocity[j] < 0)
 			continue;
 		system->coord[system->states] = j;
-		model->state_name[system->states++] =
-			format(strchr(model->coord_name[j], ' ') ? "(%s)'" : "%s'", model->coord_name[j]);
+		model->names.state[system->states++] =
+			format(strchr(model->names.coord[j], ' ') ? "(%s)'" : "%s'", model->names.coord[j]);
 	}
 }
 
@@ -358,7 +358,7 @@ static void part_factors(struct building *b)
 		b->spec->tunable[i].symbol->factor = factor[i];
 		b->spec->tunable[i].symbol->acting = factor[i] ? acting : acting++;
 		if (factor[i])
-			b->factor = b->model->factor = factor;
+			b->factor = b->model->params.factor = factor;
 	}
 }
 
@@ -378,15 +378,15 @@ static void collect_derived(void *context)
 	own.params = PARAMS_ATOMS;
 	own.keep = KEEP_ALL;
 	own.given = own.whole_time = true;
-	d->b->model->derived[d->derived] = collect(&own, symbol->value)->cell[0];
+	d->b->model->params.derived[d->derived] = collect(&own, symbol->value)->cell[0];
 	forget_lets(d->b->spec);
 }
 
 static void derive_model(struct building *b)
 {
 	derive_params(b->spec);
-	b->model->leads.params = b->spec->tunables;
-	b->model->derived = ARRAY(const struct form *, (size_t)b->spec->derived + 1);
+	b->model->params.leads.params = b->spec->tunables;
+	b->model->params.derived = ARRAY(const struct form *, (size_t)b->spec->derived + 1);
 	for (int k = 0; k < b->spec->derived && !b->request->again.tunable; k++)
 		statement_guard(collect_derived, &(struct derivation){ b, k });
 }
@@ -406,7 +406,7 @@ static void collect_with_params(struct building *b)
 		part_factors(b);
 	b->nominal = b->snapshot;
 	b->nominals = c->changes + 1;
-	b->model->keeps_params = true;
+	b->model->params.kept = true;
 	c->params = left ? PARAMS_ATOMS : PARAMS_INPUTS;
 	c->inputs = b->spec->inputs;
 	c->keep = left ? KEEP_ALL : KEEP_PIECEWISE;
@@ -427,11 +427,11 @@ static void begin_model(struct building *b)
 	model->relative = request->again.relative;
 	model->frame.form = model->relative ? model->relative->form : NULL;
 	if (model->relative)                    /* its params were collected for the written one */
-		b->collector.irrationals = model->written->irrationals;
+		b->collector.irrationals = model->written->equations.irrationals;
 	b->collector.frame = &model->frame;
-	model->atoms = b->collector.atoms = atoms_new();
-	model->leads.params = b->spec->tunables;
-	b->collector.leads = &model->leads;
+	model->equations.atoms = b->collector.atoms = atoms_new();
+	model->params.leads.params = b->spec->tunables;
+	b->collector.leads = &model->params.leads;
 	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
 	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
 	model->name = request->prefix ? request->prefix : b->spec->name;
@@ -546,7 +546,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	name_states(&b);
 	collect_model(&b);
 	build_parts(&b);
-	model->irrationals = b.collector.irrationals;
+	model->equations.irrationals = b.collector.irrationals;
 	bool told = request->solution || request->again.tunable || request->again.relative || request->again.undivided;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);

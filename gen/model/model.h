@@ -13,72 +13,57 @@
 struct bearing;
 struct drag;
 struct impact;
-struct residual;
 struct shortening;
-struct snapshot;
 struct switching;
-struct target;
 struct tuning;
 
 /* ---- model.c: the equations of motion, exact ---- */
 
-struct model {
-	struct spec *spec;
-	struct request asked;
-	const char *name;           /* prefix of everything generated */
-	int n;                      /* coordinates */
-	const char **coord_name;
-	const char **state_name;    /* x1, x2, x1', x2' */
-	struct frame frame;         /* the coordinates, and how the written ones follow from them */
-	struct linear system;       /* as written */
-	struct residual *residual;  /* per row of the system, in the first segment of time */
-	struct snapshot *snapshot;  /* per segment */
-	struct snapshot *whole;     /* for all time, conditions and products of time kept; NULL: nothing is left over */
-	struct irrationals irrationals;
-	mpq_t *initial;             /* one per state */
-	mpq_t h;
-	enum scheme scheme;
-	struct truncation truncation; /* of a scheme that expands; else all 0 */
-	bool loads_left;            /* known loads are left to the scheme */
-	int stages;                 /* of collocation: nodes after the step's start; 0: another scheme */
-	int operators;              /* 0: exact, or nothing is left over */
-	struct operator *operator;
-	int *owner;                 /* per coordinate: the row of its equation */
-	int channels;               /* of what is left over, of each operator: one for each equation that has some */
-	int *channel_row;           /* its equation */
-	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the remainder's derivative */
-	const struct atoms *atoms;
+struct model_names {
+	const char **coord;
+	const char **state;         /* x1, x2, x1', x2' */
+};
+struct model_contacts {             /* of regions and of other schemes: gen/model/contacts */
 	int bearings;
 	struct bearing *bearing;    /* friction without mass, by what it bears */
-	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	int impacts;                /* in the order in which they act at one instant */
 	struct impact *impact;
 	int drags;                  /* friction that a Taylor series goes beside */
 	struct drag *drag;
-	struct smoothness smooth;
-	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
-	const char *obstacle_text;  /* why it did, and the way out if there is one */
-	int nonlinears;             /* terms that no M, C and K have, by place */
-	struct nonlinear *nonlinear;
-	struct splitting *split;    /* of a scheme in normal modes; else NULL */
-	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
-	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
-	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
-	bool keeps_params;
+};
+struct model_params {               /* tunable ones: gen/model/tunable */
+	const struct tuning *tuning; /* and how linear equations follow from them; NULL: there are none */
+	/* the instance has them: what is left over and outputs read them, or they act like held inputs */
+	bool kept;
 	struct leads leads;         /* what the instance has behind them */
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
 	const struct form **derived; /* spec->derived: over the params that are given */
 	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
 	const struct tuning *retuned; /* held, and how these follow from it; NULL: no param is such */
+};
+struct model {
+	struct spec *spec;
+	struct request asked;
+	const char *name;           /* prefix of everything generated */
+	int n;                      /* coordinates */
+	struct model_names names;
+	struct frame frame;         /* the coordinates, and how the written ones follow from them */
+	struct linear system;       /* as written */
+	struct equations equations;
+	mpq_t *initial;             /* one per state */
+	mpq_t h;
+	enum scheme scheme;
+	struct truncation truncation; /* of a scheme that expands or collocates; else all 0 */
+	struct operator_schedule schedule;
+	struct remainder remainder;
+	struct model_contacts contacts;
+	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
+	struct nonlinear nonlinear;
+	struct model_params params;
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
-	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
-	struct output **highest;
-	int requirements;           /* needs; the target of a budget, its instructions a step; 0: there is none */
-	struct requirement *requirement;
-	const struct target *target;
-	double budget;
+	struct needs needs;
 	const struct delays *delays;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;

@@ -43,8 +43,8 @@ static void check_measured(const struct finding *f)
 			error(f->need->at, "hold zero or hold first",
 			      "a need is measured with inputs that hold, or ramp from sample to sample: '%s' does "
 			      "neither", system->input[i].name);
-		if (f->found != f->model->requirement && f->model->requirement->most &&
-		    !mpq_equal(f->found->most[i], f->model->requirement->most[i]))
+		if (f->found != f->model->needs.requirement && f->model->needs.requirement->most &&
+		    !mpq_equal(f->found->most[i], f->model->needs.requirement->most[i]))
 			error(f->need->at, NULL, "needs that are measured have one bound for '%s'",
 			      system->input[i].name);
 	}
@@ -127,29 +127,29 @@ static void find_budget(void *context)
 	struct model *model = context;
 	const struct budget *budget = &model->spec->budget;
 	RATIONAL instructions = ZERO;
-	if (model->requirements == 0)
+	if (model->needs.requirements == 0)
 		error(budget->at, "need OUTPUT within BOUND until END",
 		      "a budget stands beside a need: there is none");
 	for (int i = 0; i < TARGETS; i++)
 		if (strcmp(budget->target.name, targets[i].name) == 0)
-			model->target = &targets[i];
-	if (!model->target)
+			model->needs.target = &targets[i];
+	if (!model->needs.target)
 		error(budget->target.at, "targets: cortex-m4, cortex-m0", "there is no target '%s'",
 		      budget->target.name);
 	constant(budget->instructions, instructions);
 	if (mpq_sgn(instructions) <= 0)
 		error(budget->instructions->start, NULL, "a budget is above 0, found %s", readable_text(instructions));
-	model->budget = nearest_double(instructions);
+	model->needs.budget = nearest_double(instructions);
 }
 
 bool find_requirements(struct model *model)
 {
 	const struct spec *spec = model->spec;
 	bool good = true;
-	model->requirement = ARRAY(struct requirement, spec->needs);
-	model->requirements = spec->needs;
+	model->needs.requirement = ARRAY(struct requirement, spec->needs);
+	model->needs.requirements = spec->needs;
 	for (int i = 0; i < spec->needs; i++) {
-		struct finding f = { model, &spec->need[i], &model->requirement[i] };
+		struct finding f = { model, &spec->need[i], &model->needs.requirement[i] };
 		good = statement_guard(find_requirement, &f) && good;
 	}
 	if (spec->budget.instructions)

@@ -13,15 +13,15 @@ static bool is_after(struct place a, struct place b)
 /* By place; what stands at several is named once */
 static void add_term(struct model *model, struct place at, const char *text)
 {
-	int place = model->nonlinears;
-	for (int i = 0; i < model->nonlinears; i++)
-		if (strcmp(model->nonlinear[i].text, text) == 0)
+	int place = model->nonlinear.terms;
+	for (int i = 0; i < model->nonlinear.terms; i++)
+		if (strcmp(model->nonlinear.term[i].text, text) == 0)
 			return;
-	ENLARGE(model->nonlinear, (size_t)model->nonlinears + 1);
-	for (; place > 0 && is_after(model->nonlinear[place - 1].at, at); place--)
-		model->nonlinear[place] = model->nonlinear[place - 1];
-	model->nonlinear[place] = (struct nonlinear){ at, text };
-	model->nonlinears++;
+	ENLARGE(model->nonlinear.term, (size_t)model->nonlinear.terms + 1);
+	for (; place > 0 && is_after(model->nonlinear.term[place - 1].at, at); place--)
+		model->nonlinear.term[place] = model->nonlinear.term[place - 1];
+	model->nonlinear.term[place] = (struct nonlinear_term){ at, text };
+	model->nonlinear.terms++;
 }
 
 static void add_form(struct model *model, const struct form *form)

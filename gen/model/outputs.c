@@ -16,8 +16,8 @@ static void add_highest(const struct model *model, const struct linear *system, 
 		rational_addmul(output->state[j], factor, highest[coord * system->states + j]);
 	for (int i = 0; i < model->n; i++) {
 		mpq_mul(weight, inverse[coord * model->n + i], factor);
-		for (int c = 0; c < model->channels; c++)
-			if (model->channel_row[c] == i)
+		for (int c = 0; c < model->remainder.channels; c++)
+			if (model->remainder.row[c] == i)
 				mpq_add(output->channel[c], output->channel[c], weight);
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
@@ -173,8 +173,8 @@ static void collect_left(void *context)
 /* The friction of what has no mass is what it bears: then it may be a row after all. */
 static bool becomes_row(struct building *b, int index, struct value *value, bool *bears)
 {
-	bool row = b->model->bearings > 0 && value;
-	for (int i = 0; b->model->bearings > 0 && value && i < value->rows * value->columns; i++) {
+	bool row = b->model->contacts.bearings > 0 && value;
+	for (int i = 0; b->model->contacts.bearings > 0 && value && i < value->rows * value->columns; i++) {
 		const struct form *written = value->cell[i];
 		const struct form *borne = value->cell[i] = borne_form(b, written);
 		*bears = *bears || !same_form(written, borne);
@@ -212,7 +212,7 @@ static void name_outputs(struct building *b)
 	model->declared_outputs = b->spec->outputs > 0;
 	const struct model *written = model->relative ? model->relative->written : model;
 	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
-		add_output(model, written->state_name[i], NULL, NULL);
+		add_output(model, written->names.state[i], NULL, NULL);
 }
 
 static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)
@@ -226,7 +226,7 @@ static bool reads_too_high(const struct model *model, bool *seen, const struct f
 /* Whether it is good; else it has been told. */
 static bool check_output(const struct model *model, const struct output *output)
 {
-	bool *seen = ARRAY(bool, (size_t)atoms_count(model->atoms));
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));
 	if (!reads_too_high(model, seen, output->form ? output->form : output->left))
 		return true;
 	const struct node *name = find_acceleration(output->value, 1);
@@ -262,7 +262,7 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 {
 	struct output *row = NEW(struct output);
 	int segments = b->model->system.segments;
-	make_rows(&b->model->system, b->model->channels, row);
+	make_rows(&b->model->system, b->model->remainder.channels, row);
 	for (int s = 0; s < segments; s++) {
 		int known = s < of->segments ? s : 0;
 		spread_loads(b, form_in(e, known), add_direct, &(struct direct_row){ row, segments, s });
@@ -284,7 +284,7 @@ struct output *row_of_form(struct building *b, struct form *form)
 {
 	const struct linear *system = &b->model->system;
 	struct output *row = NEW(struct output);
-	make_rows(system, b->model->channels, row);
+	make_rows(system, b->model->remainder.channels, row);
 	spread_loads(b, form, add_direct, &(struct direct_row){ row, system->segments, 0 });
 	add_states_and_inputs(b, form, row);
 	repeat_loads(system, row);
@@ -322,21 +322,21 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 {
 	struct model *model = b->model;
 	RATIONAL one = RATIO(1, 1);
-	model->highest = ARRAY(struct output *, model->n);
+	model->equations.highest = ARRAY(struct output *, model->n);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		struct reads reads = reads_of(model, left != NULL, &left);
 		for (int k = 0; k < model->n; k++) {
-			if (!reads.highest[k] || model->highest[k])
+			if (!reads.highest[k] || model->equations.highest[k])
 				continue;
 			if (model->asked.reduce)
 				say_error(find_acceleration(model->output[i].value, 0)->at, "without --reduce it can",
 					  "an output that is not linear cannot read an acceleration under --reduce");
-			model->highest[k] = NEW(struct output);
-			model->highest[k]->value = model->output[i].value;
-			model->highest[k]->name = model->output[i].name;
-			make_rows(&model->system, model->channels, model->highest[k]);
-			add_highest(model, &model->system, inverse, highest, k, one, model->highest[k]);
+			model->equations.highest[k] = NEW(struct output);
+			model->equations.highest[k]->value = model->output[i].value;
+			model->equations.highest[k]->name = model->output[i].name;
+			make_rows(&model->system, model->remainder.channels, model->equations.highest[k]);
+			add_highest(model, &model->system, inverse, highest, k, one, model->equations.highest[k]);
 		}
 	}
 }
@@ -357,7 +357,7 @@ void build_outputs(struct building *b)
 	struct linear *system = &model->system;
 	mpq_t *inverse = inverse_of_leading(system), *highest = rationals((size_t)(model->n * system->states));
 	/* what is left over is left by this one */
-	struct linear first = model->operators ? operator_system(model, 0) : *system;
+	struct linear first = model->schedule.operators ? operator_system(model, 0) : *system;
 	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);
 	int told = -1;                          /* the statement last told: once is enough */
@@ -365,12 +365,12 @@ void build_outputs(struct building *b)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
 	for (int i = 0; i < model->outputs; i++)
-		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->atoms)), model->output[i].left);
+		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->equations.atoms)), model->output[i].left);
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
 		if (output->statement != told && !check_output(model, output))
 			told = output->statement;
-		make_rows(system, model->channels, output);
+		make_rows(system, model->remainder.channels, output);
 		if (!output->value)
 			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())

@@ -10,13 +10,13 @@ static bool calls_libm(const struct atom *a)
 
 int held_values(const struct model *model)
 {
-	return model->spec->tunables + model->leads.count;
+	return model->spec->tunables + model->params.leads.count;
 }
 
 const struct symbol *held_symbol(const struct model *model, int held)
 {
 	const int lead = held - model->spec->tunables;
-	return lead < 0 ? model->spec->tunable[held].symbol : model->leads.lead[lead].symbol;
+	return lead < 0 ? model->spec->tunable[held].symbol : model->params.leads.lead[lead].symbol;
 }
 
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
@@ -56,7 +56,7 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 	struct reads reading = { ARRAY(bool, model->system.states),
 				 ARRAY(bool, 2 * (size_t)model->system.inputs), ARRAY(bool, model->system.loads),
 				 ARRAY(bool, model->n), ARRAY(bool, held_values(model) + 1), false, false };
-	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);
+	bool *seen = ARRAY(bool, model->equations.atoms ? (size_t)atoms_count(model->equations.atoms) : 0);
 	for (int i = 0; i < count; i++)
 		look_at_form(&reading, model, seen, form[i]);
 	return reading;
@@ -73,7 +73,7 @@ bool reads_input_slope(const struct model *model, int input)
 int coordinate_of_row(const struct model *model, int row)
 {
 	int coord = 0;
-	while (model->owner[coord] != row)
+	while (model->equations.owner[coord] != row)
 		coord++;
 	return coord;
 }

@@ -8,6 +8,7 @@
 #include "tape/tape.h"
 
 struct relative;
+struct target;
 
 struct building;
 struct again {                      /* to build a model a second time, for builders; then nothing is told again */
@@ -50,7 +51,7 @@ struct request {                    /* what the user asks for on the command lin
 
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h; of collocation in h */
-	int stages;                 /* of a collocation; 0: there is none */
+	int stages;                 /* of a collocation: nodes after the step's start; 0: there is none */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h, */
 	int over;                   /* and one expansion is over so many of them */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
@@ -70,6 +71,12 @@ struct requirement {                /* a need, evaluated */
 	mpq_t bound, until;         /* in the output's unit, or as a part of its largest value; [s] */
 	mpq_t *most;                /* per input: of its size */
 };
+struct needs {
+	int requirements;
+	struct requirement *requirement;
+	const struct target *target; /* of a budget: its instructions a step; 0: there is none */
+	double budget;
+};
 struct wanted_modes {               /* of the statement `modes`, or of --modes */
 	struct place at;            /* source NULL: all */
 	int count, *number;
@@ -83,9 +90,11 @@ struct reduction {                  /* what --reduce found */
 	const char **dropped_name;
 	mpq_t *row;                 /* of a reduced model, states x written states: each state over the written ones */
 };
-struct nonlinear {                  /* a term of the equations, or what jumps */
-	struct place at;
-	const char *text;           /* as written */
+struct nonlinear {                  /* what no M, C and K have */
+	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
+	const char *why;            /* it did, and the way out if there is one */
+	int terms;                  /* of the equations, and what jumps, by place */
+	struct nonlinear_term { struct place at; const char *text; } *term; /* as written */
 };
 struct delay {                      /* of an input */
 	const struct symbol *symbol; /* what it is then: an input of the model */

@@ -248,15 +248,15 @@ static void find_obstacle(void *context)
 		add_elements(b, &b->nominal[s]);
 	const struct atom *atom = first_atom(b, false);
 	const char *why = "is not piecewise linear", *rewrite;
-	model->obstacle = atom ? atom->node : NULL;
-	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
-		model->obstacle = changing_factor(b, s);
+	model->nonlinear.obstacle = atom ? atom->node : NULL;
+	for (int s = 1; s < model->system.segments && !model->nonlinear.obstacle; s++) {
+		model->nonlinear.obstacle = changing_factor(b, s);
 		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
 	}
-	if (!model->obstacle)
+	if (!model->nonlinear.obstacle)
 		return;
-	rewrite = rewrite_of(model->obstacle);
-	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
+	rewrite = rewrite_of(model->nonlinear.obstacle);
+	model->nonlinear.why = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 
 /* The first scheme to try where exact is not possible and none was asked for. What is smooth has its Taylor series; an
@@ -265,7 +265,7 @@ static void find_obstacle(void *context)
 static enum scheme scheme_of_choice(const struct building *b)
 {
 	bool many = b->model->system.states > LIMIT_UNROLLED_STATES;
-	if (b->model->impacts > 0 || holds_friction(b))
+	if (b->model->contacts.impacts > 0 || holds_friction(b))
 		return SCHEME_TAYLOR;           /* no other goes from event to event */
 	if (b->request->passed_over || b->request->loads_left)
 		return default_scheme();
@@ -325,10 +325,10 @@ static void keep_loads(struct building *b, const char *why)
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
-	bool linear = is_linear(b) && model->impacts == 0;
-	if (model->impacts > 0 || holds_friction(b))
+	bool linear = is_linear(b) && model->contacts.impacts == 0;
+	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
-	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
+	if (model->contacts.impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(tell_friction_stands, b);
@@ -354,10 +354,10 @@ static bool settle_scheme(struct building *b)
 	if (!linear || b->request->loads_left || b->spec->has_operator)
 		collect_whole(b);
 	/* in normal modes known loads are forces like others */
-	model->loads_left = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);
+	model->remainder.loads = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
-	if (b->whole && !diagnostics_errors() && (model->impacts > 0 || holds_friction(b)))
+	if (b->whole && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)))
 		statement_guard(settle_contacts, b);
 	return !diagnostics_errors();
 }
@@ -377,7 +377,7 @@ static bool is_stiff(struct building *b)
 static void prefer_stiff(struct building *b)
 {
 	struct model *model = b->model;
-	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
+	if (!model->nonlinear.obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
 		return;
 	model->scheme = SCHEME_AUTO;
 	model->truncation.order = 0;
@@ -397,20 +397,20 @@ void build_system(struct building *b)
 		return;
 	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
 	fill_states(b, rows);
-	for (int s = 0; s < system->segments && !model->loads_left; s++)
+	for (int s = 0; s < system->segments && !model->remainder.loads; s++)
 		for (int i = 0; i < model->n; i++)
 			place_loads(b, load_form(b, s, i));
 	if (model->switching)
 		place_region_loads(b);
 	else if (has_contacts(model))
 		place_contact_loads(b);
-	for (int s = 0; s < system->segments && !model->loads_left; s++)
+	for (int s = 0; s < system->segments && !model->remainder.loads; s++)
 		for (int i = 0; i < model->n; i++)
 			fill_loads(b, s, i, load_form(b, s, i));
-	model->owner = b->owner;
-	model->residual = rows->residual;
-	model->snapshot = b->snapshot;
-	model->whole = b->whole;
+	model->equations.owner = b->owner;
+	model->equations.residual = rows->residual;
+	model->equations.snapshot = b->snapshot;
+	model->equations.whole = b->whole;
 	if (b->whole && !diagnostics_errors())
 		prefer_stiff(b);
 }

@@ -129,8 +129,8 @@ static const char *basis_text(struct spelling *s, const struct basis *basis)
 	case BASIS_PI:    return "pi";
 	case BASIS_INPUT: return format("%s%s", model->system.input[basis->index].name, basis->order ? "'" : "");
 	case BASIS_COORD:
-		return format(strchr(model->coord_name[basis->index], ' ') ? "(%s)%.*s" : "%s%.*s",
-			      model->coord_name[basis->index], basis->order, "''");
+		return format(strchr(model->names.coord[basis->index], ' ') ? "(%s)%.*s" : "%s%.*s",
+			      model->names.coord[basis->index], basis->order, "''");
 	default:          break;
 	}
 	struct load load = { .wave = basis->wave };

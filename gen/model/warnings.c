@@ -37,7 +37,7 @@ static void check_predictor(struct jacobian *j)
 	j->damped = true;
 	if (silent_guard(jacobian_evaluate, j))
 		fastest = fastest_pole(&j->at);
-	for (int k = 0; k < model->operators; k++) {
+	for (int k = 0; k < model->schedule.operators; k++) {
 		struct linear system = operator_system(model, k);
 		fastest = fmax(fastest, fastest_pole(&system));
 	}
@@ -68,12 +68,13 @@ static void choose_operator(void *context)
 	struct fixing *fixing = ARRAY(struct fixing, model->system.states + 1);
 	struct point *point = point_new(c, jacobian_point(work->j, fixing), fixing);
 	point_at_values(point);
-	const struct form *now = form_at(point, model->selector);
+	const struct form *now = form_at(point, model->schedule.selector);
 	if (!is_constant(now))
 		abandon();
 	RATIONAL value = ZERO;
 	constant_value(c, now, value);
-	while (work->which + 1 < model->operators && mpq_cmp(value, model->operator[work->which].at) > 0)
+	while (work->which + 1 < model->schedule.operators &&
+	       mpq_cmp(value, model->schedule.operator[work->which].at) > 0)
 		work->which++;
 }
 
@@ -117,7 +118,8 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 	const struct model *model = j->b->model;
 	struct choice_work choice = { j, 0 };
 	double *here = ARRAY(double, model->n), *there = ARRAY(double, model->n);
-	if (!silent_guard(jacobian_evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
+	if (!silent_guard(jacobian_evaluate, j) ||
+	    (model->schedule.selector && !silent_guard(choose_operator, &choice)))
 		return;
 	struct linear system = operator_system(model, choice.which);
 	if (!squared_frequencies(&j->at, here) || !squared_frequencies(&system, there))
@@ -277,7 +279,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 			continue;               /* at the initial values */
 		set_state(model, farthest + (size_t)k * size, state);
 		mpq_set_d(j->t, (double)(float)when[k]);
-		compare(j, true, format("where %s is at its largest, at t = %.3g s, ", model->coord_name[k], when[k]),
+		compare(j, true, format("where %s is at its largest, at t = %.3g s, ", model->names.coord[k], when[k]),
 			worst);
 	}
 }
@@ -330,10 +332,10 @@ static void check_smoothness(const struct building *b)
 	const struct model *model = b->model;
 	if (!loses_order(model))
 		return;
-	const struct smoothness *smooth = &model->smooth;
+	const struct smoothness *smooth = &model->remainder.smooth;
 	if (scheme_row(model->scheme)->expands && smooth->kind != SMOOTH_ALL)
 		return;                         /* it is refused */
-	const struct node *other = model->obstacle;
+	const struct node *other = model->nonlinear.obstacle;
 	bool apart =
 		smooth->piecewise && !smooth->timed && other &&
 		(other->end.offset <= smooth->node->start.offset || other->start.offset >= smooth->node->end.offset);
@@ -381,9 +383,9 @@ static void check_need(const struct building *b, bool left)
 			    : scheme->collocates ? format("scheme %s takes the whole right side as it is", scheme->name)
 			    : scheme->expands ? format("scheme %s expands the whole right side", scheme->name)
 					      : "nothing is left over");
-	if (left && !model->loads_left)
+	if (left && !model->remainder.loads)
 		return;
-	if (scheme->holds_coupling && !model->loads_left)
+	if (scheme->holds_coupling && !model->remainder.loads)
 		say_warning(scheme_place(b), NULL,
 			    "scheme %s is of first order in h: this model is linear, and exact has no error",
 			    scheme->name);
@@ -428,10 +430,10 @@ static bool is_first(const struct switching *s, int index, bool low)
 /* Of a slider without mass that is none of regions, since a damper stands beside it; each is said once. */
 static bool falls_beside_damper(const struct model *model, int index)
 {
-	const struct atom *atom = model->bearing[index].atom;
+	const struct atom *atom = model->contacts.bearing[index].atom;
 	bool other = never_falls_below(atom->operand[1]);
 	for (int i = 0; i < index; i++)
-		other = other || model->bearing[i].atom->node == atom->node;
+		other = other || model->contacts.bearing[i].atom->node == atom->node;
 	for (int i = 0; model->switching && i < model->switching->sliders; i++)
 		other = other || model->switching->slider[i].atom->node == atom->node;
 	return !other;
@@ -450,11 +452,11 @@ static void check_friction(const struct model *model)
 	for (int i = 0; s && i < s->sliders; i++)
 		if (s->slider[i].negative && !is_repeated_slider(s, i))
 			say_falls(s->slider[i].atom->node, true);
-	for (int i = 0; i < model->bearings; i++)
+	for (int i = 0; i < model->contacts.bearings; i++)
 		if (falls_beside_damper(model, i))
-			say_falls(model->bearing[i].atom->node, true);
-	for (int i = 0; i < model->drags; i++) {
-		const struct drag *drag = &model->drag[i];
+			say_falls(model->contacts.bearing[i].atom->node, true);
+	for (int i = 0; i < model->contacts.drags; i++) {
+		const struct drag *drag = &model->contacts.drag[i];
 		if (!never_falls_below(drag->force))
 			say_falls(drag->atom->node, false);
 		if (!never_falls_below(less_in_velocity(drag->rest, drag->force, drag->velocity)))
@@ -466,10 +468,10 @@ static void check_friction(const struct model *model)
 static void check_guards(struct building *b)
 {
 	const struct model *model = b->model;
-	for (int i = 0; i < model->impacts; i++)
+	for (int i = 0; i < model->contacts.impacts; i++)
 		for (int s = 1; s < model->system.segments; s++)
-			if (closes_by_jump(b, &model->impact[i], s)) {
-				say_warning(model->impact[i].when->guard->start,
+			if (closes_by_jump(b, &model->contacts.impact[i], s)) {
+				say_warning(model->contacts.impact[i].when->guard->start,
 					    "a load that goes there steeply takes along what it meets",
 					    "this guard jumps at t = %s: where it comes true by that, nothing is met",
 					    readable_text(model->system.change[s - 1]));
@@ -480,7 +482,7 @@ static void check_guards(struct building *b)
 /* Other phases go on. */
 static void check_phases(const struct model *model)
 {
-	const struct node *sine = model->leads.jumps;
+	const struct node *sine = model->params.leads.jumps;
 	if (sine)
 		say_note(sine->start, "the phase of '%s' jumps where tunable params change while the model runs: of t "
 			 "times such params it goes on", text_between(sine->start, sine->end));
@@ -489,16 +491,17 @@ static void check_phases(const struct model *model)
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
-	bool left = model->channels > 0;
+	bool left = model->remainder.channels > 0;
 	struct jacobian j = { .b = b };
 	lint(b);
-	if (left && model->obstacle && b->spec->needs == 0)     /* else the scheme is chosen */
-		say_note(model->obstacle->start, "scheme %s%s, not exact: '%s' %s%s", scheme_name(model->scheme),
+	if (left && model->nonlinear.obstacle && b->spec->needs == 0)     /* else the scheme is chosen */
+		say_note(model->nonlinear.obstacle->start, "scheme %s%s, not exact: '%s' %s%s",
+			 scheme_name(model->scheme),
 			 model->truncation.adaptive
 				 ? format(", tolerance %s", shortest(round_rational(model->truncation.tolerance)))
 				 : "",
-			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text,
-			 passed_over(has_contacts(model) ? NULL : b->request->passed_over));
+			 text_between(model->nonlinear.obstacle->start, model->nonlinear.obstacle->end),
+			 model->nonlinear.why, passed_over(has_contacts(model) ? NULL : b->request->passed_over));
 	check_phases(model);
 	check_need(b, left);
 	check_truncation(b);

@@ -19,7 +19,7 @@ const char *contact_text(const struct step *step, int hold)
 	const struct node *node = NULL;
 	for (int i = 0, drag = 0; i <= hold; i++)
 		if (c->hold[i].impact == NONE)
-			node = model->drag[drag++].atom->node;
+			node = model->contacts.drag[drag++].atom->node;
 	return format("%s; sticks in interval %d of expression %d", text_between(node->start, node->end),
 		      held_in(step, &c->hold[hold]), c->hold[hold].expression);
 }
@@ -40,7 +40,7 @@ void person_contacts(FILE *to, const struct step *step)
 		if (c->hold[i].impact == NONE)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
 	for (int i = 0; c && i < c->strikes; i++) {
-		const struct when *when = step->model->impact[i].when;
+		const struct when *when = step->model->contacts.impact[i].when;
 		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end),
 			rest_text(step, &c->strike[i]));
 	}
@@ -50,7 +50,7 @@ void json_contacts(FILE *to, const struct step *step)
 {
 	const struct contacts *c = step->divided->contacts;
 	bool first = true;
-	if (c && step->model->drags > 0)
+	if (c && step->model->contacts.drags > 0)
 		fputs("  \"frictions\": [", to);
 	for (int i = 0; c && i < c->holds; i++) {
 		if (c->hold[i].impact != NONE)
@@ -59,7 +59,7 @@ void json_contacts(FILE *to, const struct step *step)
 			held_in(step, &c->hold[i]));
 		first = false;
 	}
-	if (c && step->model->drags > 0)
+	if (c && step->model->contacts.drags > 0)
 		fputs("],\n", to);
 	for (int i = 0; c && i < c->strikes; i++) {
 		const struct series_strike *s = &c->strike[i];

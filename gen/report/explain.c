@@ -73,8 +73,8 @@ static void person_held(FILE *to, const struct step *step)
 				RATIONAL factor = ZERO;
 				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
 				if (mpq_sgn(factor) != 0)
-					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord_name[i],
-						readable_text(factor), step->model->coord_name[j], k ? "'" : "");
+					fprintf(to, "    in %s'': %s * %s%s\n", step->model->names.coord[i],
+						readable_text(factor), step->model->names.coord[j], k ? "'" : "");
 			}
 	fprintf(to,
 		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
@@ -90,14 +90,14 @@ static void person_tuning(FILE *to, const struct step *step)
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->given; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	if (model->retuned)
+	if (model->params.retuned)
 		fprintf(to, "; rows of regions that change with them have %d entries there%s.\n",
 			t->all.entries,
 			t->blocks ? format(", and %d sets of them are solved", t->blocks)
 					       : "");
-	else if (model->held && model->switching)
+	else if (model->params.held && model->switching)
 		fputs("; they act like held inputs.\n", to);
-	else if (model->held)
+	else if (model->params.held)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
 	else
 		fprintf(to, "; the equations there have %d entr%s%s.\n", t->all.entries,
@@ -159,7 +159,7 @@ static void person_step(FILE *to, const struct step *step)
 			: step->branches > 1 ? " = e^{A h} of the first operator"
 					     : " = e^{A h}");
 	for (int i = 0; i < model->system.states && !step->shown->no.phi; i++) {
-		fprintf(to, "    %-8s", model->state_name[i]);
+		fprintf(to, "    %-8s", model->names.state[i]);
 		for (int j = 0; j < model->system.states; j++)
 			fprintf(to, " %24s",
 				shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
@@ -171,7 +171,7 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
 	else if (no_at)
 		fprintf(to, "There is no %s_at: %s.\n", model->name, no_at);
-	else if (model->tuning)
+	else if (model->params.tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
 	else if (step->cut)
@@ -218,11 +218,11 @@ static void person_split(FILE *to, const struct step *step)
 	const struct model *model = step->shown->model;
 	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
 		step->branch->system.inputs ? " + inputs" : "",
-		model->loads_left             ? " excepted"
+		model->remainder.loads             ? " excepted"
 		: step->branch->system.inputs ? " and the inputs"
 					      : "");
-	for (int k = 0; k < model->operators && !step->normal; k++) {
-		const struct operator *operator = &model->operator[k];
+	for (int k = 0; k < model->schedule.operators && !step->normal; k++) {
+		const struct operator *operator = &model->schedule.operator[k];
 		if (!*operator->text) {
 			fputs(scheme_row(model->scheme)->holds_coupling
 				      ? "A: each coordinate's own terms.\n"
@@ -241,7 +241,7 @@ static void person_split(FILE *to, const struct step *step)
 	}
 	if (step->normal)
 		person_normal(to, step);
-	if (model->operators > 1)
+	if (model->schedule.operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_step(step));
 	if (model->truncation.adaptive)
@@ -260,10 +260,11 @@ static void person_split(FILE *to, const struct step *step)
 	if (step->expansion)
 		person_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
-		model->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
-	for (int c = 0; c < model->channels; c++)
-		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])],
-			form_text(model, model->operator[0].left[c]));
+		model->schedule.operators > 1 ? " (with the first operator; with the others its linear terms differ)"
+					      : "");
+	for (int c = 0; c < model->remainder.channels; c++)
+		fprintf(to, "    %s: %s\n", model->names.coord[coordinate_of_row(model, model->remainder.row[c])],
+			form_text(model, model->schedule.operator[0].left[c]));
 }
 
 /* A row over the written states, a - 2*b */
@@ -278,7 +279,7 @@ static const char *combination_text(const struct model *written, const mpq_t *ro
 		mpq_abs(size, row[j]);
 		text = format("%s%s%s%s", text, *text ? sign < 0 ? " - " : " + " : sign < 0 ? "-" : "",
 			      mpq_cmp_ui(size, 1, 1) == 0 ? "" : format("%s*", readable_text(size)),
-			      written->state_name[j]);
+			      written->names.state[j]);
 	}
 	return text;
 }
@@ -292,9 +293,9 @@ static void person_reduction(FILE *to, const struct step *step)
 	for (int i = 0; i < model->system.states; i++) {
 		const mpq_t *row = model->reduction.row;
 		const char *text = row ? combination_text(model->written, row + i * model->written->system.states)
-				       : model->state_name[i];
-		bool same = strcmp(text, model->state_name[i]) == 0;
-		fprintf(to, "    state %s%s%s\n", model->state_name[i], same ? "" : " = ", same ? "" : text);
+				       : model->names.state[i];
+		bool same = strcmp(text, model->names.state[i]) == 0;
+		fprintf(to, "    state %s%s%s\n", model->names.state[i], same ? "" : " = ", same ? "" : text);
 	}
 	fputs("Gone:", to);
 	for (int i = 0; i < model->reduction.dropped; i++)
@@ -332,7 +333,7 @@ void person_equations(FILE *to, const struct step *step)
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)
-			fprintf(to, "    %s\n", equation_text(model->written, model->residual[i].form));
+			fprintf(to, "    %s\n", equation_text(model->written, model->equations.residual[i].form));
 	}
 }
 
@@ -362,8 +363,8 @@ static void person_left_out(FILE *to, const struct step *step)
 {
 	fputc('\n', to);
 	person_nonlinear(to, step);
-	if (!has_remainder(step) || step->normal || step->shown->model->operators == 0 ||
-	    *step->shown->model->operator[0].text)
+	if (!has_remainder(step) || step->normal || step->shown->model->schedule.operators == 0 ||
+	    *step->shown->model->schedule.operator[0].text)
 		return;
 	fputs("\nOf those terms alone, which are the operator A of the scheme:\n", to);
 	person_poles(to, step->model, step->written);
@@ -387,7 +388,7 @@ void explain_person(FILE *to, const struct step *step)
 		person_left_out(to, step);
 	else
 		person_poles(to, step->model, step->written);
-	const char *irrationals = irrationals_text(&model->irrationals);
+	const char *irrationals = irrationals_text(&model->equations.irrationals);
 	if (irrationals)
 		fprintf(to, "\n%s\n", irrationals);
 	fputc('\n', to);

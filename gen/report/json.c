@@ -122,20 +122,20 @@ static void json_split(FILE *to, const struct step *step)
 	if (step->normal)
 		json_normal(to, step);
 	fputs("  \"operators\": [", to);
-	for (int k = 0; k < model->operators && !step->normal; k++) {
+	for (int k = 0; k < model->schedule.operators && !step->normal; k++) {
 		struct pole_report *pole;
 		int count = poles_of(model, step->shown->branch[k].resolvent, &pole);
-		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
-		json_rational_matrix(to, "C", model->n, model->operator[k].C);
-		json_rational_matrix(to, "K", model->n, model->operator[k].K);
+		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->schedule.operator[k].text);
+		json_rational_matrix(to, "C", model->n, model->schedule.operator[k].C);
+		json_rational_matrix(to, "K", model->n, model->schedule.operator[k].K);
 		json_pole_list(to, count, pole);
 		fputs("}", to);
 	}
 	fputs("],\n  \"remainder\": [", to);
-	for (int c = 0; c < model->channels; c++)
+	for (int c = 0; c < model->remainder.channels; c++)
 		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
-			model->coord_name[coordinate_of_row(model, model->channel_row[c])],
-			form_text(model, model->operator[0].left[c]));
+			model->names.coord[coordinate_of_row(model, model->remainder.row[c])],
+			form_text(model, model->schedule.operator[0].left[c]));
 	fputs("],\n", to);
 }
 
@@ -203,14 +203,14 @@ static void json_bounds(FILE *to, const struct model *model)
 	for (int i = 0; i < model->system.states && absolute && looks; i++) {
 		if (mpq_sgn(absolute[i]) == 0)
 			continue;
-		fprintf(to, "%s\"%s\": %s", any ? ", " : "  \"absolute\": {", model->state_name[i],
+		fprintf(to, "%s\"%s\": %s", any ? ", " : "  \"absolute\": {", model->names.state[i],
 			shortest(round_rational(absolute[i])));
 		any = true;
 	}
 	fputs(any ? "},\n" : "", to);
 	for (int i = 0; i < model->ranges; i++)
 		fprintf(to, "%s\"%s\": [%s, %s]", i ? ", " : "  \"ranges\": {",
-			model->state_name[model->range[i].state], shortest(round_rational(model->range[i].low)),
+			model->names.state[model->range[i].state], shortest(round_rational(model->range[i].low)),
 			shortest(round_rational(model->range[i].high)));
 	fputs(model->ranges ? "},\n" : "", to);
 }
@@ -222,7 +222,7 @@ static void json_scheme(FILE *to, const struct step *step)
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
 		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
-		smooth[model->smooth.kind]);
+		smooth[model->remainder.smooth.kind]);
 	if (step->collocation)
 		fprintf(to, "  \"stages\": %d,\n"
 			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
@@ -258,7 +258,7 @@ void explain_json(FILE *to, const struct step *step)
 		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
 		model->name, scheme_name(model->scheme), step_form_name(step->form),
 		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
-	member_names(to, "states", states, model->state_name);
+	member_names(to, "states", states, model->names.state);
 	member_names(to, "outputs", model->outputs, output);
 	member_names(to, "inputs", model->spec->inputs, input);
 	json_dropped(to, model);

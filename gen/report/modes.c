@@ -8,18 +8,20 @@
 const char *operators_of_modes(const struct step *step)
 {
 	const struct model *model = step->model;
-	const char *first = model->operator[0].text, *last = model->operator[model->operators - 1].text;
+	const char *first = model->schedule.operator[0].text,
+		   *last = model->schedule.operator[model->schedule.operators - 1].text;
 	if (!*first)
 		return "that of the linear terms with constant coefficients";
-	if (model->operators == 1)
+	if (model->schedule.operators == 1)
 		return format("that of the Jacobian at %s", first);
-	return format("those of the Jacobian at %s to %s, %d operators", first, last, model->operators);
+	return format("those of the Jacobian at %s to %s, %d operators", first, last, model->schedule.operators);
 }
 
 const char *exact_in_modes(const struct step *step)
 {
-	return step->model->split->waves ? "what each mode does by itself, and under loads e^{a t} cos(w t + p)"
-					 : "what each mode does by itself";
+	return step->model->remainder.split->waves
+		       ? "what each mode does by itself, and under loads e^{a t} cos(w t + p)"
+		       : "what each mode does by itself";
 }
 
 const char *course_of_modes(const struct step *step)
@@ -39,7 +41,7 @@ const char *stability_of_modes(const struct step *step)
 	bool inside = s->radius < 1;
 	return format("functions of time frozen%s, the spectral radius of a step is at most 1 %c %.2g, at t = %.4g s; "
 		      "all steps up to t = %.4g s let nothing grow by more than %.3g",
-		      step->model->split->rests ? " and what is not linear left out" : "", inside ? '-' : '+',
+		      step->model->remainder.split->rests ? " and what is not linear left out" : "", inside ? '-' : '+',
 		      inside ? 1 - s->radius : s->radius - 1, s->time, s->span, s->growth_factor);
 }
 
@@ -47,11 +49,11 @@ int numbers_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
 	int n = m->modes, width = m->width;
-	int waves = 4 * step->model->split->waves;
+	int waves = 4 * step->model->remainder.split->waves;
 	int multistep = m->points ? (4 + 2 * m->points + 2 + waves) * width : 0;
 	int collocation = m->stages * (4 + 2 * (m->stages + 1) + waves) * width;
 	int forces = 0;
-	for (int f = 0; f < step->model->split->functions; f++)
+	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		forces += m->force[f] ? width : 0;
 	return (m->banks - 1) * width * width +
 	       m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
@@ -65,7 +67,7 @@ void person_normal(FILE *to, const struct step *step)
 		    "mode.\n", operators_of_modes(step), exact_in_modes(step));
 	for (int b = 0; b < m->banks; b += m->banks > 1 ? m->banks - 1 : 1) {
 		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->banks > 1 ? " at " : "",
-			m->banks > 1 ? step->model->operator[b].text : "");
+			m->banks > 1 ? step->model->schedule.operator[b].text : "");
 		for (int j = 0; j < m->modes; j++)
 			fprintf(to, "    %-24.8g %.8g\n", m->frequency[b * m->modes + j] / 6.283185307179586,
 				m->ratio[b * m->modes + j]);
@@ -82,7 +84,8 @@ void json_normal(FILE *to, const struct step *step)
 	const struct normal *m = step->normal;
 	fprintf(to, "  \"normal_modes\": {\"count\": %d, \"operators\": [", m->modes);
 	for (int b = 0; b < m->banks; b++) {
-		fprintf(to, "%s\n    {\"at\": \"%s\", \"hertz\": [", b ? "," : "", step->model->operator[b].text);
+		fprintf(to, "%s\n    {\"at\": \"%s\", \"hertz\": [", b ? "," : "",
+			step->model->schedule.operator[b].text);
 		for (int j = 0; j < m->modes; j++)
 			fprintf(to, "%s%.17g", j ? ", " : "", m->frequency[b * m->modes + j] / 6.283185307179586);
 		fputs("], \"damping_ratio\": [", to);
@@ -102,7 +105,8 @@ void json_normal(FILE *to, const struct step *step)
 static const char *factor_text(const struct step *step, int function, const double *factor)
 {
 	const struct normal *m = step->normal;
-	const char *text = function ? form_text(step->model, step->model->split->function[function].form) : "1";
+	const char *text = function ? form_text(step->model, step->model->remainder.split->function[function].form)
+				    : "1";
 	if (m->banks > 1 && factor[0] != factor[m->banks - 1])
 		return format("(%s to %s) %s", shortest(factor[0]), shortest(factor[m->banks - 1]), text);
 	return factor[0] == 1 ? text : format("%s (%s)", shortest(factor[0]), text);
@@ -121,15 +125,17 @@ void program_normal(FILE *to, const struct step *step)
 				m->matrix[k].term[t].velocity ? "eta'" : "eta");
 		fputc('\n', to);
 	}
-	for (int f = 0; f < step->model->split->functions; f++)
+	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		if (m->force[f])
 			fprintf(to, "    %s times a vector\n",
-				f ? form_text(step->model, step->model->split->function[f].form) : "1");
-	for (int k = 0; k < step->model->split->waves; k++)
-		for (int d = 0; d <= oscillates(step->model->split->wave[k].wave); d++)
+				f ? form_text(step->model, step->model->remainder.split->function[f].form) : "1");
+	for (int k = 0; k < step->model->remainder.split->waves; k++)
+		for (int d = 0; d <= oscillates(step->model->remainder.split->wave[k].wave); d++)
 			fprintf(to, "    %s times a vector, exact\n",
-				form_text(step->model, form_unit((struct basis){
-					.kind = BASIS_WAVE, .wave = step->model->split->wave[k].wave, .sine = d })));
+				form_text(step->model,
+					  form_unit((struct basis){ .kind = BASIS_WAVE,
+								    .wave = step->model->remainder.split->wave[k].wave,
+								    .sine = d })));
 	fprintf(to, "Step: %s\n", course_of_modes(step));
 	if (m->settled)
 		fputs("Once nothing changes: [omega eta, eta'] <- matrix [omega eta, eta', 1, waves]\n", to);

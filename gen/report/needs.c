@@ -66,7 +66,7 @@ const char *need_text(const struct requirement *r)
 
 static const char *unit_of_cost(const struct model *model)
 {
-	return model->target ? format("instructions on %s", model->target->name)
+	return model->needs.target ? format("instructions on %s", model->needs.target->name)
 			     : "operations, those of double counted twice";
 }
 
@@ -107,7 +107,7 @@ static void person_alternative(FILE *to, const struct step *step, int i)
 		fprintf(to, "%s: not %s, %s\n", alternative_text(a), a->measured ? "measured" : "certified", a->why);
 		return;
 	}
-	for (int k = 0; k < step->model->requirements; k++)
+	for (int k = 0; k < step->model->needs.requirements; k++)
 		fprintf(to, "%s%s", k ? ", " : "", strchr(certified_text(a, k), ' ') + 1);
 	if (a->excess <= 1 && a->worst_neighbour > 0.99) {
 		fprintf(to, "; misses by a factor of %.3g where %s\n", a->worst_neighbour, a->worst_name);
@@ -138,8 +138,8 @@ void person_needs(FILE *to, const struct step *step)
 	const struct choice *choice = step->choice;
 	int left = 0;
 	fputs("\nNeeds:\n", to);
-	for (int i = 0; i < model->requirements; i++)
-		fprintf(to, "    %s: %s\n", need_text(&model->requirement[i]), margin_text(step, i));
+	for (int i = 0; i < model->needs.requirements; i++)
+		fprintf(to, "    %s: %s\n", need_text(&model->needs.requirement[i]), margin_text(step, i));
 	const bool measured = choice->alternative[0].measured;
 	fprintf(to, "Alternatives (* taken; %s%s, the outputs counted; %s):\n", unit_of_cost(model),
 		measured ? ", in a second of the model's time" : "", measured ? "error" : "bound of the error");
@@ -182,8 +182,8 @@ void json_needs(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	fputs("  \"needs\": [", to);
-	for (int i = 0; i < model->requirements; i++)
-		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(need_text(&model->requirement[i])));
+	for (int i = 0; i < model->needs.requirements; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(need_text(&model->needs.requirement[i])));
 	fputs("],\n  \"alternatives\": [", to);
 	for (int i = 0; i < step->choice->alternatives; i++) {
 		const struct alternative *a = &step->choice->alternative[i];
@@ -200,7 +200,7 @@ void json_needs(FILE *to, const struct step *step)
 		if (a->neighbours > 0)
 			fprintf(to, "\"neighbours\": %.17g, ", a->worst_neighbour);
 		fputs("\"errors\": [", to);
-		for (int k = 0; k < model->requirements; k++)
+		for (int k = 0; k < model->needs.requirements; k++)
 			json_error(to, a, k);
 		fputs("]}", to);
 	}

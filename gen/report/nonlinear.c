@@ -8,7 +8,7 @@ enum { NAMED = 12 };
 
 bool is_nonlinear(const struct step *step)
 {
-	return step->shown->model->nonlinears > 0;
+	return step->shown->model->nonlinear.terms > 0;
 }
 
 /* sin(x); x'^3 */
@@ -16,9 +16,9 @@ static const char *nonlinear_text(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const char *text = "";
-	for (int i = 0; i < model->nonlinears && i < NAMED; i++)
-		text = format("%s%s%s", text, i ? "; " : "", model->nonlinear[i].text);
-	return model->nonlinears <= NAMED ? text : format("%s; and %d more", text, model->nonlinears - NAMED);
+	for (int i = 0; i < model->nonlinear.terms && i < NAMED; i++)
+		text = format("%s%s%s", text, i ? "; " : "", model->nonlinear.term[i].text);
+	return model->nonlinear.terms <= NAMED ? text : format("%s; and %d more", text, model->nonlinear.terms - NAMED);
 }
 
 void person_nonlinear(FILE *to, const struct step *step)
@@ -34,8 +34,8 @@ void json_nonlinear(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "  \"linear\": %s,\n  \"left_out\": [", is_nonlinear(step) ? "false" : "true");
-	for (int i = 0; i < model->nonlinears; i++)
-		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(model->nonlinear[i].text));
+	for (int i = 0; i < model->nonlinear.terms; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(model->nonlinear.term[i].text));
 	fputs("],\n", to);
 }
 
@@ -44,9 +44,10 @@ void need_linear(const struct step *step, const char *what)
 	const struct model *model = step->shown->model;
 	if (!is_nonlinear(step))
 		return;
-	error(model->nonlinear[0].at,
+	error(model->nonlinear.term[0].at,
 	      can_be_swept(step) ? "--response and --plot frf with --amplitude A sweep through all regions"
 				 : "plrun runs any model, also with a record that sweeps",
 	      "the model is not linear, so there are no %s: they would leave out '%s'%s", what,
-	      model->nonlinear[0].text, model->nonlinears > 1 ? format(" and %d more", model->nonlinears - 1) : "");
+	      model->nonlinear.term[0].text,
+	      model->nonlinear.terms > 1 ? format(" and %d more", model->nonlinear.terms - 1) : "");
 }

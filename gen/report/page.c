@@ -102,7 +102,7 @@ static void print_matrices(FILE *to, const struct step *step)
 	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", is_nonlinear(step)
 			? "Of the terms that are linear with constant coefficients: " : "");
 	for (int i = 0; i < model->n; i++)
-		fprintf(to, "%s %s", i ? "," : "", escaped(model->coord_name[i]));
+		fprintf(to, "%s %s", i ? "," : "", escaped(model->names.coord[i]));
 	fputs(".</p>\n", to);
 	print_matrix(to, "M", model->n, model->system.M);
 	print_matrix(to, "C", model->n, model->system.C);
@@ -153,7 +153,7 @@ static void print_shapes(FILE *to, const struct step *step)
 	int count = shapes_of_step(step, &shape, &model);
 	fputs("<p>The largest entry of each is 1.</p>\n<div class=\"wide\"><table>\n<tr><th>frequency [Hz]</th>", to);
 	for (int i = 0; i < model->n; i++)
-		fprintf(to, "<th>%s</th>", escaped(model->coord_name[i]));
+		fprintf(to, "<th>%s</th>", escaped(model->names.coord[i]));
 	fputs("</tr>\n", to);
 	for (int k = 0; k < count; k++) {
 		fprintf(to, "<tr><td>%.6g</td>", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
@@ -208,8 +208,8 @@ static void print_chosen(FILE *to, const struct step *step)
 	fprintf(to, "<p>Scheme %s%s, form %s, h = %s s, numbers of type %s.</p>\n", scheme_name(model->scheme),
 		model->asked.scheme_at.source ? " (asked for)" : " (best that the model allows)", step_form_text(step),
 		readable_text(model->h), target_name());
-	if (model->obstacle && model->obstacle_text)
-		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->obstacle_text));
+	if (model->nonlinear.obstacle && model->nonlinear.why)
+		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->nonlinear.why));
 	print_words(to, step, person_course, " class=\"text\"");
 }
 

@@ -129,7 +129,7 @@ static const char *coordinate_tics(const struct model *model, int most)
 	const char *text = "set xtics (";
 	int every = (model->n + most - 1) / most;
 	for (int i = 0; i < model->n; i += every)
-		text = format("%s%s%s %d", text, i ? ", " : "", quoted(model->coord_name[i]), i + 1);
+		text = format("%s%s%s %d", text, i ? ", " : "", quoted(model->names.coord[i]), i + 1);
 	return format("%s)\n", text);
 }
 

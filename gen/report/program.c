@@ -167,7 +167,7 @@ static void print_actions(FILE *to, const struct step *step)
 /* A state that is a difference stands in brackets */
 static const char *state_text(const struct step *step, int state)
 {
-	const char *name = step->model->state_name[state];
+	const char *name = step->model->names.state[state];
 	return strchr(name, ' ') && name[0] != '(' ? format("(%s)", name) : name;
 }
 
@@ -323,7 +323,7 @@ static void print_parts(FILE *to, const struct step *step)
 		const struct step *part = step->part[p];
 		fprintf(to, "Part %d:", p);
 		for (int i = 0; i < part->model->n; i++)
-			fprintf(to, "%s %s", i ? "," : "", part->model->coord_name[i]);
+			fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
 		if (part->model->switching->expressions > 0) {
 			fputs(". ", to);
 			print_regions(to, part);
@@ -454,12 +454,13 @@ static void print_collocation(FILE *to, const struct step *step)
 	fprintf(to, "\nIts unknowns, the highest derivatives at each node%s:\n",
 		m->columns ? ", what loads and inputs give them apart" : "");
 	for (int i = 0; i < m->coords; i++)
-		fprintf(to, "    %s%s = %s\n", model->coord_name[i], highest_state(&model->system, i) == i ? "'" : "''",
+		fprintf(to, "    %s%s = %s\n", model->names.coord[i],
+			highest_state(&model->system, i) == i ? "'" : "''",
 			text_beside_contacts(model, m->force ? m->force[i] : NULL));
 	fprintf(to, "Their Jacobian, where it is not 0:\n");
 	for (int k = 0; k < m->entries; k++)
-		fprintf(to, "    of %s by %s%s = %s\n", model->coord_name[m->entry[k].coord],
-			model->coord_name[m->entry[k].of],
+		fprintf(to, "    of %s by %s%s = %s\n", model->names.coord[m->entry[k].coord],
+			model->names.coord[m->entry[k].of],
 			m->entry[k].twice || highest_state(&model->system, m->entry[k].of) == m->entry[k].of ? "" : "'",
 			text_beside_contacts(model, m->entry[k].slope));
 	fprintf(to, "An iteration of Newton's method: %d multiplications, %d additions, %d calls\n",

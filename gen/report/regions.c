@@ -37,7 +37,7 @@ static long ladder_bytes(const struct step *step)
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, rungs = 0;
 	for (int k = 0; k < step->branches; k++)
-		rungs += step->model->retuned ? room_for_rungs(step) : step->branch[k].rungs;
+		rungs += step->model->params.retuned ? room_for_rungs(step) : step->branch[k].rungs;
 	long rows = words_of(step) > 1 ? 2 * size : size + 1, bounds = has_events(s) ? 0 : s->expressions;
 	return !has_ladder(step) ? 0 : 8 * rungs * (rows + bounds) * size + 8 * (long)step->branches;
 }
@@ -85,7 +85,7 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->look.clears && step->model->retuned)
+	if (step->look.clears && step->model->params.retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
 	return bytes + ladder_bytes(step) + (step->look.swift ? swift_bytes(step) : 0) +
@@ -175,8 +175,8 @@ static void person_way(FILE *to, const struct step *step, const char *of)
 
 static void person_impacts(FILE *to, const struct model *model)
 {
-	for (int i = 0; i < model->impacts; i++) {
-		const struct impact *impact = &model->impact[i];
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		const struct impact *impact = &model->contacts.impact[i];
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
 			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
@@ -217,7 +217,7 @@ static void person_part(FILE *to, const struct step *whole, int index)
 	const struct switching *s = part->model->switching;
 	fprintf(to, "    part %d:", index);
 	for (int i = 0; i < part->model->n; i++)
-		fprintf(to, "%s %s", i ? "," : "", part->model->coord_name[i]);
+		fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
 	if (s->expressions == 0) {
 		fputs("; linear\n", to);
 		return;
@@ -314,8 +314,8 @@ static void json_sliders(FILE *to, const struct switching *s)
 static void json_impacts(FILE *to, const struct model *model)
 {
 	fputs("  \"impacts\": [", to);
-	for (int i = 0; i < model->impacts; i++) {
-		const struct impact *impact = &model->impact[i];
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		const struct impact *impact = &model->contacts.impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
 			impact->in->expression, impact->in->upward ? "true" : "false");
 		if (impact->bounces)
@@ -348,7 +348,7 @@ static void json_part(FILE *to, const struct switching *all, int index)
 	const struct region_part *part = &all->part[index];
 	const struct switching *s = part->model->switching;
 	fprintf(to, "%s\n    {", index ? "," : "");
-	json_names(to, "coordinates", part->model->n, part->model->coord_name);
+	json_names(to, "coordinates", part->model->n, part->model->names.coord);
 	fputs(", \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++)
 		fprintf(to, "%s%d", i ? ", " : "", part->expression[i]);

@@ -96,7 +96,7 @@ void person_shortening(FILE *to, const struct model *model)
 		fprintf(to, "    %s\n", loss_text(model, i));
 	fputs("States:", to);
 	for (int i = 0; i < model->system.states; i++)
-		fprintf(to, "%s %s", i ? "," : "", model->state_name[i]);
+		fprintf(to, "%s %s", i ? "," : "", model->names.state[i]);
 	fputs("\n", to);
 }
 

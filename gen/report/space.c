@@ -268,7 +268,7 @@ static void person_shapes(FILE *to, const struct model *of, int count, const str
 	for (int k = 0; k < count; k++) {
 		fprintf(to, "    %.8g Hz:", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
 		for (int i = 0; i < system->n; i++) {
-			fprintf(to, "%s %s %.6g", i ? "," : "", of->coord_name[i], shape[k].re[i]);
+			fprintf(to, "%s %s %.6g", i ? "," : "", of->names.coord[i], shape[k].re[i]);
 			if (shape[k].im[i] != 0)
 				fprintf(to, " %c %.6g i", shape[k].im[i] < 0 ? '-' : '+', fabs(shape[k].im[i]));
 		}

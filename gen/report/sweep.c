@@ -260,7 +260,7 @@ static bool is_steady(const struct model *model, const struct drive *drive)
 static _Noreturn void tell_left_over(const struct model *model)
 {
 	static const char *const way = "plrun runs any model, with a record that sweeps";
-	const struct node *other = model->obstacle;
+	const struct node *other = model->nonlinear.obstacle;
 	if (other)
 		error(other->start, way, "--amplitude is of models that are linear between breakpoints: '%s' is not",
 		      text_between(other->start, other->end));
@@ -279,8 +279,8 @@ static bool has_friction(const struct model *model)
 bool can_be_swept(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	return model->switching && model->impacts == 0 && !has_friction(model) && model->system.segments == 1 &&
-	       model->system.states <= LIMIT_SWEPT;
+	return model->switching && model->contacts.impacts == 0 && !has_friction(model) &&
+	       model->system.segments == 1 && model->system.states <= LIMIT_SWEPT;
 }
 
 static void need_sweeps(const struct step *step)
@@ -291,7 +291,7 @@ static void need_sweeps(const struct step *step)
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
-	if (model->impacts > 0 || has_friction(model))
+	if (model->contacts.impacts > 0 || has_friction(model))
 		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (model->system.segments > 1)

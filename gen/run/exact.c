@@ -55,10 +55,10 @@ static void make_columns(void *context)
 struct course *exact_course_of(const struct model *full, const struct model *stepped)
 {
 	const struct linear *system = &full->system;
-	const struct requirement *needs = stepped->requirement;
+	const struct requirement *needs = stepped->needs.requirement;
 	const double h = mpq_get_d(full->h);
 	int outputs = 0;
-	for (int i = 0; i < stepped->requirements; i++)
+	for (int i = 0; i < stepped->needs.requirements; i++)
 		outputs += first_need(needs, i) == i;
 	const double each = (double)(system->states + 2 * load_columns(system)) * outputs;
 	if (system->inputs > 0 || system->states > MOST_STATES || each * longest_need(stepped) / h > MOST_EXACT)

@@ -273,17 +273,17 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 double longest_need(const struct model *model)
 {
 	double until = 0;
-	for (int i = 0; i < model->requirements; i++)
-		until = fmax(until, mpq_get_d(model->requirement[i].until));
+	for (int i = 0; i < model->needs.requirements; i++)
+		until = fmax(until, mpq_get_d(model->needs.requirement[i].until));
 	return until;
 }
 
 struct course *course_of(const struct model *model, double h)
 {
 	struct course *course = NEW(struct course);
-	*course = (struct course){ .needs = model->requirements, .end = ARRAY(long, model->requirements) };
+	*course = (struct course){ .needs = model->needs.requirements, .end = ARRAY(long, model->needs.requirements) };
 	for (int i = 0; i < course->needs; i++) {
-		course->end[i] = (long)floor(mpq_get_d(model->requirement[i].until) / h * (1 + 1e-14));
+		course->end[i] = (long)floor(mpq_get_d(model->needs.requirement[i].until) / h * (1 + 1e-14));
 		course->samples = course->end[i] > course->samples ? course->end[i] : course->samples;
 	}
 	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->needs);

@@ -118,8 +118,8 @@ void running_needed(struct running *r, double *value)
 {
 	const struct model *model = r->step->model;
 	CALL(r, out(r->instance, r->out));
-	for (int i = 0; i < model->requirements; i++) {
-		const int output = model->requirement[i].output;
+	for (int i = 0; i < model->needs.requirements; i++) {
+		const int output = model->needs.requirement[i].output;
 		value[i] = r->single ? (double)((const float *)r->out)[output] : ((const double *)r->out)[output];
 	}
 }

@@ -129,7 +129,7 @@ static void check_list(struct check *c)
 		check_groups(c);
 	need(c, !program->loops || !(program->in_order || program->compensated),
 	     "a step of a form that is not built with loops");
-	need(c, !program->tuned || c->step->model->tuning, "factors of tunable params, and there are none");
+	need(c, !program->tuned || c->step->model->params.tuning, "factors of tunable params, and there are none");
 }
 
 /* ---- a list of actions ---- */

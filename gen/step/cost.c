@@ -315,8 +315,8 @@ void count_program(const struct step *step, struct program *program)
 {
 	struct tally t = { step, program, NULL };
 	bool first = true;
-	struct cost left = cost_of_forms(step, step->model->channels,
-					 (const struct form *const *)step->model->operator[0].left);
+	struct cost left = cost_of_forms(step, step->model->remainder.channels,
+					 (const struct form *const *)step->model->schedule.operator[0].left);
 	for (int i = 0; i < program->actions; i++) {
 		const struct action *a = &program->action[i];
 		if (a->kind == ACTION_SUM)
@@ -472,7 +472,7 @@ void count_collocation(struct step *step)
 /* Loads whose functions the factors of forces read */
 static void mark_loads_read(const struct step *step, struct program *program)
 {
-	const struct splitting *split = step->model->split;
+	const struct splitting *split = step->model->remainder.split;
 	const struct linear *system = &step->branch->system;
 	const struct form **form = ARRAY(const struct form *, (size_t)split->functions);
 	for (int f = 1; f < split->functions; f++)
@@ -490,7 +490,7 @@ static void mark_loads_read(const struct step *step, struct program *program)
 /* What waves add to eta and eta' of each mode: cos and sin, or e^{a t} alone */
 static int wave_products(const struct step *step)
 {
-	const struct splitting *split = step->model->split;
+	const struct splitting *split = step->model->remainder.split;
 	int values = 0;
 	for (int k = 0; k < split->waves; k++)
 		values += oscillates(split->wave[k].wave) ? 2 : 1;
@@ -515,7 +515,7 @@ static struct cost cost_of_forces(const struct step *step)
 	struct cost all = { 0, 0, 0 };
 	for (int k = 0; k < normal->matrices; k++)
 		add_cost(&all, 1, cost_of_matrix(normal, &normal->matrix[k]));
-	for (int f = 0; f < step->model->split->functions; f++)
+	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		add_cost(&all, normal->force[f] ? normal->modes : 0, (struct cost){ 1, 1, 0 });
 	return all;
 }
@@ -523,7 +523,7 @@ static struct cost cost_of_forces(const struct step *step)
 void count_normal(const struct step *step, struct program *program)
 {
 	const struct normal *normal = step->normal;
-	const struct splitting *split = step->model->split;
+	const struct splitting *split = step->model->remainder.split;
 	struct cost force = cost_of_forces(step);
 	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1, forms = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)(split->functions + split->rests) + 1);

@@ -11,7 +11,7 @@ enum step_kind kind_of_step(const struct model *model)
 						  KIND_NORMAL };
 	if (model->switching)
 		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
-	if (model->tuning)
+	if (model->params.tuning)
 		return KIND_TUNED;
 	const enum step_kind kind = of_flow[flow_of(model)];
 	return follows_crossings(model) ? KIND_CUT : kind;
@@ -85,7 +85,7 @@ bool *loads_of_regions(const struct step *step)
 	const struct switching *s = step->model->switching;
 	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
 	int segments = step->shown->model->system.segments;
-	for (int l = 0; l < step->branch->system.loads && step->model->retuned; l++)
+	for (int l = 0; l < step->branch->system.loads && step->model->params.retuned; l++)
 		needed[l] = true;               /* at other values others act */
 	for (int p = 0; p < s->parts; p++)
 		mark_loads_of(s->part[p].model->switching, segments, needed);

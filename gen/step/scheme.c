@@ -86,7 +86,7 @@ static void build_exact(struct step *step)
 	}
 	if (!chosen)
 		make_whole(step);
-	if (step->model->tuning)
+	if (step->model->params.tuning)
 		mark_tuned_zeros(step);
 	leave_out_lost(step);
 	find_carries(step);

@@ -170,7 +170,7 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 	}
 	for (int i = 0; i < states; i++)
 		if (s.assigned[i])
-			tape_set(t, format("%s[%d]", vector, i), to[i], INDENT, step->model->state_name[i]);
+			tape_set(t, format("%s[%d]", vector, i), to[i], INDENT, step->model->names.state[i]);
 }
 
 /* ---- rows of outputs ---- */
@@ -185,13 +185,13 @@ int own_row(const struct step *step, const struct output *output)
 {
 	const struct model *model = step->model;
 	const bool own = step->kind == KIND_TUNED;
-	return own ? model->tuning->output[output - model->output] : -1;
+	return own ? model->params.tuning->output[output - model->output] : -1;
 }
 
 /* For some values of the params; of a load in some segment of time */
 static bool own_row_reads(const struct step *step, int row, int column)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const struct linear *system = &step->branch->system;
 	const bool *acts = t->acts + row * t->x.size;
 	if (column < system->states)
@@ -207,7 +207,7 @@ static bool own_row_reads(const struct step *step, int row, int column)
 static tape_ref own_row_ref(struct tape *t, const struct step *step, int row)
 {
 	const struct linear *system = &step->branch->system;
-	const struct layout *x = &step->model->tuning->x;
+	const struct layout *x = &step->model->params.tuning->x;
 	const int states = system->states;
 	tape_ref *term = ARRAY(tape_ref, x->size + 1);
 	int terms = 0, column = 0;
@@ -236,10 +236,10 @@ static double row_factor(const struct output *output, mpq_srcptr factor)
 int place_of_output(const struct model *model, const struct output *output)
 {
 	int row = model->outputs;
-	for (int k = 0; model->highest && k < model->n; k++) {
-		if (model->highest[k] == output)
+	for (int k = 0; model->equations.highest && k < model->n; k++) {
+		if (model->equations.highest[k] == output)
 			return row;
-		row += model->highest[k] != NULL;
+		row += model->equations.highest[k] != NULL;
 	}
 	return (int)(output - model->output);
 }
@@ -306,7 +306,8 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 	const bool seen = is_seen_of_modes(step, output);
 	if (own_row(step, output) >= 0)
 		return own_row_ref(t, step, own_row(step, output));
-	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->channels, terms = 0;
+	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->remainder.channels,
+	    terms = 0;
 	tape_ref *term = ARRAY(tape_ref, most + 1);
 	if (seen)
 		term[terms++] = entry(t, TABLE_SEEN, (int)(output - step->model->output), TAPE_NONE);
@@ -320,7 +321,7 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 			if (mpq_sgn(output->input[k][i]) != 0)
 				term[terms++] = tape_scaled(t, row_factor(output, output->input[k][i]),
 							    tape_operand(t, TAPE_INPUT, i, k));
-	for (int c = 0; c < step->model->channels; c++)
+	for (int c = 0; c < step->model->remainder.channels; c++)
 		if (mpq_sgn(output->channel[c]) != 0)
 			term[terms++] = tape_scaled(t, row_factor(output, output->channel[c]),
 						    entry(t, TABLE_LEFT, c, TAPE_NONE));
@@ -352,6 +353,6 @@ void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 			term[terms++] = system->segments > 1 ? entry(t, TABLE_FORCED, at + k, x)
 						: number_times(t, step->forced->part[at + k].value, x);
 		}
-		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->state_name[i]);
+		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->names.state[i]);
 	}
 }

@@ -268,8 +268,8 @@ static void compare_low(const char *what, struct enclosures *e, size_t i, size_t
 static const char *entry_name(const struct model *model, size_t i, size_t j)
 {
     if (j < (size_t)model->system.states)
-        return format("factor of %s in %s", model->state_name[j], model->state_name[i]);
-    return format("factor of load or input column %zu in %s", j - (size_t)model->system.states, model->state_name[i]);
+        return format("factor of %s in %s", model->names.state[j], model->names.state[i]);
+    return format("factor of load or input column %zu in %s", j - (size_t)model->system.states, model->names.state[i]);
 }
 
 /* A flag says 0 at this tau: either 0 at every tau, or the judge finds nothing there with 4096 bits. */

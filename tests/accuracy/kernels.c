@@ -67,9 +67,10 @@ struct plant {
 static mpq_t *highest_rows(const struct model *model, int which, int segment, size_t *width)
 {
     const struct linear *system = &model->system;
-    const struct operator *operator = &model->operator[which];
+    const struct operator *operator = &model->schedule.operator[which];
     const size_t n = (size_t)system->n, states = (size_t)system->states;
-    const size_t all = states + (size_t)load_columns(system) + 2 * (size_t)system->inputs + (size_t)model->channels;
+    const size_t all = states + (size_t)load_columns(system) + 2 * (size_t)system->inputs +
+		       (size_t)model->remainder.channels;
     mpq_t *W = rationals(n * (n + all)), *R = rationals(n * all);
     for (size_t i = 0; i < n; i++) {
         mpq_t *right = W + i * (n + all) + n;
@@ -87,8 +88,8 @@ static mpq_t *highest_rows(const struct model *model, int which, int segment, si
         for (int u = 0; u < system->inputs; u++)
             for (int k = 0; k < 2; k++)
                 mpq_set(*right++, system->input[u].force[k][i]);
-        for (int e = 0; e < model->channels; e++)
-            mpq_set_ui(*right++, (size_t)model->channel_row[e] == i, 1);
+        for (int e = 0; e < model->remainder.channels; e++)
+            mpq_set_ui(*right++, (size_t)model->remainder.row[e] == i, 1);
     }
     if (!eliminate(n, n + all, W)) {
         complain("", "the matrix of highest derivatives is singular");
@@ -130,7 +131,7 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
     *p = (struct plant){ .states = (size_t)system->states,
                          .held = split ? (size_t)system->states : 0,
                          .loads = (size_t)load_columns(system),
-                         .channels = (size_t)model->channels };
+                         .channels = (size_t)model->remainder.channels };
     for (int u = 0; u < system->inputs; u++)
         p->inputs += system->input[u].hold ? 2 : 1;
     p->load_at = p->states + p->held;
@@ -397,7 +398,7 @@ static void compare_column(const struct model *model, const struct judge *judge,
     for (int k = 0; k < column->parts; k++)
         screen(judge, &column->part[k]);
     for (size_t i = 0; i < states; i++) {
-        const char *what = format(" in %s", model->state_name[i]);
+        const char *what = format(" in %s", model->names.state[i]);
         bool polynomial = true;
         for (int k = 0; k < column->parts; k++)
             polynomial = polynomial && (column->part[k].polynomial[i] || column->part[k].zero[i]);
@@ -506,7 +507,7 @@ static void compare_Phi(const struct model *model, struct judge *judge, const st
         mpq_set_ui(part->w[j], 1, 1);
         if (judge->plant.held)
             mpq_set_ui(part->w[states + j], 1, 1);
-        trial.name = format("factor of %s", model->state_name[j]);
+        trial.name = format("factor of %s", model->names.state[j]);
         compare_column(model, judge, &column, table->Phi + j, states);
     }
 }
@@ -764,7 +765,7 @@ static void check_refusal(const struct model *model)
     mpq_init(one);
     mpq_set_ui(one, 1, 1);
     mpfi_init2(x, 256);
-    for (int k = 0; k < model->operators; k++)
+    for (int k = 0; k < model->schedule.operators; k++)
         for (int s = 0; s < model->system.segments; s++) {
             struct judge *judge = judge_of(model, k, s);
             const evaluator_enclosure *E = judge ? enclosure(judge, moment_at(judge, one), 0) : NULL;
@@ -789,9 +790,9 @@ static struct model *model_of(const char *scheme)
     struct model *model = model_build(spec_of(trial.path, trial.spec), &request);
     if (!model)
         complain("not accepted: ", first_error());
-    else if (model->channels == 0)
+    else if (model->remainder.channels == 0)
         complain("", "nothing is left over");
-    return model && model->channels ? model : NULL;
+    return model && model->remainder.channels ? model : NULL;
 }
 
 static void try_scheme(const char *scheme, bool loads_left)
@@ -803,7 +804,7 @@ static void try_scheme(const char *scheme, bool loads_left)
     const struct model *model = model_of(scheme);
     if (!model)
         return;
-    if (model->operators > OPERATORS || model->system.segments > SEGMENTS)
+    if (model->schedule.operators > OPERATORS || model->system.segments > SEGMENTS)
         abort();
     const clock_t start = clock();
     const struct step *step = step_build(model);
@@ -812,9 +813,9 @@ static void try_scheme(const char *scheme, bool loads_left)
         check_refusal(model);
         return;
     }
-    for (int k = 0; k < model->operators; k++)
+    for (int k = 0; k < model->schedule.operators; k++)
         check_tables(model, step, step->branch[k].table);
-    for (int k = 0; k < model->operators; k++)
+    for (int k = 0; k < model->schedule.operators; k++)
         for (int s = 0; s < model->system.segments; s++)
             compare_segment(model, step, k, s);
     if (verbose)

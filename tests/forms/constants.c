@@ -116,7 +116,7 @@ static void want_second_words(struct wanting *w)
 
 static const char *state_name(const struct wanting *w, int state)
 {
-    return w->model->state_name[state];
+    return w->model->names.state[state];
 }
 
 static void want_places(struct wanting *w, const struct judged_number *row, const char *what, const char *target)

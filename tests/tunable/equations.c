@@ -276,7 +276,7 @@ static int try_text(const char *text)
         printf("# %s\n", first_line(diagnostics()));
         return 1;
     }
-    const struct tuning *t = model->tuning;
+    const struct tuning *t = model->params.tuning;
     for (int p = 0; p < POINTS; p++) {
         mpq_t *values = rationals((size_t)t->params);
         for (int k = 0; k < t->given; k++) {

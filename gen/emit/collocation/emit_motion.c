@@ -183,7 +183,7 @@ static bool decides(const struct emitter *e)
 {
 	int count;
 	const struct form **form = all_forms(e, &count);
-	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
+	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->equations.atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
 	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_EXPRESSIONS && meets_contacts(e); part++)
@@ -240,7 +240,7 @@ static void emit_drive_table(const struct emitter *e)
 	const struct motion *m = motion(e);
 	const int size[] = { e->system->segments, m->coords, m->columns };
 	emit_array(e, "What the load states give each highest derivative, in each segment of time", "drive", 3, size,
-		   m->load, e->model->coord_name);
+		   m->load, e->model->names.coord);
 }
 
 static bool any_drive(const struct emitter *e)
@@ -371,7 +371,7 @@ static bool reads_known(const struct emitter *e, enum motion_part part)
 	struct reads read = reads_of(e->model, count, form);
 	if (meets_contacts(e) && part == THE_EXPRESSIONS)
 		note_reads(&read, e, tape_of_part(e, part));
-	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
+	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->equations.atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
 	const struct tape *t = meets_contacts(e) && part == THE_EXPRESSIONS ? tape_of_part(e, part) : NULL;
@@ -414,7 +414,7 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 		if (forces && !slope && m->driven[i])
 			value = tape_binary(t, TAPE_ADD, value, tape_operand(t, TAPE_TABLE, driven++, TABLE_NODE));
 		tape_set(t, slope ? format("slope[%d]", i - m->coords) : format("left[%d]", i), value, 15,
-			 forces && !slope ? e->model->coord_name[i] : NULL);
+			 forces && !slope ? e->model->names.coord[i] : NULL);
 		if (part == THE_EXPRESSIONS)
 			tape_set(t, format("excess[%d]", i), formula_sizes(f, form[i]), 16, NULL);
 	}

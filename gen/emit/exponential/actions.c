@@ -16,9 +16,9 @@ static void emit_combination(const struct emitter *e, const struct action *a)
 {
 	const bool loops = e->step->program->loops;
 	if (loops)
-		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->channels, a->target,
+		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->remainder.channels, a->target,
 		    combination_at(a, "i"));
-	for (int c = 0; c < e->model->channels && !loops; c++)
+	for (int c = 0; c < e->model->remainder.channels && !loops; c++)
 		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, whole_text(c)));
 }
 
@@ -46,7 +46,7 @@ static void add_products(struct summands *s, const struct coefficient *row, int 
 static void emit_sum(const struct emitter *e, const struct action *a)
 {
 	struct table *const *table = e->step->branch[0].table;
-	const int channels = e->model->channels;
+	const int channels = e->model->remainder.channels;
 	for (int i = 0; i < e->system->states; i++) {
 		struct summands s = { 0 };
 		if (a->flow != NONE)
@@ -145,7 +145,7 @@ static void declare_vectors(const struct emitter *e)
 		say(e, "    double %s;\n", list);
 	say(e, "    double ");
 	for (int i = 0; i < program->lefts; i++)
-		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->channels);
+		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->remainder.channels);
 	say(e, program->loops ? ";\n    int i;\n" : ";\n");
 }
 
@@ -221,13 +221,13 @@ static void emit_flows_apart(const struct emitter *e)
 
 static void emit_unrolled_slope(const struct emitter *e)
 {
-	int states = e->system->states, channels = e->model->channels;
+	int states = e->system->states, channels = e->model->remainder.channels;
 	const struct slopes slopes = state_slopes(e->step, 0);
 	for (int i = 0; i < states; i++) {
 		struct summands s = { 0 };
 		add_products(&s, slopes.A + i * states, states, "z");
 		add_products(&s, slopes.B + i * channels, channels, "left");
-		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum_of(&s, 12), e->model->state_name[i]);
+		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum_of(&s, 12), e->model->names.state[i]);
 	}
 }
 
@@ -235,15 +235,16 @@ void emit_predictor(const struct emitter *e)
 {
 	open_function(e, "dz = A z + B r, r what is left over",
 		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
-		      "double dz[$N_STATES])", e->model->channels);
+		      "double dz[$N_STATES])", e->model->remainder.channels);
 	if (e->step->program->loops)
-		say(e, "    pl_multiply($N_STATES, $N_STATES, %s, z, dz);\n"
-		       "    pl_multiply_add($N_STATES, %d, %s, left, dz);\n", matrix_text(e, "A"), e->model->channels,
-		    matrix_text(e, "B"));
+		say(e,
+		    "    pl_multiply($N_STATES, $N_STATES, %s, z, dz);\n"
+		    "    pl_multiply_add($N_STATES, %d, %s, left, dz);\n",
+		    matrix_text(e, "A"), e->model->remainder.channels, matrix_text(e, "B"));
 	else
 		emit_unrolled_slope(e);
 	close_function(e, "which z");
-	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->channels },
+	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->remainder.channels },
 		   { "DRIVEN", adds_driven(e) }, { "CUT", e->step->cut != NULL });
 	say_include(e, "predict.h");
 }

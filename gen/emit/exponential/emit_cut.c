@@ -35,7 +35,7 @@ void emit_cut_place(const struct emitter *e)
 
 static int acting_entries(const struct emitter *e)
 {
-	return cut_of(e)->layout.size - e->system->states - CUT_POWERS * e->model->channels;
+	return cut_of(e)->layout.size - e->system->states - CUT_POWERS * e->model->remainder.channels;
 }
 
 static void emit_flow_tables(const struct emitter *e)
@@ -113,10 +113,10 @@ static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = cut_of(e)->look;
 	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
-		   { "FORCES", e->model->channels }, { "CARRIES", e->step->carried.count }, { "ORDER", x->order },
-		   { "COLUMNS", e->system->states + x->columns }, { "EXPRESSIONS", x->expressions },
-		   { "TERMS", terms_of_events(e) }, { "CONTACTS", meets_contacts(e) },
-		   { "INPUTS", e->system->inputs },
+		   { "FORCES", e->model->remainder.channels }, { "CARRIES", e->step->carried.count },
+		   { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
+		   { "EXPRESSIONS", x->expressions }, { "TERMS", terms_of_events(e) },
+		   { "CONTACTS", meets_contacts(e) }, { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(by_series(e, e->step->cut->look)) },
 		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
 		   { "SWIFT", cut_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });

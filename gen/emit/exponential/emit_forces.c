@@ -17,7 +17,7 @@ const struct normal *normal_of_step(const struct emitter *e)
 
 int functions_of_time(const struct emitter *e)
 {
-	return e->model->split->functions - 1;
+	return e->model->remainder.split->functions - 1;
 }
 
 bool has_bank(const struct emitter *e)
@@ -166,7 +166,7 @@ void emit_from_modes(const struct emitter *e)
 
 void emit_function_values(const struct emitter *e)
 {
-	const struct splitting *split = e->model->split;
+	const struct splitting *split = e->model->remainder.split;
 	int count = functions_of_time(e);
 	const struct form **form = ARRAY(const struct form *, (size_t)count + 1);
 	for (int k = 0; k < count; k++)
@@ -288,7 +288,7 @@ static struct combination combination_of(const struct emitter *e, int matrix)
 
 static struct reads reads_of_rest(const struct emitter *e)
 {
-	const struct splitting *split = e->model->split;
+	const struct splitting *split = e->model->remainder.split;
 	const struct form **form = ARRAY(const struct form *, (size_t)split->rests + 1);
 	for (int k = 0; k < split->rests; k++)
 		form[k] = split->rest[k].form;
@@ -297,7 +297,7 @@ static struct reads reads_of_rest(const struct emitter *e)
 
 static void emit_rest_forces(const struct emitter *e)
 {
-	const struct splitting *split = e->model->split;
+	const struct splitting *split = e->model->remainder.split;
 	const struct form **form = ARRAY(const struct form *, (size_t)split->rests + 1);
 	struct reads r = reads_of_rest(e);
 	if (split->rests == 0)
@@ -311,7 +311,7 @@ static void emit_rest_forces(const struct emitter *e)
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, split->rests, form);
 	for (int k = 0; k < split->rests; k++)
 		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 15,
-			 e->model->coord_name[split->rest[k].coord]);
+			 e->model->names.coord[split->rest[k].coord]);
 	emit_formulas(f, 4);
 	close_function(e, "s");
 }
@@ -344,15 +344,15 @@ static void add_force_on(const struct emitter *e, struct summands *sum, int k, i
 
 static void add_rest_forces(const struct emitter *e, struct summands *sum)
 {
-	for (int k = 0; k < e->model->split->rests; k++)
-		add_force_on(e, sum, k, e->model->split->rest[k].coord, format("rest%d", k + 1));
+	for (int k = 0; k < e->model->remainder.split->rests; k++)
+		add_force_on(e, sum, k, e->model->remainder.split->rest[k].coord, format("rest%d", k + 1));
 }
 
 /* The states that it reads, and its values times functions of time */
 static void emit_rest_values(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const struct splitting *split = e->model->split;
+	const struct splitting *split = e->model->remainder.split;
 	struct reads r = reads_of_rest(e);
 	if (split->rests == 0)
 		return;
@@ -405,7 +405,7 @@ void emit_forces(const struct emitter *e)
 	struct combination *made = ARRAY(struct combination, (size_t)m->matrices);
 	for (int k = 0; k < m->matrices; k++)
 		made[k] = combination_of(e, k);
-	for (int f = 0; f < e->model->split->functions; f++) {
+	for (int f = 0; f < e->model->remainder.split->functions; f++) {
 		if (!m->force[f])
 			continue;
 		const char *name =
@@ -424,7 +424,7 @@ void emit_forces(const struct emitter *e)
 		      "static void $n_mode_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
 		      "    const double rate[%d], double force[%d])", m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
-	for (int f = 1; f < e->model->split->functions; f++)
+	for (int f = 1; f < e->model->remainder.split->functions; f++)
 		if (m->force[f])
 			say(e, "    const double now%d = %s;\n", f, function_text(f));
 	emit_combinations(e, made);
@@ -439,11 +439,11 @@ void emit_forces_on_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const struct model *model = e->model;
 	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
-	for (int c = 0; c < model->channels; c++)
-		add_force_on(e, sum, c, coordinate_of_row(model, model->channel_row[c]), format("left[%d]", c));
+	for (int c = 0; c < model->remainder.channels; c++)
+		add_force_on(e, sum, c, coordinate_of_row(model, model->remainder.row[c]), format("left[%d]", c));
 	open_function(e, "What is left over, on the modes",
-		      "static void $n_on_modes(int which, const double left[%d], double force[%d])", model->channels,
-		      m->width);
+		      "static void $n_on_modes(int which, const double left[%d], double force[%d])",
+		      model->remainder.channels, m->width);
 	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);

@@ -17,12 +17,12 @@
 
 static int wave_values(const struct emitter *e)
 {
-	return 2 * e->model->split->waves;
+	return 2 * e->model->remainder.split->waves;
 }
 
 static bool is_there(const struct emitter *e, int value)
 {
-	return value % 2 == 0 || oscillates(e->model->split->wave[value / 2].wave);
+	return value % 2 == 0 || oscillates(e->model->remainder.split->wave[value / 2].wave);
 }
 
 /* NAME_waves: cos and sin of each now, times e^{a t} */
@@ -33,7 +33,8 @@ static void emit_waves(const struct emitter *e)
 	if (count == 0)
 		return;
 	for (int k = 0; k < count; k++)
-		form[k] = form_unit((struct basis){ .kind = BASIS_WAVE, .wave = e->model->split->wave[k / 2].wave,
+		form[k] = form_unit((struct basis){ .kind = BASIS_WAVE,
+						    .wave = e->model->remainder.split->wave[k / 2].wave,
 						    .sine = k % 2 && is_there(e, k) });
 	struct reads r = reads_of(e->model, count, form);
 	open_function(e, "Known loads now", "static void $n_waves(const $n *s, double wave[%d])", count);
@@ -184,7 +185,7 @@ static void emit_bank(const struct emitter *e)
 	if (!has_bank(e))
 		return;
 	for (int b = 0; b < last; b++)
-		bound[b] = equation_number(e->model, e->model->operator[b].at).value;
+		bound[b] = equation_number(e->model, e->model->schedule.operator[b].at).value;
 	emit_array(e, "Values up to which the operators serve, but the last", "bound", 1, &last, bound, NULL);
 	emit_array(e, "Modes of the next operator from those of each, beyond what they are themselves", "next", 3,
 		   (const int[]){ last, m->width, m->width }, m->turn, NULL);
@@ -222,7 +223,7 @@ static void emit_still(const struct emitter *e)
 /* The next term of known load k, by `by`; `alone`: it has no sin */
 static void emit_next_term(const struct emitter *e, int k, bool alone)
 {
-	const struct wave *wave = e->model->split->wave[k].wave;
+	const struct wave *wave = e->model->remainder.split->wave[k].wave;
 	const char *a = shortest(equation_number(e->model, wave->a).value);
 	const char *w = shortest(equation_number(e->model, wave->w).value);
 	const int c = 2 * k, s = c + 1;
@@ -309,14 +310,13 @@ void emit_mode_tables(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width },
-		   { "POINTS", m->points }, { "TWICE", m->twice }, { "STAGES", m->stages }, { "SWEEPS", m->sweeps },
-		   { "FIRST_SWEEPS", m->first_sweeps }, { "FUNCTIONS", functions_of_time(e) },
-		   { "WAVES", wave_values(e) }, { "BANKS", m->banks }, { "SELECTOR", e->model->split->selector - 1 },
-		   { "SEGMENTS", e->system->segments }, { "SETTLES", m->settled != NULL },
-		   { "SETTLED_IN", m->settled_bank }, { "AT", e->step->series.emitted },
-		   { "TERMS", m->within.terms }, { "TURNS", turns_within(e) }, { "DAMPED", m->within.damping != NULL },
-		   { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
+	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->points }, { "TWICE", m->twice },
+		   { "STAGES", m->stages }, { "SWEEPS", m->sweeps }, { "FIRST_SWEEPS", m->first_sweeps },
+		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "BANKS", m->banks },
+		   { "SELECTOR", e->model->remainder.split->selector - 1 }, { "SEGMENTS", e->system->segments },
+		   { "SETTLES", m->settled != NULL }, { "SETTLED_IN", m->settled_bank },
+		   { "AT", e->step->series.emitted }, { "TERMS", m->within.terms }, { "TURNS", turns_within(e) },
+		   { "DAMPED", m->within.damping != NULL }, { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
 	say(e, "#include \"normal.h\"\n");
 }
 

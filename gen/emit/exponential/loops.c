@@ -41,13 +41,13 @@ static double picked_entry(const struct picked *p, const struct emitter *e, int 
 static void emit_table(const struct emitter *e, const char *name, const char *note, int first, struct picked picked)
 {
 	const int segments = picked.kind == PICK_LOAD ? e->system->segments : 1, rows = e->system->states;
-	const int size[] = { segments * (e->model->operators - first), rows, picked.columns };
+	const int size[] = { segments * (e->model->schedule.operators - first), rows, picked.columns };
 	double *value = ARRAY(double, (size_t)(size[0] * rows * picked.columns)), *to = value;
 	for (int s = 0; s < segments; s++)
-		for (int k = first; k < e->model->operators; k++)
+		for (int k = first; k < e->model->schedule.operators; k++)
 			for (int i = 0; i < rows * picked.columns; i++)
 				*to++ = picked_entry(&picked, e, k, s, i / picked.columns, i % picked.columns);
-	emit_array(e, note, name, 3, size, value, e->model->state_name);
+	emit_array(e, note, name, 3, size, value, e->model->names.state);
 }
 
 static void emit_phi_table(const struct emitter *e, int t)
@@ -73,7 +73,9 @@ static void emit_tables_of(const struct emitter *e, int t)
 	if (inputs)
 		emit_table(e, format("%s_input", wanted->name), "what the inputs add", 0, input);
 	for (int k = 0; k < wanted->kernels; k++) {
-		struct picked kernel = { .kind = PICK_KERNEL, .table = t, .index = k, .columns = e->model->channels };
+		struct picked kernel = {
+			.kind = PICK_KERNEL, .table = t, .index = k, .columns = e->model->remainder.channels
+		};
 		emit_table(e, wanted->kernel[k].name, "what remainders add", 0, kernel);
 	}
 }
@@ -84,11 +86,11 @@ void emit_loop_tables(const struct emitter *e)
 		emit_tables_of(e, t);
 	if (!e->step->program->predicts)
 		return;
-	struct slopes *slopes = ARRAY(struct slopes, (size_t)e->model->operators);
-	for (int k = 0; k < e->model->operators; k++)
+	struct slopes *slopes = ARRAY(struct slopes, (size_t)e->model->schedule.operators);
+	for (int k = 0; k < e->model->schedule.operators; k++)
 		slopes[k] = state_slopes(e->step, k);
 	struct picked A = { .kind = PICK_SLOPE, .columns = e->system->states, .slopes = slopes };
-	struct picked B = { .kind = PICK_FORCE, .columns = e->model->channels, .slopes = slopes };
+	struct picked B = { .kind = PICK_FORCE, .columns = e->model->remainder.channels, .slopes = slopes };
 	emit_table(e, "A", "y' = A y + B r", 0, A);
 	emit_table(e, "B", "the force of each remainder", 0, B);
 }
@@ -119,7 +121,7 @@ static const char *load_text(const struct emitter *e, int t)
 	if (e->system->segments == 1)
 		return format("%s[%s][0]", name, operator_index(e));
 	if (many_operators(e))
-		return format("%s[%d * s->segment + which][0]", name, e->model->operators);
+		return format("%s[%d * s->segment + which][0]", name, e->model->schedule.operators);
 	return format("%s[s->segment][0]", name);
 }
 
@@ -170,7 +172,7 @@ void emit_sum_loop(const struct emitter *e, const struct action *a)
 		    a->flow != NONE ? format("flow%d[i]", a->flow) : format("stage%d[i]", a->plain));
 	for (int k = 0; k < a->kernels; k++) {
 		const struct kernel *kernel = &table[a->kernel[k].table]->wanted->kernel[a->kernel[k].kernel];
-		say(e, "    pl_multiply_add($N_STATES, %d, %s, left%d, %s);\n", e->model->channels,
+		say(e, "    pl_multiply_add($N_STATES, %d, %s, left%d, %s);\n", e->model->remainder.channels,
 		    matrix_text(e, kernel->name), a->kernel[k].left, target);
 	}
 	if (a->target == STAGE_STATE)

@@ -12,7 +12,7 @@
 
 bool many_operators(const struct emitter *e)
 {
-	return e->model->operators > 1;
+	return e->model->schedule.operators > 1;
 }
 
 bool any_of(const bool *flag, int count)
@@ -37,7 +37,7 @@ static bool reads_channel(const struct model *model, int channel)
 	bool any = false;
 	for (int i = 0; i < model->outputs + model->n; i++) {
 		const struct output *output =
-			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+			i < model->outputs ? &model->output[i] : model->equations.highest[i - model->outputs];
 		any = any || (output && mpq_sgn(output->channel[channel]) != 0);
 	}
 	return any;
@@ -46,7 +46,7 @@ static bool reads_channel(const struct model *model, int channel)
 bool reads_channels(const struct model *model)
 {
 	bool any = false;
-	for (int c = 0; c < model->channels; c++)
+	for (int c = 0; c < model->remainder.channels; c++)
 		any = any || reads_channel(model, c);
 	return any;
 }
@@ -54,17 +54,17 @@ bool reads_channels(const struct model *model)
 /* Beside friction outputs alone ask what is left over, and of equations that have none: its force is no formula. */
 static bool is_asked(const struct emitter *e, int channel)
 {
-	return e->model->drags == 0 || reads_channel(e->model, channel);
+	return e->model->contacts.drags == 0 || reads_channel(e->model, channel);
 }
 
 static struct reads reads_of_remainder(const struct emitter *e)
 {
-	int channels = e->model->channels, all = channels * e->model->operators, asked = 0;
+	int channels = e->model->remainder.channels, all = channels * e->model->schedule.operators, asked = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
-	for (int k = 0; k < e->model->operators; k++)
+	for (int k = 0; k < e->model->schedule.operators; k++)
 		for (int c = 0; c < channels; c++)
 			if (is_asked(e, c))
-				form[asked++] = e->model->operator[k].left[c];
+				form[asked++] = e->model->schedule.operator[k].left[c];
 	return reads_of(e->model, asked, form);
 }
 
@@ -96,10 +96,10 @@ const char *remainder_of_outputs(const struct emitter *e)
 
 static void emit_excess(const struct emitter *e, const struct bank *bank)
 {
-	const int size[] = { e->model->operators, bank->count };
-	const char **note = ARRAY(const char *, (size_t)e->model->operators);
-	for (int k = 0; k < e->model->operators; k++)
-		note[k] = e->model->operator[k].text;
+	const int size[] = { e->model->schedule.operators, bank->count };
+	const char **note = ARRAY(const char *, (size_t)e->model->schedule.operators);
+	for (int k = 0; k < e->model->schedule.operators; k++)
+		note[k] = e->model->schedule.operator[k].text;
 	emit_array(e, "What the linear terms of the equations exceed those of each operator by", "excess", 2, size,
 		   bank->factor, note);
 }
@@ -153,14 +153,14 @@ static void emit_remainder_locals(const struct emitter *e, const struct reads *r
 
 static const char *name_of_channel(const struct emitter *e, int channel)
 {
-	return e->model->coord_name[coordinate_of_row(e->model, e->model->channel_row[channel])];
+	return e->model->names.coord[coordinate_of_row(e->model, e->model->remainder.row[channel])];
 }
 
 static void emit_lefts(const struct emitter *e, const struct bank *bank)
 {
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, e->model->channels, bank->common);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, e->model->remainder.channels, bank->common);
 	struct tape *t = formulas_tape(f);
-	for (int c = 0; c < e->model->channels; c++) {
+	for (int c = 0; c < e->model->remainder.channels; c++) {
 		tape_ref form = is_asked(e, c) ? formula(f, bank->common[c]) : tape_number(t, 0);
 		tape_set(t, format("left[%d]", c), with_excess(f, c, form, bank), 15, name_of_channel(e, c));
 	}
@@ -171,10 +171,10 @@ static void emit_lefts(const struct emitter *e, const struct bank *bank)
 
 static void emit_selection(const struct emitter *e)
 {
-	const struct form *selector = e->model->selector;
-	const struct operator *operator = e->model->operator;
+	const struct form *selector = e->model->schedule.selector;
+	const struct operator *operator = e->model->schedule.operator;
 	struct reads r = reads_of(e->model, 1, &selector);
-	int last = e->model->operators - 1;
+	int last = e->model->schedule.operators - 1;
 	open_function(e, "The first operator whose value is not below the current one",
 		      "static int $n_operator(const $n *s, const double u[], const double slope[])");
 	emit_remainder_locals(e, &r, "s->y", false);
@@ -207,7 +207,8 @@ void emit_remainder(const struct emitter *e)
 		emit_excess(e, &bank);
 	open_function(e, "What is left over at state y: a force on each equation that has some",
 		      "static void $n_remainder(const $n *s, int which, int node, const double u[],\n"
-		      "    const double slope[], const double y[$N_STATES], double left[%d])", e->model->channels);
+		      "    const double slope[], const double y[$N_STATES], double left[%d])",
+		      e->model->remainder.channels);
 	emit_remainder_locals(e, &r, "y", node);
 	if (bank.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");

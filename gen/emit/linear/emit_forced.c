@@ -15,8 +15,8 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 	for (int i = 0; i < count; i++)
 		value[i] = is_forced(e->step, i % columns) ? factor[i].value : 0;
 	for (int i = 0; i < rows; i++)
-		note[i] = i < e->system->states ? e->model->state_name[i]
-						: e->model->relative->written->state_name[i - e->system->states];
+		note[i] = i < e->system->states ? e->model->names.state[i]
+						: e->model->relative->written->names.state[i - e->system->states];
 	emit_array(e, what, name, 3, size, value, note);
 }
 

@@ -80,7 +80,7 @@ static void emit_column_numbers(const struct emitter *e, const struct group *g)
 		const struct operand operand = k < g->states ? (struct operand){ OPERAND_STATE, k }
 					       : k < operands ? acting_operand(g, first + k - g->states)
 							      : (struct operand){ 0 };
-		note[k] = k < g->states ? e->model->state_name[g->state[k]]
+		note[k] = k < g->states ? e->model->names.state[g->state[k]]
 			  : k < operands ? name_of_column(e, &operand) : "none";
 		if (k < operands)
 			fill_column(e, g, &operand, 0, &value[k * rows]);
@@ -227,9 +227,9 @@ static void emit_alike_rows(const struct emitter *e, const struct group *g, int 
 	for (int k = 0; k < terms; k++) {
 		const struct operand *operand = &term[k].operand;
 		const char *by = operand->kind == OPERAND_STATE
-					 ? e->model->state_name[g->state[operand->index * g->blocks]]
+					 ? e->model->names.state[g->state[operand->index * g->blocks]]
 					 : name_of_column(e, operand);
-		note[k] = format("%s by %s, and so on", e->model->state_name[g->state[term[k].row * g->blocks]], by);
+		note[k] = format("%s by %s, and so on", e->model->names.state[g->state[term[k].row * g->blocks]], by);
 		for (int b = 0; b < g->blocks; b++)
 			value[k * g->blocks + b] = group_number(e, g, term[k].row, b, operand, segment);
 	}
@@ -345,7 +345,7 @@ static void emit_row_numbers(const struct emitter *e, const struct group *g)
 	double *value = ARRAY(double, (size_t)(g->states * width)), *to = value;
 	const char **note = ARRAY(const char *, (size_t)g->states);
 	for (int i = 0; i < g->states; i++) {
-		note[i] = e->model->state_name[g->state[i]];
+		note[i] = e->model->names.state[g->state[i]];
 		for (int j = 0; j < g->states; j++)
 			*to++ = group_number(e, g, i, 0, &(struct operand){ OPERAND_STATE, j }, 0);
 		for (int s = 0; s < segments; s++)

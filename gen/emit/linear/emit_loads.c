@@ -148,7 +148,7 @@ void emit_phase_rates(const struct emitter *e)
 
 static bool has_tuned_rates(const struct emitter *e)
 {
-	return e->kind->own_factors && e->model->tuning->frequencies > 0;
+	return e->kind->own_factors && e->model->params.tuning->frequencies > 0;
 }
 
 void emit_load_tables(const struct emitter *e)

@@ -112,7 +112,7 @@ void emit_modes(const struct emitter *e)
 	emit_array(e, format("e^{p h} of each mode's pole p: real parts, imaginary parts%s",
 			     modal->reals ? ", what is real" : ""), "turn", 1, &modal->states, modal->turn, NULL);
 	emit_mode_rows(e, "Modes from states", "to_modes", modal->states, modal->to, mode_names(e));
-	emit_mode_rows(e, "States from modes", "from_modes", modal->states, modal->from, e->model->state_name);
+	emit_mode_rows(e, "States from modes", "from_modes", modal->states, modal->from, e->model->names.state);
 	emit_driving(e);
 	struct tape *rows = tape_new();
 	for (int i = 0; i < e->model->outputs; i++)

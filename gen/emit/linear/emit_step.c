@@ -56,7 +56,7 @@ static void emit_load_factors(const struct emitter *e)
 	for (int i = 0; i < count; i++)
 		value[i] = table->load[i].value;
 	emit_array(e, "Factors of the load states in each segment of time", "load_factor", 3, size, value,
-		   e->model->state_name);
+		   e->model->names.state);
 }
 
 void emit_set_aside(const struct emitter *e)
@@ -65,7 +65,7 @@ void emit_set_aside(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
 			say(e, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n",
-			    carry[i], i, e->model->state_name[i]);
+			    carry[i], i, e->model->names.state[i]);
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
 			say(e, "    s->y[%d] = 0.0;\n", i);

@@ -32,7 +32,7 @@ static void emit_held(const struct emitter *e)
 			if (!force[i * states + j].zero)
 				add_summand(&s, scaled(force[i * states + j].value, format("s->y[%d]", j)));
 		say(e, "    x[%d] = %s;  /* held for %s */\n", e->step->layout.held + i, sum_of(&s, 12),
-		    e->model->coord_name[i]);
+		    e->model->names.coord[i]);
 	}
 }
 
@@ -419,7 +419,7 @@ static void emit_second_words(const struct emitter *e)
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->branch->whole->Phi[i].low;
 	emit_array(e, format("%s + this is the transfer matrix in two words", stepped_table(e, "Phi")), "Phi_low", 2,
-		   (const int[]){ n, n }, low, e->model->state_name);
+		   (const int[]){ n, n }, low, e->model->names.state);
 }
 
 /* What the load states add to the one-step matrix, in two words: the columns beyond Phi, in each segment of time */

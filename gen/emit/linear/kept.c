@@ -74,7 +74,7 @@ static void emit_keep(const struct emitter *e, int order, const int *at, const i
 		const struct link *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
 		if (at[j] >= 0)
 			say(e, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at),
-			       e->model->state_name[kept[j]]);
+			       e->model->names.state[kept[j]]);
 	}
 }
 

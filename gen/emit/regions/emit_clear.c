@@ -42,7 +42,7 @@ struct look {
 static const char **moving(const struct emitter *e, const char *const *x)
 {
 	int stays = 0;
-	const int *column = e->model->retuned ? staying_columns(e->step, &stays) : NULL;
+	const int *column = e->model->params.retuned ? staying_columns(e->step, &stays) : NULL;
 	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
 	for (int j = 0; j < e->step->layout.size; j++)
 		text[j] = x[j];
@@ -73,7 +73,7 @@ static bool changes(const struct emitter *e, int branch)
 	bool any = false;
 	for (int k = 0; k < e->step->branches; k++)
 		if (branch < 0 || k == branch)
-			any = any || retuned_place(e->model->retuned, RETUNED_SLOPE, k, 0) >= 0;
+			any = any || retuned_place(e->model->params.retuned, RETUNED_SLOPE, k, 0) >= 0;
 	return any;
 }
 
@@ -81,7 +81,7 @@ static bool changes(const struct emitter *e, int branch)
  * number. */
 static void mark_own(const struct emitter *e, const struct pieces *p, struct look *l)
 {
-	const struct tuning *r = e->model->retuned;
+	const struct tuning *r = e->model->params.retuned;
 	int size = e->step->layout.size, n = expressions_of(e);
 	const bool *reached = reached_elsewhere(e->step, l->branch), systems = changes(e, l->branch);
 	bool *whole = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),
@@ -106,7 +106,7 @@ static void mark_own(const struct emitter *e, const struct pieces *p, struct loo
 
 static struct look look_of(const struct emitter *e, const struct pieces *p, const char *const *x, int branch)
 {
-	const bool own = e->model->retuned;
+	const bool own = e->model->params.retuned;
 	struct look l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
 			  .end = moving(e, entries(e, "end%d")) };
 	l.size = magnitudes(e, l.x);
@@ -351,14 +351,14 @@ void emit_clear_step(const struct emitter *e)
 	}
 	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
 		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
-	if (e->model->retuned)
+	if (e->model->params.retuned)
 		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
 	if (is_cleared_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);
 	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, moving(e, x)), 12),
-	    !e->model->retuned              ? shortest(pieces.large)
+	    !e->model->params.retuned              ? shortest(pieces.large)
 	    : is_cleared_by_tables(e->step) ? "c->large[which]"
 					    : "c->large[s->contact.matrix]");
 	for (int i = 0; i < e->system->states; i++)

@@ -85,7 +85,7 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	for (int i = 0; i < g->assignments; i++) {
-		note[i] = e->model->state_name[g->assignment[i].state];
+		note[i] = e->model->names.state[g->assignment[i].state];
 		for (int j = 0; j < size; j++)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
@@ -136,7 +136,7 @@ void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 	emit_gates(e, g);
 	emit_values(e, g);
 	emit_impacts(e, g);
-	if (e->model->retuned && e->model->switching->felts > 0)
+	if (e->model->params.retuned && e->model->switching->felts > 0)
 		emit_grips(e);
 }
 

@@ -11,7 +11,7 @@
 /* Of a branch: as many as it has, or as an instance has room for */
 static int room_of(const struct emitter *e, int branch)
 {
-	return e->model->retuned ? room_for_rungs(e->step) : e->step->branch[branch].rungs;
+	return e->model->params.retuned ? room_for_rungs(e->step) : e->step->branch[branch].rungs;
 }
 
 int rungs_of_all(const struct emitter *e)
@@ -43,7 +43,8 @@ void emit_spacing(const struct emitter *e)
 	for (int k = 0; k < e->step->branches; k++)
 		spacing[k] = e->step->branch[k].spacing;
 	if (has_ladder(e->step))
-		put_wholes(e, e->model->retuned, "spacing", "between lengths of pieces", e->step->branches, spacing);
+		put_wholes(e, e->model->params.retuned, "spacing", "between lengths of pieces", e->step->branches,
+			   spacing);
 }
 
 static const char **names_of_rung(const struct emitter *e)

@@ -118,7 +118,7 @@ static const char *names_of_part(const struct emitter *part)
 {
 	const char *list = "";
 	for (int i = 0; i < part->model->n; i++)
-		list = format("%s%s%s", list, i ? ", " : "", part->model->coord_name[i]);
+		list = format("%s%s%s", list, i ? ", " : "", part->model->names.coord[i]);
 	return list;
 }
 
@@ -290,7 +290,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 			if (whole[i * size + j] != 0)
 				add_summand(&s, scaled(whole[i * size + j], *x[j] ? x[j] : NULL));
 		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i), sum_of(&s, 14),
-		    part->model->state_name[i]);
+		    part->model->names.state[i]);
 	}
 }
 

@@ -63,7 +63,7 @@ static void emit_breaks(const struct emitter *e, const struct pieces *pieces, bo
 	int *breaks = ARRAY(int, (size_t)expressions_of(e)), all = breaks_of(e, breaks);
 	if (!own)
 		put_wholes(e, false, "breaks", "breakpoints of each expression", expressions_of(e), breaks);
-	if (own || !e->model->retuned)
+	if (own || !e->model->params.retuned)
 		put_numbers(e, "breakpoint", "those of each expression", all, pieces->breakpoint);
 }
 
@@ -72,7 +72,7 @@ static void emit_halvings(const struct emitter *e)
 	int *halvings = ARRAY(int, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
 		halvings[k] = e->step->branch[k].halvings;
-	put_wholes(e, e->model->retuned, "halvings", "of h, to a piece", e->step->branches, halvings);
+	put_wholes(e, e->model->params.retuned, "halvings", "of h, to a piece", e->step->branches, halvings);
 }
 
 static void emit_region_numbers(const struct emitter *e)
@@ -125,7 +125,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	};
 	emit_halvings(e);
 	emit_spacing(e);
-	if (e->model->retuned) {
+	if (e->model->params.retuned) {
 		emit_rows(e, pieces);
 		emit_breaks(e, pieces, true);
 	}
@@ -133,7 +133,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
 			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
-	if (e->model->retuned && e->step->look.clears)
+	if (e->model->params.retuned && e->step->look.clears)
 		emit_own_look(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
@@ -153,18 +153,18 @@ void emit_regions(const struct emitter *e)
 	struct guards *g = has_guards(e) ? NEW(struct guards) : NULL;
 	if (g)
 		*g = guards_of(e->step, &pieces);
-	if (!e->model->retuned)
+	if (!e->model->params.retuned)
 		emit_rows(e, &pieces);
 	emit_breaks(e, &pieces, false);
 	emit_region_numbers(e);
 	emit_ladder_places(e, g);
-	if (g && e->model->retuned)
+	if (g && e->model->params.retuned)
 		emit_guards(e, g);
-	if (e->model->retuned)
+	if (e->model->params.retuned)
 		emit_nominal_of(e, emit_retuned_numbers);
 	else
 		emit_numbers_of_regions(e, &pieces, g);
-	if (g && !e->model->retuned)
+	if (g && !e->model->params.retuned)
 		emit_guards(e, g);
 	if (e->step->look.swift) {
 		emit_swift_tables(e, &pieces, expression_names(e));
@@ -277,7 +277,7 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "KEPT", keeps_rest(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
 		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
-		{ "GUARDS", has_guards(e) }, { "OWN", e->model->retuned != NULL }, { "SEGMENTS", s->segments },
+		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
 		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->look.clears },
 		{ "CAPPED", capped_entries(e) }
@@ -317,7 +317,7 @@ void declare_region_vector(const struct emitter *e)
 /* What friction carries now */
 static void emit_grip(const struct emitter *e)
 {
-	if (!e->model->retuned)
+	if (!e->model->params.retuned)
 		emit_grips(e);
 	open_function(e, NULL, "static double $n_grip(const $n *s, int which)");
 	say(e, "    double force;\n");
@@ -326,7 +326,7 @@ static void emit_grip(const struct emitter *e)
 	emit_region_vector(e, false);
 	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"
 	       "    return force;\n", e->step->layout.size,
-	    e->model->retuned ? "s->coeffs.grips" : spell(e, "$o_grips"));
+	    e->model->params.retuned ? "s->coeffs.grips" : spell(e, "$o_grips"));
 	close_function(e, "");
 }
 

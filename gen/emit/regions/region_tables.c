@@ -31,12 +31,12 @@ static void close_as(const struct emitter *e, bool own)
 
 void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)
 {
-	open_as(e, e->model->retuned, type, name, shape, note);
+	open_as(e, e->model->params.retuned, type, name, shape, note);
 }
 
 void close_table(const struct emitter *e)
 {
-	close_as(e, e->model->retuned);
+	close_as(e, e->model->params.retuned);
 }
 
 static void put_items(const struct emitter *e, int count, int in_line, const char *const *item)

@@ -10,12 +10,12 @@
 
 static const struct tuning *held(const struct emitter *e)
 {
-	return e->model->held;
+	return e->model->params.held;
 }
 
 int held_leads(const struct emitter *e)
 {
-	return e->model->held ? e->model->leads.count : 0;
+	return e->model->params.held ? e->model->params.leads.count : 0;
 }
 
 /* What an instance has */
@@ -24,14 +24,14 @@ static void emit_members(const struct emitter *e)
 	if (e->kind->own_factors)
 		emit_tuned_members(e);
 	else
-		(e->model->retuned ? emit_retuned_numbers : emit_nominal_params)(e);
+		(e->model->params.retuned ? emit_retuned_numbers : emit_nominal_params)(e);
 }
 
 void emit_held_types(const struct emitter *e)
 {
 	if (!tunables_of(e->model))
 		return;
-	const char *what = e->model->held ? "what the equations and outputs read"
+	const char *what = e->model->params.held ? "what the equations and outputs read"
 			   : format("what a step multiplies with: z is the states, load states%s, inputs%s",
 				    e->system->segments > 1 ? " in each segment of time" : "",
 				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
@@ -63,8 +63,8 @@ void emit_held_declarations(const struct emitter *e)
 	if (!tunables_of(e->model))
 		return;
 	const bool own = e->kind->own_factors, any = own && e->step->blocks->whole;
-	const char *more = own ? e->model->tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
-			       : e->model->retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
+	const char *more = own ? e->model->params.tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
+			       : e->model->params.retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
 	say(e, "\n/* Sets c to params (%s), for steps of h [s]%s. 0, or c is as it was and, as plrt.h\n"
 	       " * says, PL_NO_STEP%s, PL_NOT_FINITE */\n", param_list(e), any ? "" : ", the spec's", more);
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
@@ -93,7 +93,7 @@ void banner_held(const struct emitter *e)
 	say(e, " * Tunable: %s. ", param_list(e));
 	if (e->kind->own_factors)
 		banner_blocks(e);
-	else if (e->model->retuned)
+	else if (e->model->params.retuned)
 		say(e, "An instance has the tables of its regions, %d numbers of matrices, which\n"
 		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
 		       "correctly rounded. It\n"
@@ -117,7 +117,7 @@ static void emit_frequencies(const struct emitter *e)
 {
 	const struct form **rate = ARRAY(const struct form *, (size_t)held_leads(e));
 	for (int k = 0; k < held_leads(e); k++)
-		rate[k] = e->model->leads.lead[k].rate;
+		rate[k] = e->model->params.leads.lead[k].rate;
 	const struct reads reads = reads_of(e->model, held_leads(e), rate);
 	open_function(e, "Of sines, as params have them [rad/s]",
 		      "static void $n_frequencies(const $n *s, double slope[%d])", held_leads(e));
@@ -134,12 +134,12 @@ static void emit_frequencies(const struct emitter *e)
 
 static void emit_held(const struct emitter *e)
 {
-	if (e->model->retuned)
+	if (e->model->params.retuned)
 		emit_retuned(e);
 	if (held_leads(e))
 		emit_frequencies(e);
 	emit_sizes(e, { "PARAMS", held(e)->params }, { "DERIVED", e->model->spec->derived },
-		   { "RETUNED", e->model->retuned != NULL },
+		   { "RETUNED", e->model->params.retuned != NULL },
 		   { "LEADS", held_leads(e) },
 		   { "MODES", keeps_modes(e) ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
 	say(e, "#include \"held.h\"\n");
@@ -149,14 +149,14 @@ static void emit_held(const struct emitter *e)
 static void emit_derived(const struct emitter *e)
 {
 	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
-	const struct reads reads = reads_of(e->model, derived, e->model->derived);
+	const struct reads reads = reads_of(e->model, derived, e->model->params.derived);
 	open_function(e, "What follows from params", "static void $n_derive(const double y[], double out[])");
 	for (int k = 0; k < given; k++)
 		if (reads.param[k])
 			say(e, "    const double %s = y[%d];\n", param_local(e, k), k);
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, derived, e->model->derived);
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, derived, e->model->params.derived);
 	for (int k = 0; k < derived; k++)
-		tape_set(formulas_tape(f), format("out[%d]", k), formula(f, e->model->derived[k]), 13, NULL);
+		tape_set(formulas_tape(f), format("out[%d]", k), formula(f, e->model->params.derived[k]), 13, NULL);
 	emit_formulas(f, 4);
 	close_function(e, "");
 	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"

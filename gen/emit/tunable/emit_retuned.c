@@ -10,7 +10,7 @@
 
 static const struct tuning *retuned_of(const struct emitter *e)
 {
-	return e->model->retuned;
+	return e->model->params.retuned;
 }
 
 static bool has_guards(const struct emitter *e)
@@ -82,7 +82,8 @@ static int kind_of_check(const struct emitter *e, const struct retuned_row *row)
 {
 	switch (row->kind) {
 	case RETUNED_LEAST: return 0;
-	case RETUNED_RESTITUTION: return e->model->impact[row->of % e->model->impacts].when->restitution ? 1 : 0;
+	case RETUNED_RESTITUTION:
+		return e->model->contacts.impact[row->of % e->model->contacts.impacts].when->restitution ? 1 : 0;
 	case RETUNED_SIGN: return row->positive ? 2 : 3;
 	default: return -1;
 	}
@@ -244,7 +245,7 @@ void emit_retuned(const struct emitter *e)
 		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e);
 	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
-	emit_sizes(e, { "PARAMS", e->model->held->params }, { "DERIVED", e->model->spec->derived },
+	emit_sizes(e, { "PARAMS", e->model->params.held->params }, { "DERIVED", e->model->spec->derived },
 		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },

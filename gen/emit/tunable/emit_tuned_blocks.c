@@ -19,7 +19,7 @@ static const struct tuned_blocks *blocks_of_step(const struct emitter *e)
 
 static const char *first_state(const struct emitter *e, const struct group *g)
 {
-	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
+	return format("%s%s", e->model->names.state[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
 }
 
 /* Of a group's factors in NAME_coeffs: "rows0" */
@@ -41,7 +41,7 @@ static void each_tuned_group(const struct emitter *e,
 
 static void emit_outputs(const struct emitter *e)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = e->model->params.tuning;
 	const char **name = ARRAY(const char *, (size_t)t->outputs);
 	for (int o = 0; o < e->model->outputs; o++)
 		if (t->output[o] >= 0)
@@ -93,11 +93,11 @@ void emit_tuned_members(const struct emitter *e)
 		number_member(e, "h_low", low_text(e->model->h), "of the spec's step: what h leaves out; else 0");
 	emit_nominal_params(e);
 	each_tuned_group(e, emit_group);
-	if (e->model->tuning->outputs)
+	if (e->model->params.tuning->outputs)
 		emit_outputs(e);
 	emit_nominal_peaks(e);
 	emit_loads(e, "pl_turn", "phase_step", e->phases, e->phase, phase_step_text);
-	if (e->phases && e->model->tuning->frequencies) {
+	if (e->phases && e->model->params.tuning->frequencies) {
 		open_member(e, "pl_rate", "phase_rate", format("[%d]", e->phases), "in turns per second");
 		emit_phase_rates(e);
 		close_member(e);
@@ -121,7 +121,7 @@ static const char **emit_all_equations(const struct emitter *e)
 	for (int b = 0; b < p->blocks; b++)
 		list[b] = &p->block[b].part.all;
 	list[p->blocks] = &p->others.all;
-	return emit_equations(e, e->model->tuning, p->blocks + has_others(e), list);
+	return emit_equations(e, e->model->params.tuning, p->blocks + has_others(e), list);
 }
 
 /* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
@@ -195,7 +195,7 @@ static void emit_blocks(const struct emitter *e, const char *const *text)
 	say(e, "\n/* Independent blocks%s */\n"
 	       "static const pl_block $n_block[%d] = {\n", p->blocks < p->all ? " that params touch" : "", p->blocks);
 	for (int b = 0; b < p->blocks; b++)
-		say(e, "    %s,  /* %s */\n", text[b], e->model->state_name[p->block[b].from[0]]);
+		say(e, "    %s,  /* %s */\n", text[b], e->model->names.state[p->block[b].from[0]]);
 	say(e, "};\n");
 }
 
@@ -298,7 +298,7 @@ static void emit_block_tables(const struct emitter *e, const char *const *equati
 
 static void emit_others(const struct emitter *e, const char *equations)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = e->model->params.tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
 	say(e, "\n/* %s%s */\n"
 	       "static const pl_equations $n_equations = %s;\n",
@@ -320,7 +320,7 @@ static void emit_rows_of_loads(const struct emitter *e)
 		if (e->growth[l] >= 0)
 			decays[e->growth[l]] = mpq_sgn(e->system->load[l].wave->a) < 0;
 	}
-	if (e->model->tuning->frequencies)
+	if (e->model->params.tuning->frequencies)
 		emit_integers(e, "short", "rate_row", e->phases, row);
 	if (e->growths && blocks_of_step(e)->whole)
 		emit_integers(e, "unsigned char", "decays", e->growths, decays);
@@ -347,7 +347,7 @@ static bool has_kind(const struct emitter *e, bool alike)
 
 static void emit_sizes_of_tuning(const struct emitter *e)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = e->model->params.tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "DERIVED", e->model->spec->derived },
 		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },

@@ -45,7 +45,7 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 {
 	const struct table *table = e->step->branch->whole;
 	const int width = table->states + table->columns + table->inputs, i = n->index;
-	const struct layout *x = e->model->tuning ? &e->model->tuning->x : NULL;
+	const struct layout *x = e->model->params.tuning ? &e->model->params.tuning->x : NULL;
 	switch (n->part) {
 	case TABLE_TURNED: return format("turned[%d]", i);
 	case TABLE_FACTOR: return cell("factor", i, table->columns);

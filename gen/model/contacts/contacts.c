@@ -9,8 +9,8 @@
 /* Its index; -1: it is none */
 static int drag_of(const struct model *model, const struct atom *atom)
 {
-	int index = model->drags - 1;
-	while (index >= 0 && model->drag[index].atom != atom)
+	int index = model->contacts.drags - 1;
+	while (index >= 0 && model->contacts.drag[index].atom != atom)
 		index--;
 	return index;
 }
@@ -33,7 +33,7 @@ static void add_drag(struct building *b, const struct atom *a)
 	RATIONAL start = ZERO;
 	for (int i = 1; i < a->operands; i++)
 		check_force(a->node->child[i], a->operand[i], start, NULL);
-	*MORE(model->drag, model->drags) =
+	*MORE(model->contacts.drag, model->contacts.drags) =
 		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1] };
 }
 
@@ -104,9 +104,9 @@ static void check_output(void *context)
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
 		refuse_in_output(model, work->output, work->output->left, seen);
-	for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
+	for (int c = 0; c < model->remainder.channels; c++)       /* an acceleration, by its equation */
 		if (mpq_sgn(work->output->channel[c]) != 0)
-			refuse_in_output(model, work->output, model->operator[0].left[c], seen);
+			refuse_in_output(model, work->output, model->schedule.operator[0].left[c], seen);
 }
 
 void check_contact_outputs(struct building *b)
@@ -117,8 +117,8 @@ void check_contact_outputs(struct building *b)
 
 void find_contacts(struct building *b)
 {
-	for (int i = 0; i < b->model->impacts; i++) {
-		struct impact *impact = &b->model->impact[i];
+	for (int i = 0; i < b->model->contacts.impacts; i++) {
+		struct impact *impact = &b->model->contacts.impact[i];
 		if (impact->bounces)
 			impact->in->press = rate_of_form(b, impact->in->speed);
 	}
@@ -128,9 +128,9 @@ void find_contacts(struct building *b)
 void place_contact_loads(struct building *b)
 {
 	const struct model *model = b->model;
-	for (int i = 0; i < model->impacts; i++) {
-		const struct strike *strike = model->impact[i].in;
-		const bool bounces = model->impact[i].bounces;
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		const struct strike *strike = model->contacts.impact[i].in;
+		const bool bounces = model->contacts.impact[i].bounces;
 		place_loads(b, strike->guard);
 		place_loads(b, strike->speed);
 		if (bounces)
@@ -140,10 +140,10 @@ void place_contact_loads(struct building *b)
 		for (int k = 0; k < strike->jumps && bounces; k++)
 			place_loads(b, strike->still[k].form);
 	}
-	for (int i = 0; i < model->drags; i++) {
-		place_loads(b, model->drag[i].velocity);
-		place_loads(b, model->drag[i].rate);
-		place_loads(b, model->drag[i].force);
-		place_loads(b, model->drag[i].rest);
+	for (int i = 0; i < model->contacts.drags; i++) {
+		place_loads(b, model->contacts.drag[i].velocity);
+		place_loads(b, model->contacts.drag[i].rate);
+		place_loads(b, model->contacts.drag[i].force);
+		place_loads(b, model->contacts.drag[i].rest);
 	}
 }

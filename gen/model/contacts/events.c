@@ -34,8 +34,8 @@ int rest_of(const struct switching *s, int segment, const struct impact *impact)
 bool has_bounces(const struct model *model)
 {
 	bool any = false;
-	for (int i = 0; i < model->impacts; i++)
-		any = any || model->impact[i].bounces;
+	for (int i = 0; i < model->contacts.impacts; i++)
+		any = any || model->contacts.impact[i].bounces;
 	return any;
 }
 

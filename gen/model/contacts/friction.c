@@ -527,10 +527,10 @@ static bool reads_remainder(const struct model *model)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs; i++)
-		any = any || !rationals_zero((size_t)model->channels, model->output[i].channel);
+		any = any || !rationals_zero((size_t)model->remainder.channels, model->output[i].channel);
 	for (int k = 0; k < model->n; k++)
-		any = any || (model->highest[k] &&
-			      !rationals_zero((size_t)model->channels, model->highest[k]->channel));
+		any = any || (model->equations.highest[k] &&
+			      !rationals_zero((size_t)model->remainder.channels, model->equations.highest[k]->channel));
 	return any;
 }
 
@@ -541,8 +541,8 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			feel(s, seen, model->output[i].left);
-	for (int c = 0; c < model->channels && reads_remainder(model); c++)
-		feel(s, seen, model->operator[0].left[c]);
+	for (int c = 0; c < model->remainder.channels && reads_remainder(model); c++)
+		feel(s, seen, model->schedule.operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].grip = ARRAY(struct output *, s->felts);
 	for (int i = 0; i < s->felts; i++) {

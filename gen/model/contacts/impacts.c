@@ -30,7 +30,7 @@ static void check_linear(const struct building *b, const struct node *node, cons
 		if (is_highest(&b->model->frame, &form->term[i].basis))
 			error(node->start, "it follows from the equations, which change there",
 			      "%s cannot read the highest derivative of %s", what,
-			      b->model->coord_name[form->term[i].basis.index]);
+			      b->model->names.coord[form->term[i].basis.index]);
 	}
 }
 
@@ -137,12 +137,12 @@ void gather_impacts(struct building *b)
 	const int segments = model->system.segments;
 	if (spec->whens > LIMIT_IMPACTS)
 		error(spec->when[LIMIT_IMPACTS].at, NULL, "more impacts than the limit of %d", LIMIT_IMPACTS);
-	model->impact = ARRAY(struct impact, spec->whens);
+	model->contacts.impact = ARRAY(struct impact, spec->whens);
 	if (diagnostics_errors())
 		return;
-	model->impacts = spec->whens;
+	model->contacts.impacts = spec->whens;
 	for (int i = 0; i < spec->whens; i++) {
-		struct impact *impact = &model->impact[i];
+		struct impact *impact = &model->contacts.impact[i];
 		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, segments) };
 		for (int s = 0; s < segments; s++)
 			impact->in[s] = copied(b, impact->when, b->snapshot[s].strike[i]);
@@ -160,9 +160,10 @@ static bool same_strike(const struct strike *a, const struct strike *b)
 bool strikes_change(const struct building *b)
 {
 	bool changes = false;
-	for (int i = 0; i < b->model->impacts; i++)
+	for (int i = 0; i < b->model->contacts.impacts; i++)
 		for (int s = 1; s < b->model->system.segments; s++)
-			changes = changes || !same_strike(b->model->impact[i].in, &b->model->impact[i].in[s]);
+			changes = changes ||
+				  !same_strike(b->model->contacts.impact[i].in, &b->model->contacts.impact[i].in[s]);
 	return changes;
 }
 
@@ -285,7 +286,7 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 	int coord = end->symbol->index + (end->component ? end->component - 1 : 0);
 	if (b->model->system.velocity[coord] < 0)
 		error(end->at, "a mass, or an equation with its second derivative",
-		      "an impact needs a mass: %s is of first order", b->model->coord_name[coord]);
+		      "an impact needs a mass: %s is of first order", b->model->names.coord[coord]);
 	mpq_set_si(force[b->owner[coord]], sign, 1);
 }
 
@@ -373,7 +374,7 @@ static void check_alike(void *context)
 {
 	struct indexed *work = context;
 	struct building *b = work->b;
-	const struct impact *all = b->model->impact, *impact = &all[work->index];
+	const struct impact *all = b->model->contacts.impact, *impact = &all[work->index];
 	RATIONAL ratio = ZERO, rest = ZERO;
 	for (int i = 0; i < work->index; i++)
 		for (int s = 0; s < b->model->system.segments; s++)
@@ -395,7 +396,7 @@ static void build_impact(void *context)
 {
 	struct indexed *work = context;
 	struct building *b = work->b;
-	struct impact *impact = &b->model->impact[work->index];
+	struct impact *impact = &b->model->contacts.impact[work->index];
 	const struct when *when = impact->when;
 	for (int s = 0; s < b->model->system.segments; s++) {
 		struct strike *strike = &impact->in[s];
@@ -417,9 +418,9 @@ static void build_impact(void *context)
 /* Once masses are known: which guards bounce, and how */
 void build_impacts(struct building *b)
 {
-	for (int i = 0; i < b->model->impacts; i++)
+	for (int i = 0; i < b->model->contacts.impacts; i++)
 		statement_guard(build_impact, &(struct indexed){ b, i });
-	for (int i = 1; i < b->model->impacts; i++)
+	for (int i = 1; i < b->model->contacts.impacts; i++)
 		statement_guard(check_alike, &(struct indexed){ b, i });
 }
 

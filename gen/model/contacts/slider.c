@@ -87,7 +87,7 @@ static void put_in_others(const struct slider_row *r, const struct form *borne)
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
 	struct model *model = r->b->model;
-	*MORE(model->bearing, model->bearings) = (struct bearing){ r->atom, borne };
+	*MORE(model->contacts.bearing, model->contacts.bearings) = (struct bearing){ r->atom, borne };
 	for (int i = 0; i < r->snapshot->residuals; i++) {
 		struct residual *residual = &r->snapshot->residual[i];
 		const struct form_term *term = form_find(residual->form, &basis);
@@ -201,9 +201,9 @@ struct form *borne_form(const struct building *b, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		const struct form *borne = NULL;
-		for (int k = 0; k < b->model->bearings && term->basis.atom; k++)
-			if (b->model->bearing[k].atom == term->basis.atom)
-				borne = b->model->bearing[k].borne;
+		for (int k = 0; k < b->model->contacts.bearings && term->basis.atom; k++)
+			if (b->model->contacts.bearing[k].atom == term->basis.atom)
+				borne = b->model->contacts.bearing[k].borne;
 		if (borne)
 			form_add_to(sum, borne, term->factor);
 		else

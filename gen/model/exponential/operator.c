@@ -181,8 +181,8 @@ static void divide_range(void *context)
 
 static void check_rising(const struct building *b, const struct fixed *bank)
 {
-	const struct operator *operator = b->model->operator;
-	for (int k = 1; k < b->model->operators; k++)
+	const struct operator *operator = b->model->schedule.operator;
+	for (int k = 1; k < b->model->schedule.operators; k++)
 		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
 			error(bank->value[b->spec->operator_count ? 1 : k]->start,
 			      "the step uses the first whose value is not below the current one",
@@ -213,7 +213,7 @@ static void find_selector(void *context)
 	if (value->rows * value->columns != 1)
 		error(bank->at, NULL, "a bank is chosen by one number, found a %d x %d matrix", value->rows,
 		      value->columns);
-	b->model->selector = value->cell[0];
+	b->model->schedule.selector = value->cell[0];
 }
 
 /* ---- the Jacobian ---- */
@@ -295,7 +295,7 @@ static bool is_carried(const struct building *b, const struct basis *basis)
 {
 	const struct model *model = b->model;
 	if (depends_on_time_only(basis))
-		return !model->loads_left;
+		return !model->remainder.loads;
 	if (basis->kind == BASIS_INPUT)
 		return true;
 	return is_highest(&model->frame, basis);
@@ -320,7 +320,7 @@ static struct form *remainder_of(struct building *b, const struct operator *oper
 	const struct linear *system = &b->model->system;
 	const struct form *equation = b->whole->residual[row].form;
 	struct form *left = inputs_carried(b, equation);
-	if (!b->model->loads_left)
+	if (!b->model->remainder.loads)
 		left = form_sum(left, b->time_left[row], true);
 	for (int i = 0; i < equation->terms; i++)
 		if (!is_carried(b, &equation->term[i].basis))
@@ -339,9 +339,9 @@ static struct form *remainder_of(struct building *b, const struct operator *oper
 static bool is_pressed(const struct model *model, int row)
 {
 	bool any = false;
-	for (int i = 0; i < model->impacts && is_cut(model->scheme); i++)
-		for (int j = 0; j < model->n && model->impact[i].bounces; j++)
-			any = any || (mpq_sgn(model->impact[i].in->direction[j]) != 0 &&
+	for (int i = 0; i < model->contacts.impacts && is_cut(model->scheme); i++)
+		for (int j = 0; j < model->n && model->contacts.impact[i].bounces; j++)
+			any = any || (mpq_sgn(model->contacts.impact[i].in->direction[j]) != 0 &&
 				      mpq_sgn(model->system.M[row * model->n + j]) != 0);
 	return any;
 }
@@ -350,22 +350,22 @@ static void find_channels(struct building *b)
 {
 	struct model *model = b->model;
 	int n = model->n;
-	struct form **all = ARRAY(struct form *, (size_t)(model->operators * n));
-	model->channel_row = ARRAY(int, n);
+	struct form **all = ARRAY(struct form *, (size_t)(model->schedule.operators * n));
+	model->remainder.row = ARRAY(int, n);
 	for (int i = 0; i < n; i++) {
 		bool any = is_pressed(model, i);
-		for (int k = 0; k < model->operators; k++) {
-			all[k * n + i] = remainder_of(b, &model->operator[k], i);
+		for (int k = 0; k < model->schedule.operators; k++) {
+			all[k * n + i] = remainder_of(b, &model->schedule.operator[k], i);
 			any = any || all[k * n + i]->terms > 0;
 		}
 		if (any)
-			model->channel_row[model->channels++] = i;
+			model->remainder.row[model->remainder.channels++] = i;
 	}
-	for (int k = 0; k < model->operators; k++) {
-		struct operator *operator = &model->operator[k];
-		operator->left = ARRAY(struct form *, model->channels);
-		for (int e = 0; e < model->channels; e++)
-			operator->left[e] = all[k * n + model->channel_row[e]];
+	for (int k = 0; k < model->schedule.operators; k++) {
+		struct operator *operator = &model->schedule.operator[k];
+		operator->left = ARRAY(struct form *, model->remainder.channels);
+		for (int e = 0; e < model->remainder.channels; e++)
+			operator->left[e] = all[k * n + model->remainder.row[e]];
 	}
 }
 
@@ -375,13 +375,13 @@ static void differentiate_left(void *context)
 	struct building *b = context;
 	struct model *model = b->model;
 	const struct linear *system = &model->system;
-	const struct form *const *left = (const struct form *const *)model->operator[0].left;
-	model->left_slope = ARRAY(struct form *, (size_t)(model->channels * system->states));
+	const struct form *const *left = (const struct form *const *)model->schedule.operator[0].left;
+	model->remainder.slope = ARRAY(struct form *, (size_t)(model->remainder.channels * system->states));
 	for (int i = 0; i < system->states; i++) {
-		struct form **slope = form_derivatives(&b->collector, model->channels, left, system->coord[i],
+		struct form **slope = form_derivatives(&b->collector, model->remainder.channels, left, system->coord[i],
 						       i >= system->n);
-		for (int e = 0; e < model->channels; e++)
-			model->left_slope[e * system->states + i] = slope[e];
+		for (int e = 0; e < model->remainder.channels; e++)
+			model->remainder.slope[e * system->states + i] = slope[e];
 	}
 }
 
@@ -408,16 +408,16 @@ static void visit_form(const struct visit *v, const struct form *form)
 
 void visit_remainders(const struct model *model, void (*visit)(void *, const struct form *), void *context)
 {
-	if (model->operators == 0)
+	if (model->schedule.operators == 0)
 		return;
-	struct visit v = { ARRAY(bool, (size_t)atoms_count(model->atoms)), visit, context };
-	for (int k = 0; k < model->operators; k++)
-		for (int e = 0; e < model->channels; e++)
-			visit_form(&v, model->operator[k].left[e]);
-	for (int i = 0; model->left_slope && i < model->channels * model->system.states; i++)
-		visit_form(&v, model->left_slope[i]);
-	if (model->selector)
-		visit_form(&v, model->selector);
+	struct visit v = { ARRAY(bool, (size_t)atoms_count(model->equations.atoms)), visit, context };
+	for (int k = 0; k < model->schedule.operators; k++)
+		for (int e = 0; e < model->remainder.channels; e++)
+			visit_form(&v, model->schedule.operator[k].left[e]);
+	for (int i = 0; model->remainder.slope && i < model->remainder.channels * model->system.states; i++)
+		visit_form(&v, model->remainder.slope[i]);
+	if (model->schedule.selector)
+		visit_form(&v, model->schedule.selector);
 }
 
 static void place_waves(void *context, const struct form *form)
@@ -516,7 +516,7 @@ static bool add_operator(const struct bank_work *w, int which)
 	struct building *b = w->b;
 	struct model *model = b->model;
 	const struct fixed *bank = w->bank;
-	struct operator *operator = &model->operator[which];
+	struct operator *operator = &model->schedule.operator[which];
 	size_t cells = (size_t)model->n * (size_t)model->n;
 	struct point_work point = { b, which, w->value ? w->value[which] : NULL, 0, NULL };
 	operator->C = model->system.C;
@@ -552,19 +552,19 @@ void build_operators(struct building *b)
 	bool good = true;
 	if (chooses_operator(model->scheme) && !statement_guard(divide_range, &work))
 		return;
-	model->operators = work.operators;
-	model->operator = ARRAY(struct operator, model->operators);
-	for (int k = 0; k < model->operators && good; k++) {
+	model->schedule.operators = work.operators;
+	model->schedule.operator = ARRAY(struct operator, model->schedule.operators);
+	for (int k = 0; k < model->schedule.operators && good; k++) {
 		good = add_operator(&work, k);
 		if (good && scheme_row(model->scheme)->modes)
-			keep_modes(b, &model->operator[k]);
+			keep_modes(b, &model->schedule.operator[k]);
 	}
-	if (!good || (model->operators > 1 && !statement_guard(find_selector, b)))
+	if (!good || (model->schedule.operators > 1 && !statement_guard(find_selector, b)))
 		return;
 	find_channels(b);
-	if (model->channels == 0) {             /* then every operator is the equations' own */
-		model->operators = 0;
-		model->selector = NULL;
+	if (model->remainder.channels == 0) {             /* then every operator is the equations' own */
+		model->schedule.operators = 0;
+		model->schedule.selector = NULL;
 		return;
 	}
 	if (scheme_row(model->scheme)->collocates)
@@ -577,13 +577,13 @@ void build_operators(struct building *b)
 struct linear operator_system(const struct model *model, int k)
 {
 	struct linear system = model->system;
-	system.C = model->operator[k].C;
-	system.K = model->operator[k].K;
-	system.channels = model->channels;
-	system.channel = ARRAY(mpq_t *, model->channels);
-	for (int e = 0; e < model->channels; e++) {
+	system.C = model->schedule.operator[k].C;
+	system.K = model->schedule.operator[k].K;
+	system.channels = model->remainder.channels;
+	system.channel = ARRAY(mpq_t *, model->remainder.channels);
+	for (int e = 0; e < model->remainder.channels; e++) {
 		system.channel[e] = rationals(model->n);
-		mpq_set_ui(system.channel[e][model->channel_row[e]], 1, 1);
+		mpq_set_ui(system.channel[e][model->remainder.row[e]], 1, 1);
 	}
 	return system;
 }

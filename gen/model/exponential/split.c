@@ -265,23 +265,23 @@ void split_remainder(struct building *b)
 	struct split_work w = { .b = b, .split = s };
 	RATIONAL one = RATIO(1, 1);
 	number_of_function(s, form_unit((struct basis){ .kind = BASIS_ONE }), one);
-	for (int c = 0; c < model->channels; c++) {
-		const struct form *left = model->operator[0].left[c];
-		w.coord = coordinate_of_row(model, model->channel_row[c]);
+	for (int c = 0; c < model->remainder.channels; c++) {
+		const struct form *left = model->schedule.operator[0].left[c];
+		w.coord = coordinate_of_row(model, model->remainder.row[c]);
 		for (int i = 0; i < left->terms; i++)
 			add_term(&w, &left->term[i]);
 	}
 	s->selector = -1;
-	if (model->selector && is_of_time(model->selector)) {
+	if (model->schedule.selector && is_of_time(model->schedule.selector)) {
 		ENLARGE(s->function, (size_t)s->functions + 1);
 		s->selector = s->functions;
-		s->function[s->functions++] = (struct time_function){ .form = model->selector };
+		s->function[s->functions++] = (struct time_function){ .form = model->schedule.selector };
 		for (int i = 1; i < s->selector; i++)
-			if (same_form(s->function[i].form, model->selector)) {
+			if (same_form(s->function[i].form, model->schedule.selector)) {
 				s->selector = i;
 				s->functions--;
 			}
 	}
 	find_course(&w);
-	model->split = s;
+	model->remainder.split = s;
 }

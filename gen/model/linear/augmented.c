@@ -73,9 +73,9 @@ const char **layout_names(const struct layout *x, const struct linear *system, c
 {
 	const char **name = ARRAY(const char *, x->size);
 	for (int i = 0; i < system->states; i++)
-		name[i] = model->state_name[i];
+		name[i] = model->names.state[i];
 	for (int i = 0; i < system->n && x->held >= 0; i++)
-		name[x->held + i] = format("held for %s", model->coord_name[i]);
+		name[x->held + i] = format("held for %s", model->names.coord[i]);
 	name_loads(x, system, name);
 	for (int i = 0; i < system->inputs; i++) {
 		name[x->input[i]] = system->input[i].name;

@@ -22,8 +22,8 @@ static void name_kept(struct relative *r)
 		centres += r->link[j].kind == LINK_CENTRE;
 	for (int j = 0, centre = 0; j < model->n; j++) {
 		const struct link *link = &r->link[j];
-		const char *own = model->coord_name[j],
-			   *from = link->kind == LINK_PARENT ? times(link->ratio, model->coord_name[link->from]) : "";
+		const char *own = model->names.coord[j],
+			   *from = link->kind == LINK_PARENT ? times(link->ratio, model->names.coord[link->from]) : "";
 		r->name[j] = link->kind == LINK_NONE     ? own
 			     : link->kind == LINK_CENTRE ? (centres > 1 ? format("centre%d", ++centre) : "centre")
 			     : link->turned              ? format("%s - %s", from, own)
@@ -35,7 +35,7 @@ static void name_kept(struct relative *r)
  * so simple */
 static struct form *rate_in(const struct relative *r, const struct model *model, int coord)
 {
-	const struct form *form = model->residual[model->owner[coord]].form;
+	const struct form *form = model->equations.residual[model->equations.owner[coord]].form;
 	struct form *rate = NEW(struct form);
 	mpq_srcptr lead = NULL;
 	for (int i = 0; i < form->terms; i++) {
@@ -140,7 +140,7 @@ static void split_velocities(struct relative *r)
 		if (link->rate)
 			continue;
 		link->velocity = r->n++;
-		r->name[link->velocity] = model->state_name[model->system.velocity[j]];
+		r->name[link->velocity] = model->names.state[model->system.velocity[j]];
 		r->order[j] = r->order[link->velocity] = 1;
 	}
 }

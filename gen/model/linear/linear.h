@@ -8,6 +8,9 @@
 #include "tape/tape.h"
 
 struct model;
+struct output;
+struct residual;
+struct snapshot;
 
 /* ---- linear.c: linear systems of coordinates ---- */
 
@@ -36,6 +39,16 @@ struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n
 	struct input *input;
 	int channels;               /* of what is left over: one for each equation that has some */
 	mpq_t **channel;            /* its force on the equations */
+};
+struct equations {                  /* as they are written */
+	struct residual *residual;  /* per row of the system, in the first segment of time */
+	struct snapshot *snapshot;  /* per segment */
+	struct snapshot *whole;     /* for all time, conditions and products of time kept; NULL: nothing is left over */
+	struct irrationals irrationals;
+	int *owner;                 /* per coordinate: the row of its equation */
+	const struct atoms *atoms;
+	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
+	struct output **highest;
 };
 struct linear linear_like(const struct linear *shape);      /* the same coordinates and states, matrices 0, no loads */
 struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */

@@ -215,14 +215,14 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 {
 	const struct model *model = reduced->written;
 	if (is_written(o, r))
-		return model->state_name[o->pivot[r]];
+		return model->names.state[o->pivot[r]];
 	for (int i = 0; i < model->outputs; i++)
 		if (is_position(model, &model->output[i]) &&
 		    rationals_equal((size_t)o->states, row_of(o, r), model->output[i].state))
 			return model->output[i].name;
 	for (int i = 0; i < r; i++)
 		if (is_derivative(&reduced->system, i, r))
-			return format("%s'", reduced->state_name[i]);
+			return format("%s'", reduced->names.state[i]);
 	return format("state%d", r + 1);
 }
 
@@ -239,7 +239,7 @@ static void place_states(const struct observable *o, struct model *reduced)
 			reduction->place[o->pivot[r]] = r;
 	for (int j = 0; j < o->states; j++)
 		if (reduction->place[j] < 0)
-			reduction->dropped_name[reduction->dropped++] = reduced->written->state_name[j];
+			reduction->dropped_name[reduction->dropped++] = reduced->written->names.state[j];
 }
 
 struct model *model_reduce(struct model *model)
@@ -260,12 +260,12 @@ struct model *model_reduce(struct model *model)
 	reduced->written = model;
 	reduced->n = o.rank;
 	reduced->system = project_system(&o, &model->system);
-	reduced->state_name = reduced->coord_name = ARRAY(const char *, o.rank);
+	reduced->names.state = reduced->names.coord = ARRAY(const char *, o.rank);
 	for (int r = 0; r < o.rank; r++)
-		reduced->state_name[r] = name_of(&o, reduced, r);
+		reduced->names.state[r] = name_of(&o, reduced, r);
 	reduced->initial = rationals(o.rank);
 	rational_product(o.rank, o.states, 1, o.row, model->initial, reduced->initial);
-	reduced->highest = ARRAY(struct output *, o.rank); /* none: that was refused */
+	reduced->equations.highest = ARRAY(struct output *, o.rank); /* none: that was refused */
 	reduced->output = ARRAY(struct output, model->outputs);
 	for (int i = 0; i < model->outputs; i++) {
 		reduced->output[i] = model->output[i];

@@ -102,7 +102,7 @@ static struct look look_new(const struct model *model)
 			      ARRAY(bool, n *n),
 			      ARRAY(bool, n *n),
 			      ARRAY(bool, n *n),
-			      ARRAY(bool, (size_t)atoms_count(model->atoms)) };
+			      ARRAY(bool, (size_t)atoms_count(model->equations.atoms)) };
 }
 
 /* The equations; of tunable models also at values that are related by nothing */
@@ -110,14 +110,14 @@ static struct look look_at_equations(const struct model *model)
 {
 	struct look l = look_new(model);
 	for (int i = 0; i < model->n; i++)
-		look_at(&l, model->residual[i].form, coordinate_of_row(model, i));
-	for (int i = 0; i < model->n && model->channels + (model->switching != NULL) > 0; i++) {
-		memset(l.seen, 0, (size_t)atoms_count(model->atoms));
-		join_atoms(&l, model->residual[i].form, coordinate_of_row(model, i));
+		look_at(&l, model->equations.residual[i].form, coordinate_of_row(model, i));
+	for (int i = 0; i < model->n && model->remainder.channels + (model->switching != NULL) > 0; i++) {
+		memset(l.seen, 0, (size_t)atoms_count(model->equations.atoms));
+		join_atoms(&l, model->equations.residual[i].form, coordinate_of_row(model, i));
 	}
-	memset(l.seen, 0, (size_t)atoms_count(model->atoms));
+	memset(l.seen, 0, (size_t)atoms_count(model->equations.atoms));
 	for (int i = 0; i < model->n && model_elsewhere(model); i++)
-		look_at(&l, model_elsewhere(model)->residual[i].form, coordinate_of_row(model, i));
+		look_at(&l, model_elsewhere(model)->equations.residual[i].form, coordinate_of_row(model, i));
 	return l;
 }
 
@@ -153,7 +153,7 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 	for (int row = 0; row < model->n * (model_elsewhere(model) ? 2 : 1); row++) {
 		int i = row % model->n;
 		b.first = row < model->n ? 0 : row == model->n ? b.bases : b.first;
-		const struct form *form = (row == i ? model : model_elsewhere(model))->residual[i].form;
+		const struct form *form = (row == i ? model : model_elsewhere(model))->equations.residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
 			bool coord = basis->kind == BASIS_COORD && !is_highest(&model->frame, basis);
@@ -383,7 +383,7 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 		return false;
 	if (!fixed_in_part(model, g))
 		return true;
-	if (model->operators > 0 && !scheme_row(model->scheme)->holds_coupling)
+	if (model->schedule.operators > 0 && !scheme_row(model->scheme)->holds_coupling)
 		say_warning(model->spec->operator_at, "fix all of them, or none",
 			    "the operator fixes some of the coordinates that may move as a whole: they are kept as "
 			    "written, and where they grow their differences lose digits");
@@ -462,7 +462,7 @@ static mpq_t *leading_factors(const struct model *model)
 		for (int i = 0; i < n; i++) {
 			mpq_srcptr entry =
 				(model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j];
-			if (i == model->owner[j])
+			if (i == model->equations.owner[j])
 				mpq_set(factor[j], entry);
 			else if (mpq_sgn(entry) != 0)
 				return NULL;
@@ -536,7 +536,8 @@ static bool moves_alone(int n, int places, mpq_t **place, int which, const bool 
 
 struct relative *relative_of(const struct model *model)
 {
-	bool events = model->drags + model->impacts > 0 || (model->switching && has_events(model->switching));
+	bool events = model->contacts.drags + model->contacts.impacts > 0 ||
+		      (model->switching && has_events(model->switching));
 	if (model->n < 2 || events)
 		return NULL;        /* what sticks is held, and what is struck jumps, in the coordinates as written */
 	struct look l = look_at_equations(model);

@@ -274,19 +274,19 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 	*shorter = *model;
 	shorter->n = s->coords;
 	shorter->system = shape_of(s);
-	shorter->state_name = ARRAY(const char *, s->states);
+	shorter->names.state = ARRAY(const char *, s->states);
 	shorter->initial = rationals(s->states);
 	for (int i = 0; i < s->modes->count; i++) {
 		for (int j = 0; s->of[i] && j < s->modes->mode[i].states; j++)
-			shorter->state_name[place_of(s, i, j)] = state_name(&s->modes->mode[i], j);
+			shorter->names.state[place_of(s, i, j)] = state_name(&s->modes->mode[i], j);
 		if (s->of[i])
 			fill_block(s, i, &shorter->system);
 	}
-	shorter->coord_name = shorter->state_name;
+	shorter->names.coord = shorter->names.state;
 	take_forces(&shorter->system, &model->system, s->coords, project_force,
 		    &(struct projecting){ s, inverse_of_leading(&model->system) });
 	project_start(s, shorter->initial);
-	shorter->highest = ARRAY(struct output *, s->coords);
+	shorter->equations.highest = ARRAY(struct output *, s->coords);
 	shorter->output = rows_over(s, direct);
 	shorter->shortened = shortening_of(s, statics);
 	shorter->reduction.place = ARRAY(int, model->system.states);

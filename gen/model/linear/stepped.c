@@ -15,12 +15,12 @@ static int root_of(const struct relative *r, int coord)
 /* The coordinates kept from `first` on that move as a whole with it; NULL: there are no others */
 static const char *kept_with(const struct model *model, const struct relative *r, int first)
 {
-	const char *names = model->written->coord_name[first];
+	const char *names = model->written->names.coord[first];
 	int count = 1;
 	for (int j = first + 1; j < model->written->n; j++)
 		if (model->reduction.place[first] >= 0 && model->reduction.place[j] >= 0 &&
 		    root_of(r, first) == root_of(r, j)) {
-			names = format("%s, %s", names, model->written->coord_name[j]);
+			names = format("%s, %s", names, model->written->names.coord[j]);
 			count++;
 		}
 	return count > 1 ? names : NULL;

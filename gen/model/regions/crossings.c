@@ -109,14 +109,15 @@ static bool has_small_tables(const struct model *model)
 
 const char *why_not_cut(const struct model *model)
 {
-	if (!is_cut(model->scheme) || model->channels == 0)
+	if (!is_cut(model->scheme) || model->remainder.channels == 0)
 		return "its steps are not cut";
-	if (model->operators > 1)
+	if (model->schedule.operators > 1)
 		return "its operator changes";
-	if (model->smooth.singular)
-		return format("'%s' has no derivatives where %s",
-			      text_between(model->smooth.singular->start, model->smooth.singular->end),
-			      model->smooth.singular_where);
+	if (model->remainder.smooth.singular)
+		return format(
+			"'%s' has no derivatives where %s",
+			text_between(model->remainder.smooth.singular->start, model->remainder.smooth.singular->end),
+			model->remainder.smooth.singular_where);
 	if (further_samples(&model->system))
 		return "inputs go through their samples in curves";
 	if (!has_small_tables(model))
@@ -131,10 +132,10 @@ bool follows_crossings(const struct model *model)
 		return false;
 	if (has_contacts(model))
 		return true;
-	if (!scheme_row(model->scheme)->cuts || model->smooth.kind == SMOOTH_ALL)
+	if (!scheme_row(model->scheme)->cuts || model->remainder.smooth.kind == SMOOTH_ALL)
 		return false;
-	struct following f = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
-	for (int c = 0; c < model->channels; c++)
-		follow_form(&f, model->operator[0].left[c]);
+	struct following f = { .seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms)) };
+	for (int c = 0; c < model->remainder.channels; c++)
+		follow_form(&f, model->schedule.operator[0].left[c]);
 	return f.compares && !f.lost;
 }

@@ -178,7 +178,7 @@ static void search(void *context)
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, n);
 	bool together = b->factor || b->model->relative || b->request->again.undivided || b->request->solution ||
-			holds_friction(b) || b->model->impacts > 0;
+			holds_friction(b) || b->model->contacts.impacts > 0;
 	struct switching *s = together ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)
 		all[i] = i;
@@ -299,13 +299,13 @@ static void take_model(struct building *b, struct region_part *part, const struc
 	model->n = block->system.n;
 	model->system = block->system;
 	model->system.inputs = 0;               /* find_inputs counts them */
-	model->outputs = model->channels = model->operators = 0;
-	model->coord_name = ARRAY(const char *, model->n);
-	model->state_name = ARRAY(const char *, model->system.states);
+	model->outputs = model->remainder.channels = model->schedule.operators = 0;
+	model->names.coord = ARRAY(const char *, model->n);
+	model->names.state = ARRAY(const char *, model->system.states);
 	for (int i = 0; i < model->n; i++)
-		model->coord_name[i] = whole->coord_name[block->coord[i]];
+		model->names.coord[i] = whole->names.coord[block->coord[i]];
 	for (int i = 0; i < model->system.states; i++)
-		model->state_name[i] = whole->state_name[block->state[i]];
+		model->names.state[i] = whole->names.state[block->state[i]];
 	part->state = block->state;
 }
 

@@ -16,7 +16,7 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
-	bool divided = segments == 1 || b->model->impacts > 0;
+	bool divided = segments == 1 || b->model->contacts.impacts > 0;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
 			const struct form *form = b->snapshot[s].residual[i].form;
@@ -434,8 +434,8 @@ static void meet_impacts(struct looking *l)
 {
 	const struct model *model = l->b->model;
 	RATIONAL constant = ZERO;
-	for (int i = 0; i < model->impacts; i++)
-		meet_impact(l, &model->impact[i], constant);
+	for (int i = 0; i < model->contacts.impacts; i++)
+		meet_impact(l, &model->contacts.impact[i], constant);
 }
 
 /* What a look has left that was not the last */
@@ -513,8 +513,8 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
 	struct switching *s = NEW(struct switching);
 	int known = 0;
-	s->impacts = b->model->impacts;
-	s->impact = b->model->impact;
+	s->impacts = b->model->contacts.impacts;
+	s->impact = b->model->contacts.impact;
 	s->rows = rows;
 	s->row = row;
 	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;

@@ -399,7 +399,7 @@ static bool is_harmless_time(const struct model *model, const struct form *g, in
 static void judge_surface(struct search *s, const struct surface *surface, const struct form *form)
 {
 	struct model *model = s->b->model;
-	struct smoothness *smooth = &model->smooth;
+	struct smoothness *smooth = &model->remainder.smooth;
 	struct form phase;
 	mpq_srcptr factor;
 	bool sure;
@@ -433,8 +433,8 @@ static void judge(void *context)
 {
 	struct building *b = context;
 	struct model *model = b->model;
-	bool left = model->channels > 0;
-	int count = left ? model->channels : model->n;
+	bool left = model->remainder.channels > 0;
+	int count = left ? model->remainder.channels : model->n;
 	struct spot spot = { 0 };
 	struct search s = { .b = b, .count = atoms_count(b->collector.atoms), .spot = &spot };
 	mpfr_inits2(PRECISION, spot.value, spot.t, NULL);
@@ -443,7 +443,8 @@ static void judge(void *context)
 	s.seen = ARRAY(bool, s.count);
 	s.sample = sample_new(PRECISION, spot_leaf, &spot);
 	for (int i = 0; i < count; i++) {
-		const struct form *form = left ? model->operator[0].left[i] : moving_part(b->whole->residual[i].form);
+		const struct form *form = left ? model->schedule.operator[0].left[i]
+		    : moving_part(b->whole->residual[i].form);
 		memset(s.seen, 0, (size_t)s.count);
 		s.surfaces = 0;
 		find_surfaces(&s, form, NULL);
@@ -456,7 +457,7 @@ void judge_smoothness(struct building *b)
 {
 	struct collector *c = &b->collector;
 	const struct irrationals used = c->irrationals;
-	if (!b->whole || (b->model->channels == 0 && !b->model->switching))
+	if (!b->whole || (b->model->remainder.channels == 0 && !b->model->switching))
 		return;
 	c->whole_time = true;           /* conditions on t stay open */
 	statement_guard(judge, b);
@@ -472,31 +473,33 @@ int order_of_scheme(const struct model *model)
 
 int order_that_holds(const struct model *model)
 {
-	int order = model->channels > 0 || scheme_row(model->scheme)->holds_coupling ? order_of_scheme(model) : 0;
-	return loses_order(model) ? model->smooth.tenths / 10 : order;
+	int order = model->remainder.channels > 0 || scheme_row(model->scheme)->holds_coupling ? order_of_scheme(model)
+											       : 0;
+	return loses_order(model) ? model->remainder.smooth.tenths / 10 : order;
 }
 
 bool loses_order(const struct model *model)
 {
 	const struct scheme_row *row = scheme_row(model->scheme);
-	if ((row->expands || row->modes) && model->smooth.timed)
+	if ((row->expands || row->modes) && model->remainder.smooth.timed)
 		return false;                   /* a step ends where formulas change in time */
 	if (row->expands)
 		return false;                   /* and where the state chooses others */
 	if (follows_crossings(model))
 		return false;
-	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
+	return model->remainder.channels > 0 && model->remainder.smooth.tenths > 0 &&
+	       model->remainder.smooth.tenths < 10 * order_of_scheme(model);
 }
 
 const char *order_text(const struct model *model)
 {
-	int tenths = model->smooth.tenths;
+	int tenths = model->remainder.smooth.tenths;
 	return tenths % 10 ? format("%d.%d", tenths / 10, tenths % 10) : format("%d", tenths / 10);
 }
 
 const char *smoothness_text(const struct model *model)
 {
-	const struct smoothness *smooth = &model->smooth;
+	const struct smoothness *smooth = &model->remainder.smooth;
 	return format("%s %s where %s", text_between(smooth->node->start, smooth->node->end),
 		      smooth->kind == SMOOTH_JUMP ? "jumps"
 		      : smooth->tenths <= KINK    ? "has a kink"

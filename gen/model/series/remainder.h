@@ -28,6 +28,11 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 	mpq_t at;                   /* of a bank: the value up to which it serves */
 	const char *text;           /* x = 2, x' = 0 */
 };
+struct operator_schedule {          /* of operators */
+	int operators;              /* 0: exact, or nothing is left over */
+	struct operator *operator;
+	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
+};
 struct time_function {              /* what stands with it in the remainder of the first operator */
 	const struct form *form;    /* of time alone */
 	/* n x n: force on the equation of coordinate i of coordinate j, of its velocity; NULL: none */
@@ -65,6 +70,14 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	/* a formula that ends there, as abs(x)^1.5, whose derivatives are not finite, and where; NULL: none does */
 	const struct node *singular;
 	const char *singular_where;
+};
+struct remainder {                  /* what is left over, of each operator */
+	int channels;               /* one for each equation that has some */
+	int *row;                   /* its equation */
+	struct form **slope;        /* of a scheme that collocates: [channel][state], its derivative */
+	bool loads;                 /* known loads are left to the scheme */
+	struct splitting *split;    /* of a scheme in normal modes; else NULL */
+	struct smoothness smooth;
 };
 
 /* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */

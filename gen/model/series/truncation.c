@@ -118,10 +118,9 @@ void evaluate_truncation(void *context)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
 	if (row->stages) {
-		model->stages = row->stages;
-		if (order)
-			model->stages = whole_number(b, order, LEAST_LOBATTO, MOST_LOBATTO, "a number of stages");
-		truncation->order = model->stages + 1;
+		truncation->stages = !order ? row->stages :
+			whole_number(b, order, LEAST_LOBATTO, MOST_LOBATTO, "a number of stages");
+		truncation->order = truncation->stages + 1;
 	}
 	if (order && !row->expands && !row->stages)
 		error(order->start,

@@ -32,11 +32,13 @@ static bool same_but_loads(const struct linear *p, const struct linear *q, bool 
 /* Texts of remainders that are cut short say nothing. */
 static bool same_remainders(const struct model *a, const struct model *b)
 {
-	if (a->operators != b->operators || a->channels != b->channels)
+	if (a->schedule.operators != b->schedule.operators || a->remainder.channels != b->remainder.channels)
 		return false;
-	for (int k = 0; k < a->operators * a->channels; k++) {
-		const char *left = form_text(a, a->operator[k / a->channels].left[k % a->channels]);
-		const char *other = form_text(b, b->operator[k / a->channels].left[k % a->channels]);
+	for (int k = 0; k < a->schedule.operators * a->remainder.channels; k++) {
+		const char *left = form_text(
+			a, a->schedule.operator[k / a->remainder.channels].left[k % a->remainder.channels]);
+		const char *other = form_text(
+			b, b->schedule.operator[k / a->remainder.channels].left[k % a->remainder.channels]);
 		if (strstr(left, "...") || strcmp(left, other) != 0)
 			return false;
 	}

@@ -67,5 +67,5 @@ const struct model *model_elsewhere(const struct model *model)
 
 const struct tuning *tunables_of(const struct model *model)
 {
-	return model->tuning ? model->tuning : model->held;
+	return model->params.tuning ? model->params.tuning : model->params.held;
 }

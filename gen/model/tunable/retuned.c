@@ -414,12 +414,12 @@ static void check_linear(const struct model *model)
 			      "'%s' is tunable, or made of what is, and output '%s' is not linear", name->symbol->name,
 			      model->output[i].name);
 	}
-	for (int k = 0; model->highest && k < model->n; k++)
-		if (model->highest[k])
-			error(model->highest[k]->value->start,
+	for (int k = 0; model->equations.highest && k < model->n; k++)
+		if (model->equations.highest[k])
+			error(model->equations.highest[k]->value->start,
 			      "an output that is linear may: give the derivative one of its own",
 			      "output '%s' is not linear and reads a derivative that tunable params change",
-			      model->highest[k]->name);
+			      model->equations.highest[k]->name);
 	check_tuned(model);
 }
 
@@ -468,17 +468,18 @@ struct model *find_tuning(struct model *model, const struct request *request)
 	if (model->spec->tunables == 0)
 		return model;
 	struct tuning *t = list_tunables(model);
-	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->factor,
-			       .near = model->factor ? t->nominal : NULL, .read = read_rows };
-	s.difference = model->factor ? of_regions : of_linear;
-	s.differences = model->factor ? sizeof of_regions / sizeof *of_regions : sizeof of_linear / sizeof *of_linear;
-	if (model->keeps_params) {
-		model->held = t;
-		model->retuned = model->factor ? t : NULL;
+	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->params.factor,
+			       .near = model->params.factor ? t->nominal : NULL, .read = read_rows };
+	s.difference = model->params.factor ? of_regions : of_linear;
+	s.differences = model->params.factor ? sizeof of_regions / sizeof *of_regions
+					     : sizeof of_linear / sizeof *of_linear;
+	if (model->params.kept) {
+		model->params.held = t;
+		model->params.retuned = model->params.factor ? t : NULL;
 	} else {
-		model->tuning = t;
+		model->params.tuning = t;
 	}
-	if ((model->factor || !model->keeps_params) && !statement_guard(find, &s))
+	if ((model->params.factor || !model->params.kept) && !statement_guard(find, &s))
 		return NULL;
 	warn_of_unread(model);
 	return model;

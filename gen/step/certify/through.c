@@ -139,8 +139,8 @@ static void take_start(struct through *t, const mpq_t *initial)
 	for (int i = 0; i < t->system->inputs; i++) {
 		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->inputs;
 		mpq_set_ui(exact[t->layout.input[i]], 1, 1);
-		if (param >= 0 && t->whole->held)
-			mpq_set(exact[t->layout.input[i]], t->whole->held->nominal[param]);
+		if (param >= 0 && t->whole->params.held)
+			mpq_set(exact[t->layout.input[i]], t->whole->params.held->nominal[param]);
 		if (t->system->input[i].hold) {
 			mpq_inv(exact[t->layout.input[i] + 1], t->model->h);
 			mpq_neg(exact[t->layout.input[i] + 1], exact[t->layout.input[i] + 1]);

@@ -20,7 +20,7 @@ static const struct form *force_of(const struct step *step, const struct layout 
 			form_add_basis(force, basis_of_state(system, j), row[j]);
 	for (int e = 0; e < system->channels; e++)
 		if (mpq_sgn(row[layout->channel + e]) != 0)
-			form_add_to(force, step->model->operator[0].left[e], row[layout->channel + e]);
+			form_add_to(force, step->model->schedule.operator[0].left[e], row[layout->channel + e]);
 	return force;
 }
 
@@ -33,7 +33,7 @@ static const struct form *slope_of(const struct step *step, const struct layout 
 		form_add_basis(slope, (struct basis){ .kind = BASIS_ONE }, row[state]);
 	for (int e = 0; e < system->channels; e++)
 		if (mpq_sgn(row[layout->channel + e]) != 0)
-			form_add_to(slope, step->model->left_slope[e * system->states + state],
+			form_add_to(slope, step->model->remainder.slope[e * system->states + state],
 				    row[layout->channel + e]);
 	return slope;
 }
@@ -116,7 +116,7 @@ void set_motion(const struct step *step, struct recurrences *r, bool slopes)
 	tape_ref *by = ARRAY(tape_ref, system->states);
 	for (int i = 0; i < m->coords; i++) {
 		tape_ref left = highest_node(step, r, i);
-		tape_set(t, format("left[%d]", i), left, 15, step->model->coord_name[i]);
+		tape_set(t, format("left[%d]", i), left, 15, step->model->names.coord[i]);
 		if (!slopes)
 			continue;
 		if (m->entries == 0)

@@ -69,7 +69,7 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 	const struct model *model = w->step->model;
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
 	for (int e = 0; e < w->system->channels; e++) {
-		const struct form_term *term = form_find(model->operator[0].left[e], &basis);
+		const struct form_term *term = form_find(model->schedule.operator[0].left[e], &basis);
 		if (term)
 			mpq_set(h->gives[e], term->factor);
 		for (int i = 0; i < w->system->states && term; i++) {
@@ -87,7 +87,7 @@ static void push_of_contact(const struct sequencing *w, struct holder *h, const 
 			mpq_neg(h->push[w->system->velocity[j]], impact->in->direction[j]);
 	for (int e = 0; e < w->system->channels; e++)
 		for (int j = 0; j < n; j++) {
-			mpq_srcptr mass = w->system->M[w->step->model->channel_row[e] * n + j];
+			mpq_srcptr mass = w->system->M[w->step->model->remainder.row[e] * n + j];
 			if (w->system->velocity[j] >= 0)
 				rational_addmul(h->gives[e], mass, h->push[w->system->velocity[j]]);
 		}
@@ -105,22 +105,22 @@ static struct holder *add_holder(struct holders *all)
 static void find_holders(struct holders *all)
 {
 	const struct model *model = all->w->step->model;
-	for (int i = 0; i < model->impacts; i++) {
-		if (!model->impact[i].bounces)
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		if (!model->contacts.impact[i].bounces)
 			continue;
 		struct holder *h = add_holder(all);
 		h->impact = i;
-		h->velocity = model->impact[i].in->speed;
-		h->rate = model->impact[i].in->press;
-		push_of_contact(all->w, h, &model->impact[i]);
+		h->velocity = model->contacts.impact[i].in->speed;
+		h->rate = model->contacts.impact[i].in->press;
+		push_of_contact(all->w, h, &model->contacts.impact[i]);
 	}
-	for (int i = 0; i < model->drags; i++) {
+	for (int i = 0; i < model->contacts.drags; i++) {
 		struct holder *h = add_holder(all);
 		h->drag = i;
-		h->velocity = model->drag[i].velocity;
-		h->rate = model->drag[i].rate;
-		h->node = model->drag[i].atom->node;
-		push_of_drag(all->w, h, model->drag[i].atom);
+		h->velocity = model->contacts.drag[i].velocity;
+		h->rate = model->contacts.drag[i].rate;
+		h->node = model->contacts.drag[i].atom->node;
+		push_of_drag(all->w, h, model->contacts.drag[i].atom);
 	}
 }
 
@@ -221,10 +221,10 @@ static void make_hold(struct holders *all, int index)
 	*hold = (struct series_hold){ .impact = h->impact, .pull = { NONE, NONE } };
 	RATIONAL factor = ZERO;
 	struct division d = h->node ? divide_made(w, h->velocity, factor)
-				    : divide_guard(w, &model->impact[h->impact], factor);
+				    : divide_guard(w, &model->contacts.impact[h->impact], factor);
 	for (int i = 0; i < index; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
-			tell_held_twice(h->node ? h->node->at : model->impact[h->impact].when->at);
+			tell_held_twice(h->node ? h->node->at : model->contacts.impact[h->impact].when->at);
 	hold->expression = d.expression;
 	hold->breakpoint = d.breakpoint;
 	hold->above = d.above;
@@ -261,7 +261,7 @@ static void make_slip(struct holders *all, int index)
 	const struct series_hold *hold = &all->c->hold[index];
 	if (h->drag == NONE)
 		return;
-	const struct drag *drag = &w->step->model->drag[h->drag];
+	const struct drag *drag = &w->step->model->contacts.drag[h->drag];
 	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
 	h->slips = new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE,
 						      .state = NONE, .expression = hold->expression,
@@ -384,7 +384,7 @@ static void make_force(struct holders *all, int index)
 		if (i != index && all->holder[i].group == h->group)
 			t.member[t.members++] = i;
 	if (t.members > MOST)
-		error(h->node ? h->node->at : w->step->model->impact[h->impact].when->at,
+		error(h->node ? h->node->at : w->step->model->contacts.impact[h->impact].when->at,
 		      "a piecewise-linear model takes more",
 		      "beside what is not piecewise linear at most %d frictions and contacts act on each other", MOST);
 	int held = force_in_cases(&t, 1);
@@ -451,7 +451,7 @@ static void watch_hold(struct holders *all, int index)
 		hold->pull[!hold->above] = watch(w, sum_sequence(w, &pull), true);
 	}
 	for (int up = 0; up < 2 && h->drag != NONE; up++) {
-		const struct drag *drag = &w->step->model->drag[h->drag];
+		const struct drag *drag = &w->step->model->contacts.drag[h->drag];
 		struct sum pull = needed_force(all, index, up == hold->above ? 1 : -1);
 		sum_add(&pull, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
 		hold->pull[up] = watch(w, sum_sequence(w, &pull), true);
@@ -471,7 +471,7 @@ static void assign(struct holders *all, const struct jump *jump, int jumps)
 static void watch_impact(struct holders *all, int index)
 {
 	struct sequencing *w = all->w;
-	const struct impact *impact = &w->step->model->impact[index];
+	const struct impact *impact = &w->step->model->contacts.impact[index];
 	struct series_strike *strike = &all->c->strike[index];
 	RATIONAL factor = ZERO;
 	struct division d = divide_guard(w, impact, factor);
@@ -571,8 +571,8 @@ void hold_contacts(struct sequencing *w)
 	for (int i = 0; i < w->system->states; i++)
 		c->bare[i] = NONE;
 	c->none = all.none = sequence_of_form(w, form_number(0));
-	c->strikes = model->impacts;
-	c->strike = ARRAY(struct series_strike, model->impacts);
+	c->strikes = model->contacts.impacts;
+	c->strike = ARRAY(struct series_strike, model->contacts.impacts);
 	find_holders(&all);
 	find_answers(&all);
 	group_holders(&all);
@@ -588,7 +588,7 @@ void hold_contacts(struct sequencing *w)
 		make_force(&all, i);
 	for (int i = 0; i < all.holders; i++)
 		watch_hold(&all, i);
-	for (int i = 0; i < model->impacts; i++)
+	for (int i = 0; i < model->contacts.impacts; i++)
 		watch_impact(&all, i);
 	sort_watches(c);
 	for (int i = 0; i < all.holders; i++) {

@@ -201,7 +201,7 @@ static double span_of(const struct step *step)
 		if (w > 0 && (slowest == 0 || w < slowest))
 			slowest = w;
 	}
-	if (step->model->split->settles)
+	if (step->model->remainder.split->settles)
 		return span;
 	double turns = slowest > 0 ? 4 * acos(-1) / slowest : 0;
 	span = span > turns ? span : turns;
@@ -218,7 +218,7 @@ static void no_state(void *context, const struct basis *basis, mpfr_ptr value)
 /* [time][function] */
 static double *functions_at(const struct step *step, double span)
 {
-	const struct splitting *split = step->model->split;
+	const struct splitting *split = step->model->remainder.split;
 	struct sample *sample = sample_new(SAMPLE_BITS, no_state, NULL);
 	double *f = ARRAY(double, (size_t)(TIMES * split->functions));
 	REAL t = WITH_BITS(SAMPLE_BITS), value = WITH_BITS(SAMPLE_BITS);
@@ -237,9 +237,10 @@ static int bank_at(const struct step *step, const double *f)
 {
 	const struct model *model = step->model;
 	int bank = 0;
-	if (model->split->selector < 0)
+	if (model->remainder.split->selector < 0)
 		return 0;
-	while (bank + 1 < model->operators && f[model->split->selector] > nearest_double(model->operator[bank].at))
+	while (bank + 1 < model->schedule.operators &&
+	       f[model->remainder.split->selector] > nearest_double(model->schedule.operator[bank].at))
 		bank++;
 	return bank;
 }
@@ -260,7 +261,7 @@ struct chosen {                     /* of an operator */
 
 static struct chosen *choose_times(const struct step *step, const double *f)
 {
-	int functions = step->model->split->functions, banks = step->normal->banks;
+	int functions = step->model->remainder.split->functions, banks = step->normal->banks;
 	double *largest = ARRAY(double, (size_t)functions), *size = ARRAY(double, (size_t)banks);
 	struct chosen *chosen = ARRAY(struct chosen, (size_t)banks);
 	for (int i = 0; i < TIMES * functions; i++)
@@ -308,7 +309,7 @@ struct stability stability_of(const struct step *step, bool twice)
 {
 	const struct normal *m = step->normal;
 	size_t cells = (size_t)m->modes * (size_t)m->modes;
-	struct frozen z = { .normal = m, .functions = step->model->split->functions,
+	struct frozen z = { .normal = m, .functions = step->model->remainder.split->functions,
 			    .matrix = { ARRAY(double, cells), ARRAY(double, cells) },
 			    .h = nearest_double(step->model->h) };
 	struct stability found = { .span = span_of(step) };

@@ -35,18 +35,18 @@ static void check_symmetry(const struct normal_work *w)
 			if (!mpq_equal(w->M[i * n + j], w->M[j * n + i]))
 				error(scheme_place(w->step), "Lagrange's equations, one for each coordinate, have one",
 				      "scheme %s needs a symmetric mass matrix: %s'' has the factor %s in the equation "
-				      "of %s, %s'' has %s in that of %s", name_of(w->step), model->coord_name[j],
-				      readable_text(w->M[i * n + j]), model->coord_name[i], model->coord_name[i],
-				      readable_text(w->M[j * n + i]), model->coord_name[j]);
+				      "of %s, %s'' has %s in that of %s", name_of(w->step), model->names.coord[j],
+				      readable_text(w->M[i * n + j]), model->names.coord[i], model->names.coord[i],
+				      readable_text(w->M[j * n + i]), model->names.coord[j]);
 }
 
 static void check_left(const struct step *step)
 {
 	const struct model *model = step->model;
-	if (model->operators > 1 && model->split->selector < 0)
+	if (model->schedule.operators > 1 && model->remainder.split->selector < 0)
 		error(model->spec->operator_at, "of one operator, or of a bank by time or a let of time",
 		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));
-	const struct node *mixed = model->split->mixed;
+	const struct node *mixed = model->remainder.split->mixed;
 	if (mixed)
 		error(mixed->start, "etdrk4 and taylor take it",
 		      "scheme %s takes products of functions of time and of states: in '%s' both stand in one",
@@ -77,7 +77,7 @@ static void find_modes(struct normal_work *w, int bank)
 {
 	int n = w->model->n;
 	size_t cells = (size_t)n * (size_t)n;
-	const struct operator *operator = &w->model->operator[bank];
+	const struct operator *operator = &w->model->schedule.operator[bank];
 	mpq_t *K = by_coordinates(w->model, operator->K);
 	mpq_t *C = by_coordinates(w->model, operator->C), *both = rationals(cells);
 	bool damped = !rationals_zero(cells, C);
@@ -220,10 +220,10 @@ static void find_stages(struct normal_work *w)
 
 static int last_bank(const struct model *model)
 {
-	const struct splitting *split = model->split;
+	const struct splitting *split = model->remainder.split;
 	int bank = 0;
-	while (split->selector >= 0 && bank + 1 < model->operators &&
-	       mpq_cmp(split->function[split->selector].last, model->operator[bank].at) > 0)
+	while (split->selector >= 0 && bank + 1 < model->schedule.operators &&
+	       mpq_cmp(split->function[split->selector].last, model->schedule.operator[bank].at) > 0)
 		bank++;
 	return bank;
 }
@@ -249,8 +249,8 @@ static void find_settled(struct normal_work *w)
 		normal->period[normal->place[j]] = round_real(omega[j]);
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
 	}
-	Phi = settled_matrix(model, w->M, by_coordinates(model, model->operator[0].C),
-			     by_coordinates(model, model->operator[0].K), &w->pairs[bank], omega);
+	Phi = settled_matrix(model, w->M, by_coordinates(model, model->schedule.operator[0].C),
+			     by_coordinates(model, model->schedule.operator[0].K), &w->pairs[bank], omega);
 	for (int i = 0; i < 2 * n; i++)
 		for (int j = 0; j < size; j++)
 			normal->settled[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
@@ -264,11 +264,12 @@ static void check_changes(const struct step *step)
 	const struct model *model = step->model;
 	const struct linear *system = &model->system;
 	RATIONAL steps = ZERO;
-	if (model->split->unknown)
-		error(model->split->unknown->node->start, "etdrk4 and taylor take it",
+	if (model->remainder.split->unknown)
+		error(model->remainder.split->unknown->node->start, "etdrk4 and taylor take it",
 		      "scheme %s starts anew where a formula in time changes: of '%s' it is not known when",
 		      name_of(step),
-		      text_between(model->split->unknown->node->start, model->split->unknown->node->end));
+		      text_between(model->remainder.split->unknown->node->start,
+				   model->remainder.split->unknown->node->end));
 	for (int s = 0; s + 1 < system->segments; s++) {
 		mpq_div(steps, system->change[s], model->h);
 		if (mpq_sgn(steps) > 0 && mpz_cmp_ui(mpq_denref(steps), 1) != 0)
@@ -336,7 +337,7 @@ struct normal *normal_of(struct step *step)
 	w.M = by_coordinates(model, model->system.M);
 	check_symmetry(&w);
 	normal->modes = model->n;
-	normal->banks = model->operators;
+	normal->banks = model->schedule.operators;
 	normal->points = row->points;
 	w.pairs = ARRAY(struct eigenpairs, normal->banks);
 	w.mode = ARRAY(struct normal_mode, (size_t)(normal->banks * model->n));
@@ -348,8 +349,8 @@ struct normal *normal_of(struct step *step)
 	find_matrices(&w);
 	find_forces(&w);
 	find_waves(&w);
-	normal->stages = row->points ? row->points - 1 : model->stages;
-	normal->kept = row->points ? row->points : model->stages + 1;
+	normal->stages = row->points ? row->points - 1 : model->truncation.stages;
+	normal->kept = row->points ? row->points : model->truncation.stages + 1;
 	normal->sweeps = SWEEPS;
 	normal->first_sweeps = normal->stages + FIRST_SWEEPS;
 	if (row->points)
@@ -357,7 +358,7 @@ struct normal *normal_of(struct step *step)
 	find_stages(&w);
 	step->normal = normal;
 	choose_evaluations(&w);
-	if (model->split->settles)
+	if (model->remainder.split->settles)
 		find_settled(&w);
 	find_within(&w);
 	return normal;

@@ -20,7 +20,7 @@ mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix)
 	mpq_t *sorted = rationals((size_t)n * (size_t)n);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
-			mpq_set(sorted[i * n + j], matrix[model->owner[i] * n + j]);
+			mpq_set(sorted[i * n + j], matrix[model->equations.owner[i] * n + j]);
 	return sorted;
 }
 
@@ -197,7 +197,7 @@ static const mpq_t **same_in_all(const struct normal_work *w, const mpq_t *X)
 static const mpq_t **constant_matrices(const struct normal_work *w, const mpq_t *first, bool velocity)
 {
 	const mpq_t **all = ARRAY(const mpq_t *, w->normal->banks);
-	const struct operator *operator = w->model->operator;
+	const struct operator *operator = w->model->schedule.operator;
 	int n = w->model->n;
 	for (int b = 0; b < w->normal->banks; b++) {
 		mpq_t *X = by_coordinates(w->model, (velocity ? operator[b].C : operator[b].K));
@@ -214,7 +214,7 @@ static const mpq_t **constant_matrices(const struct normal_work *w, const mpq_t 
 
 void find_matrices(struct normal_work *w)
 {
-	const struct splitting *split = w->model->split;
+	const struct splitting *split = w->model->remainder.split;
 	struct normal *normal = w->normal;
 	struct pattern_list list = { 0 };
 	size_t cells = (size_t)normal->modes * (size_t)normal->modes;
@@ -237,7 +237,7 @@ void find_matrices(struct normal_work *w)
 
 void find_forces(struct normal_work *w)
 {
-	const struct splitting *split = w->model->split;
+	const struct splitting *split = w->model->remainder.split;
 	struct normal *normal = w->normal;
 	int n = normal->modes;
 	normal->force = ARRAY(double *, split->functions);

@@ -17,15 +17,15 @@ static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 
 int settled_size(const struct model *model)
 {
-	return 2 * model->n + 1 + 2 * model->split->waves;
+	return 2 * model->n + 1 + 2 * model->remainder.split->waves;
 }
 
 /* Rows of the waves: (a + i w) (cos + i sin); their forces, as columns of the accelerations */
 static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 {
 	int n = model->n, size = settled_size(model);
-	for (int k = 0; k < model->split->waves; k++) {
-		const struct wave_force *own = &model->split->wave[k];
+	for (int k = 0; k < model->remainder.split->waves; k++) {
+		const struct wave_force *own = &model->remainder.split->wave[k];
 		int c = 2 * n + 1 + 2 * k, s = c + 1;
 		mpq_set(A[c * size + c], own->wave->a);
 		mpq_set(A[s * size + s], own->wave->a);
@@ -43,7 +43,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 {
 	int n = model->n, size = settled_size(model), column;
 	size_t cells = (size_t)n * (size_t)n;
-	const struct splitting *split = model->split;
+	const struct splitting *split = model->remainder.split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals(n) };
 	mpq_t *A = rationals((size_t)size * (size_t)size);
 	RATIONAL minus = RATIO(-1, 1);

@@ -95,7 +95,7 @@ static void project(const struct normal_work *w, int bank, const mpq_t *force, i
 
 void check_turns(const struct step *step)
 {
-	const struct splitting *split = step->model->split;
+	const struct splitting *split = step->model->remainder.split;
 	double h = nearest_double(step->model->h);
 	for (int k = 0; k < split->waves; k++) {
 		const struct wave *wave = split->wave[k].wave;
@@ -112,7 +112,7 @@ void check_turns(const struct step *step)
 void find_waves(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
-	const struct splitting *split = w->model->split;
+	const struct splitting *split = w->model->remainder.split;
 	int waves = split->waves, width = normal->width;
 	REAL force = WITH_BITS(WAVE_BITS);
 	normal->wave = ARRAY(double, (size_t)(normal->banks * waves * 2 * width));
@@ -127,7 +127,7 @@ void find_waves(struct normal_work *w)
 /* Of mode j, to theta h: of cos at the start gc Rc + gs Rs, of sin gs Rc - gc Rs; eta and eta' of each */
 static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_srcptr theta, double *weight)
 {
-	const struct wave_force *own = &w->model->split->wave[k];
+	const struct wave_force *own = &w->model->remainder.split->wave[k];
 	REALS *R = reals(4, WAVE_BITS);
 	REAL of_cos = WITH_BITS(WAVE_BITS), of_sin = WITH_BITS(WAVE_BITS), sum = WITH_BITS(WAVE_BITS),
 	     part = WITH_BITS(WAVE_BITS);
@@ -149,7 +149,7 @@ static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_
 double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta)
 {
 	const struct normal *normal = w->normal;
-	int waves = w->model->split->waves;
+	int waves = w->model->remainder.split->waves;
 	double *weight = ARRAY(double, (size_t)(normal->banks * waves * 4 * normal->width));
 	for (int i = 0; i < normal->banks * waves; i++)
 		for (int j = 0; j < normal->modes; j++)

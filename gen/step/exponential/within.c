@@ -53,13 +53,13 @@ static double angle_of_step(const struct normal_work *w)
 		angle = turn > angle ? turn : angle;
 		fastest = fabs(lambda) > fastest ? fabs(lambda) : fastest;
 	}
-	for (int k = 0; k < w->model->split->waves; k++) {
-		const struct wave *wave = w->model->split->wave[k].wave;
+	for (int k = 0; k < w->model->remainder.split->waves; k++) {
+		const struct wave *wave = w->model->remainder.split->wave[k].wave;
 		double turn = fabs(nearest_double(wave->a)) + nearest_double(wave->w);
 		angle = turn > angle ? turn : angle;
 	}
 	if (m->settled) {
-		last_norms(m, w->model->split, norm);
+		last_norms(m, w->model->remainder.split, norm);
 		angle += norm[1];
 		fastest = fastest > norm[0] ? fastest : norm[0];
 		angle += norm[0] > 0 ? norm[0] / sqrt(fastest) : 0;

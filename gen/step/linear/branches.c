@@ -69,14 +69,14 @@ void take_operators(struct step *step)
 	const struct switching *regions = model->switching;
 	bool holds = scheme_row(model->scheme)->holds_coupling;
 	/* in normal modes, what else reads a branch is content with the first operator's */
-	int operators = step->kind == KIND_NORMAL ? 1 : model->operators;
+	int operators = step->kind == KIND_NORMAL ? 1 : model->schedule.operators;
 	step->branches = regions ? regions->systems : operators ? operators : 1;
 	step->branch = ARRAY(struct branch, step->branches);
 	for (int k = 0; k < step->branches; k++) {
 		struct linear system = regions		  ? driven_system(&regions->system[k])
-				       : model->operators ? operator_system(model, k)
+				       : model->schedule.operators ? operator_system(model, k)
 							  : model->system;
-		bool as_written = !regions && !model->operators && model->written == model && !holds;
+		bool as_written = !regions && !model->schedule.operators && model->written == model && !holds;
 		step->branch[k].system = holds ? piecewise_laplace(&system) : system;
 		step->branch[k].resolvent = as_written ? step->written : resolvent_of(&step->branch[k].system);
 		check_pole_size(model, step->branch[k].resolvent);

@@ -551,7 +551,7 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 	struct filling whole = { .model = model,
 				 .system = system,
 				 .resolvent = resolvent,
-				 .state_name = model->state_name };
+				 .state_name = model->names.state };
 	if (blocks == 1)
 		return tables_of_block(&whole, count, wanted);
 	struct table **table = ARRAY(struct table *, count);
@@ -569,7 +569,7 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 		part.state_name = ARRAY(const char *, block[b].system.states);
 		part.coord = block[b].coord;
 		for (int i = 0; i < block[b].system.states; i++)
-			part.state_name[i] = model->state_name[block[b].state[i]];
+			part.state_name[i] = model->names.state[block[b].state[i]];
 		struct table **made = tables_of_block(&part, count, wanted);
 		for (int t = 0; t < count; t++) {
 			scatter(&block[b], made[t], system->segments, table[t]);

@@ -288,7 +288,7 @@ static double read_written(const struct course *c, int n, int i, const double *m
 static const char *name_of_row(const struct step *step, int row)
 {
 	int states = step->branch->system.states;
-	return row < states ? step->model->state_name[row] : step->model->relative->written->state_name[row - states];
+	return row < states ? step->model->names.state[row] : step->model->relative->written->names.state[row - states];
 }
 
 /* Over the whole course, relative to each state's largest value; the worst */
@@ -400,7 +400,7 @@ void plan_forced(struct step *step)
 	if (!any_load_acts(system) || system->heldK || !make_course(step, &course))
 		return;
 	step->rounding = bound_of(step, &course, NULL);
-	if (!step->rounding.known || step->rounding.relative <= much || step->model->tuning)
+	if (!step->rounding.known || step->rounding.relative <= much || step->model->params.tuning)
 		return;
 	const mpq_t *written = step->model->relative ? relative_rows(step->model) : NULL;
 	const size_t cells = (size_t)(system->segments * course.rows * step->branch->whole->columns);

@@ -33,7 +33,7 @@ static void leave_out(struct coefficient *factor, int n, bool single)
 void leave_out_lost(struct step *step)
 {
 	struct table *table = step->branch->whole;
-	if (step->model->tuning)
+	if (step->model->params.tuning)
 		return;
 	leave_out(table->Phi, table->states, step->model->asked.single);
 	leave_out(table->increment, table->states, step->model->asked.single);
@@ -68,7 +68,7 @@ void plan_rest(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct block *block;
-	if (step->model->tuning || system->heldK || step->forced || step->carried.count ||
+	if (step->model->params.tuning || system->heldK || step->forced || step->carried.count ||
 	    step->form == FORM_KICK_DRIFT_KICK)
 		return;
 	const int blocks = blocks_of(system, &block);

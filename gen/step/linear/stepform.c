@@ -180,7 +180,7 @@ static enum step_form best_form(struct step *step)
 		return model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
 	if (!kick_objection(step))
 		return FORM_KICK_DRIFT_KICK;
-	if (model->tuning)
+	if (model->params.tuning)
 		return FORM_DELTA;      /* good at any step that the target may be told */
 	return model->asked.compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
 }
@@ -210,11 +210,12 @@ static bool *readings(const struct step *step)
 	const struct model *model = step->model;
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)(n * n));
-	const struct switching *there = model->retuned ? model->retuned->other->switching : NULL;
+	const struct switching *there = model->params.retuned ? model->params.retuned->other->switching : NULL;
 	for (int k = 0; k < (there ? there->systems : step->branches); k++) {
-		const mpq_t *A = state_matrix(there           ? &there->system[k]
-							     : model->tuning ? &model->tuning->other->system
-									     : &step->branch[k].system, false);
+		const mpq_t *A = state_matrix(there		     ? &there->system[k]
+					      : model->params.tuning ? &model->params.tuning->other->system
+								     : &step->branch[k].system,
+					      false);
 		for (int i = 0; i < n * n; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
 	}
@@ -239,14 +240,14 @@ static bool *read_elsewhere(const struct step *step)
 	const struct model *model = step->model;
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, n);
-	for (int k = 0; k < model->operators; k++) {
-		struct reads left =
-			reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
+	for (int k = 0; k < model->schedule.operators; k++) {
+		struct reads left = reads_of(model, model->remainder.channels,
+					     (const struct form *const *)model->schedule.operator[k].left);
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || left.state[i];
 	}
-	if (model->selector) {
-		struct reads selector = reads_of(model, 1, &model->selector);
+	if (model->schedule.selector) {
+		struct reads selector = reads_of(model, 1, &model->schedule.selector);
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || selector.state[i];
 	}
@@ -280,7 +281,7 @@ static bool moves(const struct step *step, const bool *reads, int state, bool li
 void find_carries(struct step *step)
 {
 	int n = step->branch->system.states;
-	bool listed = !step->model->switching && !step->model->operators && n <= LIMIT_UNROLLED_STATES;
+	bool listed = !step->model->switching && !step->model->schedule.operators && n <= LIMIT_UNROLLED_STATES;
 	step->carried.place = ARRAY(int, n);
 	step->carried.count = 0;
 	for (int i = 0; i < n; i++)
@@ -445,7 +446,7 @@ struct program *linear_program(const struct step *step)
 	const struct table *table = step->branch->whole;
 	struct program *program = NEW(struct program);
 	program->compensated = step->model->asked.compensated;
-	program->tuned = step->model->tuning != NULL;
+	program->tuned = step->model->params.tuning != NULL;
 	program->reads = ARRAY(bool, table->states);
 	program->uses = ARRAY(bool, table->columns);
 	if (step->form == FORM_DIRECT)

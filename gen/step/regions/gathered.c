@@ -55,7 +55,7 @@ int param_of_column(const struct step *step, int column)
 static double value_of_column(const struct step *step, int column)
 {
 	int param = param_of_column(step, column);
-	return param < 0 ? 1 : equation_number(step->model, step->model->held->nominal[param]).value;
+	return param < 0 ? 1 : equation_number(step->model, step->model->params.held->nominal[param]).value;
 }
 
 /* Over a pair of bounded load states, cos and sin: at least sqrt(a^2 + b^2) */

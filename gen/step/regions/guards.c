@@ -164,7 +164,7 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 static void add_reach(const struct step *step, const struct pieces *pieces, struct guards *g, int row)
 {
 	int branch = g->branch[row], size = step->layout.size, rungs = step->branch[branch].rungs;
-	int room = step->model->retuned ? room_for_rungs(step) : rungs;
+	int room = step->model->params.retuned ? room_for_rungs(step) : rungs;
 	SCRATCH double *reach = reach_of_rows(step, branch, pieces->piece[branch].slopes, 1, g->row + row * size);
 	ENLARGE(g->reach, (size_t)((g->reaches + room) * size));
 	for (int i = 0; i < room * size; i++)
@@ -216,7 +216,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
 	struct guards g = { .first = ARRAY(int, s->regions + 1), .hold = ARRAY(int, s->regions),
-			    .set = ARRAY(int, 1), .apart = step->model->retuned };
+			    .set = ARRAY(int, 1), .apart = step->model->params.retuned };
 	for (int r = 0; r < s->regions; r++) {
 		g.first[r] = g.guards;
 		hold_region(step, &g, r);
@@ -255,18 +255,18 @@ static int bounces_in_step(const struct model *model)
 {
 	enum { MOST = 480, SHORTER = 23 };
 	double sum = 0;
-	for (int i = 0; i < model->impacts; i++) {
+	for (int i = 0; i < model->contacts.impacts; i++) {
 		double most = 0;
-		if (model->retuned && retuned_place(model->retuned, RETUNED_RESTITUTION, i, 0) >= 0)
+		if (model->params.retuned && retuned_place(model->params.retuned, RETUNED_RESTITUTION, i, 0) >= 0)
 			return MOST;            /* it may be anything */
 		for (int s = 0; s < model->system.segments; s++) {
-			double e = mpq_get_d(model->impact[i].in[s].restitution);
-			if (model->impact[i].bounces && e > 0 && e < 1)
+			double e = mpq_get_d(model->contacts.impact[i].in[s].restitution);
+			if (model->contacts.impact[i].bounces && e > 0 && e < 1)
 				most = fmax(most, ceil(SHORTER * log(2) / -log(e)));
 		}
 		sum += most;
 	}
-	return (int)fmin(model->impacts > 1 ? 2 * sum : sum, MOST);
+	return (int)fmin(model->contacts.impacts > 1 ? 2 * sum : sum, MOST);
 }
 
 int max_events(const struct model *model)

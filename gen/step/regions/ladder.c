@@ -78,7 +78,7 @@ int room_for_rungs(const struct step *step)
 
 bool has_ladder(const struct step *step)
 {
-	bool any = step->model->retuned && step->model->switching->expressions > 0;
+	bool any = step->model->params.retuned && step->model->switching->expressions > 0;
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].rungs > 0;
 	return any;
@@ -93,9 +93,9 @@ int rung_halvings(const struct branch *branch, int rung)
 void plan_ladder(struct step *step, int branch)
 {
 	struct branch *b = &step->branch[branch];
-	int room = step->model->retuned ? room_for_rungs(step) : b->halvings;
+	int room = step->model->params.retuned ? room_for_rungs(step) : b->halvings;
 	b->spacing = b->halvings > room ? (b->halvings + room - 1) / room : 1;
-	if (!step->model->retuned && b->halvings > 1)
+	if (!step->model->params.retuned && b->halvings > 1)
 		b->spacing = 2;
 	b->rungs = b->halvings > 0 ? (b->halvings - 1) / b->spacing + 1 : 0;
 }

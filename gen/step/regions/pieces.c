@@ -437,7 +437,7 @@ struct pieces pieces_of(const struct step *step)
 		fill_look(step, &pieces);
 	if (step->look.swift)
 		fill_swift(step, &pieces);
-	else if (step->look.clears && step->model->retuned)
+	else if (step->look.clears && step->model->params.retuned)
 		gather(step, &pieces);
 	return pieces;
 }

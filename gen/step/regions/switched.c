@@ -33,12 +33,12 @@ static const char *no_look(const struct step *step)
 	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
 	return step->model->asked.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
-	       : events && step->model->retuned          ? "what sticks, slips and bounces has tunable params"
+	       : events && step->model->params.retuned          ? "what sticks, slips and bounces has tunable params"
 	       : events && step->model->asked.compensated ? "what sticks, slips and bounces is kept in two words"
 	       : turns ? format("the fastest pole turns by more than %d in a step", events ? 1 : 2)
 	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
-	       : step->model->retuned && matrices > LIMIT_TUNED_NUMBERS
+	       : step->model->params.retuned && matrices > LIMIT_TUNED_NUMBERS
 		       ? "an instance would have too many numbers, for tunable params"
 		       : NULL;
 }
@@ -94,7 +94,7 @@ static void plan_look(struct step *step)
 	step->look.searches = no_look(step);
 	step->look.clears = !step->look.searches;
 	/* crossings go by tables of fixed numbers */
-	step->look.swift = step->look.clears && !step->model->retuned && !has_events(step->model->switching);
+	step->look.swift = step->look.clears && !step->model->params.retuned && !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
 	if (!step->look.clears)
@@ -160,7 +160,7 @@ static void build_divided(struct step *step)
 		halve_region(step, k);
 	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
-	if (step->model->retuned)
+	if (step->model->params.retuned)
 		plan_retuned(step);
 	step->program->additions = step->program->multiplications = products_of_piece(step);
 	plan_look(step);

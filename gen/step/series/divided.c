@@ -226,7 +226,7 @@ void check_divided(const struct step *step)
 {
 	const struct expansion *x = step->divided;
 	const struct model *model = step->model;
-	const struct smoothness *smooth = &model->smooth;
+	const struct smoothness *smooth = &model->remainder.smooth;
 	if (!x)
 		return;
 	if (smooth->singular)

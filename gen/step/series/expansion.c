@@ -115,7 +115,8 @@ static struct layout place_all(struct sequencing *w)
 {
 	struct reads reads = { 0 };
 	const struct model *model = w->step->model;
-	reads = reads_of(model, model->channels, (const struct form *const *)model->operator[0].left);
+	reads = reads_of(model, model->remainder.channels,
+			 (const struct form *const *)model->schedule.operator[0].left);
 	bool *needed = ARRAY(bool, w->system->loads);
 	for (int l = 0; l < w->system->loads; l++)
 		needed[l] = has_contacts(model) || reads.load[l] || load_acts(w->system, &w->system->load[l]);
@@ -131,11 +132,11 @@ static void start_states(struct sequencing *w)
 static void make_forces(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
-	int *force = ARRAY(int, model->channels), *held = ARRAY(int, model->channels);
-	for (int e = 0; e < model->channels; e++)
-		force[e] = sequence_of_form(w, model->operator[0].left[e]);
+	int *force = ARRAY(int, model->remainder.channels), *held = ARRAY(int, model->remainder.channels);
+	for (int e = 0; e < model->remainder.channels; e++)
+		force[e] = sequence_of_form(w, model->schedule.operator[0].left[e]);
 	w->x->force = force;
-	for (int e = 0; e < model->channels; e++)
+	for (int e = 0; e < model->remainder.channels; e++)
 		held[e] = held_force(w, e);
 	w->x->held = held;
 }
@@ -156,7 +157,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 {
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
-	int atoms = atoms_count(model->atoms);
+	int atoms = atoms_count(model->equations.atoms);
 	struct sequencing work = { .step = step, .system = system, .x = NEW(struct expansion) }, *w = &work;
 	w->x->order = order;
 	w->uses = ARRAY(int, atoms);
@@ -171,8 +172,8 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	w->slopes = ARRAY(mpq_t *, system->segments);
 	for (int k = 0; k < system->segments; k++)
 		w->slopes[k] = augmented_matrix(&w->layout, system, k);
-	for (int e = 0; e < model->channels; e++)
-		count_uses(w, model->operator[0].left[e]);
+	for (int e = 0; e < model->remainder.channels; e++)
+		count_uses(w, model->schedule.operator[0].left[e]);
 	start_states(w);
 	hold_contacts(w);
 	if (with_forces)

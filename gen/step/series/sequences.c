@@ -583,6 +583,6 @@ struct sum slope_of_state(struct sequencing *w, int state)
 		if (mpq_sgn(row[layout->channel + e]) != 0 && w->x->force)
 			sum_add(&sum, TERM_SEQUENCE, w->x->force[e], 0, row[layout->channel + e]);
 		else if (mpq_sgn(row[layout->channel + e]) != 0)
-			sum_add_form(w, &sum, model->operator[0].left[e], row[layout->channel + e]);
+			sum_add_form(w, &sum, model->schedule.operator[0].left[e], row[layout->channel + e]);
 	return sum;
 }

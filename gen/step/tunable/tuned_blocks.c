@@ -10,7 +10,7 @@
 double *nominal_outputs(const struct step *step)
 {
 	const struct model *model = step->model;
-	const struct tuning *t = model->tuning;
+	const struct tuning *t = model->params.tuning;
 	const struct linear *system = &step->branch->system;
 	const int size = t->x.size;
 	double *value = ARRAY(double, (size_t)(t->outputs * size));
@@ -29,7 +29,7 @@ double *nominal_outputs(const struct step *step)
 int fixed_slopes(const struct step *step, struct fixed_slope **list)
 {
 	const struct linear *system = &step->branch->system;
-	const struct model *other = step->model->tuning ? step->model->tuning->other : NULL;
+	const struct model *other = step->model->params.tuning ? step->model->params.tuning->other : NULL;
 	int size = step->layout.size, count = 0;
 	RATIONALS *A = augmented_matrix(&step->layout, system, 0);
 	RATIONALS *there = augmented_matrix(&step->layout, other ? &other->system : system, 0);
@@ -50,7 +50,7 @@ int fixed_slopes(const struct step *step, struct fixed_slope **list)
 /* Equations 0 .. n-1 and coordinates n .. 2n-1, as parent pointers. Solved, an equation is that of a coordinate. */
 static int *components(const struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const struct linear *system = &step->branch->system;
 	const int n = system->n;
 	int *parent = numbers_up_to(2 * n);
@@ -67,7 +67,7 @@ static int *components(const struct step *step)
 int *tuned_components(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	if (!step->model->tuning)
+	if (!step->model->params.tuning)
 		return NULL;
 	int *parent = components(step), *number = ARRAY(int, (size_t)system->states);
 	for (int i = 0; i < system->states; i++)
@@ -78,7 +78,7 @@ int *tuned_components(const struct step *step)
 /* In some segment of time, for some values of the params */
 static bool load_reaches(const struct step *step, int load, int coord)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const bool *acts = t->acts + coord * t->x.size + t->x.load[load];
 	bool any = false;
 	for (int s = 0; s < t->x.segments; s++)
@@ -89,7 +89,7 @@ static bool load_reaches(const struct step *step, int load, int coord)
 
 bool *touched_states(const struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const struct linear *system = &step->branch->system;
 	const int n = system->n;
 	if (!t)
@@ -144,7 +144,7 @@ static void add_component(struct tuned_part *part, const struct step *step, int 
 /* Where its x has a column of that of struct tuning: loads in each segment of time. NULL: it has all */
 static int column_in(const struct step *step, const struct tuned_block *b, const int *place, int column)
 {
-	const struct layout *x = &step->model->tuning->x;
+	const struct layout *x = &step->model->params.tuning->x;
 	const int states = step->branch->system.states, load = column - states, loads = x->segments * x->loads;
 	if (!b)
 		return column;
@@ -158,7 +158,7 @@ static int column_in(const struct step *step, const struct tuned_block *b, const
 static void take_entries(struct tuned_part *part, const struct step *step, const struct tuned_block *b,
 			 const int *place)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	struct tuned_equations *all = &part->all;
 	int *row = nowhere(t->all.rows), *unknown = nowhere(t->all.rows), left = t->all.rows - t->frequencies;
 	for (int i = 0; i < all->rows; i++) {
@@ -222,7 +222,7 @@ static void take_slopes(struct tuned_block *b, const int *place, int count, cons
 /* Loads whose frequency changes: a row each, and the pairs of load states that turn with it */
 static void take_turns(struct tuned_block *b, const struct step *step, const int *place)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	for (int l = 0; l < step->branch->system.loads; l++) {
 		const int from = step->layout.load[l], columns = step->branch->system.load[l].columns;
 		if (t->frequency[l] < 0 || place[from] < 0)
@@ -250,7 +250,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 		add_component(&b.part, step, parent,
 			      root_of_node(parent, system->n + system->coord[group->state[block]]));
 	b.derivatives = whole ? system->n : b.part.all.rows;
-	for (int row = 0; whole && row < system->n + step->model->tuning->outputs; row++)
+	for (int row = 0; whole && row < system->n + step->model->params.tuning->outputs; row++)
 		add_row(&b.part, row, row);
 	b.place = ARRAY(int, (size_t)b.derivatives);
 	for (int i = 0; i < b.derivatives; i++) {
@@ -268,7 +268,7 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 /* Components whose accelerations a changed output reads, where the target solves for them */
 static void add_read_components(struct tuned_part *part, const struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const int n = step->branch->system.n;
 	int *parent = components(step);
 	bool *read = ARRAY(bool, 2 * (size_t)n);
@@ -283,7 +283,7 @@ static void add_read_components(struct tuned_part *part, const struct step *step
 
 static void plan_others(struct tuned_blocks *p, const struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const int loads = step->branch->system.loads;
 	p->others = (struct tuned_part){ 0 };
 	add_read_components(&p->others, step);
@@ -320,7 +320,7 @@ static void measure_block(struct tuned_blocks *p, const struct step *step, const
 
 static void check_size(const struct step *step, const struct tuned_block *b)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const bool changes = step->branch->system.segments > 1;
 	int k = 0;
 	while (b->group->tuned && k < t->given - 1 && !(b->part.params >> k & 1))
@@ -354,7 +354,7 @@ static struct group *group_of_whole(const struct step *step)
 
 void plan_tuned_blocks(struct step *step)
 {
-	const struct tuning *t = step->model->tuning;
+	const struct tuning *t = step->model->params.tuning;
 	const struct program *program = step->program;
 	struct tuned_blocks *p = NEW(struct tuned_blocks);
 	struct fixed_slope *fixed;
