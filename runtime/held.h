@@ -4,7 +4,7 @@
  *
  *     PL_TYPE                    the model, with member coeffs, with leads lead, with modes k, y, which, eta and rate
  *     PL_PARAMS                  how many
- *     PL_DERIVED                 of these, follow from others: it is PL(retune_all) that takes all
+ *     PL_WRAPPED                 1: PL(retune) is the model's own, and calls PL(retune_all)
  *     PL_RETUNED                 1: PL(retune) is the model's own, of whose numbers coeffs has more
  *     PL_LEADS                   sines in t whose frequency the params change, PL(frequencies)(s, w) [rad/s]
  *     PL_MODES                   normal modes of a step, from which PL(of_modes)(which, mode, q) makes coordinates
@@ -12,7 +12,7 @@
 #include "numbers.h"
 
 #if !PL_RETUNED
-#if PL_DERIVED > 0
+#if PL_WRAPPED
 static int PL(retune_all)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #else
 int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)

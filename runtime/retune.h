@@ -6,7 +6,7 @@
  *     PL(name), PL_TYPE          the model's prefix before a name; its type, with member coeffs
  *     PL_SINGLE                  1: in float
  *     PL_STATES, PL_PARAMS, PL_SEGMENTS   sizes; segments of time of the loads
- *     PL_DERIVED                 of the params, follow from others: it is PL(retune_all) that takes all
+ *     PL_WRAPPED                 1: PL(retune) is the model's own, and calls PL(retune_all)
  *     PL_ANY_STEP                1: params touch every block, so that any h will do
  *     PL_DIRECT                  1: a step has factors of e^{A h}, 0: of e^{A h} - I
  *     PL_SAMPLES                 most derivatives of an input that goes from sample to sample; 0: none does
@@ -378,7 +378,7 @@ static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, real h, pl_two
 
 /* ---- all ---- */
 
-#if PL_DERIVED > 0
+#if PL_WRAPPED
 static int PL(retune_all)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #else
 int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)

@@ -3,7 +3,7 @@
  * it gathers of them for steps that stay clear.  Included by the model's file, which defines before it
  *
  *     PL(name), PL_SINGLE, PL_H          the model's prefix before a name; 1: in float; its step [s]
- *     PL_DERIVED                         of the params, follow from others: it is PL(retune_all) that takes all
+ *     PL_WRAPPED                         1: PL(retune) is the model's own, and calls PL(retune_all)
  *     PL_PARAMS, PL_SIZE, PL_STATES      sizes; of x; states, which x begins with
  *     PL_EXPRESSIONS, PL_BREAKS, PL_SEGMENTS     expressions, breakpoints of all; segments of time of the loads
  *     PL_BRANCHES, PL(slope_row)[]       linear systems that regions have; of each its first row of highest derivatives
@@ -304,7 +304,7 @@ static void PL(gather)(PL(coeffs) *c)
 
 /* ---- all ---- */
 
-#if PL_DERIVED > 0
+#if PL_WRAPPED
 static int PL(retune_all)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #else
 int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)

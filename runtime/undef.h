@@ -51,7 +51,6 @@
 #undef PL_CUT
 #undef PL_DAMPED
 #undef PL_DEGREE
-#undef PL_DERIVED
 #undef PL_DIRECT
 #undef PL_DIVIDED
 #undef PL_DRIVEN
@@ -247,6 +246,7 @@
 #undef PL_WIDTH
 #undef PL_WORK
 #undef PL_WORTH
+#undef PL_WRAPPED
 #undef PL_WRITTEN_OUT
 #undef real
 #include "doubles.h"

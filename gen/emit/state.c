@@ -301,12 +301,31 @@ void open_algorithm(const struct emitter *e, const struct size *size)
 
 /* ---- tunable params ---- */
 
+bool has_param_ranges(const struct emitter *e)
+{
+	for (int k = 0; k < tunables_of(e->model)->given; k++)
+		if (e->model->params.range[k])
+			return true;
+	return false;
+}
+
+bool wraps_retune(const struct emitter *e)
+{
+	return has_param_ranges(e) || e->model->spec->derived > 0;
+}
+
+static const char *range_text(const struct param_range *range)
+{
+	return range ? format(" in [%s, %s]", readable_text(range->low), readable_text(range->high)) : "";
+}
+
 const char *param_list(const struct emitter *e)
 {
 	const struct tuning *t = tunables_of(e->model);
 	const char *list = "";
 	for (int k = 0; k < t->given; k++)
-		list = format("%s%s%s", list, k ? ", " : "", t->param[k].symbol->name);
+		list = format("%s%s%s%s", list, k ? ", " : "", t->param[k].symbol->name,
+			      range_text(e->model->params.range[k]));
 	return list;
 }
 

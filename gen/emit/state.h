@@ -57,6 +57,8 @@ struct size { const char *name; int value; };
 void open_algorithm(const struct emitter *e, const struct size *size);
 #define emit_sizes(e, ...) open_algorithm(e, (const struct size[]){ __VA_ARGS__, { NULL, 0 } })
 
+bool has_param_ranges(const struct emitter *e);
+bool wraps_retune(const struct emitter *e);      /* NAME_retune is the model's own, and calls NAME_retune_all */
 const char *param_list(const struct emitter *e);                  /* names, commas between */
 void emit_nominal_params(const struct emitter *e);                /* a member */
 void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */

@@ -2,6 +2,7 @@
 /* What describes an FMU (FMI 2.0.5, section 2.2; FMI 3.0.2, sections 2.4 and 2.5), valid against the standard's
  * schemas. */
 #include "fmu/fmu.h"
+#include "model/request.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -69,12 +70,15 @@ static void print_variable(FILE *to, const struct fmu *f, int reference)
 	const bool starts = v->kind != FMU_TIME && v->kind != FMU_OUTPUT;
 	const char *initial = w.initial ? format(" initial=\"%s\"", w.initial) : "";
 	const char *start = starts ? format(" start=\"%s\"", shortest(v->start)) : "";
+	const char *range = v->range ? format(" min=\"%s\" max=\"%s\"", shortest(round_rational(v->range->low)),
+					      shortest(round_rational(v->range->high))) : "";
 	const char *common = format("name=\"%s\" valueReference=\"%d\" causality=\"%s\" variability=\"%s\"%s",
 				    attribute_text(v->name), reference, w.causality, w.variability, initial);
 	if (f->version == 3)
-		fprintf(to, "    <Float64 %s%s/>\n", common, start);
+		fprintf(to, "    <Float64 %s%s%s/>\n", common, range, start);
 	else
-		fprintf(to, "    <ScalarVariable %s>\n      <Real%s/>\n    </ScalarVariable>\n", common, start);
+		fprintf(to, "    <ScalarVariable %s>\n      <Real%s%s/>\n    </ScalarVariable>\n", common, range,
+			start);
 }
 
 static void print_variables(FILE *to, const struct fmu *f)

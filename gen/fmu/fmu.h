@@ -31,6 +31,7 @@ struct fmu_variable {               /* its place in the list is its value refere
 	enum fmu_kind kind;
 	const char *name;           /* as no other */
 	double start;               /* of inputs, params and states */
+	const struct param_range *range; /* of a param that has one; else NULL */
 };
 struct fmu_variables {
 	int count;

@@ -20,7 +20,7 @@ static void add(struct fmu_variables *v, enum fmu_kind kind, const char *name, c
 	const char *own = is_taken(v, name) ? otherwise : name;
 	while (is_taken(v, own))
 		own = format("%s_", own);
-	v->variable[v->count++] = (struct fmu_variable){ kind, own, start };
+	v->variable[v->count++] = (struct fmu_variable){ kind, own, start, NULL };
 }
 
 struct fmu_variables variables_of(const struct step *step)
@@ -36,9 +36,11 @@ struct fmu_variables variables_of(const struct step *step)
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
 	for (int i = 0; i < model->outputs; i++)
 		add(&v, FMU_OUTPUT, model->output[i].name, format("output.%s", model->output[i].name), 0);
-	for (int i = 0; i < params; i++)
+	for (int i = 0; i < params; i++) {
 		add(&v, FMU_PARAM, tuning->param[i].symbol->name, format("param.%s", tuning->param[i].symbol->name),
 		    round_rational(tuning->nominal[i]));
+		v.variable[v.count - 1].range = model->params.range[i];
+	}
 	/* most outputs are named like the state that they are */
 	for (int i = 0; i < system->states; i++)
 		add(&v, FMU_STATE, format("state.%s", shown->names.state[i]), format("state.%s", shown->names.state[i]),

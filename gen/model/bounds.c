@@ -31,6 +31,17 @@ static void evaluate_bounds(struct building *b, int count, const struct state_bo
 		statement_guard(evaluate_bound, &(struct bound_work){ b, &bound[i], take });
 }
 
+static void evaluate_interval(struct building *b, struct node *from, struct node *to, mpq_ptr low, mpq_ptr high)
+{
+	collect_constant(&b->collector, from, low);
+	collect_constant(&b->collector, to, high);
+	if (mpq_cmp(low, high) >= 0)
+		error(to->start, NULL, "a range ends above where it begins, found %s and %s", readable_text(low),
+		      readable_text(high));
+	if (beyond_range(low) || beyond_range(high))
+		error(from->start, NULL, "the range is beyond that of %s", target_name());
+}
+
 static struct state_range *range_of(struct model *model, int state)
 {
 	for (int i = 0; i < model->ranges; i++)
@@ -47,13 +58,7 @@ static void take_range(struct building *b, const struct state_bound *bound, int 
 	struct model *model = b->model;
 	struct state_range *range = range_of(model, state);
 	range->at = bound->at;
-	collect_constant(&b->collector, bound->low, range->low);
-	collect_constant(&b->collector, bound->high, range->high);
-	if (mpq_cmp(range->low, range->high) >= 0)
-		error(bound->high->start, NULL, "a range ends above where it begins, found %s and %s",
-		      readable_text(range->low), readable_text(range->high));
-	if (beyond_range(range->low) || beyond_range(range->high))
-		error(bound->low->start, NULL, "the range is beyond that of %s", target_name());
+	evaluate_interval(b, bound->low, bound->high, range->low, range->high);
 	if (mpq_cmp(model->initial[state], range->low) < 0 || mpq_cmp(model->initial[state], range->high) > 0)
 		error(bound->at, "its initial value has to be there", "%s starts at %s, outside of its range",
 		      model->names.state[state], readable_text(model->initial[state]));
@@ -113,4 +118,37 @@ void evaluate_absolutes(struct building *b)
 void evaluate_ranges(struct building *b)
 {
 	evaluate_bounds(b, b->spec->ranges, b->spec->range, take_range);
+}
+
+struct param_work {
+	struct building *b;
+	const struct tunable *param;
+	const struct param_range **range;
+};
+
+static void evaluate_param_range(void *context)
+{
+	const struct param_work *work = context;
+	const struct tunable *param = work->param;
+	struct param_range *range = NEW(struct param_range);
+	RATIONAL value = ZERO;
+	mpq_inits(range->low, range->high, NULL);
+	evaluate_interval(work->b, param->low, param->high, range->low, range->high);
+	*work->range = range;
+	if (work->b->request->again.tunable)    /* built with other values, to learn what follows from them */
+		return;
+	param_value(param->symbol, value);
+	if (mpq_cmp(value, range->low) < 0 || mpq_cmp(value, range->high) > 0)
+		error(param->at, "the spec's own value has to be there", "param '%s' is %s, outside of its range",
+		      param->symbol->name, readable_text(value));
+}
+
+void evaluate_param_ranges(struct building *b)
+{
+	const int given = b->spec->tunables - b->spec->derived;
+	b->model->params.range = ARRAY(const struct param_range *, (size_t)given + 1);
+	for (int k = 0; k < given; k++)
+		if (b->spec->tunable[k].low)
+			statement_guard(evaluate_param_range,
+					&(struct param_work){ b, &b->spec->tunable[k], &b->model->params.range[k] });
 }

@@ -8,6 +8,7 @@
 /* ---- bounds.c: what a spec says of single states ---- */
 
 void evaluate_absolutes(struct building *b);                /* into truncation.absolute */
+void evaluate_param_ranges(struct building *b);
 void evaluate_ranges(struct building *b);                   /* behind the initial values, which have to be in them */
 
 /* ---- truncation.c: where a series ends ---- */

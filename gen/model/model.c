@@ -494,6 +494,7 @@ static void collect_model(struct building *b)
 		evaluate_absolutes(b);
 	if (all && !model->relative)
 		evaluate_ranges(b);
+	evaluate_param_ranges(b);
 	if (all && (b->spec->step || request->step))
 		statement_guard(evaluate_step, b);
 	b->collector.constant_only = false;

@@ -60,6 +60,9 @@ struct truncation {                 /* of a Taylor series */
 	mpq_t *absolute;
 	int substeps;               /* most within one h */
 };
+struct param_range {                /* in which the spec says that a tunable param stays */
+	mpq_t low, high;
+};
 struct state_range {                /* in which the spec says that a state stays */
 	struct place at;
 	int state;

@@ -27,17 +27,23 @@ static void add_bound(struct state_bound **list, int *count, struct state_bound 
 	*MORE(*list, *count) = bound;
 }
 
+/* interval: [ expression , expression ]; `example` stands before one in messages */
+static void read_interval(struct parser *p, const char *example, struct node **low, struct node **high)
+{
+	expect_op(p, "[", format("'[': %s in [0, 1]", example));
+	*low = read_expression(p);
+	expect_op(p, ",", format("',': %s in [0, 1]", example));
+	*high = read_expression(p);
+	expect_op(p, "]", "']'");
+}
+
 /* range: range NAME [ ' ] in [ expression , expression ] { , ... } */
 void read_range(struct parser *p)
 {
 	do {
 		struct state_bound range = read_bound_name(p, p->spec->ranges, p->spec->range, "range");
 		expect_word(p, "in");
-		expect_op(p, "[", "'[': range x in [0, 1]");
-		range.low = read_expression(p);
-		expect_op(p, ",", "',': range x in [0, 1]");
-		range.high = read_expression(p);
-		expect_op(p, "]", "']'");
+		read_interval(p, "range x", &range.low, &range.high);
 		add_bound(&p->spec->range, &p->spec->ranges, range);
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -195,9 +201,12 @@ void read_tunable(struct parser *p)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
 		if (spec->tunables == LIMIT_TUNABLES)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
+		struct tunable tunable = { token.at, symbol, NULL, NULL };
+		if (take_word(p, "in"))
+			read_interval(p, "tunable k", &tunable.low, &tunable.high);
 		symbol->tuned = true;
 		symbol->tunable = spec->tunables + 1;
-		*MORE(spec->tunable, spec->tunables) = (struct tunable){ token.at, symbol };
+		*MORE(spec->tunable, spec->tunables) = tunable;
 	} while (take_op(p, ","));
 	expect_end(p);
 }

@@ -173,6 +173,7 @@ struct mode_list {                  /* of `modes 6` or `modes 1, 2, 9`, and `wit
 struct tunable {                    /* a param that the target may change */
 	struct place at;
 	struct symbol *symbol;
+	struct node *low, *high;    /* its range; NULL: it has none */
 };
 struct scene_part {                       /* of a scene: a spec in it, as often as `use` names it */
 	const char *name;           /* front; inside another: half.front */

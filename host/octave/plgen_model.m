@@ -292,8 +292,9 @@ classdef plgen_model < handle
             case 8, fail([m.name, ": the step is not above 0"]);
             case 16, fail([m.name, ": with these values a load's frequency is below 0"]);
             case 4, fail([m.name, ": with these values the mass matrix has no inverse"]);
-            case 32, fail([m.name, ": with these values the regions are others: a restitution not within 0 and 1, " ...
-                    "a gap or a force of friction below 0, breakpoints in another order"]);
+            case 32, fail([m.name, ": these values are outside of the ranges that the spec gives, or make other " ...
+                    "regions: a restitution not within 0 and 1, a gap or a force of friction below 0, " ...
+                    "breakpoints in another order"]);
             otherwise, fail([m.name, ": with these values the numbers of the step are not finite"]);
             end
         end

@@ -163,8 +163,8 @@ const char *instance_retune(struct instance *i, const double *params, double h)
 	     : status == PL_NO_STEP ? "the step is not above 0"
 	     : status == PL_NO_RATE ? "with these values a load's frequency is below 0"
 	     : status == PL_OUT_OF_RANGE
-	     ? "with these values the regions are others: a restitution not within 0 and 1, "
-					   "a gap or a force of friction below 0, breakpoints in another order"
+	     ? "these values are outside of the ranges that the spec gives, or make other regions: a restitution not "
+	       "within 0 and 1, a gap or a force of friction below 0, breakpoints in another order"
 	     : status == PL_SINGULAR ? "with these values the mass matrix has no inverse"
 	     : "with these values the numbers of the step are not finite";
 }

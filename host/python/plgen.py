@@ -36,8 +36,8 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (64, 'the step has ended beyond a stop'))
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
-           32: 'with these values the regions are others: a restitution not within 0 and 1, a gap or a force of '
-               'friction below 0, breakpoints in another order'}
+           32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
+               'within 0 and 1, a gap or a force of friction below 0, breakpoints in another order'}
 BLOCK = 1 << 20         # steps between two looks at Ctrl-C
 
 

@@ -162,8 +162,8 @@ static enum fmu_result fmu_retune(fmu_instance *i)
     }
     if (status & PL_OUT_OF_RANGE) {
         return fmu_say(i, FMU_ERROR,
-            "with these params the regions are others: a restitution not within 0 and 1, a gap "
-                                     "or a force of friction below 0, breakpoints in another order");
+            "these params are outside of the ranges that the spec gives, or make other regions: a restitution not "
+            "within 0 and 1, a gap or a force of friction below 0, breakpoints in another order");
     }
     if (status & PL_NO_RATE) {
         return fmu_say(i, FMU_ERROR, "with these params the frequency of a load is below 0");

@@ -413,8 +413,8 @@ static void retune(void *state, const real *params, real h)
     if (status == PL_NO_RATE)
         fail("with these values a load's frequency is below 0");
     if (status == PL_OUT_OF_RANGE)
-        fail("with these values the regions are others: a restitution not within 0 and 1, a gap or a force of friction "
-             "below 0, breakpoints in another order");
+        fail("these values are outside of the ranges that the spec gives, or make other regions: a restitution not "
+             "within 0 and 1, a gap or a force of friction below 0, breakpoints in another order");
     if (status == PL_SINGULAR)
         fail("with these values the mass matrix has no inverse");
     if (status != 0)

@@ -110,7 +110,7 @@ cat >expected <<'END'
 <ScalarVariable name="m" valueReference="5" parameter tunable initial="exact">
 <Real start="2.0"/>
 <ScalarVariable name="k" valueReference="6" parameter tunable initial="exact">
-<Real start="40.0"/>
+<Real min="10.0" max="1000.0" start="40.0"/>
 <ScalarVariable name="state.x" valueReference="7" local continuous initial="exact">
 <Real start="0.1"/>
 <ScalarVariable name="state.x&apos;" valueReference="8" local continuous initial="exact">

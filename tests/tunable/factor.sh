@@ -1,7 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # factor.sh PLGEN SOURCE_ROOT: outputs with a tunable factor, with --reduce: what is kept is a state without the factor.
-# Against the whole model with the same values written down, output by output, to 1e-12 of the largest.
+# Against the whole model with the same values written down, output by output, to 1e-12 of the largest. And ranges of
+# params, which NAME_retune looks at: of a linear model, of one that reads params in its step, of regions, of what
+# follows from params.
 set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
@@ -85,4 +87,44 @@ for values in 'm=2 k=50 c=0.5 g=3' 'm=3 k=70 c=0.25 g=4' 'm=2.5 k=-20 c=1 g=-0.5
 	result $? "with $values, as the whole model"
 done
 
+
+# ---- ranges ----
+while IFS='|' read -r name equation; do
+	for real in double float; do
+		printf 'model m\nparam k = 50, c = 0.5\ntunable c, k in [12.5, 100]\ncoord x\ninit x = 1\n' >m.spec
+		printf '%s\nstep 1/64\n' "$equation" >>m.spec
+		cat >ends.c <<'EOS'
+#include "m.c"
+#include <stdio.h>
+#include <string.h>
+typedef REAL real;
+int main(void)
+{
+    static const struct { real k; int status; } at[] = {
+        { 12.5, 0 }, { 100, 0 }, { 12.4999, PL_OUT_OF_RANGE }, { (real)100.001, PL_OUT_OF_RANGE },
+        { -50, PL_OUT_OF_RANGE }, { 50, 0 }
+    };
+    int wrong = 0;
+    for (int i = 0; i < 6; i++) {
+        m_coeffs before = m_nominal, c = m_nominal;
+        const real params[2] = { (real)0.5, at[i].k };
+        const int status = m_retune(&c, params, (real)M_H);
+        const int stays = memcmp(&c, &before, sizeof c) == 0;
+        printf("k = %.9g: %d, expected %d; coefficients %s\n", (double)at[i].k, status, at[i].status,
+            stays ? "as they were" : "new");
+        wrong += status != at[i].status || (status != 0 && !stays) || (at[i].k != 50 && status == 0 && stays);
+    }
+    return wrong != 0;
+}
+EOS
+		"$plgen" --real $real m.spec >m.c 2>log &&
+			$run_cc -DREAL=$real -I"$root/runtime" ends.c "$archive" -lm -o ends >>log 2>&1 && ./ends >>log
+		result $? "$name, $real: a param outside of its range is refused, and changes nothing"
+	done
+done <<'EOS'
+a linear model|x'' + c*x' + k*x = 0
+a nonlinear model|x'' + c*x' + k*x + k*x^3 = 0
+regions|x'' + c*x' + k*max(x, 0) = -1
+what follows from params|x'' + c*x' + sqrt(k)*x = 0
+EOS
 tap_end

@@ -65,8 +65,9 @@ void emit_held_declarations(const struct emitter *e)
 	const bool own = e->kind->own_factors, any = own && e->step->blocks->whole;
 	const char *more = own ? e->model->params.tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
 			       : e->model->params.retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
+	const char *ranged = has_param_ranges(e) && !e->model->params.retuned ? ", PL_OUT_OF_RANGE" : "";
 	say(e, "\n/* Sets c to params (%s), for steps of h [s]%s. 0, or c is as it was and, as plrt.h\n"
-	       " * says, PL_NO_STEP%s, PL_NOT_FINITE */\n", param_list(e), any ? "" : ", the spec's", more);
+	       " * says, PL_NO_STEP%s%s, PL_NOT_FINITE */\n", param_list(e), any ? "" : ", the spec's", more, ranged);
 	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
 	       "void   $n_use($n *s, const $n_coeffs *c);  /* from now on; state and time stay%s%s */\n"
 	       "extern const $n_coeffs $n_nominal;         /* of the spec's values: what $n_init starts with */\n\n",
@@ -138,15 +139,14 @@ static void emit_held(const struct emitter *e)
 		emit_retuned(e);
 	if (held_leads(e))
 		emit_frequencies(e);
-	emit_sizes(e, { "PARAMS", held(e)->params }, { "DERIVED", e->model->spec->derived },
+	emit_sizes(e, { "PARAMS", held(e)->params }, { "WRAPPED", wraps_retune(e) },
 		   { "RETUNED", e->model->params.retuned != NULL },
 		   { "LEADS", held_leads(e) },
 		   { "MODES", keeps_modes(e) ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });
 	say(e, "#include \"held.h\"\n");
 }
 
-/* NAME_retune of the params that are given, by that of all */
-static void emit_derived(const struct emitter *e)
+static void emit_derive(const struct emitter *e)
 {
 	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
 	const struct reads reads = reads_of(e->model, derived, e->model->params.derived);
@@ -159,16 +159,43 @@ static void emit_derived(const struct emitter *e)
 		tape_set(formulas_tape(f), format("out[%d]", k), formula(f, e->model->params.derived[k]), 13, NULL);
 	emit_formulas(f, 4);
 	close_function(e, "");
+}
+
+/* Bounds are rounded as values are, so a param that is at one in the spec is within. */
+static void emit_range_checks(const struct emitter *e)
+{
+	const struct tuning *t = tunables_of(e->model);
+	for (int k = 0; k < t->given; k++) {
+		const struct param_range *range = e->model->params.range[k];
+		const struct place at = t->param[k].at;
+		if (!range)
+			continue;
+		say(e, "    if (!(params[%d] >= %s && params[%d] <= %s)) {\n", k, finite_text(at, range->low), k,
+		    finite_text(at, range->high));
+		say(e, "        return PL_OUT_OF_RANGE;  /* %s */\n"
+		       "    }\n", t->param[k].symbol->name);
+	}
+}
+
+/* NAME_retune of the params that are given, within their ranges, by that of all */
+static void emit_wrapper(const struct emitter *e)
+{
+	const int derived = e->model->spec->derived;
+	if (derived)
+		emit_derive(e);
 	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
-	       "{\n"
-	       "    double all[$N_PARAMS + %d];\n"
-	       "    int i;\n"
-	       "    for (i = 0; i < $N_PARAMS; i++) {\n"
-	       "        all[i] = params[i];\n"
-	       "    }\n"
-	       "    $n_derive(params, all + $N_PARAMS);\n"
-	       "    return $n_retune_all(c, all, h);\n"
-	       "}\n", derived);
+	       "{\n");
+	if (derived)
+		say(e, "    double all[$N_PARAMS + %d];\n"
+		       "    int i;\n", derived);
+	emit_range_checks(e);
+	if (derived)
+		say(e, "    for (i = 0; i < $N_PARAMS; i++) {\n"
+		       "        all[i] = params[i];\n"
+		       "    }\n"
+		       "    $n_derive(params, all + $N_PARAMS);\n");
+	say(e, "    return $n_retune_all(c, %s, h);\n"
+	       "}\n", derived ? "all" : "params");
 }
 
 void emit_held_retune(const struct emitter *e)
@@ -177,6 +204,6 @@ void emit_held_retune(const struct emitter *e)
 		emit_retune(e);
 	if (held(e))
 		emit_held(e);
-	if (tunables_of(e->model) && e->model->spec->derived)
-		emit_derived(e);
+	if (tunables_of(e->model) && wraps_retune(e))
+		emit_wrapper(e);
 }

@@ -349,7 +349,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 {
 	const struct tuning *t = e->model->params.tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "DERIVED", e->model->spec->derived },
+	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "WRAPPED", wraps_retune(e) },
 		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
 		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },

@@ -68,7 +68,7 @@ static struct symbol *derived_symbol(struct spec *spec, struct node *node)
 				   .at = node->at, .value = node, .used = true, .tuned = true, .derived = true,
 				   .tunable = spec->tunables + 1 };
 	add_symbol(spec, symbol);
-	*MORE(spec->tunable, spec->tunables) = (struct tunable){ node->start, symbol };
+	*MORE(spec->tunable, spec->tunables) = (struct tunable){ node->start, symbol, NULL, NULL };
 	return symbol;
 }
 
