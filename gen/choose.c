@@ -468,7 +468,7 @@ static void tell_dear(const struct choosing *c, const struct alternative *taken)
 	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
 					 alternative_text(best), best->cost, best->excess)
 				: "nothing that there is takes so few";
-	say_error(c->stepped->spec->budget.at, fits,
+	say_error(c->stepped->spec->required.budget.at, fits,
 		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
 		  "%.0f, or %.3g times as many",
 		  taken->cost, alternative_text(taken), taken->cost - c->stepped->needs.budget,
@@ -516,7 +516,7 @@ static void try_any_form(struct choosing *c, struct request *request)
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
 {
 	struct choosing c = { .written = written, .stepped = stepped, .request = request, .trying = true };
-	if (stepped->spec->needs > 0 && is_measured(stepped))
+	if (stepped->spec->required.needs > 0 && is_measured(stepped))
 		return choose_measured(stepped, request);
 	if (!find_requirements(stepped))
 		return NULL;

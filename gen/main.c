@@ -66,9 +66,9 @@ static void try_all(void *context)
 static void leave_step_open(struct work *w)
 {
 	struct request *request = &w->options.request;
-	if (w->spec->needs == 0 || w->spec->step || request->step || !w->spec->need[0].until)
+	if (w->spec->required.needs == 0 || w->spec->asked.step || request->step || !w->spec->required.need[0].until)
 		return;
-	const struct node *until = w->spec->need[0].until;
+	const struct node *until = w->spec->required.need[0].until;
 	request->step = format("(%s)/1000", text_between(until->start, until->end));
 	request->step_open = true;
 }
@@ -83,7 +83,7 @@ static bool make(struct work *w)
 		return false;
 	w->spec = parse_spec(source);
 	leave_step_open(w);
-	if (!diagnostics_errors() && !request->scheme && !w->spec->scheme && !request->solution) {
+	if (!diagnostics_errors() && !request->scheme && !w->spec->asked.scheme && !request->solution) {
 		request->passed_over = refusal_of(try_all, w);
 		if (!request->passed_over)
 			return true;
@@ -135,7 +135,7 @@ static bool choose_sampling(struct work *w)
 
 static bool choose(struct work *w)
 {
-	if (!w->step || (w->spec->needs == 0 && !w->spec->budget.instructions))
+	if (!w->step || (w->spec->required.needs == 0 && !w->spec->required.budget.instructions))
 		return true;
 	if (w->options.request.step_open && lacks_step(w))
 		return false;
@@ -306,8 +306,8 @@ static void print_depfile(const struct work *w)
 	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
 	if (strcmp(options->spec, "-") != 0)
 		fprintf(f->to, " %s", escaped(options->spec));
-	for (int i = 0; i < w->spec->files; i++)
-		fprintf(f->to, " %s", escaped(w->spec->file[i]));
+	for (int i = 0; i < w->spec->data.files; i++)
+		fprintf(f->to, " %s", escaped(w->spec->data.file[i]));
 	fputc('\n', f->to);
 	file_close(f);
 }
@@ -343,7 +343,7 @@ static bool compile(struct work *w)
 	if (!print_fmu(w))
 		return false;
 	print_depfile(w);
-	if (!spares(w->spec->files, w->spec->file))
+	if (!spares(w->spec->data.files, w->spec->data.file))
 		return false;
 	publish();
 	return true;

@@ -69,7 +69,7 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 		scheme_of(scheme, &row);
 	const bool step_open = m->request->step_open;
 	struct alternative a = { .scheme = scheme, .single = single, .form = FORM_DIRECT };
-	if (!scheme_row(row)->expands || m->request->tolerance || spec->tolerance) {
+	if (!scheme_row(row)->expands || m->request->tolerance || spec->asked.tolerance) {
 		if (step_open)
 			try_steps(m, a);
 		else
@@ -101,7 +101,7 @@ static void try_scheme(struct measuring *m, const char *scheme)
 static void try_schemes(struct measuring *m)
 {
 	const struct spec *spec = m->model->spec;
-	if (m->request->scheme || spec->scheme) {
+	if (m->request->scheme || spec->asked.scheme) {
 		try_scheme(m, NULL);
 		return;
 	}
@@ -178,7 +178,7 @@ static bool is_over_budget(const struct measuring *m, const struct alternative *
 {
 	if (!m->model->needs.target || taken->step_cost <= m->model->needs.budget)
 		return false;
-	say_error(m->model->spec->budget.at, "a shorter step of a scheme of lower order may take fewer each",
+	say_error(m->model->spec->required.budget.at, "a shorter step of a scheme of lower order may take fewer each",
 		  "over budget: the cheapest that meets the need takes some %.0f instructions a step (%s), %.0f more "
 		  "than %.0f, or %.3g times as many",
 		  taken->step_cost, alternative_text(taken), taken->step_cost - m->model->needs.budget,
@@ -190,7 +190,7 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 {
 	struct measuring m = { .model = stepped, .request = request, .single = request->single,
 			       .choice = NEW(struct choice) };
-	const struct place at = stepped->spec->need[0].at;
+	const struct place at = stepped->spec->required.need[0].at;
 	if (!find_requirements(stepped))
 		return NULL;
 	m.largest = ARRAY(double, stepped->needs.requirements);

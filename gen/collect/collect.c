@@ -333,21 +333,21 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	inner.span = (struct span){ NULL, NULL };
 	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
 		inner.constant_only = true;
-	symbol->progress = COLLECTING;
-	symbol->collected = NULL;
+	symbol->made.progress = COLLECTING;
+	symbol->made.value = NULL;
 	struct value *value = collect_node(&inner, symbol->value);
 	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
 		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix",
 		      shape_text(value));
 	c->waves = inner.waves;
 	c->irrationals = inner.irrationals;
-	symbol->irrational = inner.irrational_count > c->irrational_count;
+	symbol->made.irrational = inner.irrational_count > c->irrational_count;
 	c->irrational_count = inner.irrational_count;
 	c->changes = inner.changes;
 	c->change = inner.change;
-	symbol->collected = value;
-	symbol->span = inner.span;
-	symbol->progress = inner.vanishes ? FRESH : COLLECTED;
+	symbol->made.value = value;
+	symbol->made.span = inner.span;
+	symbol->made.progress = inner.vanishes ? FRESH : COLLECTED;
 }
 
 /* A coordinate, whole or one component. */
@@ -368,11 +368,11 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 static struct value *collect_tuned(struct collector *c, struct node *node)
 {
 	const struct symbol *symbol = node->symbol;
-	if (!symbol->tunable || (c->given && symbol->derived))
+	if (!symbol->tuning.number || (c->given && symbol->tuning.derived))
 		return collect_node(c, symbol->value);
-	if (c->params == PARAMS_INPUTS && !symbol->factor)
+	if (c->params == PARAMS_INPUTS && !symbol->tuning.factor)
 		return scalar(form_unit(
-			(struct basis){ .kind = BASIS_INPUT, .index = c->inputs + symbol->acting }));
+			(struct basis){ .kind = BASIS_INPUT, .index = c->inputs + symbol->tuning.acting }));
 	if (!keeps(c))
 		not_linear(c, node, "has a tunable factor");
 	return scalar(kept_param(c, node, symbol));
@@ -395,18 +395,18 @@ static struct value *collect_name(struct collector *c, struct node *node)
 	for (int i = 0; i < c->fixings; i++)
 		if (c->fixing[i].symbol == symbol)
 			return scalar(form_constant(c->fixing[i].value));
-	const bool number = c->constant_only || (symbol->factor && c->params == PARAMS_INPUTS && !c->reading);
-	if (c->params != PARAMS_VALUES && symbol->tuned && symbol->kind != SYMBOL_LET && !number)
+	const bool number = c->constant_only || (symbol->tuning.factor && c->params == PARAMS_INPUTS && !c->reading);
+	if (c->params != PARAMS_VALUES && symbol->tuning.tuned && symbol->kind != SYMBOL_LET && !number)
 		return collect_tuned(c, node);
-	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
+	if (symbol->made.progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
-	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
+	if (symbol->made.progress == COLLECTING)     /* a let that failed before: that was told */
 		abandon();
-	if (symbol->progress != COLLECTED)
+	if (symbol->made.progress != COLLECTED)
 		collect_value(c, symbol);
-	narrow_span(c, symbol->span);
-	c->irrational_count += symbol->irrational;
-	return symbol->collected;
+	narrow_span(c, symbol->made.span);
+	c->irrational_count += symbol->made.irrational;
+	return symbol->made.value;
 }
 
 static struct value *collect_matrix(struct collector *c, struct node *node)
@@ -529,11 +529,11 @@ void forget_lets(const struct spec *spec)
 {
 	for (struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_LET)
-			s->progress = FRESH;
+			s->made.progress = FRESH;
 }
 
 void param_value(const struct symbol *param, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
-	constant_value(&collector, param->collected->cell[0], value);
+	constant_value(&collector, param->made.value->cell[0], value);
 }

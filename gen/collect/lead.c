@@ -83,8 +83,8 @@ static const struct symbol *lead_of(struct leads *leads, const struct form *rate
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = SYMBOL_PARAM,
 				   .name = format("lead%d", leads->count + 1),
-				   .tunable = leads->params + leads->count + 1,
-				   .collected = none };
+				   .tuning.number = leads->params + leads->count + 1,
+				   .made.value = none };
 	*MORE(leads->lead, leads->count) = (struct lead){ rate, symbol };
 	return symbol;
 }

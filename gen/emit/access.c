@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* init, set, get, time, status, hold: what access.h is told of the model. */
 #include "declarations.h"
-#include "kinds.h"
+#include "state.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "step/linear/forms.h"
@@ -20,7 +20,7 @@ static void emit_masses(const struct emitter *e)
 {
 	double *value = ARRAY(double, (size_t)e->system->states);
 	for (int i = 0; i < e->system->states; i++)
-		value[i] = i < e->model->n ? 1 : finite_number(e, e->step->kicks.mass[e->system->coord[i]]);
+		value[i] = i < e->model->n ? 1 : finite_number(e, e->step->linear.kicks.mass[e->system->coord[i]]);
 	emit_array(e, "Velocities are kept times these", "mass", 1, &e->system->states, value, NULL);
 }
 
@@ -61,7 +61,7 @@ static const char *elapsed_text(const struct emitter *e)
 	size_t bits = mpz_sizeinbase(p, 2), divisor_bits = mpz_sizeinbase(q, 2);
 	bool single = e->model->asked.single;
 	bool short_fraction = bits <= (single ? 12 : 40) && divisor_bits <= (single ? 24 : 53);
-	if (e->kind->own_factors || !short_fraction)
+	if (e->step->is.tuned || !short_fraction)
 		return format("(double)s->k * %s", step_length(e));
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
@@ -75,7 +75,7 @@ static void emit_tables(const struct emitter *e)
 		emit_initial(e, "initial_set", e->model->written);
 		emit_conversions(e);
 	}
-	if (e->step->kicks.momenta)
+	if (e->step->linear.kicks.momenta)
 		emit_masses(e);
 	if (has_ranges(e))
 		emit_ranges(e);
@@ -89,7 +89,7 @@ void emit_access(const struct emitter *e)
 	const struct step *step = e->step;
 	emit_tables(e);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
-		   { "NORMAL", keeps_modes(e) ? step->normal->modes : 0 }, { "MOMENTA", step->kicks.momenta },
+		   { "NORMAL", keeps_modes(e) ? step->normal->modes : 0 }, { "MOMENTA", step->linear.kicks.momenta },
 		   { "FORCED", step->forced != NULL },
 		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },
 		   { "KEPT", step->program->compensated },
@@ -99,7 +99,7 @@ void emit_access(const struct emitter *e)
 		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
-		   { "OWN", e->model->params.held || e->kind->own_factors }, { "RAMPS", e->ramps },
+		   { "OWN", e->model->params.held || e->step->is.tuned }, { "RAMPS", e->ramps },
 		   { "TAPS", most_taps_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (step->forced && step->forced->written) {

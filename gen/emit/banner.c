@@ -2,7 +2,7 @@
 /* The comment at the top: the equations, the poles, what the scheme does, what a step costs. */
 #include "emit/linear/blocks.h"
 #include "declarations.h"
-#include "kinds.h"
+#include "state.h"
 #include "steps.h"
 #include "emit/series/series.h"
 #include "emit/tunable/tunable.h"
@@ -43,7 +43,7 @@ static void banner_equations(const struct emitter *e)
 		say(e, " *     %s\n", written_text(equation[i].part, equation[i].at, equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
 		say(e, " *     %s\n", written_text(element[i].part, element[i].at, element[i].end));
-	for (int i = 0; i < spec->parts; i++)
+	for (int i = 0; i < spec->scene.parts; i++)
 		if (parts_text(spec, i))
 			say(e, "%s%s.\n", i ? " *     and " : " *\n * Of parts: ", printable(parts_text(spec, i)));
 }
@@ -190,7 +190,7 @@ static void banner_impacts(const struct emitter *e)
 /* What is held beside a series, and what strikes */
 static void banner_contacts(const struct emitter *e)
 {
-	const struct contacts *c = e->step->divided->contacts;
+	const struct contacts *c = e->step->taylor.divided->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			say(e, " *     friction %d: %s\n", friction++, printable(contact_text(e->step, i)));
@@ -201,14 +201,18 @@ static void banner_contacts(const struct emitter *e)
 /* What chooses formulas by the state */
 static void banner_divided(const struct emitter *e)
 {
-	const struct expansion *x = e->step->divided;
+	const struct expansion *x = e->step->taylor.divided;
 	if (!x)
 		return;
-	banner_sentence(e, "The state chooses formulas: %s is of those between two crossings. Where an expression "
+	banner_sentence(e,
+			"The state chooses formulas: %s is of those between two crossings. Where an expression "
 			"passes a breakpoint is the first root of its %s, found before it is stepped over; costs "
-			"below are without the search.", e->step->collocation ? "an internal step" : "a series",
-			!e->step->collocation ? "own series" : e->step->expansion ? "own series, or of its polynomial "
-			"through the nodes" : "polynomial through the start and the nodes");
+			"below are without the search.",
+			e->step->collocation ? "an internal step" : "a series",
+			!e->step->collocation	    ? "own series"
+			: e->step->taylor.expansion ? "own series, or of its polynomial "
+						      "through the nodes"
+						    : "polynomial through the start and the nodes");
 	banner_breakpoints(e, x);
 	banner_contacts(e);
 }
@@ -268,17 +272,18 @@ void banner_collocated(const struct emitter *e)
 	banner_scheme(e);
 	banner_sentence(e, "%s%d stages, of order %d; an internal step is as long as its error is below %s of the "
 			"largest value of each state so far: several h, whose states its polynomial gives, or a part "
-			"of h, of which %d are tried at most.", e->step->expansion ? "The collocation: " : "",
+			"of h, of which %d are tried at most.", e->step->taylor.expansion ? "The collocation: " : "",
 			truncation->stages, 2 * truncation->stages - 1, readable_text(truncation->tolerance),
 			truncation->substeps);
 	banner_floors(e);
 	banner_sentence(e, splits(e) ? "Newton's method with the Jacobian of its start, by the modes of its stages: "
 			"one real and %d complex systems of %d." : "Newton's method with the Jacobian at each node: "
 			"%d stages by %d unknowns.", splits(e) ? (truncation->stages - 1) / 2 : truncation->stages,
-			e->step->motion->coords);
-	if (e->step->expansion)
+			e->step->collocation->motion->coords);
+	if (e->step->taylor.expansion)
 		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
-		    e->step->iteration.multiplications, e->step->iteration.additions, e->step->iteration.calls);
+		    e->step->collocation->iteration.multiplications, e->step->collocation->iteration.additions,
+		    e->step->collocation->iteration.calls);
 	banner_divided(e);
 	tell_no_phi(e);
 }
@@ -298,8 +303,8 @@ void banner_normal(const struct emitter *e)
 	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
 			numbers_of_modes(e->step));
 	if (e->system->segments > 1 && keeps_modes(e))
-		banner_sentence(e, "Where functions of time change their formula, the method starts anew%s.", m->settled
-				? "; after the last change steps are exact" : "");
+		banner_sentence(e, "Where functions of time change their formula, the method starts anew%s.",
+				m->steady.flow ? "; after the last change steps are exact" : "");
 }
 
 /* From crossing to crossing */
@@ -348,7 +353,7 @@ void banner_regions(const struct emitter *e)
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);
-	const struct looking *look = &e->step->look;
+	const struct looking *look = &e->step->regions.look;
 	banner_sentence(e, "%s", look->swift ? format("A step is one product where a bound shows it clear of every "
 			"breakpoint; up to %d crossings that are certain go by the model's own Taylor polynomials, of "
 			"degree %d; all else by the search.", MOST_SWIFT, look->degree) : look->clears ?
@@ -359,7 +364,7 @@ void banner_regions(const struct emitter *e)
 
 static void banner_part(const struct emitter *e, int index)
 {
-	const struct step *part = e->step->part[index];
+	const struct step *part = e->step->regions.part[index];
 	const struct switching *s = part->model->switching;
 	const int *expression = e->model->switching->part[index].expression;
 	const char *text = format("part %d:", index), *divides = "";
@@ -372,8 +377,8 @@ static void banner_part(const struct emitter *e, int index)
 	else
 		say(e, " *     %s; expression%s%s; %d regions, %d different%s\n", text, s->expressions > 1 ? "s" : "",
 		    divides, possible_regions(s), s->systems,
-		    part->look.swift ? format("; polynomials of degree %d", part->look.degree)
-				: format("; every step goes by the search: %s", part->look.searches));
+		    part->regions.look.swift ? format("; polynomials of degree %d", part->regions.look.degree)
+				: format("; every step goes by the search: %s", part->regions.look.searches));
 }
 
 /* Of independent parts */
@@ -384,11 +389,11 @@ void banner_parts(const struct emitter *e)
 	       "each with\n"
 	       " * regions and crossings of its own: in each region every constant is its closed form, correctly "
 	       "rounded;\n"
-	       " * crossings inside a step are found in order, to rounding.\n", e->step->parts);
+	       " * crossings inside a step are found in order, to rounding.\n", e->step->regions.parts);
 	banner_expressions(e);
-	for (int p = 0; p < e->step->parts; p++) {
+	for (int p = 0; p < e->step->regions.parts; p++) {
 		banner_part(e, p);
-		swift = swift || e->step->part[p]->look.swift;
+		swift = swift || e->step->regions.part[p]->regions.look.swift;
 	}
 	if (swift)
 		banner_sentence(e, "A step of a part is one product where a bound shows it clear of every breakpoint; "
@@ -453,9 +458,9 @@ static void banner_form(const struct emitter *e)
 		banner_modes(e);
 	if (e->step->no.modal)
 		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no.modal);
-	if (e->step->rest)
+	if (e->step->linear.rest)
 		say(e, " * What has decayed below %s is set to rest: looked for every 64 steps, by $n_%s.\n",
-		    e->model->asked.single ? "1e-35" : "1e-290", e->step->rest->in_step ? "step" : "run");
+		    e->model->asked.single ? "1e-35" : "1e-290", e->step->linear.rest->in_step ? "step" : "run");
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carried.count)
@@ -473,10 +478,10 @@ static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	if (e->step->collocation)
-		banner_sentence(e, e->step->expansion ? "One series, which may serve several steps:"
+		banner_sentence(e, e->step->taylor.expansion ? "One series, which may serve several steps:"
 				: "One iteration of Newton's method, of which an internal step takes two to four:");
 	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions",
-	    e->kind->step_note ? e->kind->step_note : "", readable_text(e->model->h), step_form_text(e->step),
+	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), step_form_text(e->step),
 	    program->multiplications, program->additions);
 	if (e->step->anchors)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
@@ -578,7 +583,7 @@ void emit_banner(const struct emitter *e)
 	banner_equations(e);
 	banner_poles(e);
 	say(e, " *\n");
-	e->kind->banner(e);
+	e->prints->banner(e);
 	const char *irrationals = irrationals_text(&e->model->equations.irrationals);
 	if (irrationals)
 		say(e, " * %s\n", irrationals);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a header has: the struct of the state, the functions. */
 #include "declarations.h"
-#include "kinds.h"
+#include "state.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"
@@ -18,7 +18,8 @@ void announce(const struct emitter *e, const char *text, const char *comment)
 static void emit_state_struct(const struct emitter *e)
 {
 	const char *first = e->model->names.coord[0];
-	const char *momenta = e->step->kicks.momenta ? format("; velocities times mass / mass of %s", first) : "";
+	const char *momenta = e->step->linear.kicks.momenta ? format("; velocities times mass / mass of %s", first)
+							    : "";
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
 	       "    double y[$N_STATES];  /* %s%s%s */\n",
@@ -38,7 +39,7 @@ static void emit_state_struct(const struct emitter *e)
 		       "/* at the last set: the states as written, and as they are kept */\n");
 	if (e->step->forced && e->model->relative)
 		say(e, "    double start[$N_STATES];  /* what loads sustained of the states as written then */\n");
-	if (e->kind->own_factors)
+	if (e->step->is.tuned)
 		say(e, "    $n_coeffs coeffs;    /* its own */\n");
 	emit_held_member(e);
 	if (given_inputs(e))
@@ -55,7 +56,7 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    int segment;          /* of time: how many changes of the loads are past */\n");
 	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"
 	       "    uint64_t k;           /* steps since then */\n");
-	emit_if_any(e->kind->members, e);
+	emit_if_any(e->prints->members, e);
 	emit_peak_members(e);
 	if (keeps_status(e))
 		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
@@ -71,15 +72,15 @@ void declare_reading(const struct emitter *e, const char *status_note)
 
 static void declare_state_functions(const struct emitter *e)
 {
-	announce(e, spell(e, "void   $n_init($n *s);"), e->kind->own_factors
+	announce(e, spell(e, "void   $n_init($n *s);"), e->step->is.tuned
 		? "first: t = 0, the spec's initial values and coefficients" : "t = 0, the spec's initial values");
 	announce(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"),
 		"any state at any time [s]");
 	const char *note = e->model->switching && has_events(e->model->switching)
 			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED, PL_PENETRATED"
-			: e->kind->status_note;
+			: e->prints->status_note;
 	declare_reading(e, has_ranges(e) ? "0, or PL_... bits (plrt.h): PL_LEFT_RANGE among them" : note);
-	emit_if_any(e->kind->declare_state, e);
+	emit_if_any(e->prints->declare_state, e);
 	if (e->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
 			most_taps_before(e) ? "the next sample, no step" : "the previous sample");
@@ -193,10 +194,10 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	open_declarations(e, e->model->asked.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
 						    : "#include \"plrt.h\"\n\n");
 	emit_counts(e, given_inputs(e));
-	emit_if_any(e->kind->constants, e);
+	emit_if_any(e->prints->constants, e);
 	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
-	emit_if_any(e->kind->types, e);
+	emit_if_any(e->prints->types, e);
 	emit_held_types(e);
 	emit_state_struct(e);
 	emit_functions(e, rhs);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
 #include "declarations.h"
-#include "kinds.h"
+#include "state.h"
 #include "model/linear/shortening.h"
 #include "model/tunable/tuning.h"
 
@@ -18,14 +18,24 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	say(e, "};\n");
 }
 
+/* Of what is kept, in a loop */
+static bool flows_in_full(const struct step *step)
+{
+	const struct program *program = step->program;
+	bool whole = false;
+	for (int i = 0; i < program->actions; i++)
+		whole = whole || program->action[i].flow == 0;
+	return whole && program->loops;
+}
+
 /* Of the states as written; of those that are kept where a function reads it */
 void emit_phi(const struct emitter *e)
 {
 	if (e->step->shown->no.phi)
 		return;
 	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
-	const bool leaps = has_jump(e) && !e->kind->own_factors;
-	if (e->model->relative && (leaps || (e->kind->reads_phi && e->kind->reads_phi(e->step))))
+	const bool leaps = has_jump(e) && !e->step->is.tuned;
+	if (e->model->relative && (leaps || flows_in_full(e->step)))
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
 }
 

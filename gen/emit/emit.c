@@ -3,7 +3,7 @@
 #include "emit/linear/blocks.h"
 #include "declarations.h"
 #include "emit.h"
-#include "kinds.h"
+#include "state.h"
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
@@ -50,13 +50,14 @@ static bool step_reads_load(const struct emitter *e, int load)
 {
 	const struct step *step = e->step;
 	const struct splitting *split = e->model->remainder.split;
-	bool read = step->kind == KIND_TUNED;   /* for other params any may be */
+	bool read = step->is.tuned;   /* for other params any may be */
 	if (e->model->switching)
-		read = step->parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
+		read = step->regions.parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
 	for (int k = 0; step->normal && k < split->waves; k++)
 		read = read || split->wave[k].wave == e->system->load[load].wave;
-	return read || (step->cut && step->cut->look->load[load]) || (step->expansion && step->expansion->load[load]) ||
-	       (step->motion && motion_reads_load(e, load));
+	return read || (step->cut && step->cut->look->load[load]) ||
+	       (step->taylor.expansion && step->taylor.expansion->load[load]) ||
+	       (step->collocation && motion_reads_load(e, load));
 }
 
 static bool load_is_needed(const struct emitter *e, int load)
@@ -83,13 +84,13 @@ static void number_loads(struct emitter *e)
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
 	struct emitter e = {
-		.to = to, .step = step, .kind = row_of_kind(step->kind), .model = step->model,
+		.to = to, .step = step, .prints = printers_of(step), .model = step->model,
 		.system = system_of_outputs(step), .options = options, .name = step->model->name,
 		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
 		.degree = step->model->name
 	};
-	e.columns = format(step->expansion && step->expansion->columns ? "%s_STATES + %d" : "%s_STATES", e.upper,
-			   step->expansion ? step->expansion->columns : 0);
+	e.columns = format(step->taylor.expansion && step->taylor.expansion->columns ? "%s_STATES + %d" : "%s_STATES",
+			   e.upper, step->taylor.expansion ? step->taylor.expansion->columns : 0);
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].hold;
@@ -160,7 +161,7 @@ static void emit_all_tables(const struct emitter *e)
 		emit_nominal(e);                /* else with the tables of regions */
 	if (e->system->segments > 1)
 		emit_changes(e);
-	emit_if_any(e->kind->tables, e);
+	emit_if_any(e->prints->tables, e);
 	emit_peak_tables(e);
 }
 
@@ -169,7 +170,7 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 {
 	emit_block_list(e);
 	if (e->step->series.emitted)
-		emit_if_any(e->kind->at, e);
+		emit_if_any(e->prints->at, e);
 	if (has_jump(e))
 		emit_jump(e);
 	if (e->model->asked.batch && !e->model->delays)
@@ -204,10 +205,10 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_modes(e);
 	emit_access(e);
 	emit_held_retune(e);
-	emit_if_any(e->kind->pass, e);
-	if (e->step->kind == KIND_REMAINDER || reads_channels(e->model))
+	emit_if_any(e->prints->pass, e);
+	if ((e->step->is.flow == FLOW_RECIPE && !e->step->cut) || reads_channels(e->model))
 		emit_remainder(e);
-	emit_if_any(e->kind->step, e);
+	emit_if_any(e->prints->step, e);
 	emit_out(e);
 	emit_peak_step(e);
 	emit_run(e);

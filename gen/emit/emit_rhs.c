@@ -66,7 +66,7 @@ static struct tape *written_tape(const struct emitter *e)
 {
 	const struct spec *spec = e->model->spec;
 	struct tape *t = tape_new();
-	struct tape_expressions *x = tape_expressions_new(t, spec->symbols, let_name, e);
+	struct tape_expressions *x = tape_expressions_new(t, spec->count.symbols, let_name, e);
 	for (int i = 0; i < spec->equations; i++) {
 		tape_ref left = tape_expression(x, spec->equation[i].left), zero = tape_number(t, 0);
 		tape_ref right = tape_unary(t, TAPE_NEG, tape_expression(x, spec->equation[i].right));
@@ -78,7 +78,7 @@ static struct tape *written_tape(const struct emitter *e)
 
 static void emit_read_params(const struct emitter *e, const struct tape *t)
 {
-	bool *read = ARRAY(bool, (size_t)e->model->spec->symbols + 1);
+	bool *read = ARRAY(bool, (size_t)e->model->spec->count.symbols + 1);
 	RATIONAL value = ZERO;
 	tape_mark(t, TAPE_PARAM, 0, read);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
@@ -104,7 +104,7 @@ static void emit_read_states(const struct emitter *e, const struct tape *t)
 
 static void emit_read_inputs(const struct emitter *e, const struct tape *t)
 {
-	int inputs = e->model->spec->inputs;
+	int inputs = e->model->spec->count.inputs;
 	for (int order = 0; order < 2; order++) {
 		bool *read = ARRAY(bool, (size_t)inputs + 1);
 		tape_mark(t, TAPE_INPUT, order, read);

@@ -302,7 +302,7 @@ static void emit_block(const struct emitter *e)
 /* As run.h has it: 1: all at once, else one more than there are parts */
 static int rests_of(const struct emitter *e)
 {
-	const struct rest *rest = e->step->rest;
+	const struct rest *rest = e->step->linear.rest;
 	bool apart = rest && rest->parts > 1;
 	for (int i = 0; rest && i < e->system->states; i++)
 		apart = apart || rest->part[i] < 0;
@@ -312,7 +312,7 @@ static int rests_of(const struct emitter *e)
 static void emit_parts_at_rest(const struct emitter *e)
 {
 	say(e, "\n/* Which part each state is of, of those that decay by themselves; -1: of none */\n");
-	emit_integers(e, "short", "part", e->system->states, e->step->rest->part);
+	emit_integers(e, "short", "part", e->system->states, e->step->linear.rest->part);
 }
 
 void emit_run(const struct emitter *e)
@@ -331,6 +331,6 @@ void emit_run(const struct emitter *e)
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
 		   { "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
-		   { "IN_STEP", rests && e->step->rest->in_step }, { "KEPT", e->step->program->compensated });
+		   { "IN_STEP", rests && e->step->linear.rest->in_step }, { "KEPT", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");
 }

@@ -75,7 +75,7 @@ static const struct atom *choice_in(const struct form *form)
 static tape_ref above(struct tape_forms *forms, const void *context, const struct form *a, const struct form *b)
 {
 	const struct emitter *e = ((const struct formulas *)context)->e;
-	const struct expansion *x = e->step->divided;
+	const struct expansion *x = e->step->taylor.divided;
 	const struct atom *chosen = choice_in(b);
 	struct tape *t = tape_of_forms(forms);
 	struct division d;
@@ -100,7 +100,7 @@ static const char *written_operand(const struct emitter *e, const struct tape_no
 	const struct linear *system = &e->model->written->system;
 	if (n->op == TAPE_COORD)
 		return format("y[%d]", n->part ? system->velocity[n->index] : n->index);
-	if (n->index >= e->model->spec->inputs)
+	if (n->index >= e->model->spec->count.inputs)
 		return param_local(e, param_of_input(e->model->spec, n->index));
 	return format("u[%d]", n->index + n->part * given_inputs(e));
 }
@@ -141,12 +141,12 @@ static const struct tape_let *lets_of(const struct emitter *e, int *count)
 {
 	int most = 0;
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		most += s->kind == SYMBOL_LET && s->whole;
+		most += s->kind == SYMBOL_LET && s->made.whole;
 	struct tape_let *let = ARRAY(struct tape_let, (size_t)most + 1);
 	*count = 0;
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && s->whole)
-			let[(*count)++] = (struct tape_let){ c_name(e->c, s, 0), s->whole };
+		if (s->kind == SYMBOL_LET && s->made.whole)
+			let[(*count)++] = (struct tape_let){ c_name(e->c, s, 0), s->made.whole };
 	return let;
 }
 

@@ -156,7 +156,7 @@ static int place_of_written(const struct model *model, int state)
 struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local)
 {
 	struct identifiers *c = NEW(struct identifiers);
-	*c = (struct identifiers){ .model = model->name, .upper = upper, .symbols = model->spec->symbols };
+	*c = (struct identifiers){ .model = model->name, .upper = upper, .symbols = model->spec->count.symbols };
 	c->symbol = ARRAY(struct identifier, (size_t)c->symbols + 1);
 	name_symbols(c, model->spec);
 	for (int i = 0; i < model->written->system.states; i++) {

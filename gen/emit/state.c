@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The state in emitted code: its locals, what is kept of it, how it is stored and read. */
-#include "kinds.h"
 #include "emit/series/series.h"
 #include "state.h"
 #include "steps.h"
@@ -53,13 +52,13 @@ bool has_floors(const struct emitter *e)
 
 bool tells_tolerance(const struct emitter *e)
 {
-	return mpq_sgn(e->model->truncation.tolerance) != 0 && (e->step->expansion || e->step->collocation) &&
+	return mpq_sgn(e->model->truncation.tolerance) != 0 && (e->step->taylor.expansion || e->step->collocation) &&
 	       !e->model->relative && !e->model->delays;
 }
 
 bool keeps_status(const struct emitter *e)
 {
-	return e->kind->keeps_status || has_ranges(e);
+	return !is_linear_alone(e->step) || has_ranges(e);
 }
 
 bool has_jump(const struct emitter *e)
@@ -110,7 +109,7 @@ int given_inputs(const struct emitter *e)
 {
 	int given = 0;
 	for (int i = 0; i < e->system->inputs; i++)
-		given += place_of_input(e, i) < e->model->spec->inputs;
+		given += place_of_input(e, i) < e->model->spec->count.inputs;
 	return given;
 }
 
@@ -150,7 +149,7 @@ const char *input_operand(const struct emitter *e, int column)
 
 const char *input_name(const struct emitter *e, int input, int order)
 {
-	if (input >= e->model->spec->inputs)
+	if (input >= e->model->spec->count.inputs)
 		return param_local(e, param_of_input(e->model->spec, input));
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->index == input)
@@ -167,7 +166,7 @@ const char *stepped_table(const struct emitter *e, const char *table)
 /* The mass that a kept velocity is multiplied with; NULL: 1 */
 const char *factor_of_momentum(const struct emitter *e, int state)
 {
-	const struct kicks *kicks = &e->step->kicks;
+	const struct kicks *kicks = &e->step->linear.kicks;
 	if (!kicks->momenta || state < e->model->n || mpq_cmp_ui(kicks->mass[e->system->coord[state]], 1, 1) == 0)
 		return NULL;
 	return shortest(finite_number(e, kicks->mass[e->system->coord[state]]));
@@ -244,7 +243,7 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 
 const char *step_length(const struct emitter *e)
 {
-	return e->kind->own_factors ? "s->coeffs.h" : spell(e, "$N_H");
+	return e->step->is.tuned ? "s->coeffs.h" : spell(e, "$N_H");
 }
 
 /* 1/h is rounded once, as h is: a product with it is as good as a quotient by that, and cheaper. */
@@ -253,7 +252,7 @@ const char *slope_of_samples(const struct emitter *e, const char *to, const char
 	const char *gain = format("(%s - %s)", to, from);
 	RATIONAL rate = ZERO;
 	mpq_inv(rate, e->model->h);
-	bool quotient = e->kind->own_factors || beyond_range(rate);
+	bool quotient = e->step->is.tuned || beyond_range(rate);
 	return quotient ? format("%s / %s", gain, step_length(e))
 			: format("%s * %s", gain, shortest(round_rational(rate)));
 }
@@ -265,27 +264,27 @@ const char *ramp_slope(const struct emitter *e, int input)
 
 const char *of_step(const struct emitter *e, const char *table)
 {
-	return e->kind->own_factors ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
+	return e->step->is.tuned ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
 }
 
 bool has_place(const struct emitter *e)
 {
-	return e->kind->places && e->kind->places(e);
+	return e->prints->places && e->prints->places(e);
 }
 
 bool has_unseen(const struct emitter *e)
 {
-	return e->step->unseen != NULL;
+	return e->step->taylor.unseen != NULL;
 }
 
 bool traces(const struct emitter *e)
 {
-	return has_unseen(e) && e->step->unseen->unseens > 0;
+	return has_unseen(e) && e->step->taylor.unseen->unseens > 0;
 }
 
 bool crowds(const struct emitter *e)
 {
-	return has_unseen(e) && e->step->unseen->crowded > 0;
+	return has_unseen(e) && e->step->taylor.unseen->crowded > 0;
 }
 
 void open_algorithm(const struct emitter *e, const struct size *size)
@@ -356,7 +355,7 @@ void emit_nominal_params_read(const struct emitter *e, const struct reads *reads
 	bool *read = ARRAY(bool, (size_t)t->params);
 	for (int k = 0; k < t->params; k++)
 		read[k] = reads->param[k];
-	for (int i = e->model->spec->inputs; i < e->system->inputs; i++)
+	for (int i = e->model->spec->count.inputs; i < e->system->inputs; i++)
 		if (reads->input[i])
 			read[param_of_input(e->model->spec, i)] = true;
 	for (int k = 0; k < t->params; k++)
@@ -370,7 +369,7 @@ void emit_nominal_params_read(const struct emitter *e, const struct reads *reads
 
 const struct expansion *own_expansion(const struct emitter *e)
 {
-	return e->step->expansion;
+	return e->step->taylor.expansion;
 }
 
 const struct truncation *truncation_of(const struct emitter *e)

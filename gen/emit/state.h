@@ -8,6 +8,28 @@
 
 struct reads;
 
+/* ---- flows.c: what the C of a step has by its flow and events, in the order of the C ---- */
+
+struct printers {                       /* NULL: none of its own */
+	/* The comment at the top: what is approximated; before what a step costs */
+	void (*banner)(const struct emitter *e);
+	const char *step_note;
+	/* The header: constants; types before that of the state; at its end; functions */
+	void (*constants)(const struct emitter *e);
+	void (*types)(const struct emitter *e);
+	void (*members)(const struct emitter *e);
+	const char *status_note;
+	void (*declare_state)(const struct emitter *e); /* of what else the state has */
+	bool (*places)(const struct emitter *e);        /* NAME_place(s) finds what follows from a state that was set */
+	/* Tables and functions */
+	void (*tables)(const struct emitter *e);
+	void (*pass)(const struct emitter *e);          /* over what changes at a time */
+	void (*step)(const struct emitter *e);
+	void (*held)(const struct emitter *e);          /* in at: what is held over the step */
+	void (*at)(const struct emitter *e);
+};
+const struct printers *printers_of(const struct step *step);
+
 /* ---- state.c: the state in emitted code ---- */
 
 const struct expansion *own_expansion(const struct emitter *e);   /* of the step */

@@ -5,7 +5,7 @@
 
 #include "step/step.h"
 
-struct kind;
+struct printers;
 struct region_part;
 
 /* ---- text.c: what all emitters write with ---- */
@@ -13,7 +13,7 @@ struct region_part;
 struct emitter {
 	FILE *to;
 	const struct step *step;
-	const struct kind *kind;    /* of the step */
+	const struct printers *prints; /* what its step has of its own */
 	const struct model *model;
 	const struct linear *system;
 	const char *name, *upper;   /* scs, SCS */

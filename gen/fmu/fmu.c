@@ -67,7 +67,7 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
 		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
-		      step->model->spec->inputs, step->model->outputs,
+		      step->model->spec->count.inputs, step->model->outputs,
 		      tunables_of(step->model) ? tunables_of(step->model)->given : 0);
 }
 

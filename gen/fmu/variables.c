@@ -29,10 +29,10 @@ struct fmu_variables variables_of(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	const struct tuning *tuning = tunables_of(model);
 	const int params = tuning ? tuning->given : 0;
-	const int all = 1 + model->spec->inputs + model->outputs + params + system->states;
+	const int all = 1 + model->spec->count.inputs + model->outputs + params + system->states;
 	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
-	for (int i = 0; i < model->spec->inputs; i++)
+	for (int i = 0; i < model->spec->count.inputs; i++)
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
 	for (int i = 0; i < model->outputs; i++)
 		add(&v, FMU_OUTPUT, model->output[i].name, format("output.%s", model->output[i].name), 0);

@@ -40,8 +40,8 @@ int output_named(const struct model *model, const char *name)
 bool is_measured(const struct model *model)
 {
 	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.channels > 0;
-	for (int i = 0; i < model->spec->needs && !measured; i++) {
-		const int o = output_named(model, model->spec->need[i].output);
+	for (int i = 0; i < model->spec->required.needs && !measured; i++) {
+		const int o = output_named(model, model->spec->required.need[i].output);
 		const struct output *output = o < 0 ? NULL : &model->output[o];
 		measured = output && !output->peak && (output->left || !output->state);
 	}

@@ -17,6 +17,18 @@ enum flow {                         /* how a state goes on, without events */
 	FLOW_NORMAL                 /* normal modes, and what is left over as forces on them */
 };
 enum flow flow_of(const struct model *model);
+struct descriptor {                 /* what a step is made of, as its model says */
+	enum flow flow;
+	enum {
+		EVENTS_NONE,
+		EVENTS_OF_REGIONS,
+		EVENTS_SPLIT
+	} events;   /* SPLIT: the step is cut at events; else a series */
+	bool tuned; /* coefficients are of an instance, of a large step those of some blocks; else constant */
+	bool two_words;             /* accumulation */
+	bool many;                  /* width: NAME_batch too */
+	bool apart;                 /* layout: independent parts, each with regions of its own, or linear */
+};
 
 struct facts {
 #define FACT(name, is) bool name;

@@ -85,8 +85,10 @@ static void find_parts(struct delays *delays, const mpq_t *d)
 static void check_request(const struct building *b, const struct symbol *s)
 {
 	const struct facts facts = { .delays = true };
-	const bool asked[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution, [CAN_SELFTEST] = b->request->selftest,
-					   [CAN_TUNABLE] = b->spec->tunables > 0, [CAN_NEED] = b->spec->needs > 0 };
+	const bool asked[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution,
+					   [CAN_SELFTEST] = b->request->selftest,
+					   [CAN_TUNABLE] = b->spec->tunables > 0,
+					   [CAN_NEED] = b->spec->required.needs > 0 };
 	for (int k = 0; k < CAPABILITIES; k++)
 		if (asked[k])
 			error(s->at, NULL, "%s%s", words_before(k), objection_to(k, &facts, b->model).why);
@@ -103,10 +105,10 @@ static void build_delays(void *context)
 	check_request(b, s);
 	number_inputs(spec);
 	delays->name = b->model->name;
-	delays->delay = ARRAY(struct delay, spec->inputs);
+	delays->delay = ARRAY(struct delay, spec->count.inputs);
 	mpq_init(delays->h);
 	mpq_set(delays->h, b->model->h);
-	mpq_t *d = rationals(spec->inputs);
+	mpq_t *d = rationals(spec->count.inputs);
 	bool good = true;
 	for (; s; s = next_delayed(s->next)) {
 		struct delaying work = { b, s, d[delays->count] };
@@ -116,7 +118,7 @@ static void build_delays(void *context)
 	if (!good)
 		abandon();
 	find_parts(delays, d);
-	delays->inputs = spec->inputs - delays->count;
+	delays->inputs = spec->count.inputs - delays->count;
 	b->model->delays = delays;
 	b->model->name = format("%s_core", delays->name);
 	RATIONAL parts = ZERO;

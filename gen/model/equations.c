@@ -226,7 +226,7 @@ static void tell_missing(const struct building *b, int missing, int all)
 			coords++;
 			owned += b->owner[j] >= 0;
 		}
-	if (b->spec->parts == 0) {
+	if (b->spec->scene.parts == 0) {
 		coords = n;
 		owned = all;
 	}
@@ -271,7 +271,7 @@ bool assign_equations(struct building *b)
 static void combine_residuals(const struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
-	int written = b->spec->components;
+	int written = b->spec->count.components;
 	struct form **equation = ARRAY(struct form *, written);
 	for (int j = 0; j < written; j++)
 		equation[j] = s->residual[b->owner[j]].form;
@@ -286,7 +286,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 void add_elements(struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
-	int written = b->spec->components;
+	int written = b->spec->count.components;
 	while (s->residuals < written)
 		add_residual(s, NEW(struct form), b->spec->element[0].at, b->spec->element[0].end);
 	for (int i = 0; i < b->spec->elements; i++) {
@@ -361,7 +361,7 @@ void collect_whole(struct building *b)
 	if (!diagnostics_errors())
 		add_elements(b, b->whole);
 	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
-		if (s->kind == SYMBOL_LET && s->progress == COLLECTED &&
-		    s->collected->rows * s->collected->columns == 1)
-			s->whole = s->collected->cell[0];
+		if (s->kind == SYMBOL_LET && s->made.progress == COLLECTED &&
+		    s->made.value->rows * s->made.value->columns == 1)
+			s->made.whole = s->made.value->cell[0];
 }

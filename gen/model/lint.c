@@ -113,8 +113,8 @@ static const struct symbol *negative_param(const struct node *node, int *left)
 		return NULL;
 	if (symbol && symbol->kind == SYMBOL_LET)
 		return negative_param(symbol->value, left);
-	if (symbol && symbol->kind == SYMBOL_PARAM && symbol->progress == COLLECTED && symbol->collected->rows == 1 &&
-	    symbol->collected->columns == 1) {
+	if (symbol && symbol->kind == SYMBOL_PARAM && symbol->made.progress == COLLECTED &&
+	    symbol->made.value->rows == 1 && symbol->made.value->columns == 1) {
 		RATIONAL value = ZERO;
 		param_value(symbol, value);
 		found = mpq_sgn(value) < 0 ? symbol : NULL;

@@ -84,7 +84,7 @@ static void evaluate_params(struct building *b)
 								     : statement_failed(s);
 		if ((s->kind != SYMBOL_PARAM && s->kind != SYMBOL_MATRIX) || s->broken)
 			continue;
-		if (s->progress == COLLECTING || failed ||
+		if (s->made.progress == COLLECTING || failed ||
 		    !statement_guard(evaluate_symbol, &(struct symbol_work){ b, s }))
 			s->broken = true;
 	}
@@ -96,7 +96,7 @@ static void evaluate_lets(struct building *b)
 {
 	b->collector.tolerant = true;
 	for (struct symbol *s = b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && !s->broken && s->progress != COLLECTED)
+		if (s->kind == SYMBOL_LET && !s->broken && s->made.progress != COLLECTED)
 			statement_guard(evaluate_symbol, &(struct symbol_work){ b, s });
 	b->collector.tolerant = false;
 }
@@ -108,14 +108,16 @@ static void choose_scheme(void *context)
 {
 	struct building *b = context;
 	const char *asked = b->request->scheme, *blank = asked ? strchr(asked, ' ') : NULL;
-	const char *wanted = blank ? format("%.*s", (int)(blank - asked), asked) : asked ? asked : b->spec->scheme;
+	const char *wanted = blank   ? format("%.*s", (int)(blank - asked), asked)
+			     : asked ? asked
+				     : b->spec->asked.scheme;
 	b->collector.scheme = "exact";
 	b->collector.closed = b->request->solution;
 	b->collector.keep = wanted || b->request->solution ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
-	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->scheme_at;
-	struct node *order = asked ? NULL : b->spec->scheme_order, *over = asked ? NULL : b->spec->scheme_over;
+	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->asked.scheme_at;
+	struct node *order = asked ? NULL : b->spec->asked.order, *over = asked ? NULL : b->spec->asked.over;
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
@@ -136,8 +138,8 @@ static void choose_scheme(void *context)
 static void evaluate_step(void *context)
 {
 	struct building *b = context;
-	struct place at = b->spec->step_at;
-	struct node *node = asked_or_written(b, b->request->step, b->spec->step, &at);
+	struct place at = b->spec->asked.step_at;
+	struct node *node = asked_or_written(b, b->request->step, b->spec->asked.step, &at);
 	b->model->asked.step_at = b->model->asked.end_at = at;
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
@@ -220,8 +222,8 @@ static void name_coordinates(struct building *b)
 		name_relative(b);
 		return;
 	}
-	size_t n = (size_t)b->spec->components;
-	model->n = model->system.n = b->spec->components;
+	size_t n = (size_t)b->spec->count.components;
+	model->n = model->system.n = b->spec->count.components;
 	model->frame.coord = ARRAY(struct symbol *, n);
 	model->names.coord = ARRAY(const char *, n);
 	for (struct symbol *s = b->spec->first; s; s = s->next) {
@@ -280,9 +282,9 @@ static void check_prefix(const struct building *b)
 static void check_parts(const struct building *b)
 {
 	const struct spec *spec = b->spec;
-	if (spec->coords == 0)
+	if (spec->count.coords == 0)
 		say_error(spec->end, "coord x", "missing coordinates: there is no statement 'coord'");
-	if (!spec->step && !b->request->step)
+	if (!spec->asked.step && !b->request->step)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (b->model->system.states > LIMIT_STATES)
 		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d",
@@ -355,8 +357,8 @@ static void part_factors(struct building *b)
 			     : request->find_factors ? request->find_factors(b)
 						     : ARRAY(bool, b->spec->tunables);
 	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
-		b->spec->tunable[i].symbol->factor = factor[i];
-		b->spec->tunable[i].symbol->acting = factor[i] ? acting : acting++;
+		b->spec->tunable[i].symbol->tuning.factor = factor[i];
+		b->spec->tunable[i].symbol->tuning.acting = factor[i] ? acting : acting++;
 		if (factor[i])
 			b->factor = b->model->params.factor = factor;
 	}
@@ -408,7 +410,7 @@ static void collect_with_params(struct building *b)
 	b->nominals = c->changes + 1;
 	b->model->params.kept = true;
 	c->params = left ? PARAMS_ATOMS : PARAMS_INPUTS;
-	c->inputs = b->spec->inputs;
+	c->inputs = b->spec->count.inputs;
 	c->keep = left ? KEEP_ALL : KEEP_PIECEWISE;
 	c->changes = 0;
 	c->change = NULL;
@@ -437,7 +439,7 @@ static void begin_model(struct building *b)
 	model->name = request->prefix ? request->prefix : b->spec->name;
 	mpq_init(model->h);
 	for (struct symbol *s = b->spec->first; s; s = s->next)
-		s->whole = NULL;
+		s->made.whole = NULL;
 	b->polynomial = wave_of(&b->collector, zero, zero, zero);
 }
 
@@ -495,7 +497,7 @@ static void collect_model(struct building *b)
 	if (all && !model->relative)
 		evaluate_ranges(b);
 	evaluate_param_ranges(b);
-	if (all && (b->spec->step || request->step))
+	if (all && (b->spec->asked.step || request->step))
 		statement_guard(evaluate_step, b);
 	b->collector.constant_only = false;
 	find_delays(b);

@@ -125,7 +125,7 @@ static void find_requirement(void *context)
 static void find_budget(void *context)
 {
 	struct model *model = context;
-	const struct budget *budget = &model->spec->budget;
+	const struct budget *budget = &model->spec->required.budget;
 	RATIONAL instructions = ZERO;
 	if (model->needs.requirements == 0)
 		error(budget->at, "need OUTPUT within BOUND until END",
@@ -146,13 +146,13 @@ bool find_requirements(struct model *model)
 {
 	const struct spec *spec = model->spec;
 	bool good = true;
-	model->needs.requirement = ARRAY(struct requirement, spec->needs);
-	model->needs.requirements = spec->needs;
-	for (int i = 0; i < spec->needs; i++) {
-		struct finding f = { model, &spec->need[i], &model->needs.requirement[i] };
+	model->needs.requirement = ARRAY(struct requirement, spec->required.needs);
+	model->needs.requirements = spec->required.needs;
+	for (int i = 0; i < spec->required.needs; i++) {
+		struct finding f = { model, &spec->required.need[i], &model->needs.requirement[i] };
 		good = statement_guard(find_requirement, &f) && good;
 	}
-	if (spec->budget.instructions)
+	if (spec->required.budget.instructions)
 		good = statement_guard(find_budget, model) && good;
 	return good;
 }

@@ -126,7 +126,7 @@ static const char *component_name(const char *name, int component)
 void collect_outputs(struct building *b, struct snapshot *snapshot)
 {
 	int index = 0;
-	snapshot->output = ARRAY(struct value *, b->spec->outputs);
+	snapshot->output = ARRAY(struct value *, b->spec->count.outputs);
 	b->collector.tolerant = b->collector.reading = true;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		struct output_work work = { b, s, NULL };
@@ -165,9 +165,9 @@ static void collect_left(void *context)
 	c->keep = (unsigned)keep;
 	c->whole_time = c->output = c->reading = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED &&
-		    s->collected->rows * s->collected->columns == 1)
-			s->whole = s->collected->cell[0];
+		if (s->kind == SYMBOL_LET && !s->made.whole && s->made.progress == COLLECTED &&
+		    s->made.value->rows * s->made.value->columns == 1)
+			s->made.whole = s->made.value->cell[0];
 }
 
 /* The friction of what has no mass is what it bears: then it may be a row after all. */
@@ -209,7 +209,7 @@ static void name_outputs(struct building *b)
 		}
 		index++;
 	}
-	model->declared_outputs = b->spec->outputs > 0;
+	model->declared_outputs = b->spec->count.outputs > 0;
 	const struct model *written = model->relative ? model->relative->written : model;
 	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
 		add_output(model, written->names.state[i], NULL, NULL);

@@ -43,7 +43,7 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		seen[atom->index] = true;
 		reading->math = reading->math || calls_libm(atom);
 		if (atom->kind == ATOM_PARAM)
-			reading->param[atom->param->tunable - 1] = true;
+			reading->param[atom->param->tuning.number - 1] = true;
 		/* that is a row of its region */
 		bool friction = atom->kind == ATOM_CALL && atom->function >= FN_FRICTION;
 		for (int k = 0; k < atom->operands && !friction; k++)

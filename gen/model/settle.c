@@ -112,7 +112,7 @@ bool leaves_over(const struct building *b)
 	if (!b->model->asked.scheme_at.source)
 		return !demands.piecewise;
 	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
-	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->has_operator);
+	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->operators.given);
 }
 
 bool needs_regions(const struct building *b)
@@ -269,7 +269,7 @@ static enum scheme scheme_of_choice(const struct building *b)
 		return SCHEME_TAYLOR;           /* no other goes from event to event */
 	if (b->request->passed_over || b->request->loads_left)
 		return default_scheme();
-	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
+	return !b->spec->operators.given ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
 /* By a Taylor series or a collocation, from event to event: where it was asked for, or scheme exact cannot */
@@ -351,7 +351,7 @@ static bool settle_scheme(struct building *b)
 		return statement_guard(tell_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);
-	if (!linear || b->request->loads_left || b->spec->has_operator)
+	if (!linear || b->request->loads_left || b->spec->operators.given)
 		collect_whole(b);
 	/* in normal modes known loads are forces like others */
 	model->remainder.loads = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);

@@ -46,8 +46,9 @@ static const char *spell_form(struct spelling *s, const struct form *form);
 static const char *let_of(const struct model *model, const struct atom *atom)
 {
 	for (const struct symbol *s = model->spec->first; s; s = s->next) {
-		const struct form_term *only =
-			s->kind == SYMBOL_LET && s->whole && s->whole->terms == 1 ? s->whole->term : NULL;
+		const struct form_term *only = s->kind == SYMBOL_LET && s->made.whole && s->made.whole->terms == 1
+						       ? s->made.whole->term
+						       : NULL;
 		if (only && only->basis.atom == atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
 			return s->name;
 	}
@@ -154,7 +155,8 @@ static const char *add_term(struct spelling *s, const char *text, const struct f
 /* It is 0 but where a frequency was changed: nobody wrote it. */
 static bool is_lead(const struct model *model, const struct basis *basis)
 {
-	return basis->atom && basis->atom->kind == ATOM_PARAM && basis->atom->param->tunable > model->spec->tunables;
+	return basis->atom && basis->atom->kind == ATOM_PARAM &&
+	       basis->atom->param->tuning.number > model->spec->tunables;
 }
 
 static const char *spell_form(struct spelling *s, const struct form *form)

@@ -317,7 +317,7 @@ static void check_softness(struct jacobian *j)
 	}
 	if (worst.here <= worst.operator)
 		return;
-	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b),
+	say_warning(b->spec->operators.given ? b->spec->operators.at : scheme_place(b),
 		    format("what is left over then drives the motion%s; fix the operator where the model is stiffest",
 			   growth_text(model, worst.here - worst.operator)),
 		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the "
@@ -363,21 +363,21 @@ static void check_truncation(const struct building *b)
 				  : format("scheme %s does not look at its error", scheme_name(model->scheme));
 	bool expands = scheme_row(model->scheme)->expands;
 	const char *asked = b->request->tolerance;
-	if ((asked || b->spec->tolerance) && !expands)
-		say_warning(asked ? (struct place){ source_argument(asked), 0 } : b->spec->tolerance->start, NULL,
+	if ((asked || b->spec->asked.tolerance) && !expands)
+		say_warning(asked ? (struct place){ source_argument(asked), 0 } : b->spec->asked.tolerance->start, NULL,
 			    "the tolerance has no effect: %s", why);
-	else if (b->spec->absolutes > 0 && mpq_sgn(model->truncation.tolerance) == 0)
-		say_warning(b->spec->absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
-	if (b->spec->substeps && !model->truncation.adaptive)
-		say_warning(b->spec->substeps->start, NULL, "the bound on substeps has no effect: %s", why);
+	else if (b->spec->asked.absolutes > 0 && mpq_sgn(model->truncation.tolerance) == 0)
+		say_warning(b->spec->asked.absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
+	if (b->spec->asked.substeps && !model->truncation.adaptive)
+		say_warning(b->spec->asked.substeps->start, NULL, "the bound on substeps has no effect: %s", why);
 }
 
 static void check_need(const struct building *b, bool left)
 {
 	const struct model *model = b->model;
 	const struct scheme_row *scheme = scheme_row(model->scheme);
-	if (b->spec->has_operator && (!scheme->leaves || !left || scheme->expands))
-		say_warning(b->spec->operator_at, NULL, "the operator has no effect: %s",
+	if (b->spec->operators.given && (!scheme->leaves || !left || scheme->expands))
+		say_warning(b->spec->operators.at, NULL, "the operator has no effect: %s",
 			    scheme->holds_coupling
 				    ? format("that of scheme %s is each coordinate's own terms", scheme->name)
 			    : scheme->collocates ? format("scheme %s takes the whole right side as it is", scheme->name)
@@ -494,7 +494,7 @@ void warn(struct building *b)
 	bool left = model->remainder.channels > 0;
 	struct jacobian j = { .b = b };
 	lint(b);
-	if (left && model->nonlinear.obstacle && b->spec->needs == 0)     /* else the scheme is chosen */
+	if (left && model->nonlinear.obstacle && b->spec->required.needs == 0)     /* else the scheme is chosen */
 		say_note(model->nonlinear.obstacle->start, "scheme %s%s, not exact: '%s' %s%s",
 			 scheme_name(model->scheme),
 			 model->truncation.adaptive

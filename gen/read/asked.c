@@ -53,10 +53,11 @@ void read_range(struct parser *p)
 static void read_absolutes(struct parser *p)
 {
 	do {
-		struct state_bound absolute = read_bound_name(p, p->own->absolutes, p->own->absolute_of, "tolerance");
+		struct state_bound absolute = read_bound_name(p, p->own->asked.absolutes, p->own->asked.absolute_of,
+							      "tolerance");
 		expect_op(p, "=", "'='");
 		absolute.low = read_expression(p);
-		add_bound(&p->own->absolute_of, &p->own->absolutes, absolute);
+		add_bound(&p->own->asked.absolute_of, &p->own->asked.absolutes, absolute);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -69,12 +70,12 @@ void read_tolerance(struct parser *p)
 		read_absolutes(p);
 		return;
 	}
-	if (p->own->tolerance)
+	if (p->own->asked.tolerance)
 		error(at, NULL, "the tolerance is given already");
-	p->own->tolerance = read_expression(p);
+	p->own->asked.tolerance = read_expression(p);
 	if (take_op(p, ",")) {
 		expect_word(p, "absolute");
-		p->own->absolute = read_expression(p);
+		p->own->asked.absolute = read_expression(p);
 	}
 	expect_end(p);
 }
@@ -83,9 +84,9 @@ void read_tolerance(struct parser *p)
 void read_substeps(struct parser *p)
 {
 	struct place at = last_token(p, strlen("substeps"));
-	if (p->own->substeps)
+	if (p->own->asked.substeps)
 		error(at, NULL, "the substeps are given already");
-	p->own->substeps = read_expression(p);
+	p->own->asked.substeps = read_expression(p);
 	expect_end(p);
 }
 
@@ -144,14 +145,14 @@ static struct fixed *read_fixed_name(struct parser *p)
 	if (token.primes > 1 || (name && name->primes > 1))
 		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
 		      "an acceleration cannot be fixed");
-	for (int i = 0; i < spec->fixeds; i++) {
-		const struct fixed *other = &spec->fixed[i];
+	for (int i = 0; i < spec->operators.fixeds; i++) {
+		const struct fixed *other = &spec->operators.fixed[i];
 		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&
 			    (!other->component || !name->component || other->component == name->component)));
 		if (same)
 			error(token.at, NULL, "%s is fixed already", text_between(token.at, p->end));
 	}
-	struct fixed *fixed = MORE(spec->fixed, spec->fixeds);
+	struct fixed *fixed = MORE(spec->operators.fixed, spec->operators.fixeds);
 	*fixed = (struct fixed){ .at = token.at, .end = p->end, .symbol = symbol };
 	fixed->primes = name ? name->primes : 0;
 	fixed->component = name ? name->component : 0;
@@ -164,12 +165,12 @@ void read_operator(struct parser *p)
 	struct spec *spec = p->own;
 	struct place at = last_token(p, 8);
 	struct fixed *fixed = NULL;
-	if (spec->has_operator)
+	if (spec->operators.given)
 		error(at, NULL, "the operator is given already");
-	spec->has_operator = true;
-	spec->operator_at = at;
+	spec->operators.given = true;
+	spec->operators.at = at;
 	if (p->token.kind == TOKEN_NUMBER)
-		spec->operator_count = read_expression(p);
+		spec->operators.count = read_expression(p);
 	expect_word(p, "at");
 	do {
 		if (!fixed || names_definition(p)) {
@@ -197,15 +198,15 @@ void read_tunable(struct parser *p)
 		if (symbol->kind != SYMBOL_PARAM)
 			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param",
 			      symbol_kind(symbol), symbol->name);
-		if (symbol->tuned)
+		if (symbol->tuning.tuned)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
 		if (spec->tunables == LIMIT_TUNABLES)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
 		struct tunable tunable = { token.at, symbol, NULL, NULL };
 		if (take_word(p, "in"))
 			read_interval(p, "tunable k", &tunable.low, &tunable.high);
-		symbol->tuned = true;
-		symbol->tunable = spec->tunables + 1;
+		symbol->tuning.tuned = true;
+		symbol->tuning.number = spec->tunables + 1;
 		*MORE(spec->tunable, spec->tunables) = tunable;
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -260,13 +261,13 @@ void read_need(struct parser *p)
 		} while (take_op(p, ","));
 	}
 	expect_end(p);
-	*MORE(p->own->need, p->own->needs) = need;
+	*MORE(p->own->required.need, p->own->required.needs) = need;
 }
 
 /* budget: budget expression instructions on TARGET; a target has hyphens in its name */
 void read_budget(struct parser *p)
 {
-	struct budget *budget = &p->own->budget;
+	struct budget *budget = &p->own->required.budget;
 	struct place at = last_token(p, 6);
 	if (budget->instructions)
 		error(at, NULL, "the budget is given already");

@@ -96,8 +96,8 @@ static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, 
 				    .when = read_expression(p) };
 	expect_op(p, ")", "')' or an operator");
 	p->nesting--;
-	delayed->index = spec->inputs++;
-	delayed->name = format("%s.delayed%d", symbol->name, ++spec->delays);
+	delayed->index = spec->count.inputs++;
+	delayed->name = format("%s.delayed%d", symbol->name, ++spec->count.delays);
 	add_symbol(spec, delayed);
 	return delayed;
 }

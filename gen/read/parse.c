@@ -7,8 +7,8 @@
 /* By a file that stands on this one */
 static void read_part(struct parser *p)
 {
-	p->spec->uses = p->lexer.points = true;
-	p->spec->reader->read(p);
+	p->spec->scene.uses = p->lexer.points = true;
+	p->spec->scene.reader->read(p);
 }
 
 static const struct statement {
@@ -172,7 +172,7 @@ static void declare_what_failed(struct parser *p, size_t from)
 		    (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
 	if (statement && statement->read == read_part)
-		p->spec->reader->failed(p, after);
+		p->spec->scene.reader->failed(p, after);
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
 			   statement->read != read_output && statement->read != read_matrix_statement))
@@ -247,7 +247,8 @@ void parse_statements(struct spec *spec, struct spec *own, struct scene_part *pa
 	while (position < source->length) {
 		size_t unclosed, from = position;
 		struct parser p = { .spec = spec, .own = own, .part = part, .goes_on = goes_on };
-		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->uses, false };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->scene.uses,
+					  false };
 		position = p.lexer.end + 1;
 		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
 			from = ++i;
@@ -277,7 +278,7 @@ struct spec *parse_whole(const struct source *source, const struct part_reader *
 {
 	struct spec *spec = NEW(struct spec);
 	spec->source = source;
-	spec->reader = reader;
+	spec->scene.reader = reader;
 	spec->last = &spec->first;
 	spec->bucket = ARRAY(struct symbol *, BUCKETS);
 	spec->end = place_end(source);
@@ -304,7 +305,7 @@ static void read_argument(void *context)
 struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over)
 {
 	struct argument argument = { .parser = { .spec = spec, .own = spec }, .over = over };
-	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses, false };
+	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->scene.uses, false };
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }

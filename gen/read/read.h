@@ -80,6 +80,22 @@ struct node {
 struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX,
 		   SYMBOL_PART_OUTPUT, SYMBOL_PART };
+struct symbol_tuning {
+	/* it is tunable, or made of something that is; of that: check_tuned has looked through its value */
+	bool tuned, checked;
+	unsigned made_of;           /* given tunables, a bit each; 0: not looked at yet */
+	int number;                 /* in the statements `tunable`, from 1; 0: it stands in none */
+	bool derived;               /* of these: it follows from others; else, derived.c has looked through its value */
+	bool factor;                /* tunable, and in regions no input: it changes their matrices; */
+	int acting;                 /* else its number among those that act as inputs */
+};
+struct symbol_value {               /* its `value`, collected */
+	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct value *value;        /* if COLLECTED */
+	struct span span;           /* when it holds, */
+	bool irrational;            /* something in it has become a rational */
+	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
+};
 struct symbol {
 	enum symbol_kind kind;
 	int number;                 /* 1, 2, ... in the order of declaration; 0: no statement declares it */
@@ -92,13 +108,7 @@ struct symbol {
 	int length;                 /* of a vector coordinate; 0: scalar */
 	bool used;                  /* some expression reads it */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
-	/* it is tunable, or made of something that is; of that: check_tuned has looked through its value */
-	bool tuned, tuning_checked;
-	unsigned made_of;           /* given tunables, a bit each; 0: not looked at yet */
-	int tunable;                /* its number in the statements `tunable`, from 1; 0: it stands in none */
-	bool derived;               /* of these: it follows from others; else, derived.c has looked through its value */
-	bool factor;                /* tunable, and in regions no input: it changes their matrices; */
-	int acting;                 /* else its number among those that act as inputs */
+	struct symbol_tuning tuning;
 	int hold;                   /* of an input: degree of what goes through its samples; 0: held */
 	/* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
 	int highest;
@@ -109,12 +119,8 @@ struct symbol {
 	const struct symbol *delayed;
 	struct node *when;
 	struct node *value;         /* of param, let, output */
-	struct value *collected;    /* value, when COLLECTED */
-	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
-	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct symbol_value made;
 	struct symbol *next_alike;  /* of the same bucket */
-	struct span span;           /* when it holds, if COLLECTED */
-	bool irrational;            /* something in it has become a rational, if COLLECTED */
 	struct symbol *next;
 };
 struct equation {
@@ -205,54 +211,63 @@ struct budget {                     /* budget N instructions on TARGET */
 	struct node *instructions;  /* NULL: there is none */
 	struct token target;
 };
-struct spec {                       /* what the text says, names resolved, nothing evaluated */
-	const struct source *source;
-	const char *name;
-	struct place name_at;
-	int delays;                 /* of the inputs, those that are others some time ago */
-	struct symbol *first, **last;   /* all symbols in the order of declaration */
-	struct symbol **bucket;         /* the same by name */
-	int components;                 /* of all coordinates together */
-	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
-	bool uses;                  /* it has a statement `use` */
-	bool lacks_coords;          /* there is no coordinate, and that was told */
-	const struct part_reader *reader;
-	int parts;                  /* in the order of `use`, those inside a part after it */
-	struct scene_part **part;
-	int unseen;                 /* states of parts that no output sees, and their names */
-	const char **unseen_name;
-	int equations;
-	struct equation *equation;
-	int elements;
-	struct element *element;
-	int whens;                      /* in the order in which they act at one instant */
-	struct when *when;
-	int files;                      /* data files, for the dependency file */
-	const char **file;
-	int initials;
-	struct initial *initial;
+struct asked_scheme {
 	struct node *step;
 	struct place step_at;
 	const char *scheme;
 	struct place scheme_at;
 	/* of a scheme in powers of h: its order, as an expression; the steps that one expansion is over; the error that
 	 * a step may make; the most steps within one h. NULL: not given */
-	struct node *scheme_order, *scheme_over, *tolerance, *substeps;
+	struct node *order, *over, *tolerance, *substeps;
 	struct node *absolute;      /* behind the tolerance: what a step may add to any state; NULL: not given */
 	int absolutes;
 	struct state_bound *absolute_of;  /* the same of some states */
-	int ranges;
-	struct state_bound *range;
-	bool has_operator;
-	struct node *operator_count; /* of a bank between two values; NULL: each has a value of its own */
-	struct place operator_at;
+};
+struct asked_operators {
+	bool given;
+	struct node *count;         /* of a bank between two values; NULL: each has a value of its own */
+	struct place at;
 	int fixeds;
 	struct fixed *fixed;
+};
+struct spec_counts {
+	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
+	int components;             /* of all coordinates together */
+	int delays;                 /* of the inputs, those that are others some time ago */
+};
+struct scene {
+	bool uses;                  /* there is a statement `use` */
+	const struct part_reader *reader;
+	int parts;                  /* in the order of `use`, those inside a part after it */
+	struct scene_part **part;
+	int unseen;                 /* states of parts that no output sees, and their names */
+	const char **unseen_name;
+};
+struct spec {                       /* what the text says, names resolved, nothing evaluated */
+	const struct source *source;
+	const char *name;
+	struct place name_at;
+	struct symbol *first, **last;   /* all symbols in the order of declaration */
+	struct symbol **bucket;         /* the same by name */
+	struct spec_counts count;
+	struct scene scene;
+	bool lacks_coords;          /* there is no coordinate, and that was told */
+	int equations;
+	struct equation *equation;
+	int elements;
+	struct element *element;
+	int whens;                      /* in the order in which they act at one instant */
+	struct when *when;
+	struct { int files; const char **file; } data;  /* for the dependency file */
+	int initials;
+	struct initial *initial;
+	struct asked_scheme asked;
+	int ranges;
+	struct state_bound *range;
+	struct asked_operators operators;
 	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
 	struct tunable *tunable;
-	int needs;
-	struct need *need;
-	struct budget budget;
+	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	struct place end;
 };

@@ -45,8 +45,10 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 	if (known)
 		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name,
 		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", symbol_kind(known));
-	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices,
-			  &spec->part_outputs, &spec->part_names };
+	int *counts[] = {
+		&spec->count.params, &spec->count.coords,   &spec->count.lets,	       &spec->count.outputs,
+		&spec->count.inputs, &spec->count.matrices, &spec->count.part_outputs, &spec->count.part_names
+	};
 	const char *whole = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
 	if (kind != SYMBOL_PART && !broken)
 		check_name_in_c(p, whole, name.at);
@@ -109,10 +111,10 @@ void read_let(struct parser *p)
 
 void add_file(struct spec *spec, const char *path)
 {
-	for (int i = 0; i < spec->files; i++)
-		if (strcmp(spec->file[i], path) == 0)
+	for (int i = 0; i < spec->data.files; i++)
+		if (strcmp(spec->data.file[i], path) == 0)
 			return;
-	*MORE(spec->file, spec->files) = path;
+	*MORE(spec->data.file, spec->data.files) = path;
 }
 
 /* A file that a text names stands beside it unless its path is absolute. */
@@ -182,8 +184,8 @@ void read_coord(struct parser *p)
 			error(name.at, NULL, "a coordinate is declared without primes");
 		struct symbol *symbol = declare(p, name, SYMBOL_COORD, false);
 		symbol->length = length;
-		symbol->index = p->spec->components;
-		p->spec->components += length ? length : 1;
+		symbol->index = p->spec->count.components;
+		p->spec->count.components += length ? length : 1;
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -312,7 +314,7 @@ static void read_plain_output(struct parser *p, struct token name)
 	*symbol = (struct symbol){
 		.kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value
 	};
-	symbol->index = p->spec->outputs++;
+	symbol->index = p->spec->count.outputs++;
 	symbol->peak = peak;
 	value->end = p->end;
 	add_symbol(p->spec, symbol);
@@ -370,10 +372,10 @@ void read_output(struct parser *p)
 void read_step(struct parser *p)
 {
 	struct place at = last_token(p, 4);
-	if (p->own->step)
+	if (p->own->asked.step)
 		error(at, NULL, "the step is given already");
-	p->own->step_at = p->token.at;
-	p->own->step = read_expression(p);
+	p->own->asked.step_at = p->token.at;
+	p->own->asked.step = read_expression(p);
 	expect_end(p);
 }
 
@@ -392,17 +394,17 @@ struct node *take_order(struct parser *p, struct node **over)
 void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);
-	if (p->own->scheme)
+	if (p->own->asked.scheme)
 		error(at, NULL, "the scheme is given already");
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
 		unexpected(p, "the name of a scheme");
 	struct token name = take(p);
-	p->own->scheme_at = name.at;
+	p->own->asked.scheme_at = name.at;
 	enum scheme scheme;
 	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
 	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
 		/* a number behind another scheme is told later */
-		p->own->scheme_order = take_order(p, &p->own->scheme_over);
+		p->own->asked.order = take_order(p, &p->own->asked.over);
 	expect_end(p);
-	p->own->scheme = name.name;
+	p->own->asked.scheme = name.name;
 }

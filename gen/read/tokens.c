@@ -124,7 +124,7 @@ struct symbol *find_symbol(const struct parser *p, const char *name)
 /* Behind all others: of equal names the first is found. */
 void add_symbol(struct spec *spec, struct symbol *symbol)
 {
-	symbol->number = ++spec->symbols;
+	symbol->number = ++spec->count.symbols;
 	*spec->last = symbol;
 	spec->last = &symbol->next;
 	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];
@@ -203,7 +203,7 @@ static const char *part_note(const struct parser *p, const char *name)
 static bool lacks_coordinates(const struct parser *p, struct token name)
 {
 	const char *text = p->lexer.source->text;
-	if (p->spec->coords > 0 || p->part)
+	if (p->spec->count.coords > 0 || p->part)
 		return false;
 	for (const char *line = text; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL)
 		if (begins(line + strspn(line, " \t"), "coord"))

@@ -119,14 +119,14 @@ static void follow(struct sight *sight, const struct tie *tie)
 static void find_unseen_parts(struct sight *sight)
 {
 	struct spec *spec = sight->spec;
-	for (int i = 0; i < spec->parts; i++) {
+	for (int i = 0; i < spec->scene.parts; i++) {
 		bool any = false, seen = false;
 		for (const struct symbol *s = spec->first; s; s = s->next)
-			if (s->kind == SYMBOL_COORD && s->part == spec->part[i]) {
+			if (s->kind == SYMBOL_COORD && s->part == spec->scene.part[i]) {
 				any = true;
 				seen = seen || sight->seen[s->number];
 			}
-		spec->part[i]->unseen = any && !seen;
+		spec->scene.part[i]->unseen = any && !seen;
 	}
 }
 
@@ -168,7 +168,7 @@ static void name_unseen(struct spec *spec, const struct symbol *coord)
 	int count = coord->length ? coord->length : 1;
 	for (int k = 0; k < (has_velocity(spec, coord) ? 2 : 1) * count; k++) {
 		const char *prime = k < count ? "" : "'";
-		*MORE(spec->unseen_name, spec->unseen) =
+		*MORE(spec->scene.unseen_name, spec->scene.unseen) =
 			coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
 				      : format("%s%s", coord->name, prime);
 	}
@@ -178,24 +178,24 @@ static void name_unseen(struct spec *spec, const struct symbol *coord)
 static void drop_symbols(struct sight *sight, const bool *gone)
 {
 	struct spec *spec = sight->spec;
-	spec->components = spec->coords = spec->inputs = spec->tunables = 0;
+	spec->count.components = spec->count.coords = spec->count.inputs = spec->tunables = 0;
 	for (struct symbol *s = spec->first, **link = &spec->first; s; s = s->next) {
 		bool drop = gone[s->number] && s->kind != SYMBOL_PARAM;
 		if (drop && s->kind == SYMBOL_COORD)
 			name_unseen(spec, s);
 		if (gone[s->number]) {
-			s->tuned = false;
-			s->tunable = 0;
+			s->tuning.tuned = false;
+			s->tuning.number = 0;
 		}
 		if (drop)
 			continue;
 		if (s->kind == SYMBOL_COORD) {
-			s->index = spec->components;
-			spec->components += s->length ? s->length : 1;
-			spec->coords++;
+			s->index = spec->count.components;
+			spec->count.components += s->length ? s->length : 1;
+			spec->count.coords++;
 		}
 		if (s->kind == SYMBOL_INPUT)
-			s->index = spec->inputs++;
+			s->index = spec->count.inputs++;
 		*link = s;
 		link = &s->next;
 		spec->last = link;
@@ -219,18 +219,18 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 		if (!gone[spec->tunable[i].symbol->number])
 			spec->tunable[spec->tunables++] = spec->tunable[i];
 	for (int i = 0; i < spec->tunables; i++)
-		spec->tunable[i].symbol->tunable = i + 1;
+		spec->tunable[i].symbol->tuning.number = i + 1;
 	for (int i = 0; i < spec->initials; i++)
 		if (!gone[spec->initial[i].coord->number])
 			spec->initial[initials++] = spec->initial[i];
-	for (int i = 0; i < spec->fixeds; i++)
-		if (!spec->fixed[i].symbol || !gone[spec->fixed[i].symbol->number])
-			spec->fixed[fixeds++] = spec->fixed[i];
+	for (int i = 0; i < spec->operators.fixeds; i++)
+		if (!spec->operators.fixed[i].symbol || !gone[spec->operators.fixed[i].symbol->number])
+			spec->operators.fixed[fixeds++] = spec->operators.fixed[i];
 	spec->initials = initials;
-	spec->fixeds = fixeds;
-	spec->has_operator = fixeds > 0;
+	spec->operators.fixeds = fixeds;
+	spec->operators.given = fixeds > 0;
 	drop_bounds(&spec->ranges, spec->range, gone);
-	drop_bounds(&spec->absolutes, spec->absolute_of, gone);
+	drop_bounds(&spec->asked.absolutes, spec->asked.absolute_of, gone);
 }
 
 static void drop_ties(struct sight *sight, const struct tie *tie)
@@ -255,8 +255,8 @@ static void drop_ties(struct sight *sight, const struct tie *tie)
 static void tell(const struct sight *sight)
 {
 	const struct spec *spec = sight->spec;
-	for (int i = 0; i < spec->parts; i++) {
-		const struct scene_part *part = spec->part[i];
+	for (int i = 0; i < spec->scene.parts; i++) {
+		const struct scene_part *part = spec->scene.part[i];
 		if (part->unseen && !(part->inside && part->inside->unseen))
 			say_note(part->at, "part '%s' is not modelled: no output sees it", part->name);
 	}
@@ -267,7 +267,7 @@ static void tell(const struct sight *sight)
 
 void leave_unseen(struct spec *spec)
 {
-	size_t symbols = (size_t)spec->symbols + 1;
+	size_t symbols = (size_t)spec->count.symbols + 1;
 	struct sight sight = { .spec = spec, .seen = ARRAY(bool, symbols), .met = ARRAY(int, symbols) };
 	see_outputs(&sight);
 	if (!sight.grown)                       /* without outputs all states are */

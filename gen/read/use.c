@@ -128,7 +128,7 @@ static const char *nearest_in_part(const struct spec *spec, const struct scene_p
 {
 	int count = 0;
 	size_t length = strlen(part->name);
-	const char **own = ARRAY(const char *, spec->symbols + 1);
+	const char **own = ARRAY(const char *, spec->count.symbols + 1);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (strncmp(s->name, part->name, length) == 0 && s->name[length] == '.')
 			own[count++] = s->name + length + 1;
@@ -163,12 +163,15 @@ static void bind(struct parser *p, const struct scene_part *part, const struct b
 /* What says how the part is stepped by itself */
 static const char *left_aside(const struct spec *own)
 {
-	const struct { const char *word; bool there; } statement[] = {
-		{ "step", own->step != NULL }, { "scheme", own->scheme != NULL },
-		{ "tolerance", own->tolerance != NULL || own->absolutes > 0 }, { "substeps", own->substeps != NULL },
-		{ "operator", own->has_operator }, { "modes", own->modes.count > 0 }, { "need", own->needs > 0 },
-		{ "budget", own->budget.instructions != NULL }
-	};
+	const struct { const char *word; bool there;
+	} statement[] = { { "step", own->asked.step != NULL },
+			  { "scheme", own->asked.scheme != NULL },
+			  { "tolerance", own->asked.tolerance != NULL || own->asked.absolutes > 0 },
+			  { "substeps", own->asked.substeps != NULL },
+			  { "operator", own->operators.given },
+			  { "modes", own->modes.count > 0 },
+			  { "need", own->required.needs > 0 },
+			  { "budget", own->required.budget.instructions != NULL } };
 	const char *list = "";
 	for (size_t i = 0; i < sizeof statement / sizeof *statement; i++)
 		if (statement[i].there)
@@ -183,7 +186,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 	declare(p, name, SYMBOL_PART, !text->good);
 	if (!text->good)
 		return;
-	if (spec->parts == LIMIT_SCENE)
+	if (spec->scene.parts == LIMIT_SCENE)
 		error(name.at, NULL, "more parts than the limit of %d", LIMIT_SCENE);
 	*part = *use;
 	part->name = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
@@ -193,7 +196,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 	part->binding = ARRAY(struct binding, use->bindings);
 	for (int i = 0; i < use->bindings; i++)
 		part->binding[i] = use->binding[i];
-	*MORE(spec->part, spec->parts) = part;
+	*MORE(spec->scene.part, spec->scene.parts) = part;
 	struct spec *own = NEW(struct spec);
 	parse_statements(spec, own, part, text->source);
 	part->aside = left_aside(own);
@@ -263,7 +266,7 @@ struct spec *parse_spec(const struct source *source)
 {
 	open_scene(source);
 	struct spec *spec = parse_whole(source, &reader);
-	if (spec->parts && !diagnostics_errors())
+	if (spec->scene.parts && !diagnostics_errors())
 		leave_unseen(spec);
 	return spec;
 }
@@ -279,10 +282,10 @@ const char *written_text(const struct scene_part *part, struct place at, struct 
 /* Parts of one file, all modelled or none, are told together at the first of them. */
 const char *parts_text(const struct spec *spec, int index)
 {
-	const struct scene_part *part = spec->part[index];
+	const struct scene_part *part = spec->scene.part[index];
 	const char *names = "";
-	for (int i = 0; i < spec->parts; i++) {
-		const struct scene_part *other = spec->part[i];
+	for (int i = 0; i < spec->scene.parts; i++) {
+		const struct scene_part *other = spec->scene.part[i];
 		if (other->source != part->source || other->unseen != part->unseen)
 			continue;
 		if (i < index)

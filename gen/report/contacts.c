@@ -9,12 +9,12 @@
 /* The interval of its expression in which it is held */
 static int held_in(const struct step *step, const struct series_hold *hold)
 {
-	return step->divided->expression[hold->expression].rank[hold->breakpoint] + 1;
+	return step->taylor.divided->expression[hold->expression].rank[hold->breakpoint] + 1;
 }
 
 const char *contact_text(const struct step *step, int hold)
 {
-	const struct contacts *c = step->divided->contacts;
+	const struct contacts *c = step->taylor.divided->contacts;
 	const struct model *model = step->model;
 	const struct node *node = NULL;
 	for (int i = 0, drag = 0; i <= hold; i++)
@@ -26,7 +26,7 @@ const char *contact_text(const struct step *step, int hold)
 
 static const char *rest_text(const struct step *step, const struct series_strike *strike)
 {
-	const struct contacts *c = step->divided->contacts;
+	const struct contacts *c = step->taylor.divided->contacts;
 	return strike->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
 						  "expression %d",
 						  shortest(strike->restitution),
@@ -35,7 +35,7 @@ static const char *rest_text(const struct step *step, const struct series_strike
 
 void person_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->divided->contacts;
+	const struct contacts *c = step->taylor.divided->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
@@ -48,7 +48,7 @@ void person_contacts(FILE *to, const struct step *step)
 
 void json_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->divided->contacts;
+	const struct contacts *c = step->taylor.divided->contacts;
 	bool first = true;
 	if (c && step->model->contacts.drags > 0)
 		fputs("  \"frictions\": [", to);

@@ -178,7 +178,7 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: a part of a step, with every crossing on the way.\n", model->name);
 	else if (step->collocation)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
-	else if (step->expansion)
+	else if (step->taylor.expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
 	else if (step->layout.powers == PARABOLA)
 		fprintf(to, "%s_at: what is exact under a parabola through what is left over, of fourth order in h.\n",
@@ -195,21 +195,21 @@ static void person_step(FILE *to, const struct step *step)
 static void person_collocation(FILE *to, const struct step *step)
 {
 	const struct collocation *x = step->collocation;
-	int coords = step->motion->coords;
+	int coords = step->collocation->motion->coords;
 	fprintf(to, ".\nThe collocation has %d stages, of order %d at the ends of its steps and %d inside, at the "
 		"nodes\n   ",
 		x->stages, 2 * x->stages - 1, x->stages + 1);
 	for (int i = 0; i < x->stages; i++)
 		fprintf(to, "%s %.6g", i ? "," : "", x->node[i]);
-	if (step->motion->apart)
+	if (step->collocation->motion->apart)
 		fprintf(to, ".\nNewton's method takes the Jacobian where a step starts, and solves one real and %d "
 			"complex systems of %d unknowns", x->modes - 1, coords);
 	else
 		fprintf(to, ".\nNewton's method takes the Jacobian at each node, and solves %d unknowns together",
 			x->stages * coords);
 	fprintf(to, ":\n%d multiplications, %d additions, %d calls an iteration, of which a step takes two to four; "
-		"where the step is longer than h, several h share them", step->iteration.multiplications,
-		step->iteration.additions, step->iteration.calls);
+		"where the step is longer than h, several h share them", step->collocation->iteration.multiplications,
+		step->collocation->iteration.additions, step->collocation->iteration.calls);
 }
 
 /* What went where: the operators, then the remainder of the first; those of the others differ in linear terms only. */
@@ -255,9 +255,9 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
-	if (step->divided)
+	if (step->taylor.divided)
 		person_divided(to, step);
-	if (step->expansion)
+	if (step->taylor.expansion)
 		person_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		model->schedule.operators > 1 ? " (with the first operator; with the others its linear terms differ)"
@@ -312,9 +312,9 @@ static void person_reduction(FILE *to, const struct step *step)
 
 static void person_scene(FILE *to, const struct spec *spec)
 {
-	if (spec->parts)
+	if (spec->scene.parts)
 		fputs("\nParts:\n", to);
-	for (int i = 0; i < spec->parts; i++)
+	for (int i = 0; i < spec->scene.parts; i++)
 		if (parts_text(spec, i))
 			fprintf(to, "    %s\n", parts_text(spec, i));
 }

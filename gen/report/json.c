@@ -177,20 +177,21 @@ static void json_cost(FILE *to, const struct step *step)
 static void json_dropped(FILE *to, const struct model *model)
 {
 	const struct spec *spec = model->spec;
-	const char **name = ARRAY(const char *, (size_t)(spec->unseen + model->reduction.dropped));
-	for (int i = 0; i < spec->unseen; i++)
-		name[i] = spec->unseen_name[i];
+	const char **name = ARRAY(const char *, (size_t)(spec->scene.unseen + model->reduction.dropped));
+	for (int i = 0; i < spec->scene.unseen; i++)
+		name[i] = spec->scene.unseen_name[i];
 	for (int i = 0; i < model->reduction.dropped; i++)
-		name[spec->unseen + i] = model->reduction.dropped_name[i];
-	member_names(to, "dropped", spec->unseen + model->reduction.dropped, name);
+		name[spec->scene.unseen + i] = model->reduction.dropped_name[i];
+	member_names(to, "dropped", spec->scene.unseen + model->reduction.dropped, name);
 }
 
 static void json_scene(FILE *to, const struct spec *spec)
 {
 	fputs("  \"scene\": [", to);
-	for (int i = 0; i < spec->parts; i++)
+	for (int i = 0; i < spec->scene.parts; i++)
 		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
-			spec->part[i]->name, json_text(spec->part[i]->file), spec->part[i]->unseen ? "false" : "true");
+			spec->scene.part[i]->name, json_text(spec->scene.part[i]->file),
+			spec->scene.part[i]->unseen ? "false" : "true");
 	fputs("],\n", to);
 }
 
@@ -221,22 +222,23 @@ static void json_scheme(FILE *to, const struct step *step)
 	const struct model *model = step->shown->model;
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
-		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
+		step->taylor.expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
 		smooth[model->remainder.smooth.kind]);
 	if (step->collocation)
-		fprintf(to, "  \"stages\": %d,\n"
-			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
-			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
-			step->iteration.calls);
-	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
+		fprintf(to,
+			"  \"stages\": %d,\n"
+			"  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
+			step->collocation->stages, step->collocation->iteration.multiplications,
+			step->collocation->iteration.additions, step->collocation->iteration.calls);
+	if ((step->taylor.expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
 		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
-	if (model->truncation.adaptive && (step->expansion || step->collocation))
+	if (model->truncation.adaptive && (step->taylor.expansion || step->collocation))
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
-	if (step->expansion && model->truncation.over > 1)
+	if (step->taylor.expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
-	if (step->divided)
+	if (step->taylor.divided)
 		json_divided(to, step);
-	if (step->expansion)
+	if (step->taylor.expansion)
 		json_reach(to, step);
 }
 
@@ -257,14 +259,14 @@ void explain_json(FILE *to, const struct step *step)
 		"{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  "
 		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
 		model->name, scheme_name(model->scheme), step_form_name(step->form),
-		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
+		step->is.two_words ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	member_names(to, "states", states, model->names.state);
 	member_names(to, "outputs", model->outputs, output);
-	member_names(to, "inputs", model->spec->inputs, input);
+	member_names(to, "inputs", model->spec->count.inputs, input);
 	json_dropped(to, model);
 	if (model->shortened)
 		json_shortening(to, model);
-	if (model->spec->parts)
+	if (model->spec->scene.parts)
 		json_scene(to, model->spec);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));

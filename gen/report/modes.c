@@ -27,12 +27,13 @@ const char *exact_in_modes(const struct step *step)
 const char *course_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
-	if (m->points == 0)
-		return format("collocation at %d Lobatto nodes, %d sweeps; where it starts anew %d", m->stages + 1,
-			      m->sweeps, m->first_sweeps);
+	if (m->multistep.points == 0)
+		return format("collocation at %d Lobatto nodes, %d sweeps; where it starts anew %d",
+			      m->collocation.stages + 1, m->collocation.sweeps, m->collocation.first_sweeps);
 	return format("predict from %d past forces, evaluate, correct%s; the first %d steps by collocation at %d "
-		      "Lobatto nodes", m->points, m->twice ? ", evaluate (PECE)" : " (PEC)", m->points - 1,
-		      m->stages + 1);
+		      "Lobatto nodes",
+		      m->multistep.points, m->multistep.twice ? ", evaluate (PECE)" : " (PEC)", m->multistep.points - 1,
+		      m->collocation.stages + 1);
 }
 
 const char *stability_of_modes(const struct step *step)
@@ -50,14 +51,14 @@ int numbers_of_modes(const struct step *step)
 	const struct normal *m = step->normal;
 	int n = m->modes, width = m->width;
 	int waves = 4 * step->model->remainder.split->waves;
-	int multistep = m->points ? (4 + 2 * m->points + 2 + waves) * width : 0;
-	int collocation = m->stages * (4 + 2 * (m->stages + 1) + waves) * width;
+	int multistep = m->multistep.points ? (4 + 2 * m->multistep.points + 2 + waves) * width : 0;
+	int collocation = m->collocation.stages * (4 + 2 * (m->collocation.stages + 1) + waves) * width;
 	int forces = 0;
 	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		forces += m->force[f] ? width : 0;
 	return (m->banks - 1) * width * width +
 	       m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
-	       (m->settled ? settled_size(step->model) * 2 * width : 0);
+	       (m->steady.flow ? settled_size(step->model) * 2 * width : 0);
 }
 
 void person_normal(FILE *to, const struct step *step)
@@ -74,7 +75,7 @@ void person_normal(FILE *to, const struct step *step)
 	}
 	fprintf(to, "Step: %s.\nStability: %s.\nTables: at most %d numbers.\n", course_of_modes(step),
 		stability_of_modes(step), numbers_of_modes(step));
-	if (m->settled)
+	if (m->steady.flow)
 		fprintf(to, "From t = %s s on nothing changes any more, and steps are exact: e^{A h} over modes.\n",
 			readable_text(step->model->system.change[step->model->system.segments - 2]));
 }
@@ -93,11 +94,12 @@ void json_normal(FILE *to, const struct step *step)
 			fprintf(to, "%s%.17g", j ? ", " : "", m->ratio[b * m->modes + j]);
 		fputs("]}", to);
 	}
-	fprintf(to, "],\n    \"points\": %d, \"stages\": %d, \"sweeps\": %d, \"twice\": %s,\n", m->points, m->stages,
-		m->sweeps, m->twice ? "true" : "false");
+	fprintf(to, "],\n    \"points\": %d, \"stages\": %d, \"sweeps\": %d, \"twice\": %s,\n", m->multistep.points,
+		m->collocation.stages, m->collocation.sweeps, m->multistep.twice ? "true" : "false");
 	fprintf(to, "    \"radius\": %.17g, \"radius_at\": %.17g, \"growth\": %.17g,\n", m->stability.radius,
 		m->stability.time, m->stability.growth);
-	fprintf(to, "    \"numbers\": %d, \"settles\": %s},\n", numbers_of_modes(step), m->settled ? "true" : "false");
+	fprintf(to, "    \"numbers\": %d, \"settles\": %s},\n", numbers_of_modes(step),
+		m->steady.flow ? "true" : "false");
 }
 
 /* ---- the program ---- */
@@ -137,6 +139,6 @@ void program_normal(FILE *to, const struct step *step)
 								    .wave = step->model->remainder.split->wave[k].wave,
 								    .sine = d })));
 	fprintf(to, "Step: %s\n", course_of_modes(step));
-	if (m->settled)
+	if (m->steady.flow)
 		fputs("Once nothing changes: [omega eta, eta'] <- matrix [omega eta, eta', 1, waves]\n", to);
 }

@@ -278,7 +278,7 @@ static void print_list(FILE *to, const struct step *step)
 	fprintf(to, "Assignments, %s%s:\n",
 		program->in_order ? "in order: each reads what those before it have left"
 				  : "all of which read the old state",
-		step->kicks.momenta ? "; velocities are kept as momenta" : "");
+		step->linear.kicks.momenta ? "; velocities are kept as momenta" : "");
 	for (int i = 0; i < program->assignments; i++)
 		print_assignment(to, step, &program->assignment[i]);
 }
@@ -319,8 +319,8 @@ static void print_regions(FILE *to, const struct step *step)
 /* Each as if it were alone */
 static void print_parts(FILE *to, const struct step *step)
 {
-	for (int p = 0; p < step->parts; p++) {
-		const struct step *part = step->part[p];
+	for (int p = 0; p < step->regions.parts; p++) {
+		const struct step *part = step->regions.part[p];
 		fprintf(to, "Part %d:", p);
 		for (int i = 0; i < part->model->n; i++)
 			fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
@@ -338,7 +338,7 @@ static void print_parts(FILE *to, const struct step *step)
 
 static const char *sequence_text(const struct step *step, int sequence)
 {
-	const struct sequence *s = &step->expansion->sequence[sequence];
+	const struct sequence *s = &step->taylor.expansion->sequence[sequence];
 	return s->state != NONE ? state_text(step, s->state)
 				: format("a%d", sequence - step->branch->system.states + 1);
 }
@@ -377,7 +377,7 @@ static const char *chooser_text(const struct step *step, const struct sequence *
 		return "t";
 	if (s->choice == CHOICE_BY_SEQUENCE)
 		return format("%s not 0", sequence_text(step, s->test));
-	const struct divided *d = &step->divided->expression[s->expression];
+	const struct divided *d = &step->taylor.divided->expression[s->expression];
 	return format("%s %s %s", sequence_text(step, d->sequence), s->choice == CHOICE_BY_HOLD ? "held at" : "above",
 		      readable_text(d->at[s->breakpoint]));
 }
@@ -403,7 +403,7 @@ static const char *sequence_definition(const struct step *step, const struct seq
 
 static void print_series(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = step->taylor.expansion;
 	const struct truncation *truncation = &step->model->truncation;
 	fprintf(to,
 		"Series of order %d in time over %s%s; of each sequence the coefficients that are read, factors of the "
@@ -425,7 +425,7 @@ static void print_expansion(FILE *to, const struct step *step)
 static void print_look(FILE *to, const struct step *step)
 {
 	struct step view = *step;
-	view.expansion = step->cut->look;
+	view.taylor.expansion = step->cut->look;
 	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a "
 		    "breakpoint in parts, by e^{A tau} of %d numbers:\n", step->cut->layout.size);
 	print_series(to, &view);
@@ -442,9 +442,9 @@ static const char *text_beside_contacts(const struct model *model, const struct 
 static void print_collocation(FILE *to, const struct step *step)
 {
 	const struct collocation *x = step->collocation;
-	const struct motion *m = step->motion;
+	const struct motion *m = step->collocation->motion;
 	const struct model *model = step->model;
-	if (step->expansion)
+	if (step->taylor.expansion)
 		print_expansion(to, step);
 	else
 		print_tables(to, step);
@@ -464,7 +464,8 @@ static void print_collocation(FILE *to, const struct step *step)
 			m->entry[k].twice || highest_state(&model->system, m->entry[k].of) == m->entry[k].of ? "" : "'",
 			text_beside_contacts(model, m->entry[k].slope));
 	fprintf(to, "An iteration of Newton's method: %d multiplications, %d additions, %d calls\n",
-		step->iteration.multiplications, step->iteration.additions, step->iteration.calls);
+		step->collocation->iteration.multiplications, step->collocation->iteration.additions,
+		step->collocation->iteration.calls);
 }
 
 /* ---- the whole ---- */
@@ -486,7 +487,7 @@ static void print_reads(FILE *to, const struct step *step)
 
 static const char *kind_text(const struct step *step)
 {
-	return step->parts ? "regions of independent parts"
+	return step->regions.parts ? "regions of independent parts"
 	       : step->model->switching ? "regions" : has_remainder(step) ? "with a remainder"
 	       : step->program->tuned ? "linear, tunable" : "linear";
 }
@@ -497,10 +498,10 @@ void explain_program(FILE *to, const struct step *step)
 	fprintf(to, "Program of a step of %s: %s; scheme %s, form %s, h = %s s\n", step->model->name, kind_text(step),
 		scheme_name(step->model->scheme), step_form_text(step), readable_text(step->model->h));
 	if (step->model->switching)
-		(step->parts ? print_parts : print_regions)(to, step);
+		(step->regions.parts ? print_parts : print_regions)(to, step);
 	else if (step->collocation)
 		print_collocation(to, step);
-	else if (step->expansion)
+	else if (step->taylor.expansion)
 		print_expansion(to, step);
 	else if (step->normal)
 		program_normal(to, step);

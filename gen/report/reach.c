@@ -9,8 +9,8 @@ void person_reach(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct reach reach = reach_of_series(step);
-	int over = model->truncation.over, multiplications = step->expansion->multiplications;
-	int sum = model->system.states * step->expansion->order;
+	int over = model->truncation.over, multiplications = step->taylor.expansion->multiplications;
+	int sum = model->system.states * step->taylor.expansion->order;
 	fprintf(to, "A series takes %d multiplications, a value of it %d.\n", multiplications, sum);
 	if (over > 1)
 		fprintf(to, "One is over %d steps: %d multiplications a step.\n", over, step->program->multiplications);

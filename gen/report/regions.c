@@ -13,7 +13,7 @@
 /* Of an entry of A, of e^{A d} and of what jumps make of a state */
 static long words_of(const struct step *step)
 {
-	return step->model->asked.compensated ? 2 : 1;
+	return step->is.two_words ? 2 : 1;
 }
 
 /* Of the tables of a swift step: bounds for each matrix; for each region and expression, where it is and which are
@@ -28,7 +28,7 @@ static long swift_bytes(const struct step *step)
 	return 8 * s->systems *
 		       (s->expressions * (2 * size + off) +
 			halves * size * 2 * s->expressions) +
-	       28 * (long)s->regions * s->expressions + 8 * (step->look.degree + 1);
+	       28 * (long)s->regions * s->expressions + 8 * (step->regions.look.degree + 1);
 }
 
 /* Of pieces that are shorter than h, but for what bounds guards */
@@ -57,9 +57,9 @@ static long anchor_bytes(const struct step *step)
 static long swift_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
-	long moves = 6 * step->look.degree * (size * size + size) + 12 * size * size;
-	return !step->look.clears                         ? 0
-	       : step->look.swift                        ? size * size + MOST_LOOKS * (bounds + moves)
+	long moves = 6 * step->regions.look.degree * (size * size + size) + 12 * size * size;
+	return !step->regions.look.clears                         ? 0
+	       : step->regions.look.swift                        ? size * size + MOST_LOOKS * (bounds + moves)
 	       : has_events(step->model->switching) ? products_of_unmet(step)
 						    : size * size;
 }
@@ -85,10 +85,10 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->look.clears && step->model->params.retuned)
+	if (step->regions.look.clears && step->model->params.retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
-	return bytes + ladder_bytes(step) + (step->look.swift ? swift_bytes(step) : 0) +
+	return bytes + ladder_bytes(step) + (step->regions.look.swift ? swift_bytes(step) : 0) +
 	       (has_events(s) ? guard_bytes(step) : 0);
 }
 
@@ -122,7 +122,7 @@ static void person_expressions(FILE *to, const struct step *step)
 /* What chooses formulas by the state, of a series */
 void person_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->divided;
+	const struct expansion *x = step->taylor.divided;
 	const char *ends = step->cut ? "a step goes on with others where an expression passes a breakpoint"
 				     : format("%s ends where an expression passes a breakpoint",
 					      step->collocation ? "an internal step" : "a series");
@@ -162,15 +162,16 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 
 static void person_way(FILE *to, const struct step *step, const char *of)
 {
-	if (step->look.swift)
+	if (step->regions.look.swift)
 		fprintf(to,
 			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
 			"degree %d, all else by the search.\n",
-			of, MOST_SWIFT, step->look.degree);
-	else if (step->look.clears)
+			of, MOST_SWIFT, step->regions.look.degree);
+	else if (step->regions.look.clears)
 		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
 	else
-		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->look.searches);
+		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of,
+			step->regions.look.searches);
 }
 
 static void person_impacts(FILE *to, const struct model *model)
@@ -231,7 +232,7 @@ static void person_part(FILE *to, const struct step *whole, int index)
 			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
 			person_intervals(to, s, r);
 		}
-	person_way(to, whole->part[index], "        A step of it");
+	person_way(to, whole->regions.part[index], "        A step of it");
 }
 
 static void person_parts(FILE *to, const struct step *step)
@@ -240,12 +241,12 @@ static void person_parts(FILE *to, const struct step *step)
 	fprintf(to,
 		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
 		"approximated, every constant is correctly rounded.\n",
-		step->parts);
+		step->regions.parts);
 	person_expressions(to, step);
-	for (int p = 0; p < step->parts; p++) {
+	for (int p = 0; p < step->regions.parts; p++) {
 		person_part(to, step, p);
-		bytes += bytes_of_regions(step->part[p]);
-		most += most_of_regions(step->part[p]);
+		bytes += bytes_of_regions(step->regions.part[p]);
+		most += most_of_regions(step->regions.part[p]);
 	}
 	fprintf(to,
 		"Tables: %ld bytes. Per step of each part at most %d crossings and %d splits; of all at most %ld "
@@ -255,7 +256,7 @@ static void person_parts(FILE *to, const struct step *step)
 
 void person_regions(FILE *to, const struct step *step)
 {
-	(step->parts ? person_parts : person_of_one_part)(to, step);
+	(step->regions.parts ? person_parts : person_of_one_part)(to, step);
 }
 
 /* ---- JSON ---- */
@@ -380,7 +381,7 @@ void json_regions(FILE *to, const struct step *step)
 }
 void json_divided(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->divided;
+	const struct expansion *x = step->taylor.divided;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < x->expressions; i++)
 		json_expression(to, i, json_text(divided_text(step, i)), x->expression[i].breaks,

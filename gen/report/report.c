@@ -31,7 +31,7 @@ const char *pole_row(const struct pole_report *r, int width)
 
 double growth_rate(const struct step *step)
 {
-	return mpfr_get_d(step->growth, MPFR_RNDN);
+	return mpfr_get_d(step->linear.growth, MPFR_RNDN);
 }
 
 const char *polynomial_text(int length, const mpq_t *c)

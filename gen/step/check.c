@@ -255,20 +255,20 @@ static void check_regions(struct check *c, const struct step *step)
 {
 	c->where = "regions";
 	need(c, step->branches == step->model->switching->systems, "one without its tables");
-	need(c, step->parts == step->model->switching->parts, "an independent part without its step");
+	need(c, step->regions.parts == step->model->switching->parts, "an independent part without its step");
 	need(c, step->series.emitted && step->series.degree > 0, "they have no series to find crossings by");
 	for (int k = 0; k < step->branches; k++) {
 		const struct wanted *wanted = step->branch[k].table[0]->wanted;
 		need(c, among(step->branch[k].halvings, LIMIT_PIECES + 1), "pieces of a step that are out of range");
 		need(c, wanted->kernels == 2, "a table without what inputs add, held and as ramps");
 	}
-	for (int p = 0; p < step->parts; p++)
-		check_regions(c, step->part[p]);
+	for (int p = 0; p < step->regions.parts; p++)
+		check_regions(c, step->regions.part[p]);
 }
 
 static void check_collocation(struct check *c)
 {
-	const struct motion *m = c->step->motion;
+	const struct motion *m = c->step->collocation->motion;
 	int coords = c->step->branch->system.n;
 	c->where = "the collocation";
 	need(c, c->step->collocation && c->step->collocation->modes == (c->step->collocation->stages + 1) / 2,
@@ -288,11 +288,11 @@ void program_check(const struct step *step)
 	need(&c, step->program->reads && step->program->uses, "it does not say what it reads");
 	if (step->model->switching)
 		check_regions(&c, step);
-	else if (step->kind == KIND_EXPANDED)
-		need(&c, step->expansion, "there is no series");
-	else if (step->kind == KIND_COLLOCATED)
+	else if (step->is.flow == FLOW_SERIES)
+		need(&c, step->taylor.expansion, "there is no series");
+	else if (step->is.flow == FLOW_COLLOCATION)
 		check_collocation(&c);
-	else if (flow_of(step->model) == FLOW_NORMAL)
+	else if (step->is.flow == FLOW_NORMAL)
 		need(&c, step->normal && step->normal->banks > 0, "there are no normal modes");
 	else if (has_remainder(step))
 		check_actions(&c);

@@ -412,7 +412,7 @@ static void count_sequence(const struct expansion *x, const struct sequence *s, 
 void count_expansion(const struct step *step, struct program *program)
 {
 	enum { TWO_SUM = 8 };           /* of pl_accumulate, with what it is given 0 */
-	const struct expansion *x = step->expansion;
+	const struct expansion *x = step->taylor.expansion;
 	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < x->count; i++)
 		for (int k = 0; k <= x->sequence[i].top; k++)
@@ -434,7 +434,7 @@ static int elimination(int n)
 
 static struct cost cost_of_motion(const struct step *step)
 {
-	const struct motion *m = step->motion;
+	const struct motion *m = step->collocation->motion;
 	const int n = m->coords;
 	const struct form **form = ARRAY(const struct form *, (size_t)(n + m->entries) + 1);
 	for (int i = 0; i < n; i++)
@@ -447,14 +447,14 @@ static struct cost cost_of_motion(const struct step *step)
 static struct cost cost_beside_contacts(const struct step *step)
 {
 	struct recurrences *r = motion_recurrences(step);
-	set_motion(step, r, !step->motion->apart);
+	set_motion(step, r, !step->collocation->motion->apart);
 	return cost_of_tape(tape_of_recurrences(r));
 }
 
 void count_collocation(struct step *step)
 {
 	enum { OF_COMPLEX = 4 };
-	const struct motion *m = step->motion;
+	const struct motion *m = step->collocation->motion;
 	int s = step->collocation->stages, n = m->coords, sums = 2 * s * s * n, solved;
 	bool apart = m->apart;
 	struct cost cost = has_contacts(step->model) ? cost_beside_contacts(step) : cost_of_motion(step);
@@ -462,10 +462,10 @@ void count_collocation(struct step *step)
 		       : elimination(s * n) + m->entries * s * s;
 	struct cost all = { sums + solved, sums + solved, 0 };
 	add_cost(&all, s, cost);
-	step->iteration.multiplications = all.multiplications;
-	step->iteration.additions = all.additions;
-	step->iteration.calls = all.calls;
-	if (!step->expansion)
+	step->collocation->iteration.multiplications = all.multiplications;
+	step->collocation->iteration.additions = all.additions;
+	step->collocation->iteration.calls = all.calls;
+	if (!step->taylor.expansion)
 		set_cost(step->program, all);
 }
 
@@ -525,7 +525,8 @@ void count_normal(const struct step *step, struct program *program)
 	const struct normal *normal = step->normal;
 	const struct splitting *split = step->model->remainder.split;
 	struct cost force = cost_of_forces(step);
-	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1, forms = 0;
+	int n = normal->modes, points = normal->multistep.points, evaluations = normal->multistep.twice ? 2 : 1,
+	    forms = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)(split->functions + split->rests) + 1);
 	for (int f = 1; f < split->functions; f++)
 		form[forms++] = split->function[f].form;

@@ -10,7 +10,7 @@ static bool is_one_flow(const struct step *step)
 	for (int i = 0; i < step->model->outputs; i++)
 		rows = rows && !(step->model->output[i].peak && step->model->output[i].left);
 	return rows && step->model->system.segments <= 1 &&
-	       (step->kind == KIND_LINEAR || (step->kind == KIND_TUNED && step->blocks && step->blocks->solved));
+	       is_linear_alone(step) && (!step->is.tuned || (step->blocks && step->blocks->solved));
 }
 
 bool peaks_by_values(const struct step *step)
@@ -21,7 +21,7 @@ bool peaks_by_values(const struct step *step)
 /* The polynomials of a series and of nodes have values at any time. */
 static bool lacks_values(const struct step *step)
 {
-	return !step->series.emitted && !step->cut && !step->expansion && !step->collocation;
+	return !step->series.emitted && !step->cut && !step->taylor.expansion && !step->collocation;
 }
 
 struct facts facts_of_step(const struct step *step)

@@ -5,16 +5,20 @@
 #include "model/reads.h"
 #include "step/linear/forms.h"
 
-enum step_kind kind_of_step(const struct model *model)
+struct descriptor descriptor_of(const struct model *model)
 {
-	static const enum step_kind of_flow[] = { KIND_LINEAR, KIND_REMAINDER, KIND_EXPANDED, KIND_COLLOCATED,
-						  KIND_NORMAL };
-	if (model->switching)
-		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
-	if (model->params.tuning)
-		return KIND_TUNED;
-	const enum step_kind kind = of_flow[flow_of(model)];
-	return follows_crossings(model) ? KIND_CUT : kind;
+	const struct switching *regions = model->switching;
+	return (struct descriptor){
+		.flow = flow_of(model),
+		.events = regions ? EVENTS_OF_REGIONS : follows_crossings(model) ? EVENTS_SPLIT : EVENTS_NONE,
+		.tuned = !regions && model->params.tuning, .two_words = model->asked.compensated,
+		.many = model->asked.batch, .apart = regions && regions->parts
+	};
+}
+
+bool is_linear_alone(const struct step *step)
+{
+	return step->is.flow == FLOW_LINEAR && step->is.events == EVENTS_NONE;
 }
 
 bool is_anchored(const struct step *step, int load)

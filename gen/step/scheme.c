@@ -46,10 +46,10 @@ static void find_growth(struct step *step)
 	struct linear modified = modified_equation(&step->model->system, &step->branch->system, step->model->h);
 	struct pole_report *pole;
 	int poles = poles_of(step->model, resolvent_of(&modified), &pole);
-	mpfr_init2(step->growth, 53);
-	mpfr_set_inf(step->growth, -1);
+	mpfr_init2(step->linear.growth, 53);
+	mpfr_set_inf(step->linear.growth, -1);
 	for (int i = 0; i < poles; i++)
-		mpfr_max(step->growth, step->growth, pole[i].re, MPFR_RNDN);
+		mpfr_max(step->linear.growth, step->linear.growth, pole[i].re, MPFR_RNDN);
 }
 
 static void make_tables(struct step *step, int count, const struct wanted *wanted)
@@ -69,7 +69,7 @@ static void make_whole(void *context)
 				  .two_words = true,
 				  .name = "full",
 				  .increments = step->form == FORM_DELTA,
-				  .mass = step->kicks.mass };
+				  .mass = step->linear.kicks.mass };
 	mpq_init(whole->fraction);
 	mpq_set_ui(whole->fraction, 1, 1);
 	make_tables(step, 1, whole);
@@ -81,8 +81,8 @@ static void build_exact(struct step *step)
 	bool chosen = step->model->asked.form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
 	if (chosen && !silent_guard(make_whole, step)) {        /* kicks may leave the range where Phi does not */
 		step->form = FORM_DELTA;
-		step->kicks.mass = NULL;
-		step->kicks.momenta = chosen = false;
+		step->linear.kicks.mass = NULL;
+		step->linear.kicks.momenta = chosen = false;
 	}
 	if (!chosen)
 		make_whole(step);
@@ -149,7 +149,7 @@ static void build_tuned_step(struct step *step)
 static void build_remainder_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_remainder ? 1
-							: step->kind == KIND_REMAINDER ? PARABOLA : 0);
+							: step->is.events == EVENTS_NONE ? PARABOLA : 0);
 	build_with_remainder(step);
 	series_plan(step);
 }
@@ -185,7 +185,7 @@ static void build_series(struct step *step, int order)
 {
 	write_no_list(step);
 	step->program->compensated = true;
-	step->expansion = expansion_of(step, order ? order : economical_order(step));
+	step->taylor.expansion = expansion_of(step, order ? order : economical_order(step));
 	step->series.emitted = true;
 }
 
@@ -197,8 +197,8 @@ static int share(int of_expansion, int of_rows, int over)
 /* Of a step: its share of the expansion, and of the values before the last by Horner's rule */
 static void share_series(const struct step *step, struct program *program)
 {
-	int over = step->model->truncation.over, terms = step->branch->system.states * step->expansion->order;
-	int rows = over - 1, sums = step->branch->system.states * (step->expansion->order + 1);
+	int over = step->model->truncation.over, terms = step->branch->system.states * step->taylor.expansion->order;
+	int rows = over - 1, sums = step->branch->system.states * (step->taylor.expansion->order + 1);
 	program->multiplications = share(program->multiplications, rows * terms, over);
 	program->additions = share(program->additions, rows * sums, over);
 	program->wave_multiplications = share(program->wave_multiplications, 0, over);
@@ -209,12 +209,12 @@ static void share_series(const struct step *step, struct program *program)
 static void count_series(struct step *step)
 {
 	count_expansion(step, step->program);
-	step->expansion->multiplications = step->program->multiplications;
+	step->taylor.expansion->multiplications = step->program->multiplications;
 	if (step->program->multiplications > LIMIT_SERIES)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take "
 		      "minutes",
-		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
+		      step->taylor.expansion->order, step->program->multiplications, LIMIT_SERIES);
 	share_series(step, step->program);
 }
 
@@ -234,8 +234,8 @@ static void need_all_known(struct step *step)
 	const struct model *model = step->model;
 	const char *why = system->inputs > 0 ? format("the samples of %s to come are not known", system->input[0].name)
 			  : system->segments > 1 ? "a load or a condition on t changes its formula inside"
-			  : step->divided ? format("it ends where %s passes a breakpoint",
-						   form_text(model, step->divided->expression[0].form))
+			  : step->taylor.divided ? format("it ends where %s passes a breakpoint",
+						   form_text(model, step->taylor.divided->expression[0].form))
 					  : NULL;
 	if (model->truncation.over < 2 || !why)
 		return;
@@ -251,16 +251,16 @@ static void find_slopes(struct step *step)
 	int states = step->branch->system.states, *column = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
 		column[i] = i;
-	if (step->unseen && step->unseen->looks)
-		step->slopes = part_of_expansion(step, step->expansion, 1, states, column);
+	if (step->taylor.unseen && step->taylor.unseen->looks)
+		step->taylor.slopes = part_of_expansion(step, step->taylor.expansion, 1, states, column);
 }
 
 static void divide_step(struct step *step)
 {
-	step->divided = step->expansion->expressions > 0 ? step->expansion : NULL;
+	step->taylor.divided = step->taylor.expansion->expressions > 0 ? step->taylor.expansion : NULL;
 	check_divided(step);
-	const struct expansion *x = step->expansion;
-	step->unseen = x->unseens > 0 || x->looks || x->crowded > 0 ? x : NULL;
+	const struct expansion *x = step->taylor.expansion;
+	step->taylor.unseen = x->unseens > 0 || x->looks || x->crowded > 0 ? x : NULL;
 }
 
 static void build_expanded_step(struct step *step)
@@ -290,12 +290,12 @@ static void build_collocated_step(struct step *step)
 	build_series(step, has_contacts(step->model) && !switches ? AT_EVENTS : 0);
 	divide_step(step);
 	step->collocation = collocation_of(step);
-	step->motion = motion_of(step);
+	step->collocation->motion = motion_of(step);
 	if (switches) {
 		find_slopes(step);
 		count_series(step);
 	} else {
-		step->expansion = NULL;
+		step->taylor.expansion = NULL;
 	}
 	count_collocation(step);
 }
@@ -307,17 +307,26 @@ static void build_normal_step(struct step *step)
 	make_read_table(&(struct reading){ step, 1 });
 	write_no_list(step);
 	const struct normal *normal = normal_of(step);
-	step->program->nodes = normal->stages + 1;
-	step->program->node = normal->node;
+	step->program->nodes = normal->collocation.stages + 1;
+	step->program->node = normal->collocation.node;
 	count_normal(step, step->program);
 	step->series.emitted = normal->within.angle <= LIMIT_WITHIN;
 }
 
-/* The scheme's own step, and what is cut of it */
-static void build_cut_step(struct step *step)
+/* The flow's own step, and what is cut of it */
+static void build_flow(struct step *step)
 {
-	(flow_of(step->model) == FLOW_NORMAL ? build_normal_step : build_remainder_step)(step);
-	plan_cut(step);
+	static void (*const build_of[])(struct step *) = {
+		[FLOW_LINEAR] = build_linear_step, [FLOW_RECIPE] = build_remainder_step,
+		[FLOW_SERIES] = build_expanded_step, [FLOW_COLLOCATION] = build_collocated_step,
+		[FLOW_NORMAL] = build_normal_step
+	};
+	if (step->is.events == EVENTS_OF_REGIONS)
+		(step->is.apart ? build_parts_step : build_regions_step)(step);
+	else
+		(step->is.tuned ? build_tuned_step : build_of[step->is.flow])(step);
+	if (step->is.events == EVENTS_SPLIT)
+		plan_cut(step);
 }
 
 /* Where a model is stepped in several ways, that of the equations as written is made once. */
@@ -343,35 +352,27 @@ static void check_cuts(const struct model *model)
 
 static void build(void *context)
 {
-	static void (*const build_kind[KINDS])(struct step *) = {
-		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
-		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
-		[KIND_REMAINDER] = build_remainder_step, [KIND_CUT] = build_cut_step,
-		[KIND_EXPANDED] = build_expanded_step,
-		[KIND_COLLOCATED] = build_collocated_step,
-		[KIND_NORMAL] = build_normal_step
-	};
 	struct step *step = context;
 	const struct model *model = step->model;
 	check_cuts(model);
-	step->kind = kind_of_step(model);
+	step->is = descriptor_of(model);
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of_written(model);
 	check_pole_size(model, step->written);
 	check_holds(step);
-	if (flow_of(model) == FLOW_NORMAL)
+	if (step->is.flow == FLOW_NORMAL)
 		refuse(CAN_NORMAL, model, scheme_place(step));
-	if (model->asked.compensated)
+	if (step->is.two_words)
 		refuse(CAN_COMPENSATED, model, model->asked.compensated_at);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
 	check_step_form(step);
 	check_anchors(step);
-	build_kind[step->kind](step);
+	build_flow(step);
 	if (model->asked.selftest)
 		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
-	if (model->asked.batch)
+	if (step->is.many)
 		step->no.lanes = step_objection(step, CAN_LANES);
 	check_peaks(step);
 	count_peaks(step);

@@ -14,7 +14,6 @@ struct cut;
 struct expansion;
 struct forced;
 struct modal;
-struct motion;
 struct normal;
 struct rest;
 struct rows;
@@ -26,19 +25,6 @@ struct rounding {                   /* a bound over the first steps from the ini
 	const char *state;          /* as written or as it is kept: where it is largest */
 	double relative;            /* to the state's largest value */
 	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
-};
-
-enum step_kind {                    /* what a step is made of */
-	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
-	KIND_TUNED,                 /* the same, with factors that the instance has; of a large one, of some blocks */
-	KIND_REGIONS,               /* the series of a region, and a search for crossings */
-	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
-	KIND_REMAINDER,              /* a list of actions on stages and remainders */
-	KIND_CUT,                   /* the same, from crossing to crossing */
-	KIND_EXPANDED,              /* the Taylor series of the solution */
-	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
-	KIND_NORMAL,                /* normal modes, and what is left over as forces on them */
-	KINDS
 };
 
 struct absent {                     /* why it is not there, where a reader would ask; NULL: it is, or nobody would */
@@ -60,10 +46,27 @@ struct kicks {                      /* of kick-drift-kick */
 struct carried {                    /* states that nothing leads back from, which only add up */
 	int count, *place;          /* of what rounding takes from each; -1: of others */
 };
+struct linear_step {                /* what steps of linear models alone have */
+	struct kicks kicks;
+	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
+	struct load_phase *phase;   /* per load */
+	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
+};
+struct region_step {                /* steps of piecewise-linear ones */
+	struct looking look;
+	int parts;                  /* that are independent, each with a step of its own */
+	struct step **part;
+};
+struct taylor_step {                /* what goes by Taylor series; else all NULL */
+	struct expansion *expansion;
+	struct expansion *divided;  /* whose expressions choose formulas by the state; NULL: none does */
+	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
+	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct model *plain;        /* without an option that stands aside: to be built in its place; or NULL */
-	enum step_kind kind;
+	struct descriptor is;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	/* what users see of tables: over the states as written; itself, where those are stepped */
 	const struct step *shown;
@@ -72,35 +75,26 @@ struct step {                       /* everything that is emitted for one model 
 	int tables;                 /* of each; 1 where nothing is left over */
 	struct program *program;
 	enum step_form form;        /* any but FORM_AUTO */
-	struct kicks kicks;
+	struct linear_step linear;
 	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
 	struct carried carried;
 	struct absent no;
 	struct anchors *anchors;    /* NULL: functions of loads in every step */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
-	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
 	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
 	struct tuned_blocks *blocks; /* NULL: no linear step with tunable params */
-	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	struct looking look;
-	struct expansion *expansion; /* of an expanded step; else NULL */
-	struct expansion *divided; /* whose expressions choose formulas by the state; NULL: none does */
-	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
-	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
+	struct region_step regions;
+	struct taylor_step taylor;
 	struct cut *cut;            /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
-	struct motion *motion;      /* likewise */
-	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
 	struct normal *normal;      /* of a step in normal modes; else NULL */
-	int parts;                  /* of a piecewise-linear model that are independent, each with a step of its own */
-	struct step **part;
-	struct load_phase *phase;   /* per load */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 };
-enum step_kind kind_of_step(const struct model *model);
+struct descriptor descriptor_of(const struct model *model);
+bool is_linear_alone(const struct step *step);                /* without regions, tunable params or none */
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
 const char *text_of_column(const struct linear *system, int column);
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */

@@ -184,8 +184,7 @@ const struct linear *system_of_outputs(const struct step *step)
 int own_row(const struct step *step, const struct output *output)
 {
 	const struct model *model = step->model;
-	const bool own = step->kind == KIND_TUNED;
-	return own ? model->params.tuning->output[output - model->output] : -1;
+	return step->is.tuned ? model->params.tuning->output[output - model->output] : -1;
 }
 
 /* For some values of the params; of a load in some segment of time */

@@ -271,7 +271,7 @@ static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 	tape_ref x, condition;
 	switch (a->kind) {
 	case ATOM_PARAM:      return f->reader.nominal ? nominal_ref(t, a->param)
-						      : tape_operand(t, TAPE_PARAM, a->param->tunable - 1, 0);
+						      : tape_operand(t, TAPE_PARAM, a->param->tuning.number - 1, 0);
 	case ATOM_PRODUCT:    return product_ref(f, a, TAPE_NONE);
 	case ATOM_RECIPROCAL: return tape_binary(t, TAPE_DIV, tape_number(t, 1), tape_form(f, a->operand[0]));
 	case ATOM_POWER:

@@ -22,7 +22,7 @@ static int stages(const struct emitter *e)
 
 static bool switches(const struct emitter *e)
 {
-	return e->step->expansion != NULL;
+	return e->step->taylor.expansion != NULL;
 }
 
 static double tolerance(const struct emitter *e)
@@ -78,7 +78,7 @@ void emit_collocation_place(const struct emitter *e)
 /* 1/s: of the loads that what chooses formulas reads */
 static double frequency_of_choices(const struct emitter *e)
 {
-	const struct expansion *d = e->step->divided;
+	const struct expansion *d = e->step->taylor.divided;
 	double highest = 0;
 	for (int i = 0; d && i < d->expressions; i++) {
 		const struct form *form = d->expression[i].form;
@@ -119,7 +119,7 @@ static void emit_limits(const struct emitter *e)
 
 static void emit_entry_table(const struct emitter *e)
 {
-	const struct motion *m = e->step->motion;
+	const struct motion *m = e->step->collocation->motion;
 	int *row = ARRAY(int, 3 * (size_t)m->entries + 3), rows = m->entries ? m->entries : 1;
 	for (int k = 0; k < m->entries; k++) {
 		row[3 * k] = m->entry[k].coord;
@@ -169,7 +169,7 @@ static void emit_stage_tables(const struct emitter *e)
 /* -J_ii + sum over j of |J_ij| of one kind of the entries of row i; NULL: it has none */
 static const char *row_bound(const struct emitter *e, int coord, bool twice)
 {
-	const struct motion *m = e->step->motion;
+	const struct motion *m = e->step->collocation->motion;
 	const char **term = ARRAY(const char *, (size_t)m->entries + 1);
 	int terms = 0;
 	for (int k = 0; k < m->entries; k++) {
@@ -222,7 +222,8 @@ static double worth(const struct emitter *e)
 {
 	const struct collocation *x = e->step->collocation;
 	double iterations = 2.2 + splits(e) * 3, series = e->step->program->multiplications;
-	double step = iterations * e->step->iteration.multiplications + 4.0 * x->stages * x->stages * e->system->n;
+	double step = iterations * e->step->collocation->iteration.multiplications +
+		      4.0 * x->stages * x->stages * e->system->n;
 	double ratio = floor(step / series * 12) / 16;
 	return ratio < 1 ? 1 : ratio > 8 ? 8 : ratio;
 }
@@ -233,8 +234,8 @@ static void emit_switching_limits(const struct emitter *e)
 	       "#define PL_WORTH %s  /* so many series a step of the collocation costs */\n"
 	       "#define PL_CHOICES %d\n"
 	       "#define PL_UNSEEN %d\n"
-	       "#define PL_SLOPES %d\n", e->step->expansion->measured, shortest(worth(e)), has_choices(e),
-	    has_unseen(e), e->step->slopes != NULL);
+	       "#define PL_SLOPES %d\n", e->step->taylor.expansion->measured, shortest(worth(e)), has_choices(e),
+	    has_unseen(e), e->step->taylor.slopes != NULL);
 	if (has_unseen(e))
 		emit_unseen_sizes(e);
 }
@@ -247,23 +248,24 @@ static void emit_passage_limits(const struct emitter *e)
 	say_macro(e, "WATCH_READS", whole_text(watch_reads_known(e)));
 	if (!meets_contacts(e))
 		return;
-	say_macro(e, "EVENT_ORDER", whole_text(e->step->divided->order));
-	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->divided->columns));
+	say_macro(e, "EVENT_ORDER", whole_text(e->step->taylor.divided->order));
+	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->taylor.divided->columns));
 	if (!switches(e))
-		say_macro(e, "CHOICES", whole_text(has_choices(by_series(e, e->step->divided))));
+		say_macro(e, "CHOICES", whole_text(has_choices(by_series(e, e->step->taylor.divided))));
 }
 
 static void emit_include(const struct emitter *e)
 {
-	const struct expansion *x = e->step->expansion, *d = e->step->divided;
+	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.divided;
 	emit_sizes(e, { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
-		   { "MODES", splits(e) ? e->step->collocation->modes : 0 }, { "ENTRIES", e->step->motion->entries },
-		   { "INPUTS", e->system->inputs }, { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
+		   { "MODES", splits(e) ? e->step->collocation->modes : 0 },
+		   { "ENTRIES", e->step->collocation->motion->entries }, { "INPUTS", e->system->inputs },
+		   { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
 		   { "WAYS", d ? d->expressions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
-		   { "ARGUMENTS", traces(e) ? e->step->unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
+		   { "ARGUMENTS", traces(e) ? e->step->taylor.unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (is_divided(e))
@@ -288,11 +290,11 @@ void emit_collocation_step(const struct emitter *e)
 {
 	emit_stage_tables(e);
 	if (meets_contacts(e))
-		emit_series_functions(by_series(e, e->step->divided));
+		emit_series_functions(by_series(e, e->step->taylor.divided));
 	emit_motion(e);
 	emit_inputs_now(e);
 	if (is_divided(e)) {
-		emit_divided_tables(meets_contacts(e) ? by_series(e, e->step->divided) : e);
+		emit_divided_tables(meets_contacts(e) ? by_series(e, e->step->taylor.divided) : e);
 		emit_passing_table(e, stages(e) + meets_contacts(e));
 	}
 	if (meets_contacts(e)) {

@@ -14,7 +14,7 @@
 
 static const struct motion *motion(const struct emitter *e)
 {
-	return e->step->motion;
+	return e->step->collocation->motion;
 }
 
 bool splits(const struct emitter *e)
@@ -30,7 +30,7 @@ enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 static const struct form **forms_of(const struct emitter *e, enum motion_part part, int *count)
 {
 	const struct motion *m = motion(e);
-	const struct expansion *d = e->step->divided, *u = e->step->unseen;
+	const struct expansion *d = e->step->taylor.divided, *u = e->step->taylor.unseen;
 	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
 	const bool by_series = meets_contacts(e) && part != THE_ARGUMENTS;
 	*count = by_series ? 0 : part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
@@ -60,7 +60,7 @@ static const struct form **all_forms(const struct emitter *e, int *count)
 /* Beside contacts what a part sets, from what the series of events has */
 static const struct tape *set_part(const struct emitter *e, struct recurrences *r, enum motion_part part)
 {
-	const struct expansion *x = e->step->divided;
+	const struct expansion *x = e->step->taylor.divided;
 	if (part != THE_EXPRESSIONS) {
 		set_motion(e->step, r, part == THE_SLOPES_TOO);
 		return tape_of_recurrences(r);
@@ -210,7 +210,7 @@ static struct knowns knowns_of(const struct emitter *e, const struct reads *r)
 		add_known(&list, KNOWN_TIME, 0, 0);
 	if (decides(e))
 		add_known(&list, KNOWN_WHEN, 0, 0);
-	for (int j = 0; meets_contacts(e) && j < e->step->divided->slots; j++)
+	for (int j = 0; meets_contacts(e) && j < e->step->taylor.divided->slots; j++)
 		add_known(&list, KNOWN_SLOT, j, 0);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++)
@@ -436,7 +436,7 @@ static void close_motion(const struct emitter *e, const struct tape *t, const st
 /* Beside contacts */
 static void emit_series_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	struct emitter here = *by_series(e, e->step->divided);
+	struct emitter here = *by_series(e, e->step->taylor.divided);
 	here.at_state = true;
 	struct recurrences *made = series_new(&here);
 	const struct tape *t = set_part(e, made, part);
@@ -445,7 +445,7 @@ static void emit_series_body(const struct emitter *e, const struct reads *r, enu
 	emit_motion_locals(&here, r, &read);
 	emit_series_tape(&here, made);
 	say(e, "%s%s", tape_reads(t, TAPE_TIME, -1, 1) || !decides(e) ? "" : "    (void)when;\n",
-	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->divided->slots ? "" : "    (void)force;\n");
+	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->taylor.divided->slots ? "" : "    (void)force;\n");
 	close_motion(e, t, &read, tape_reads(t, TAPE_STATE, -1, -1));
 }
 

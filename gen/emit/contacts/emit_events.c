@@ -11,12 +11,12 @@
 
 static const struct contacts *contacts(const struct emitter *e)
 {
-	return e->step->divided->contacts;
+	return e->step->taylor.divided->contacts;
 }
 
 bool meets_contacts(const struct emitter *e)
 {
-	return e->step->divided && contacts(e);
+	return e->step->taylor.divided && contacts(e);
 }
 
 /* ---- tables ---- */
@@ -28,7 +28,7 @@ static int watch_or_none(int watch)
 
 static int rank_in(const struct emitter *e, int expression, int breakpoint)
 {
-	return e->step->divided->expression[expression].rank[breakpoint];
+	return e->step->taylor.divided->expression[expression].rank[breakpoint];
 }
 
 /* Their columns in the series, or one behind the other */
@@ -120,6 +120,6 @@ void emit_event_tables(const struct emitter *e)
 
 void emit_events_along(const struct emitter *e)
 {
-	emit_watches(e, "along_watch", e->step->divided->expressions);
+	emit_watches(e, "along_watch", e->step->taylor.divided->expressions);
 	emit_events(e, "along", "passing", "along_watch");
 }

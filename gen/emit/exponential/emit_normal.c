@@ -78,17 +78,20 @@ static void emit_stage_table(const struct emitter *e, const char *note, const ch
 static void emit_node_tables(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const size_t stages = (size_t)m->stages;
+	const size_t stages = (size_t)m->collocation.stages;
 	const double **flow = ARRAY(const double *, stages), **weight = ARRAY(const double *, stages);
 	const double **wave = ARRAY(const double *, stages);
 	for (size_t i = 0; i < stages; i++) {
-		flow[i] = m->stage[i].flow;
-		weight[i] = m->stage[i].weight;
-		wave[i] = m->stage[i].wave;
+		flow[i] = m->collocation.stage[i].flow;
+		weight[i] = m->collocation.stage[i].weight;
+		wave[i] = m->collocation.stage[i].wave;
 	}
-	emit_stage_table(e, "Modes at each node from those at the step's start", "flow", m->stages, 4, flow);
-	emit_stage_table(e, "... and from forces at all nodes", "weight", m->stages, 2 * (m->stages + 1), weight);
-	emit_stage_table(e, "... and from known loads at its start", "of_wave", m->stages, 2 * wave_values(e), wave);
+	emit_stage_table(e, "Modes at each node from those at the step's start", "flow", m->collocation.stages, 4,
+			 flow);
+	emit_stage_table(e, "... and from forces at all nodes", "weight", m->collocation.stages,
+			 2 * (m->collocation.stages + 1), weight);
+	emit_stage_table(e, "... and from known loads at its start", "of_wave", m->collocation.stages,
+			 2 * wave_values(e), wave);
 }
 
 /* e eta + s eta', de eta + ds eta', and weights of forces */
@@ -129,27 +132,28 @@ static void emit_node_modes(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	emit_node_tables(e);
-	open_function(e, NULL, "static inline void $n_node_modes(const $n *s, int which, int node,\n"
-		      "    double force[%d][%d], const double wave[], double eta[], double rate[])", m->stages + 1,
-		      m->width);
+	open_function(e, NULL,
+		      "static inline void $n_node_modes(const $n *s, int which, int node,\n"
+		      "    double force[%d][%d], const double wave[], double eta[], double rate[])",
+		      m->collocation.stages + 1, m->width);
 	emit_rows_of_node(e, "node - 1", "weight[node - 1]");
-	emit_stage_sums(e, m->stages + 1, "force[%d][i]", NULL);
+	emit_stage_sums(e, m->collocation.stages + 1, "force[%d][i]", NULL);
 }
 
 /* From forces at the nodes of the last step, the last of which is the start of this one */
 static void emit_forces_ahead(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const int nodes = m->stages + 1;
+	const int nodes = m->collocation.stages + 1;
 	open_function(e, NULL, "static inline void $n_forces_ahead(const $n *s, double force[%d][%d])", nodes,
 		      m->width);
 	say(e, "    int i;\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        force[0][i] = s->force[%d][i];\n", m->width, m->stages);
-	for (int i = 0; i < m->stages; i++) {
+	       "        force[0][i] = s->force[%d][i];\n", m->width, m->collocation.stages);
+	for (int i = 0; i < m->collocation.stages; i++) {
 		struct summands s = { 0 };
 		for (int k = 0; k < nodes; k++)
-			add_summand(&s, scaled(m->ahead[i * nodes + k], format("s->force[%d][i]", k)));
+			add_summand(&s, scaled(m->collocation.ahead[i * nodes + k], format("s->force[%d][i]", k)));
 		say(e, "        force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 22));
 	}
 	say(e, "    }\n");
@@ -160,19 +164,19 @@ static void emit_predict(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	struct summands extrapolated = { 0 };
-	for (int k = 0; k < m->points; k++)
-		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
+	for (int k = 0; k < m->multistep.points; k++)
+		add_summand(&extrapolated, scaled(m->multistep.extrapolate[k], format("force%d[i]", k)));
 	emit_array(e, "Modes after a step, from past forces, the last first", "past_weight", 3,
-		   (const int[]){ m->banks, 2 * m->points, m->width }, m->step.weight, NULL);
+		   (const int[]){ m->banks, 2 * m->multistep.points, m->width }, m->multistep.step.weight, NULL);
 	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
-		   (const int[]){ m->banks, 2, m->width }, m->correct, NULL);
+		   (const int[]){ m->banks, 2, m->width }, m->multistep.correct, NULL);
 	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double wave[],\n"
 		      "    double eta[], double rate[], double expected[])");
-	emit_rows_of_node(e, format("%d", m->stages - 1), "past_weight");
-	for (int k = 0; k < m->points; k++)
+	emit_rows_of_node(e, format("%d", m->collocation.stages - 1), "past_weight");
+	for (int k = 0; k < m->multistep.points; k++)
 		say(e, "    const double *const force%d = s->force[%s];\n", k, k == 0 ? "s->newest" :
-		    format("s->newest >= %d ? s->newest - %d : s->newest + %d", k, k, m->points - k));
-	emit_stage_sums(e, m->points, "force%d[i]", tree(extrapolated.terms, extrapolated.term, 22));
+		    format("s->newest >= %d ? s->newest - %d : s->newest + %d", k, k, m->multistep.points - k));
+	emit_stage_sums(e, m->multistep.points, "force%d[i]", tree(extrapolated.terms, extrapolated.term, 22));
 }
 
 /* ---- a bank ---- */
@@ -200,13 +204,13 @@ static void emit_still(const struct emitter *e)
 	double *omega = ARRAY(double, 2 * (size_t)width);
 	struct summands s = { 0 };
 	for (int i = 0; i < width; i++) {
-		omega[i] = m->omega[i];
-		omega[width + i] = m->period[i];
+		omega[i] = m->steady.omega[i];
+		omega[width + i] = m->steady.period[i];
 	}
 	emit_array(e, "Frequencies that amplitudes are scaled by, and 1 over them", "omega", 2,
 		   (const int[]){ 2, width }, omega, NULL);
 	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
-		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->settled, NULL);
+		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->steady.flow, NULL);
 	open_function(e, NULL, "static inline void $n_still(const double x[], const double wave[], double sum[])");
 	say(e, "    int i;\n");
 	for (int j = 0; j < 2 * m->modes; j++)
@@ -266,7 +270,8 @@ static void emit_swing(const struct emitter *e)
 static void emit_within(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const int nodes = m->stages * m->stages, past = m->points * m->points, size[] = { m->banks, m->width };
+	const int nodes = m->collocation.stages * m->collocation.stages,
+		  past = m->multistep.points * m->multistep.points, size[] = { m->banks, m->width };
 	emit_array(e, "Of polynomials through forces at nodes: powers from what they exceed that at the start by",
 		   "of_nodes", 1, &nodes, m->within.nodes, NULL);
 	if (past)
@@ -289,9 +294,15 @@ static int turns_within(const struct emitter *e)
 void emit_mode_sizes(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const struct size size[] = { { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", 0 },
-		{ "STAGES", m->stages }, { "SWEEPS", m->sweeps }, { "FIRST_SWEEPS", m->first_sweeps },
-		{ "FUNCTIONS", 0 }, { "WAVES", 0 }, { "BANKS", 1 } };
+	const struct size size[] = { { "MODES", m->modes },
+				     { "WIDTH", m->width },
+				     { "POINTS", 0 },
+				     { "STAGES", m->collocation.stages },
+				     { "SWEEPS", m->collocation.sweeps },
+				     { "FIRST_SWEEPS", m->collocation.first_sweeps },
+				     { "FUNCTIONS", 0 },
+				     { "WAVES", 0 },
+				     { "BANKS", 1 } };
 	for (size_t i = 0; i < sizeof size / sizeof *size; i++)
 		say_macro(e, size[i].name, whole_text(size[i].value));
 }
@@ -310,11 +321,12 @@ void emit_mode_tables(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->points }, { "TWICE", m->twice },
-		   { "STAGES", m->stages }, { "SWEEPS", m->sweeps }, { "FIRST_SWEEPS", m->first_sweeps },
+	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->multistep.points },
+		   { "TWICE", m->multistep.twice }, { "STAGES", m->collocation.stages },
+		   { "SWEEPS", m->collocation.sweeps }, { "FIRST_SWEEPS", m->collocation.first_sweeps },
 		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "BANKS", m->banks },
 		   { "SELECTOR", e->model->remainder.split->selector - 1 }, { "SEGMENTS", e->system->segments },
-		   { "SETTLES", m->settled != NULL }, { "SETTLED_IN", m->settled_bank },
+		   { "SETTLES", m->steady.flow != NULL }, { "SETTLED_IN", m->steady.bank },
 		   { "AT", e->step->series.emitted }, { "TERMS", m->within.terms }, { "TURNS", turns_within(e) },
 		   { "DAMPED", m->within.damping != NULL }, { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
 	say(e, "#include \"normal.h\"\n");
@@ -331,11 +343,11 @@ void emit_normal_tables(const struct emitter *e)
 	emit_waves(e);
 	emit_bank(e);
 	emit_node_modes(e);
-	if (m->points)
+	if (m->multistep.points)
 		emit_predict(e);
 	else
 		emit_forces_ahead(e);
-	if (m->settled)
+	if (m->steady.flow)
 		emit_still(e);
 	emit_pass_time(e);
 	if (e->step->series.emitted)
@@ -346,8 +358,8 @@ void emit_normal_tables(const struct emitter *e)
 void emit_normal_members(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const char *where = m->points ? "ends of the last steps" : "nodes of the last step";
-	bool past = m->points || has_bank(e), alone = keeps_modes(e);
+	const char *where = m->multistep.points ? "ends of the last steps" : "nodes of the last step";
+	bool past = m->multistep.points || has_bank(e), alone = keeps_modes(e);
 	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
 	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
 	if (past)
@@ -356,7 +368,7 @@ void emit_normal_members(const struct emitter *e)
 		say(e, "    double f[%d][%d];       /* functions of time there */\n", m->kept, functions_of_time(e));
 	if (alone)
 		say(e, "    int which;            /* operator whose modes they are */\n");
-	if (m->points)
+	if (m->multistep.points)
 		say(e, "    int newest;           /* of those ends the last */\n");
 	say(e, "    int known;            /* how many there are */\n");
 }

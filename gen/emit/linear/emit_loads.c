@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads on the target: phases as turns, growths as exponents of 2, load states made of them at a step's start. */
 #include "inner.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
@@ -45,19 +45,19 @@ static const char *phase_text(const struct emitter *e, const struct advance *adv
 
 const char *phase_step_text(const struct emitter *e, int load)
 {
-	return phase_text(e, &e->step->phase[load].step);
+	return phase_text(e, &e->step->linear.phase[load].step);
 }
 
 const char *growth_step_text(const struct emitter *e, int load)
 {
-	return growth_text(e, &e->step->phase[load].step);
+	return growth_text(e, &e->step->linear.phase[load].step);
 }
 
 static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
 	say(e, "\nstatic const pl_turn $n_%s[%d] = {  /* %s */\n", name, e->phases, what);
 	for (int l = 0; l < e->system->loads; l++) {
-		const struct load_phase *phase = &e->step->phase[l];
+		const struct load_phase *phase = &e->step->linear.phase[l];
 		if (e->phase[l] >= 0)
 			say(e, "    %s,  /* %s */\n", turn_text(e, per_step ? &phase->step.turn : &phase->start),
 			    column_text(&e->system->load[l], 0));
@@ -95,7 +95,8 @@ static void print_node_rows(const struct emitter *e, const struct node_table *ta
 		say(e, "    {");
 		for (int l = 0; l < e->system->loads; l++)
 			if (table->index[l] >= 0)
-				say(e, "%s%s", shown++ ? ",\n     " : "", table->text(e, &e->step->phase[l].node[i]));
+				say(e, "%s%s", shown++ ? ",\n     " : "",
+				    table->text(e, &e->step->linear.phase[l].node[i]));
 		say(e, "},  /* %s h */\n", readable_text(program->node[i]));
 	}
 	say(e, "};\n");
@@ -128,7 +129,7 @@ void emit_node_phases(const struct emitter *e, const bool *loads)
 static void print_rate_rows(const struct emitter *e, bool turns)
 {
 	for (int l = 0; l < e->system->loads; l++) {
-		const struct load_phase *phase = &e->step->phase[l];
+		const struct load_phase *phase = &e->step->linear.phase[l];
 		if ((turns ? e->phase : e->growth)[l] >= 0)
 			print_rate(e, turns ? &phase->turns : &phase->growth, column_text(&e->system->load[l], 0));
 	}
@@ -148,20 +149,20 @@ void emit_phase_rates(const struct emitter *e)
 
 static bool has_tuned_rates(const struct emitter *e)
 {
-	return e->kind->own_factors && e->model->params.tuning->frequencies > 0;
+	return e->step->is.tuned && e->model->params.tuning->frequencies > 0;
 }
 
 void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
 		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", phase_bits(e->step)), false);
-		if (!e->kind->own_factors)
+		if (!e->step->is.tuned)
 			print_turns(e, "phase_step", "in one step", true);
 		if (!has_tuned_rates(e))
 			print_rates(e, true, "phase_rate", e->phases, "turns per second");
 	}
 	if (e->growths) {
-		if (!e->kind->own_factors)
+		if (!e->step->is.tuned)
 			print_growths(e);
 		print_rates(e, false, "growth_rate", e->growths, "|a| / ln 2 [1/s]");
 	}

@@ -2,7 +2,7 @@
 /* output NAME = peak(x): a step looks for larger values inside, before it moves the state. */
 #include "inner.h"
 #include "emit/declarations.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/steps.h"
 #include "step/linear/rows.h"
 
@@ -86,7 +86,7 @@ static void emit_peak_places(const struct emitter *e)
 
 static void emit_include(const struct emitter *e)
 {
-	bool own = e->kind->own_factors;
+	bool own = e->step->is.tuned;
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
 		   { "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
 		   { "REACHES", has_reach(e) }, { "BY_VALUES", 0 });
@@ -103,7 +103,7 @@ void emit_peak_tables(const struct emitter *e)
 	struct peaks peaks = peaks_of(e->step);
 	if (any_fixed(e))
 		emit_rows(e, "peak_row", "Outputs over x: the states and what acts on them", peaks.row);
-	if (!e->kind->own_factors) {
+	if (!e->step->is.tuned) {
 		emit_series_slopes(e);
 		emit_rows(e, "peak_bend", "How far they are off their chords in a step at most, by |x|", peaks.bend);
 	}

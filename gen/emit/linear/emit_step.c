@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
 #include "inner.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/linear/forms.h"
@@ -158,7 +158,7 @@ void emit_step_end(const struct emitter *e)
 	if (e->step->anchors)
 		say(e, "    if (++s->since == %d) { $n_drop_anchor(s); }\n",
 		    e->step->anchors->steps);
-	if (e->step->rest && e->step->rest->in_step)
+	if (e->step->linear.rest && e->step->linear.rest->in_step)
 		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
 	if (has_ranges(e))
 		say(e, "    $n_stay(s);\n");
@@ -178,7 +178,7 @@ const char *head_of_step(const struct emitter *e)
 /* Into y: the state after a step in which the loads change their formula, from pass() */
 static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
 {
-	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->kind->own_factors ? "NULL, " : "";
+	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->step->is.tuned ? "NULL, " : "";
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
 	       "        double y[$N_STATES];\n"
 	       "        %s$n_pass(s, %s%s, %sy);\n"
@@ -237,7 +237,7 @@ static void emit_changing_step(const struct emitter *e)
 void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
-	if (e->step->rest && e->step->rest->in_step)
+	if (e->step->linear.rest && e->step->linear.rest->in_step)
 		say(e, "\nstatic void $n_rest($n *s);\n");
 	if (e->system->segments > 1) {
 		emit_changing_step(e);

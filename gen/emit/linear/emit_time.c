@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
 #include "inner.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "step/linear/forms.h"
@@ -226,8 +226,8 @@ void emit_changes(const struct emitter *e)
 	say(e, "};\n");
 	open_function(e, "Time from now to a change", "static double $n_until(const $n *s, int change)");
 	say(e, "    %sconst pl_two h = %s;\n"
-	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n", e->kind->own_factors ? "" : "static ",
-	    e->kind->own_factors ? "{s->coeffs.h, s->coeffs.h_low}" : two_text(e->model->h));
+	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n", e->step->is.tuned ? "" : "static ",
+	    e->step->is.tuned ? "{s->coeffs.h, s->coeffs.h_low}" : two_text(e->model->h));
 	close_function(e, "");
 }
 
@@ -401,7 +401,7 @@ void emit_at(const struct emitter *e)
 	if (!changes && is_blockwise(e))
 		emit_passing_algorithm(e);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", input_parameter(e));
-	emit_if_any(e->kind->held, e);
+	emit_if_any(e->prints->held, e);
 	if (changes && !adds_sustained(e))
 		emit_passing_at(e);
 	else
@@ -443,7 +443,7 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 /* What is kept is made of the states, in one word */
 static bool converts(const struct emitter *e)
 {
-	return e->step->kicks.momenta || e->step->modal;
+	return e->step->linear.kicks.momenta || e->step->modal;
 }
 
 /* Of the states that have a low word, in its order; returns how many */
@@ -488,7 +488,7 @@ static void emit_pass_steps(const struct emitter *e)
 
 void emit_jump(const struct emitter *e)
 {
-	if (e->kind->own_factors) {     /* retune.h has it */
+	if (e->step->is.tuned) {     /* retune.h has it */
 		emit_pass_steps(e);
 		return;
 	}

@@ -2,7 +2,7 @@
 /* NAME_batch: what the header has of it, and what batch.h is told. */
 #include "inner.h"
 #include "emit/declarations.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/steps.h"
 #include "step/linear/rows.h"
 
@@ -206,7 +206,7 @@ static void emit_include(const struct batch *b)
 		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	if (has_peaks(e))
-		say_macro(e, "NOMINAL", e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
+		say_macro(e, "NOMINAL", e->step->is.tuned ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
 	say(e, "#include \"batch.h\"\n");
 }
 

@@ -2,7 +2,7 @@
 /* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
  * many instances as there are lanes, from the arrays and back. */
 #include "inner.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/steps.h"
 #include "step/exponential/recipe.h"
 #include "step/linear/rows.h"
@@ -97,7 +97,7 @@ struct batch plan_batch(const struct emitter *e)
 		b.shared += e->system->states;
 	}
 	b.sampled = has_peaks(e) && acts_beside_states(e) && only_samples_act(e);
-	if (e->kind->own_factors)
+	if (e->step->is.tuned)
 		number_factors(&b);
 	return b;
 }
@@ -230,11 +230,11 @@ static const char *bend_over_lanes(struct batch *b, int p)
 		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), state[%d]%s%s)", i,
 					  factor_of_momentum(e, i) ? " / " : "",
 					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
-		term[terms++] = e->kind->own_factors
+		term[terms++] = e->step->is.tuned
 			? format("%s * %s", batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i)), size)
 			: scaled(peaks.bend[p * e->step->layout.size + i], size);
 	}
-	if (acts_beside_states(e) && e->kind->own_factors)
+	if (acts_beside_states(e) && e->step->is.tuned)
 		term[terms++] = format("%s * reach[%d]", batch_factor(b, format("s->coeffs.reach[%d]", p)), p);
 	else if (acts_beside_states(e))
 		term[terms++] = format("reach[%d]", p);

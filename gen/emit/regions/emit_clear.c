@@ -373,7 +373,7 @@ void emit_clear_step(const struct emitter *e)
 	for (int j = 0; j < layout->size && keeps_rest(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
-	say(e, e->step->look.swift ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
+	say(e, e->step->regions.look.swift ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
 				"    }\n"
 			      : "        $o_seek(s, now);\n"
 				"    }\n");

@@ -216,7 +216,7 @@ void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 	say_macro(e, "LOOKS", whole_text(MOST_LOOKS));
 	say_macro(e, "LARGE", shortest(p->large));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
-	say_macro(e, "MOVES", whole_text(e->step->look.degree));
+	say_macro(e, "MOVES", whole_text(e->step->regions.look.degree));
 	say_macro(e, "LEAN", format("PL(%slean)", whole));
 	say_macro(e, "SWAY", format("PL(%ssway)", whole));
 }

@@ -25,8 +25,8 @@ static bool is_linear_part(const struct emitter *part)
 static int first_of_degree(const struct emitter *e, int index)
 {
 	int first = 0;
-	while (is_linear_step(e->step->part[first]) || !e->step->part[first]->look.swift ||
-	       e->step->part[first]->look.degree != e->step->part[index]->look.degree)
+	while (is_linear_step(e->step->regions.part[first]) || !e->step->regions.part[first]->regions.look.swift ||
+	       e->step->regions.part[first]->regions.look.degree != e->step->regions.part[index]->regions.look.degree)
 		if (first++ == index)
 			return index;
 	return first;
@@ -37,7 +37,7 @@ static struct emitter part_of(const struct emitter *e, int index)
 	struct emitter part = *e;
 	part.part = &e->model->switching->part[index];
 	part.model = part.part->model;
-	part.step = e->step->part[index];
+	part.step = e->step->regions.part[index];
 	part.system = &part.step->branch->system;
 	part.own = format("%s_part%d", e->name, index);
 	part.place = format("[%d]", index);
@@ -51,8 +51,8 @@ static struct emitter part_of(const struct emitter *e, int index)
 /* The linear part, the last, has none. */
 static int divided_parts(const struct emitter *e)
 {
-	int parts = e->step->parts;
-	return parts - is_linear_step(e->step->part[parts - 1]);
+	int parts = e->step->regions.parts;
+	return parts - is_linear_step(e->step->regions.part[parts - 1]);
 }
 
 static void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part))
@@ -137,7 +137,7 @@ static void emit_tables_of_part(const struct emitter *part)
 
 void emit_part_tables(const struct emitter *e)
 {
-	for_parts(e, e->step->parts, emit_tables_of_part);
+	for_parts(e, e->step->regions.parts, emit_tables_of_part);
 }
 
 /* ---- what functions of a part are given: inputs, and the load states that it reads ---- */
@@ -171,9 +171,9 @@ static const char *given_text(const struct emitter *part, bool as_parameters)
 static bool *needed_loads(const struct emitter *e, bool linear_too)
 {
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
-	for (int p = 0; p < (linear_too ? e->step->parts : divided_parts(e)); p++)
+	for (int p = 0; p < (linear_too ? e->step->regions.parts : divided_parts(e)); p++)
 		for (int l = 0; l < e->system->loads; l++)
-			needed[l] = needed[l] || e->step->part[p]->layout.load[l] >= 0;
+			needed[l] = needed[l] || e->step->regions.part[p]->layout.load[l] >= 0;
 	return needed;
 }
 
@@ -334,7 +334,7 @@ static void emit_linear_step(const struct emitter *part)
 static void emit_divided_step(const struct emitter *part)
 {
 	begin_step(part);
-	if (part->step->look.swift) {
+	if (part->step->regions.look.swift) {
 		emit_raw_locals(part, NULL);
 		emit_clear_step(part);
 	} else {
@@ -357,11 +357,11 @@ static void emit_step_call(const struct emitter *part)
 
 void emit_parts_step(const struct emitter *e)
 {
-	for_parts(e, e->step->parts, emit_step_of_part);
+	for_parts(e, e->step->regions.parts, emit_step_of_part);
 	open_function(e, NULL, "%s", head_of_step(e));
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e, true), false);
-	for_parts(e, e->step->parts, emit_step_call);
+	for_parts(e, e->step->regions.parts, emit_step_call);
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
@@ -393,9 +393,9 @@ static void emit_at_call(const struct emitter *part)
 void emit_parts_at(const struct emitter *e)
 {
 	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
-	for_parts(e, e->step->parts, emit_at_of_part);
+	for_parts(e, e->step->regions.parts, emit_at_of_part);
 	open_function(e, NULL, "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])", u);
 	emit_load_states(e, needed_loads(e, true), false);
-	for_parts(e, e->step->parts, emit_at_call);
+	for_parts(e, e->step->regions.parts, emit_at_call);
 	close_function(e, given_inputs(e) ? "u" : "");
 }

@@ -133,7 +133,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
 			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
-	if (e->model->params.retuned && e->step->look.clears)
+	if (e->model->params.retuned && e->step->regions.look.clears)
 		emit_own_look(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
@@ -166,14 +166,14 @@ void emit_regions(const struct emitter *e)
 		emit_numbers_of_regions(e, &pieces, g);
 	if (g && !e->model->params.retuned)
 		emit_guards(e, g);
-	if (e->step->look.swift) {
+	if (e->step->regions.look.swift) {
 		emit_swift_tables(e, &pieces, expression_names(e));
 		emit_crossing(e, &pieces);
-	} else if (e->step->look.clears && !g && is_cleared_by_tables(e->step)) {
+	} else if (e->step->regions.look.clears && !g && is_cleared_by_tables(e->step)) {
 		emit_spans(e);
 	}
 	emit_search(e, ladder_text(e, g));
-	if (e->step->look.swift)
+	if (e->step->regions.look.swift)
 		emit_crossing_macros(e, &pieces);
 	say_include(e, "search.h");
 }
@@ -278,8 +278,8 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
-		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->parts },
-		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->look.clears },
+		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->regions.parts },
+		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->regions.look.clears },
 		{ "CAPPED", capped_entries(e) }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -361,7 +361,7 @@ static void emit_region_status(const struct emitter *e)
 /* After a step's end: the segment of time that outputs are in. What sticks and bounces is decided in it already. */
 void emit_segment_end(const struct emitter *e)
 {
-	if (!e->step->parts && has_guards(e) && regions_change(e))
+	if (!e->step->regions.parts && has_guards(e) && regions_change(e))
 		say(e, "    s->segment = s->contact.region / %d;\n", regions_at_once(regions_of(e)));
 	else if (e->system->segments > 1)
 		say(e, "    $n_pass_segments(s);\n");
@@ -393,7 +393,7 @@ static void emit_whole_step(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	open_function(e, NULL, "%s", head_of_step(e));
-	if (e->step->look.clears && !has_guards(e))
+	if (e->step->regions.look.clears && !has_guards(e))
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);

@@ -8,7 +8,7 @@
 
 static const struct expansion *expansion(const struct emitter *e)
 {
-	return e->step->divided;
+	return e->step->taylor.divided;
 }
 
 /* ---- the header ---- */
@@ -27,7 +27,7 @@ void emit_divided_types(const struct emitter *e)
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
 	       "} $n_contact;\n\n",
 	    meets_contacts(e) && e->step->collocation ? "; 2: they may be others"
-	    : e->step->expansion || !e->step->collocation ? ""
+	    : e->step->taylor.expansion || !e->step->collocation ? ""
 		: "; below 0: nor where that goes which is on a breakpoint",
 	    meets_contacts(e) ? "    int rested;           /* contacts by infinitely many bounces, since then */\n"
 	    : "",
@@ -79,7 +79,7 @@ void emit_divided_tables(const struct emitter *e)
 	say(e, "\n/* Of the expressions that choose formulas: breakpoints, in a series the column of each */\n");
 	emit_int_list(e, "breaks", x->expressions, breaks);
 	emit_array(e, NULL, "breakpoint", 1, &all, at, NULL);
-	if (!e->step->expansion)
+	if (!e->step->taylor.expansion)
 		return;
 	emit_int_list(e, "column", x->expressions, column);
 	say(e, "static const pl_divided $n_divided = {%d, $c, %d, $n_column, $n_breaks, $n_breakpoint};\n",

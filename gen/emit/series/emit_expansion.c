@@ -212,8 +212,8 @@ void emit_series_functions(const struct emitter *e)
 {
 	emit_force_table(e);
 	emit_expand_from(e);
-	if (e->step->slopes)
-		emit_slopes_function(by_series(e, e->step->slopes));
+	if (e->step->taylor.slopes)
+		emit_slopes_function(by_series(e, e->step->taylor.slopes));
 }
 
 static void emit_model_functions(const struct emitter *e)
@@ -240,7 +240,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "PARTS", has_offset(e) }, { "STRAIGHT", is_straight(e) },
 		   { "WRITTEN_OUT", is_written_out(e, x->order) }, { "SERVES", most_served(e) },
 		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
-		   { "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->slopes },
+		   { "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->taylor.slopes },
 		   { "AT", e->step->series.emitted });
 	if (is_divided(e))
 		emit_divided_macros(e);

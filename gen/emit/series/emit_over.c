@@ -7,7 +7,7 @@
 
 static int order_of(const struct emitter *e)
 {
-	return e->step->expansion->order;
+	return e->step->taylor.expansion->order;
 }
 
 /* A block of rows has all coefficients as locals: no watch, few enough that they stand twice, and not --rows 1, which
@@ -21,7 +21,7 @@ bool runs_in_blocks(const struct emitter *e)
 /* Of a state; 1: only the first is left */
 static int highest_term(const struct emitter *e, int state, gain_term *term)
 {
-	int top = e->step->expansion->order;
+	int top = e->step->taylor.expansion->order;
 	while (top > 1 && !term(e, state, top))
 		top--;
 	return top;
@@ -36,7 +36,7 @@ void emit_value(const struct emitter *e, const char *theta, gain_term *term, con
 		const char *first = term(e, i, highest_term(e, i, term));
 		say(e, "%sdouble g%d = %s;\n", indent, i, first ? first : "0.0");
 	}
-	for (int k = e->step->expansion->order - 1; k > 0; k--)
+	for (int k = e->step->taylor.expansion->order - 1; k > 0; k--)
 		for (int i = 0; i < states; i++) {
 			const char *text = term(e, i, k);
 			if (k < highest_term(e, i, term))

@@ -17,7 +17,7 @@ void emit_floors(const struct emitter *e)
 {
 	if (!has_floors(e))
 		return;
-	const int size = e->system->states + (e->step->expansion ? e->step->expansion->columns : 0);
+	const int size = e->system->states + (e->step->taylor.expansion ? e->step->taylor.expansion->columns : 0);
 	double *value = ARRAY(double, (size_t)size);
 	RATIONAL floor = ZERO;
 	for (int i = 0; i < e->system->states; i++) {
@@ -55,7 +55,7 @@ void emit_reach_tables(const struct emitter *e)
 {
 	if (!truncation_of(e)->adaptive || e->system->inputs)
 		return;
-	int order = e->step->expansion->order, most = most_served(e);
+	int order = e->step->taylor.expansion->order, most = most_served(e);
 	double *last = ARRAY(double, (size_t)most), *before = ARRAY(double, (size_t)most);
 	RATIONAL bound = ZERO, steps = ZERO;
 	for (int m = 1; m <= most; m++) {
@@ -88,7 +88,7 @@ void emit_reach_sizes(const struct emitter *e)
 
 static const struct expansion *unseens(const struct emitter *e)
 {
-	return e->step->unseen;
+	return e->step->taylor.unseen;
 }
 
 /* How many h of loads that may cancel each other are followed: so much of the phase of the fastest */

@@ -19,7 +19,7 @@ const struct emitter *by_series(const struct emitter *e, struct expansion *x)
 {
 	struct view *view = NEW(struct view);
 	view->step = *e->step;
-	view->step.expansion = x;
+	view->step.taylor.expansion = x;
 	view->e = *e;
 	view->e.step = &view->step;
 	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
@@ -30,7 +30,7 @@ const struct emitter *by_series(const struct emitter *e, struct expansion *x)
 
 bool is_divided(const struct emitter *e)
 {
-	return e->step->divided != NULL;
+	return e->step->taylor.divided != NULL;
 }
 
 bool has_offset(const struct emitter *e)
@@ -40,7 +40,7 @@ bool has_offset(const struct emitter *e)
 
 bool spans_steps(const struct emitter *e)
 {
-	return e->step->expansion && !e->step->collocation && e->model->truncation.over > 1;
+	return e->step->taylor.expansion && !e->step->collocation && e->model->truncation.over > 1;
 }
 
 bool has_choices(const struct emitter *e)
@@ -211,7 +211,7 @@ void emit_ends_function(const struct emitter *e)
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)
 			recurrence_set(r, format("e[%d][%d]", k, c), x->column[c], k);
-	series_set_sizes(r, e->step->divided, "terms");
+	series_set_sizes(r, e->step->taylor.divided, "terms");
 	end_function(e, r);
 }
 
@@ -260,6 +260,6 @@ const char *is_not_finite(const struct emitter *e, const char *before, const cha
 
 int terms_of_events(const struct emitter *e)
 {
-	const struct expansion *x = e->step->divided;
+	const struct expansion *x = e->step->taylor.divided;
 	return x->expressions + (x->contacts ? x->contacts->watches : 0);
 }

@@ -2,7 +2,7 @@
 /* What a model has of params that an instance holds: types, retune. */
 #include "inner.h"
 #include "emit/formulas.h"
-#include "emit/kinds.h"
+#include "emit/state.h"
 #include "emit/regions/regions.h"
 #include "model/reads.h"
 #include "step/exponential/normal.h"
@@ -21,7 +21,7 @@ int held_leads(const struct emitter *e)
 /* What an instance has */
 static void emit_members(const struct emitter *e)
 {
-	if (e->kind->own_factors)
+	if (e->step->is.tuned)
 		emit_tuned_members(e);
 	else
 		(e->model->params.retuned ? emit_retuned_numbers : emit_nominal_params)(e);
@@ -62,7 +62,7 @@ void emit_held_declarations(const struct emitter *e)
 {
 	if (!tunables_of(e->model))
 		return;
-	const bool own = e->kind->own_factors, any = own && e->step->blocks->whole;
+	const bool own = e->step->is.tuned, any = own && e->step->blocks->whole;
 	const char *more = own ? e->model->params.tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
 			       : e->model->params.retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
 	const char *ranged = has_param_ranges(e) && !e->model->params.retuned ? ", PL_OUT_OF_RANGE" : "";
@@ -88,11 +88,11 @@ static void banner_blocks(const struct emitter *e)
 
 void banner_held(const struct emitter *e)
 {
-	const bool acts = e->system->inputs > e->model->spec->inputs;
+	const bool acts = e->system->inputs > e->model->spec->count.inputs;
 	if (!tunables_of(e->model))
 		return;
 	say(e, " * Tunable: %s. ", param_list(e));
-	if (e->kind->own_factors)
+	if (e->step->is.tuned)
 		banner_blocks(e);
 	else if (e->model->params.retuned)
 		say(e, "An instance has the tables of its regions, %d numbers of matrices, which\n"
@@ -200,7 +200,7 @@ static void emit_wrapper(const struct emitter *e)
 
 void emit_held_retune(const struct emitter *e)
 {
-	if (e->kind->own_factors)
+	if (e->step->is.tuned)
 		emit_retune(e);
 	if (held(e))
 		emit_held(e);

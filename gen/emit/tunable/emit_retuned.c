@@ -255,8 +255,8 @@ void emit_retuned(const struct emitter *e)
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
-		   { "CLEARS", e->step->look.clears });
-	if (e->step->look.clears)
+		   { "CLEARS", e->step->regions.look.clears });
+	if (e->step->regions.look.clears)
 		emit_gathering(e);
 	say_include(e, "retuned.h");
 }

@@ -70,7 +70,7 @@ static mpq_t *find_fixed(struct point_work *work, int coord, int order)
 static void fix_relative(struct point_work *work)
 {
 	const struct model *model = work->b->model;
-	int written = work->b->spec->components;
+	int written = work->b->spec->count.components;
 	for (int order = 0; order < 2; order++) {
 		mpq_t **value = ARRAY(mpq_t *, written), *kept = rationals(written);
 		for (int j = 0; j < written; j++)
@@ -87,8 +87,8 @@ static void fix_relative(struct point_work *work)
 static void evaluate_point(void *context)
 {
 	struct point_work *work = context;
-	for (int i = 0; i < work->b->spec->fixeds; i++)
-		evaluate_fixed(work, &work->b->spec->fixed[i]);
+	for (int i = 0; i < work->b->spec->operators.fixeds; i++)
+		evaluate_fixed(work, &work->b->spec->operators.fixed[i]);
 	if (work->b->model->relative)
 		fix_relative(work);
 }
@@ -97,9 +97,9 @@ static void evaluate_point(void *context)
 
 static const struct fixed *banked(const struct spec *spec)
 {
-	for (int i = 0; i < spec->fixeds; i++)
-		if (spec->fixed[i].values > 1)
-			return &spec->fixed[i];
+	for (int i = 0; i < spec->operators.fixeds; i++)
+		if (spec->operators.fixed[i].values > 1)
+			return &spec->operators.fixed[i];
 	return NULL;
 }
 
@@ -107,9 +107,10 @@ static void check_bank(void *context)
 {
 	const struct building *b = context;
 	const struct fixed *bank = banked(b->spec);
-	for (int i = 0; i < b->spec->fixeds; i++)
-		if (bank && b->spec->fixed[i].values > 1 && &b->spec->fixed[i] != bank)
-			error(b->spec->fixed[i].at, NULL, "a bank varies one name: %s has several values already",
+	for (int i = 0; i < b->spec->operators.fixeds; i++)
+		if (bank && b->spec->operators.fixed[i].values > 1 && &b->spec->operators.fixed[i] != bank)
+			error(b->spec->operators.fixed[i].at, NULL,
+			      "a bank varies one name: %s has several values already",
 			      text_between(bank->at, bank->end));
 	if (bank && bank->symbol && bank->symbol->kind == SYMBOL_COORD && bank->symbol->length && !bank->component)
 		error(bank->at, NULL, "a bank is chosen by one number: name a component");
@@ -119,14 +120,14 @@ static void check_bank(void *context)
 static int size_of_bank(struct building *b, const struct fixed *bank)
 {
 	enum { MOST_OPERATORS = 256 };
-	const struct node *count = b->spec->operator_count;
+	const struct node *count = b->spec->operators.count;
 	RATIONAL number = ZERO;
 	if (!count)
 		return bank ? bank->values : 1;
 	if (!bank || bank->values != 2)
 		error(count->start, "operator 16 at w = 0, 15",
 		      "a number of operators goes with two values of one name");
-	collect_constant(&b->collector, b->spec->operator_count, number);
+	collect_constant(&b->collector, b->spec->operators.count, number);
 	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_cmp_ui(number, 1, 1) < 0 ||
 	    mpq_cmp_ui(number, MOST_OPERATORS, 1) > 0)
 		error(count->start, NULL, "a number of operators is a whole number from 1 to %d, found %s",
@@ -156,7 +157,7 @@ static void divide_range(void *context)
 {
 	struct bank_work *w = context;
 	w->operators = size_of_bank(w->b, w->bank);
-	if (!w->b->spec->operator_count)
+	if (!w->b->spec->operators.count)
 		return;
 	size_t count = (size_t)w->operators;
 	RATIONALS *limit = rationals(2);
@@ -184,7 +185,7 @@ static void check_rising(const struct building *b, const struct fixed *bank)
 	const struct operator *operator = b->model->schedule.operator;
 	for (int k = 1; k < b->model->schedule.operators; k++)
 		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
-			error(bank->value[b->spec->operator_count ? 1 : k]->start,
+			error(bank->value[b->spec->operators.count ? 1 : k]->start,
 			      "the step uses the first whose value is not below the current one",
 			      "the values of a bank rise");
 }
@@ -435,8 +436,8 @@ static void place_waves(void *context, const struct form *form)
 static const char *point_text(const struct spec *spec, int which, mpq_srcptr banked_value)
 {
 	const char *text = "";
-	for (int i = 0; i < spec->fixeds; i++) {
-		const struct fixed *f = &spec->fixed[i];
+	for (int i = 0; i < spec->operators.fixeds; i++) {
+		const struct fixed *f = &spec->operators.fixed[i];
 		bool found = banked_value && f->values > 1;
 		const struct node *value = f->value[f->values > 1 && !found ? which : 0];
 		text = format("%s%s%s = %s", text, *text ? ", " : "", text_between(f->at, f->end),

@@ -310,8 +310,8 @@ static bool fixed_in_part(const struct model *model, const struct group *g)
 		for (int j = 0; j < g->n; j++) {
 			bool member = mpq_sgn(g->motion[j]) != 0 || (g->weight && mpq_sgn(g->weight[j]) != 0),
 			     found = false;
-			for (int i = 0; i < model->spec->fixeds && member; i++) {
-				const struct fixed *f = &model->spec->fixed[i];
+			for (int i = 0; i < model->spec->operators.fixeds && member; i++) {
+				const struct fixed *f = &model->spec->operators.fixed[i];
 				int first = f->symbol ? f->symbol->index + (f->component ? f->component - 1 : 0) : 0;
 				int length = f->symbol && f->symbol->length && !f->component ? f->symbol->length : 1;
 				found = found || (f->symbol && f->symbol->kind == SYMBOL_COORD && f->primes == order &&
@@ -384,7 +384,7 @@ static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight,
 	if (!fixed_in_part(model, g))
 		return true;
 	if (model->schedule.operators > 0 && !scheme_row(model->scheme)->holds_coupling)
-		say_warning(model->spec->operator_at, "fix all of them, or none",
+		say_warning(model->spec->operators.at, "fix all of them, or none",
 			    "the operator fixes some of the coordinates that may move as a whole: they are kept as "
 			    "written, and where they grow their differences lose digits");
 	return false;

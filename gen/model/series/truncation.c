@@ -112,9 +112,9 @@ void evaluate_truncation(void *context)
 	struct building *b = context;
 	struct model *model = b->model;
 	struct truncation *truncation = &model->truncation;
-	struct place at = b->spec->tolerance ? b->spec->tolerance->start : model->asked.scheme_at;
-	struct node *tolerance = asked_or_written(b, b->request->tolerance, b->spec->tolerance, &at);
-	struct node *order = model->asked.scheme_order, *substeps = b->spec->substeps;
+	struct place at = b->spec->asked.tolerance ? b->spec->asked.tolerance->start : model->asked.scheme_at;
+	struct node *tolerance = asked_or_written(b, b->request->tolerance, b->spec->asked.tolerance, &at);
+	struct node *order = model->asked.scheme_order, *substeps = b->spec->asked.substeps;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
 	if (row->stages) {

@@ -64,9 +64,14 @@ static struct symbol *derived_symbol(struct spec *spec, struct node *node)
 		if (same_node(spec->tunable[k].symbol->value, node))
 			return spec->tunable[k].symbol;
 	struct symbol *symbol = NEW(struct symbol);
-	*symbol = (struct symbol){ .kind = SYMBOL_PARAM, .name = format("derived%d", ++spec->derived),
-				   .at = node->at, .value = node, .used = true, .tuned = true, .derived = true,
-				   .tunable = spec->tunables + 1 };
+	*symbol = (struct symbol){ .kind = SYMBOL_PARAM,
+				   .name = format("derived%d", ++spec->derived),
+				   .at = node->at,
+				   .value = node,
+				   .used = true,
+				   .tuning.tuned = true,
+				   .tuning.derived = true,
+				   .tuning.number = spec->tunables + 1 };
 	add_symbol(spec, symbol);
 	*MORE(spec->tunable, spec->tunables) = (struct tunable){ node->start, symbol, NULL, NULL };
 	return symbol;
@@ -84,14 +89,14 @@ static void derive_in(struct spec *spec, struct node **place)
 {
 	struct node *node = *place;
 	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
-	if (!first_tuned(node) || (s && s->tunable) || spec->derived == LIMIT_DERIVED)
+	if (!first_tuned(node) || (s && s->tuning.number) || spec->derived == LIMIT_DERIVED)
 		return;
 	if (is_number(node) && is_other(node)) {
 		*place = derived_name(spec, node);
 		return;
 	}
-	if (s && s->value && !s->derived) {
-		s->derived = true;
+	if (s && s->value && !s->tuning.derived) {
+		s->tuning.derived = true;
 		derive_in(spec, &s->value);
 	}
 	for (int i = 0; i < node->children; i++)
@@ -132,7 +137,7 @@ void derive_params(struct spec *spec)
 {
 	spread_tuned(spec);
 	for (struct symbol *s = spec->first; s; s = s->next)
-		s->derived = s->derived && s->tunable;  /* -D gives it another value */
+		s->tuning.derived = s->tuning.derived && s->tuning.number;  /* -D gives it another value */
 	each_expression(spec, derive_here, spec);
 }
 
@@ -183,8 +188,8 @@ static void check_in(void *context, struct node **place)
 	const bool *regions = context;
 	struct node *node = *place;
 	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
-	if (symbol && symbol->tuned && !symbol->tunable && symbol->value && !symbol->tuning_checked) {
-		symbol->tuning_checked = true;
+	if (symbol && symbol->tuning.tuned && !symbol->tuning.number && symbol->value && !symbol->tuning.checked) {
+		symbol->tuning.checked = true;
 		check_in(context, &symbol->value);
 	}
 	for (int i = 0; i < node->children; i++) {

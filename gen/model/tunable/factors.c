@@ -23,8 +23,8 @@ static void build_attempt(void *context)
 
 static void mark_read(const struct node *node, bool *mark)
 {
-	if (node->kind == NODE_NAME && node->symbol->tunable)
-		mark[node->symbol->tunable - 1] = true;
+	if (node->kind == NODE_NAME && node->symbol->tuning.number)
+		mark[node->symbol->tuning.number - 1] = true;
 	else if (node->kind == NODE_NAME && node->symbol->kind != SYMBOL_COORD && node->symbol->value)
 		mark_read(node->symbol->value, mark);
 	for (int i = 0; i < node->children; i++)

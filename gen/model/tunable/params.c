@@ -4,7 +4,7 @@
 
 const struct node *first_tuned(const struct node *node)
 {
-	if (node->kind == NODE_NAME && node->symbol->tuned)
+	if (node->kind == NODE_NAME && node->symbol->tuning.tuned)
 		return node;
 	for (int i = 0; i < node->children; i++) {
 		const struct node *found = first_tuned(node->child[i]);
@@ -18,13 +18,14 @@ const struct node *first_tuned(const struct node *node)
 void spread_tuned(const struct spec *spec)
 {
 	for (struct symbol *s = spec->first; s; s = s->next)
-		s->tuned = s->tuned || (s->value && first_tuned(s->value));
+		s->tuning.tuned = s->tuning.tuned || (s->value && first_tuned(s->value));
 }
 
 int param_of_input(const struct spec *spec, int input)
 {
-	int k = input < spec->inputs ? -1 : 0;
-	while (k >= 0 && (spec->tunable[k].symbol->factor || spec->tunable[k].symbol->acting != input - spec->inputs))
+	int k = input < spec->count.inputs ? -1 : 0;
+	while (k >= 0 && (spec->tunable[k].symbol->tuning.factor ||
+			  spec->tunable[k].symbol->tuning.acting != input - spec->count.inputs))
 		k++;
 	return k;
 }
@@ -33,19 +34,19 @@ unsigned params_read(const struct node *node)
 {
 	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	unsigned params = 0;
-	if (s && s->tunable && !s->derived)
-		return 1u << (s->tunable - 1);
-	if (s && s->tuned && s->value && !s->made_of)
-		s->made_of = params_read(s->value);
+	if (s && s->tuning.number && !s->tuning.derived)
+		return 1u << (s->tuning.number - 1);
+	if (s && s->tuning.tuned && s->value && !s->tuning.made_of)
+		s->tuning.made_of = params_read(s->value);
 	for (int i = 0; i < node->children; i++)
 		params |= params_read(node->child[i]);
-	return s ? s->made_of : params;
+	return s ? s->tuning.made_of : params;
 }
 
 unsigned params_of_tunable(const struct spec *spec, int tunable)
 {
 	const struct symbol *s = spec->tunable[tunable].symbol;
-	return s->derived ? params_read(s->value) : 1u << tunable;
+	return s->tuning.derived ? params_read(s->value) : 1u << tunable;
 }
 
 struct tuning *list_tunables(const struct model *model)

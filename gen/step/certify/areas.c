@@ -11,7 +11,7 @@
 
 void through_row(const struct through *t, const struct output *output, mpq_t *row)
 {
-	row_of_output(&t->layout, t->system, output, t->segments, t->segment, row);
+	row_of_output(&t->layout, t->system, output, t->when.segments, t->when.segment, row);
 }
 
 void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)
@@ -207,10 +207,10 @@ void through_enter(struct through *t, int region)
 {
 	struct area *area = through_area(t, region);
 	t->region = region;
-	t->gridded = false;
+	t->grid.met = false;
 	for (int e = 0; e < t->s->expressions; e++) {
 		t->resting[e] = false;
-		t->order[e] = 0;
+		t->fresh.order[e] = 0;
 	}
 	t->at = area;
 }

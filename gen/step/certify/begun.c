@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: where it begins. */
 #include "model/contacts/contacts.h"
-#include "through.h"
+#include "struck.h"
 
 /* ---- the start ---- */
 
@@ -72,20 +72,20 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	const struct expression *e = &t->s->expression[expression];
 	if (!*on || !is_stick(e, interval + 1))
 		return interval;
-	int impact = impact_resting(t->s, t->segment, expression, interval + 1), speed = 0;
+	int impact = impact_resting(t->s, t->when.segment, expression, interval + 1), speed = 0;
 	RATIONALS *row = rationals(t->n);
 	RATIONAL zero = ZERO;
 	if (impact >= 0) {
-		through_row(t, t->s->impact[impact].in[t->segment].speed_row, row);
+		through_row(t, t->s->impact[impact].in[t->when.segment].speed_row, row);
 		speed = sign_at_start(t, row, zero, known);
 	}
 	*on = false;
-	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->segment].upward ? interval : interval + 2;
+	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->when.segment].upward ? interval : interval + 2;
 }
 
 bool through_place(struct through *t)
 {
-	int count = t->s->expressions, region = t->segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
+	int count = t->s->expressions, region = t->when.segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
 	bool *on = ARRAY(bool, count), *above = ARRAY(bool, count), known;
 	for (int e = 0; e < count; e++) {
 		int interval = interval_at_start(t, e, &on[e], &known);

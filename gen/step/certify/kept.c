@@ -13,7 +13,9 @@
 double kept_mass(const struct step *step, int state)
 {
 	const struct linear *system = &step->branch->system;
-	return step->kicks.momenta && state >= system->n ? mpq_get_d(step->kicks.mass[system->coord[state]]) : 1;
+	return step->linear.kicks.momenta && state >= system->n
+		       ? mpq_get_d(step->linear.kicks.mass[system->coord[state]])
+		       : 1;
 }
 
 bool is_load_forced(const struct step *step, int column)

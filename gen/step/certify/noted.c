@@ -9,7 +9,7 @@
 
 static struct passed *new_passed(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
 {
-	struct passed *p = MORE(t->list, t->passed);
+	struct passed *p = MORE(t->noted.list, t->noted.count);
 	*p = (struct passed){ .expression = expression, .breakpoint = breakpoint, .upward = upward };
 	mpfi_init2(p->at, t->precision);
 	mpfi_set_q(p->at, t->base);
@@ -22,20 +22,20 @@ void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
 	INTERVAL slope = OVER_BITS(t->precision);
 	through_dot(t, gate->slope, t->x, slope);
-	p->speed = t->speed = fabs(mpfi_get_d(slope));
-	t->size = 0;
+	p->speed = t->noted.speed = fabs(mpfi_get_d(slope));
+	t->noted.size = 0;
 	for (int i = 0; i < t->n; i++)
-		t->size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
-	p->size = t->size;
+		t->noted.size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
+	p->size = t->noted.size;
 }
 
 /* By an event that was noted, or by a load that jumps */
 void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off)
 {
 	struct passed *p = new_passed(t, expression, breakpoint, upward, off);
-	p->jumped = t->speed == 0;
-	p->speed = t->speed;
-	p->size = t->size;
+	p->jumped = t->noted.speed == 0;
+	p->speed = t->noted.speed;
+	p->size = t->noted.size;
 }
 
 /* ---- where expressions stand ---- */

@@ -2,7 +2,7 @@
 /* Of a way through crossings: the first event of a piece, and what is behind it. */
 #include "model/contacts/contacts.h"
 #include "certify.h"
-#include "through.h"
+#include "struck.h"
 
 #include <math.h>
 
@@ -51,16 +51,17 @@ static bool is_clear(const struct through *t, const struct gate *g, const struct
 
 bool through_clear(struct through *t, const mpfi_t *y, double tau)
 {
-	const struct near *from = &t->near[0], *to = &t->near[1];
-	near_of(t, (const mpfi_t *)t->x, &t->near[0]);
-	near_of(t, y, &t->near[1]);
+	const struct near *from = &t->piece.near[0], *to = &t->piece.near[1];
+	near_of(t, (const mpfi_t *)t->x, &t->piece.near[0]);
+	near_of(t, y, &t->piece.near[1]);
 	for (int i = 0; i < t->n; i++) {
-		t->most[i] = 0;
+		t->piece.most[i] = 0;
 		for (int j = 0; j < t->n; j++)
-			t->most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
+			t->piece.most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
 	}
 	for (int k = 0; k < t->at->gates; k++)
-		if (!t->resting[t->at->gate[k].expression] && !is_clear(t, &t->at->gate[k], from, to, t->most, tau))
+		if (!t->resting[t->at->gate[k].expression] &&
+		    !is_clear(t, &t->at->gate[k], from, to, t->piece.most, tau))
 			return false;
 	return true;
 }
@@ -69,13 +70,13 @@ bool through_clear(struct through *t, const mpfi_t *y, double tau)
 
 static void add_room(struct through *t, int degree)
 {
-	if (degree < t->terms)
+	if (degree < t->piece.terms)
 		return;
-	ENLARGE(t->value, (size_t)degree + 1);
-	ENLARGE(t->slope, (size_t)degree + 1);
-	for (; t->terms <= degree; t->terms++) {
-		mpfi_init2(t->value[t->terms], t->precision);
-		mpfi_init2(t->slope[t->terms], t->precision);
+	ENLARGE(t->piece.value, (size_t)degree + 1);
+	ENLARGE(t->piece.slope, (size_t)degree + 1);
+	for (; t->piece.terms <= degree; t->piece.terms++) {
+		mpfi_init2(t->piece.value[t->piece.terms], t->precision);
+		mpfi_init2(t->piece.slope[t->piece.terms], t->precision);
 	}
 }
 
@@ -86,11 +87,11 @@ static void expand_gate(struct through *t, const struct gate *gate, int degree, 
 	mpfi_set_q(length, tau);
 	add_room(t, degree);
 	for (int m = 0; m <= degree; m++) {
-		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->room.term[m], t->value[m]);
-		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->room.term[m], t->slope[m]);
-		mpfi_mul(t->slope[m], t->slope[m], length);
+		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->piece.room.term[m], t->piece.value[m]);
+		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->piece.room.term[m], t->piece.slope[m]);
+		mpfi_mul(t->piece.slope[m], t->piece.slope[m], length);
 	}
-	mpfi_sub_q(t->value[0], t->value[0], gate->limit);
+	mpfi_sub_q(t->piece.value[0], t->piece.value[0], gate->limit);
 }
 
 /* For --solution, what so many bits do not tell apart from 0 is 0. */
@@ -101,12 +102,12 @@ static void clear_none(struct through *t, const struct gate *gate, int degree)
 		return;
 	for (int m = 0; m <= degree; m++)
 		for (int i = 0; i < t->n; i++)
-			size += fabs(gate->near_row[i] * mpfi_get_d(t->room.term[m][i]));
+			size += fabs(gate->near_row[i] * mpfi_get_d(t->piece.room.term[m][i]));
 	for (int m = 0; m <= degree; m++)
-		if (mpfi_has_zero(t->value[m]) && through_is_none(t, t->value[m], size)) {
-			mpfi_set_ui(t->value[m], 0);
+		if (mpfi_has_zero(t->piece.value[m]) && through_is_none(t, t->piece.value[m], size)) {
+			mpfi_set_ui(t->piece.value[m], 0);
 			if (m > 0)
-				mpfi_set_ui(t->slope[m - 1], 0);
+				mpfi_set_ui(t->piece.slope[m - 1], 0);
 		}
 }
 
@@ -114,9 +115,10 @@ static void clear_none(struct through *t, const struct gate *gate, int degree)
 static int zeros_of(const struct through *t, int degree)
 {
 	int order = 0;
-	while (order < degree && mpfr_zero_p(&t->value[order]->left) && mpfr_zero_p(&t->value[order]->right))
+	while (order < degree && mpfr_zero_p(&t->piece.value[order]->left) &&
+	       mpfr_zero_p(&t->piece.value[order]->right))
 		order++;
-	return mpfr_sgn(&t->value[order]->right) < 0 ? order : 0;
+	return mpfr_sgn(&t->piece.value[order]->right) < 0 ? order : 0;
 }
 
 /* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that
@@ -127,33 +129,34 @@ static int divide_by_power(struct through *t, int degree, int order, bool fresh,
 	int rest = degree - order;
 	for (int m = 0; m <= degree; m++) {
 		if (m < degree && fresh) {
-			mpfi_set_fr(wide, t->fresh_off);
+			mpfi_set_fr(wide, t->fresh.off);
 			mpfi_div_q(wide, wide, tau);
-			mpfi_mul(wide, wide, t->value[m + 1]);
+			mpfi_mul(wide, wide, t->piece.value[m + 1]);
 			mpfi_mul_ui(wide, wide, 2 * (unsigned long)(m + 1));
-			mpfi_mag(t->most_off, wide);
-			mpfi_increase(t->value[m], t->most_off);
+			mpfi_mag(t->fresh.most_off, wide);
+			mpfi_increase(t->piece.value[m], t->fresh.most_off);
 		}
 		if (m >= order)
-			mpfi_set(t->value[m - order], t->value[m]);
+			mpfi_set(t->piece.value[m - order], t->piece.value[m]);
 	}
 	for (int m = 0; m <= rest; m++)
-		mpfi_set_ui(t->slope[m], 0);
+		mpfi_set_ui(t->piece.slope[m], 0);
 	for (int m = 1; m <= rest; m++)
-		mpfi_mul_ui(t->slope[m - 1], t->value[m], (unsigned long)m);
+		mpfi_mul_ui(t->piece.slope[m - 1], t->piece.value[m], (unsigned long)m);
 	return rest;
 }
 
 static bool is_fresh(const struct through *t, const struct gate *gate)
 {
-	return t->order[gate->expression] > 0 && gate->upward == t->back[gate->expression] && !gate->release;
+	return t->fresh.order[gate->expression] > 0 && gate->upward == t->fresh.back[gate->expression] &&
+	       !gate->release;
 }
 
 /* Whether nothing of a polynomial is told apart from 0, or all of it is 0 */
 static bool is_none(const struct through *t, int degree, bool told)
 {
 	for (int m = 0; m <= degree; m++)
-		if (told ? mpfi_is_zero(t->value[m]) <= 0 : !mpfi_has_zero(t->value[m]))
+		if (told ? mpfi_is_zero(t->piece.value[m]) <= 0 : !mpfi_has_zero(t->piece.value[m]))
 			return false;
 	return true;
 }
@@ -178,10 +181,11 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct ga
 		expand_gate(t, gate, degree, tau);
 		clear_none(t, gate, degree);
 		bool fresh = is_fresh(t, gate);
-		int order = fresh ? t->order[gate->expression] : zeros_of(t, degree);
+		int order = fresh ? t->fresh.order[gate->expression] : zeros_of(t, degree);
 		if (order > 0 && degree > order)
 			terms = divide_by_power(t, degree, order, fresh, tau);
-		enum rise rise = first_rise(terms, (const mpfi_t *)t->value, (const mpfi_t *)t->slope, end, root);
+		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
+					    root);
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
 		    bounces(t, *found)) /* struck with what was found, where it touches then */
 			continue;
@@ -238,8 +242,8 @@ static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	if (!through_settle(t, gate, off))
 		return false;
 	through_let_go(t, gate);
-	t->list[t->passed - 1].faint = t->order[gate->expression] == 3;
-	mpfr_set(t->fresh_off, off, MPFR_RNDU);
+	t->noted.list[t->noted.count - 1].faint = t->fresh.order[gate->expression] == 3;
+	mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	return true;
 }
 
@@ -254,15 +258,15 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	if (mpfr_cmp_ui(&at->left, 0) <= 0)
 		mpfr_set_zero(s, 1);
 	width_of(at, s, tau, off);
-	stream_sum(before, &t->room, degree, s, t->x);
+	stream_sum(before, &t->piece.room, degree, s, t->x);
 	mpfr_get_q(part, s);
 	mpq_mul(part, part, tau);
 	mpq_add(t->base, t->base, part);
 	bool known = shorten_base(t, before, off);
-	t->at_once = mpq_sgn(part) == 0 ? t->at_once + 1 : 0;
+	t->piece.at_once = mpq_sgn(part) == 0 ? t->piece.at_once + 1 : 0;
 	through_note(t, gate, off);
 	if (gate->impact >= 0) {
-		mpfi_clear(t->list[--t->passed].at);    /* as what is struck it is noted again */
+		mpfi_clear(t->noted.list[--t->noted.count].at);    /* as what is struck it is noted again */
 		known = known && through_strike(t, gate, off);
 	} else {
 		through_enter(t, t->region + gate->leads);
@@ -274,7 +278,7 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	through_loads(t);
 	if (!known)
 		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
-	if (t->most_passed > 0 && t->passed >= t->most_passed)
+	if (t->noted.most > 0 && t->noted.count >= t->noted.most)
 		return through_lost(t, gate, "that many crossings are not followed");
-	return t->at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
+	return t->piece.at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
 }

@@ -2,7 +2,7 @@
 /* Of a way through crossings: signs of rows over x, each of which is enclosed apart from 0 or not known; and sliders
  * without mass. */
 #include "model/contacts/contacts.h"
-#include "through.h"
+#include "struck.h"
 
 #include <math.h>
 
@@ -98,7 +98,7 @@ static int order_of(struct through *t, const struct gate *gate)
 	bool known;
 	if (!gate->release)
 		return 0;
-	if (impact_resting(t->s, t->segment, gate->expression,
+	if (impact_resting(t->s, t->when.segment, gate->expression,
 			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
 		return 3;
 	RATIONALS *row = through_row_of(t, t->s->expression[gate->expression].row);
@@ -109,8 +109,8 @@ static int order_of(struct through *t, const struct gate *gate)
 
 void through_let_go(struct through *t, const struct gate *gate)
 {
-	t->order[gate->expression] = order_of(t, gate);
-	t->back[gate->expression] = !gate->upward;
+	t->fresh.order[gate->expression] = order_of(t, gate);
+	t->fresh.back[gate->expression] = !gate->upward;
 }
 
 /* Of sliders without mass one that would slide back where it is; -1: none does, -2: not known. What is 0, as all that
@@ -158,9 +158,9 @@ bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off)
 	for (int k = 0; k < count && back == -1; k++)
 		through_let_go(t, gone[k]);
 	if (off)
-		mpfr_set(t->fresh_off, off, MPFR_RNDU);
+		mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	else
-		mpfr_set_zero(t->fresh_off, 1);
+		mpfr_set_zero(t->fresh.off, 1);
 	discard(gone);
 	return back == -1 || through_unknown(t, "what slides on");
 }

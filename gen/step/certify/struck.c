@@ -4,7 +4,7 @@
  * while it is more than rounding is not known, and more bits are asked for. */
 #include "model/contacts/contacts.h"
 #include "certify.h"
-#include "through.h"
+#include "struck.h"
 
 #include <float.h>
 #include <limits.h>
@@ -63,7 +63,7 @@ static int interval_in(const struct law *m, int region, int expression)
 
 static int place_of_rest(const struct through *t, const struct impact *p)
 {
-	return rest_of(t->s, t->segment, p);
+	return rest_of(t->s, t->when.segment, p);
 }
 
 #define interval_of interval_now    /* names of the law, which the model has otherwise */
@@ -94,7 +94,7 @@ static mpq_t **rows_of_jumps(const struct through *t, int jumps, const struct ju
 static void fill_bound(const struct through *t, int k, struct bound *b)
 {
 	const struct impact *p = &t->s->impact[k];
-	const struct strike *strike = &p->in[t->segment];
+	const struct strike *strike = &p->in[t->when.segment];
 	*b = (struct bound){ .expression = strike->expression, .upward = strike->upward, .rest = -1, .strike = strike };
 	b->breakpoint = breakpoint_of(t, strike, p->bounces);
 	b->restitution = p->bounces ? mpq_get_d(strike->restitution) : 0;
@@ -110,12 +110,12 @@ static void fill_bound(const struct through *t, int k, struct bound *b)
 static const struct law *law_of(struct through *t)
 {
 	const bool solution = t->whole->asked.solution, coarse = t->whole->asked.single && !solution;
-	if (t->law && t->law->segment == t->segment)
+	if (t->law && t->law->segment == t->when.segment)
 		return t->law;
 	if (!t->law)
 		t->chain = no_impact(mpq_get_d(t->whole->h));
 	struct law *m = NEW(struct law);
-	*m = (struct law){ .s = t->s, .segment = t->segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
+	*m = (struct law){ .s = t->s, .segment = t->when.segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
 			   .solution = solution, .h = mpq_get_d(t->whole->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
 			   .brief = coarse ? 0x1p-10 : 0x1p-23, .span = coarse ? 0x1p-8 : 0x1p-10 };
 	m->impact = ARRAY(struct bound, (size_t)m->impacts + 1);
@@ -336,7 +336,7 @@ static int has_listed(const contacts *m, instant *t, int loses, real time, int e
 		return 1;
 	through_note_plain(t, expression, breakpoint, upward, t->told->off);
 	if (t->told->flies) {
-		struct passed *last = &t->list[t->passed - 1];
+		struct passed *last = &t->noted.list[t->noted.count - 1];
 		last->stands = t->told->bounces && mpfi_has_zero(t->told->flight);
 		mpfi_add(last->at, last->at, t->told->flight);
 		t->told->flies = false;
@@ -415,7 +415,7 @@ static int find_resting(const contacts *m, const instant *t, resting *found)
 	int count = 0;
 	for (int e = 0; e < t->s->expressions; e++)
 		for (int k = 1; k < t->s->expression[e].breaks && count < MOST; k++) {
-			const int side = interval_of(m, t, e) - k, impact = impact_resting(t->s, t->segment, e, k);
+			const int side = interval_of(m, t, e) - k, impact = impact_resting(t->s, t->when.segment, e, k);
 			if (!is_stick(&t->s->expression[e], k) || side < -1 || side > 1)
 				continue;
 			if (side == 0 || side == side_let_go(t, e) || is_there(m, t, e, impact))
@@ -507,12 +507,12 @@ static void note_touching(const struct law *m, struct through *t)
 		if (b->rest < 0 || !(rested || struck) || rests(m, t, k) || !touches(m, t, k) ||
 		    fabs(speed_of(m, t, k)) > 0)
 			continue;
-		t->order[b->expression] = 2;
-		t->back[b->expression] = b->upward;
+		t->fresh.order[b->expression] = 2;
+		t->fresh.back[b->expression] = b->upward;
 		if (t->told->off)
-			mpfr_set(t->fresh_off, t->told->off, MPFR_RNDU);
+			mpfr_set(t->fresh.off, t->told->off, MPFR_RNDU);
 		else
-			mpfr_set_zero(t->fresh_off, 1);
+			mpfr_set_zero(t->fresh.off, 1);
 	}
 }
 

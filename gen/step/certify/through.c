@@ -6,7 +6,7 @@
 #include "inner.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
-#include "through.h"
+#include "struck.h"
 
 /* ---- a piece ---- */
 
@@ -38,28 +38,28 @@ static void keep(const struct through *t, const mpfi_t *from, mpfi_t *to)
 /* A piece of the grid on: from where the grid was met, by as few products as the number of pieces has ones */
 static void step_on_grid(struct through *t, mpfi_t *y)
 {
-	if (!t->gridded) {
-		t->gridded = true;
-		t->pieces = 0;
-		keep(t, t->x, t->slot[THROUGH_SLOTS]);
+	if (!t->grid.met) {
+		t->grid.met = true;
+		t->grid.pieces = 0;
+		keep(t, t->x, t->grid.slot[THROUGH_SLOTS]);
 	}
-	unsigned long next = t->pieces + 1;
+	unsigned long next = t->grid.pieces + 1;
 	unsigned long from = next & (next - 1);
 	int power = __builtin_ctzl(next);
-	const mpfi_t *x = t->slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
+	const mpfi_t *x = t->grid.slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
 	stream_pieces(t->at->flow, power, x, y);
-	keep(t, y, t->slot[power]);
+	keep(t, y, t->grid.slot[power]);
 }
 
 static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
 {
 	keep(t, y, t->x);
 	mpq_add(t->base, t->base, tau);
-	t->at_once = 0;
-	t->pieces++;
+	t->piece.at_once = 0;
+	t->grid.pieces++;
 	for (int e = 0; e < t->s->expressions; e++)
-		t->order[e] = 0;
-	t->gridded = t->gridded && whole;
+		t->fresh.order[e] = 0;
+	t->grid.met = t->grid.met && whole;
 	if (!whole)
 		through_loads(t);
 }
@@ -78,10 +78,10 @@ static bool move(struct through *t, mpq_srcptr target)
 		}
 	}
 	INTERVAL at = OVER_BITS(t->precision);
-	int degree = stream_expand(t->at->flow, t->x, tau, &t->room);
+	int degree = stream_expand(t->at->flow, t->x, tau, &t->piece.room);
 	int found = through_first(t, degree, tau, &gate, at);
 	if (found == 0 && !whole)
-		stream_sum(t->at->flow, &t->room, degree, t->one, t->y);
+		stream_sum(t->at->flow, &t->piece.room, degree, t->piece.one, t->y);
 	if (found == 0)
 		arrive(t, tau, whole, t->y);
 	return found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
@@ -91,13 +91,13 @@ static bool move(struct through *t, mpq_srcptr target)
 
 static bool next_segment(struct through *t)
 {
-	t->segment++;
+	t->when.segment++;
 	through_loads(t);
-	t->gridded = false;
+	t->grid.met = false;
 	if (t->s->segments == 1)
 		return true;
 	through_enter(t, t->region + regions_at_once(t->s));
-	t->speed = 0;
+	t->noted.speed = 0;
 	REAL none = WITH_BITS(64);
 	mpfr_set_zero(none, 1);
 	return through_take_up(t, none);
@@ -105,7 +105,7 @@ static bool next_segment(struct through *t)
 
 static bool changes_here(const struct through *t)
 {
-	return t->segment + 1 < t->segments && mpq_cmp(t->change[t->segment], t->base) <= 0;
+	return t->when.segment + 1 < t->when.segments && mpq_cmp(t->when.change[t->when.segment], t->base) <= 0;
 }
 
 bool through_reach(struct through *t, mpq_srcptr time)
@@ -114,8 +114,9 @@ bool through_reach(struct through *t, mpq_srcptr time)
 	while (known && changes_here(t))
 		known = next_segment(t);
 	while (known && mpq_cmp(t->base, time) < 0) {
-		bool changes = t->segment + 1 < t->segments && mpq_cmp(t->change[t->segment], time) < 0;
-		known = move(t, changes ? t->change[t->segment] : time);
+		bool changes = t->when.segment + 1 < t->when.segments &&
+			       mpq_cmp(t->when.change[t->when.segment], time) < 0;
+		known = move(t, changes ? t->when.change[t->when.segment] : time);
 		while (known && changes_here(t))
 			known = next_segment(t);
 	}
@@ -137,7 +138,7 @@ static void take_start(struct through *t, const mpq_t *initial)
 	for (int i = 0; i < t->layout.states; i++)
 		mpq_set(exact[i], initial[t->part ? t->part->state[i] : i]);
 	for (int i = 0; i < t->system->inputs; i++) {
-		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->inputs;
+		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->count.inputs;
 		mpq_set_ui(exact[t->layout.input[i]], 1, 1);
 		if (param >= 0 && t->whole->params.held)
 			mpq_set(exact[t->layout.input[i]], t->whole->params.held->nominal[param]);
@@ -160,22 +161,22 @@ static void make_room(struct through *t)
 	t->flow = ARRAY(struct stream *, s->systems);
 	t->growth = ARRAY(double *, s->systems);
 	t->resting = ARRAY(bool, s->expressions);
-	t->order = ARRAY(int, s->expressions);
-	t->back = ARRAY(bool, s->expressions);
+	t->fresh.order = ARRAY(int, s->expressions);
+	t->fresh.back = ARRAY(bool, s->expressions);
 	t->x = enclosures(t->n, t->precision);
 	t->y = enclosures(t->n, t->precision);
 	for (int k = 0; k <= THROUGH_SLOTS; k++)
-		t->slot[k] = enclosures(t->n, t->precision);
+		t->grid.slot[k] = enclosures(t->n, t->precision);
 	for (int k = 0; k < 2; k++)
-		t->near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
-	t->most = ARRAY(double, t->n);
+		t->piece.near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
+	t->piece.most = ARRAY(double, t->n);
 	mpq_init(t->base);
 	t->told = NEW(struct telling);
 	mpfi_init2(t->told->flight, t->precision);
-	mpfr_init2(t->fresh_off, 64);
-	mpfr_init2(t->most_off, 64);
-	mpfr_init2(t->one, 2);
-	mpfr_set_ui(t->one, 1, MPFR_RNDN);
+	mpfr_init2(t->fresh.off, 64);
+	mpfr_init2(t->fresh.most_off, 64);
+	mpfr_init2(t->piece.one, 2);
+	mpfr_set_ui(t->piece.one, 1, MPFR_RNDN);
 }
 
 struct through *through_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
@@ -190,12 +191,12 @@ struct through *through_start(const struct model *whole, const struct region_par
 	t->precision = precision;
 	t->layout = layout_of_columns(t->system);
 	t->n = t->layout.size;
-	t->segments = whole->system.segments;
-	t->change = whole->system.change;
+	t->when.segments = whole->system.segments;
+	t->when.change = whole->system.change;
 	make_room(t);
 	take_start(t, initial);
-	while (t->segment + 1 < t->segments && mpq_sgn(t->change[t->segment]) <= 0)
-		t->segment++;
+	while (t->when.segment + 1 < t->when.segments && mpq_sgn(t->when.change[t->when.segment]) <= 0)
+		t->when.segment++;
 	through_place(t);
 	return t;
 }
@@ -207,13 +208,13 @@ const char *through_undecided(const struct through *t)
 
 void through_limit(struct through *t, int most)
 {
-	t->most_passed = most;
+	t->noted.most = most;
 }
 
 int through_passed(const struct through *t, const struct passed **list)
 {
-	*list = t->list;
-	return t->passed;
+	*list = t->noted.list;
+	return t->noted.count;
 }
 
 static void free_room(int n, mpfi_t *x)
@@ -228,19 +229,19 @@ void through_free(struct through *t)
 	for (int k = 0; k < t->s->systems; k++)
 		if (t->flow[k])
 			stream_free(t->flow[k]);
-	for (int k = 0; k < t->terms; k++) {
-		mpfi_clear(t->value[k]);
-		mpfi_clear(t->slope[k]);
+	for (int k = 0; k < t->piece.terms; k++) {
+		mpfi_clear(t->piece.value[k]);
+		mpfi_clear(t->piece.slope[k]);
 	}
 	for (int k = 0; k <= THROUGH_SLOTS; k++)
-		free_room(t->n, t->slot[k]);
-	for (int k = 0; k < t->passed; k++)
-		mpfi_clear(t->list[k].at);
+		free_room(t->n, t->grid.slot[k]);
+	for (int k = 0; k < t->noted.count; k++)
+		mpfi_clear(t->noted.list[k].at);
 	free_room(t->n, t->x);
 	free_room(t->n, t->y);
-	series_room_free(&t->room);
+	series_room_free(&t->piece.room);
 	mpfi_clear(t->told->flight);
-	mpfr_clears(t->one, t->fresh_off, t->most_off, NULL);
+	mpfr_clears(t->piece.one, t->fresh.off, t->fresh.most_off, NULL);
 	mpq_clear(t->base);
 	discard(t);
 }

@@ -7,6 +7,7 @@
 #include "model/linear/linear.h"
 
 struct output;
+struct telling;
 
 /* What so many bits do not tell apart is one: two instants, a force and its limit. */
 enum { THROUGH_SLOTS = 64, BITS_OF_ONE = 768 };
@@ -31,16 +32,33 @@ struct area {                       /* a region as it is met */
 	int gates;
 	struct gate *gate;
 };
-struct telling {                    /* of what happens at one instant */
-	const struct gate *met;     /* NULL: none */
-	mpfr_srcptr off;            /* how far from base it may be; NULL: nothing is listed */
-	unsigned struck;            /* impacts that have acted, as bits */
-	int begins;                 /* the impact whose guard was met, before it acts; -1 */
-	int doubtful;               /* the contact of which it is not known whether a force presses it; -1: none */
-	int swept;                  /* speeds taken from what comes to rest */
-	bool together;              /* several come to rest together */
-	bool flies, bounces;        /* of the contact that was looked at last: its flights [s], not all at once */
-	mpfi_t flight;
+struct through_grid {               /* of pieces, from where it was met: x after so many, by the lowest one of them */
+	bool met;
+	unsigned long pieces;
+	mpfi_t *slot[THROUGH_SLOTS + 1];
+};
+struct through_piece {
+	struct series_room room;
+	int terms;
+	mpfi_t *value, *slope;      /* polynomials */
+	mpfr_t one;
+	struct near near[2];
+	double *most;
+	int at_once;
+};
+struct through_fresh {              /* let go at base, but for so much [s]: 0 there with their first derivatives */
+	int *order;                 /* per expression; 0: it was not */
+	bool *back;                 /* which way it would come back */
+	mpfr_t off, most_off;
+};
+struct through_time {
+	int segments, segment;      /* of time */
+	const mpq_t *change;
+};
+struct through_list {               /* of crossings */
+	int count, most;            /* most: 0: any number */
+	struct passed *list;
+	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
 };
 struct through {
 	const struct model *whole, *model;
@@ -49,8 +67,7 @@ struct through {
 	const struct linear *system; /* the first: coordinates, loads and inputs are those of all */
 	int precision, n;           /* bits; entries of x */
 	struct layout layout;
-	int segments, segment;      /* of time */
-	const mpq_t *change;
+	struct through_time when;
 	mpq_t **A;                  /* per system */
 	struct stream **flow;
 	double **growth;
@@ -60,30 +77,16 @@ struct through {
 	mpq_t base;                 /* [s] */
 	mpfi_t *x, *y;              /* x at that time, in the equations of `at` */
 	mpq_t *exact;               /* x at the start; NULL: it is not rational */
-	/* on the grid of pieces, from where it was met: x after so many, by the lowest one of their number */
-	bool gridded;
-	unsigned long pieces;
-	mpfi_t *slot[THROUGH_SLOTS + 1];
-	struct series_room room;
-	int terms;
-	mpfi_t *value, *slope;      /* polynomials */
-	mpfr_t one;
-	struct near near[2];
-	double *most;
-	int at_once;
-	/* expressions that were let go at base, but for so much [s]: they are 0 there with their first derivatives */
-	int *order;                 /* per expression; 0: it was not */
-	bool *back;                 /* which way it would come back */
-	mpfr_t fresh_off, most_off;
-	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
+	struct through_grid grid;
+	struct through_piece piece;
+	struct through_fresh fresh;
+	struct through_list noted;
 	/* Of struck.c: */
 	double time;                /* base [s] */
 	int before;                 /* the region before what happens now */
 	pl_chain chain;
 	const struct law *law;      /* impacts of this segment of time; NULL: none yet */
 	struct telling *told;
-	int passed, most_passed;    /* most: 0: any number */
-	struct passed *list;
 	const char *undecided;
 };
 
@@ -113,34 +116,5 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 int  through_side(const struct through *t, int expression, mpq_srcptr at);
 void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off);
 void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
-
-/* ---- settling.c: signs, and where what was held goes ---- */
-
-/* Of row . x - less: its sign, 0 where it is 0; *known false: it is not told apart from 0 */
-int  through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known);
-/* Whether all of an enclosure is 0 to half of the bits, BITS_OF_ONE or fewer, of such a size, or of 2^-64 */
-bool through_is_none(const struct through *t, mpfi_srcptr value, double size);
-double through_size(const struct through *t, const mpq_t *row);      /* what row . x may be summed from */
-mpq_t *through_row_of(const struct through *t, const struct output *output);
-void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh);
-bool through_unknown(struct through *t, const char *what);   /* false */
-void through_hold(struct through *t);                        /* states that the region gives */
-/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
- * first one is but rounding */
-int  through_heads(const struct through *t, const struct area *area, int expression, bool still, bool *known);
-/* A slider without mass whose velocity an event has turned round sticks from there on. */
-bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off);
-void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
-
-/* ---- struck.c: impacts, what comes to rest by them, what sticks and what slips ---- */
-
-/* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
-bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
-bool through_take_up(struct through *t, mpfr_srcptr off);   /* behind a change of the loads */
-bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
-
-/* ---- begun.c ---- */
-
-bool through_place(struct through *t);                       /* the region of the start */
 
 #endif

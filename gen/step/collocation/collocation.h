@@ -19,6 +19,8 @@ struct collocation {
 	double *monomial;           /* [power][stage]: polynomials that are 1 at one node, 0 at the others */
 	int modes;                  /* of A */
 	struct stage_mode *mode;    /* the real one first */
+	struct motion *motion;
+	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
 };
 mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
 struct collocation *collocation_of(const struct step *step);

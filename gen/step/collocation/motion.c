@@ -91,7 +91,7 @@ static const char *any_name(const void *context, int sequence)
 
 struct recurrences *motion_recurrences(const struct step *step)
 {
-	return recurrences_new(step, step->divided, (struct series_names){ any_name, NULL, false });
+	return recurrences_new(step, step->taylor.divided, (struct series_names){ any_name, NULL, false });
 }
 
 /* The highest derivative of a coordinate, of which the series has h times */
@@ -111,7 +111,7 @@ static int state_of_entry(const struct linear *system, const struct motion_entry
 void set_motion(const struct step *step, struct recurrences *r, bool slopes)
 {
 	const struct linear *system = &step->branch->system;
-	const struct motion *m = step->motion;
+	const struct motion *m = step->collocation->motion;
 	struct tape *t = tape_of_recurrences(r);
 	tape_ref *by = ARRAY(tape_ref, system->states);
 	for (int i = 0; i < m->coords; i++) {

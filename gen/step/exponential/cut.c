@@ -82,7 +82,7 @@ static void count_looks(const struct step *step, struct cut *cut)
 	const struct linear *system = &step->branch->system;
 	struct program program = { .uses = ARRAY(bool, step->branch->whole->columns) };
 	struct step view = *step;
-	view.expansion = cut->ends;
+	view.taylor.expansion = cut->ends;
 	count_expansion(&view, &program);
 	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
 	cut->multiplications = looks * program.multiplications;
@@ -124,6 +124,6 @@ void plan_cut(struct step *held)
 	count_looks(step, cut);
 	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
 	held->cut = cut;
-	held->divided = cut->look;
+	held->taylor.divided = cut->look;
 	held->series.emitted = true;
 }

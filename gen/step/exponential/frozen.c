@@ -60,9 +60,10 @@ static void forces_at(const struct frozen *z, const double *eta, const double *r
 static void step_of_frozen(const struct frozen *z, bool twice, const double *from, double *to)
 {
 	const struct normal *m = z->normal;
-	int n = m->modes, width = m->width, points = m->points;
-	const double *flow = m->step.flow + z->bank * 4 * width, *correct = m->correct + z->bank * 2 * width;
-	const double *weight = m->step.weight + z->bank * points * 2 * width;
+	int n = m->modes, width = m->width, points = m->multistep.points;
+	const double *flow = m->multistep.step.flow + z->bank * 4 * width,
+		     *correct = m->multistep.correct + z->bank * 2 * width;
+	const double *weight = m->multistep.step.weight + z->bank * points * 2 * width;
 	double *force = to + 2 * n;
 	for (int k = points - 1; k > 0; k--)
 		for (int i = 0; i < n; i++)
@@ -80,7 +81,7 @@ static void step_of_frozen(const struct frozen *z, bool twice, const double *fro
 	for (int i = 0; i < n; i++) {
 		double excess = force[i];
 		for (int k = 0; k < points; k++)
-			excess -= m->extrapolate[k] * from[(2 + k) * n + i];
+			excess -= m->multistep.extrapolate[k] * from[(2 + k) * n + i];
 		to[i] += correct[m->place[i]] * excess;
 		to[n + i] += correct[width + m->place[i]] * excess;
 	}
@@ -92,22 +93,22 @@ static void step_of_frozen(const struct frozen *z, bool twice, const double *fro
 static void collocation_of_frozen(const struct frozen *z, const double *from, double *to)
 {
 	const struct normal *m = z->normal;
-	int n = m->modes, width = m->width, nodes = m->stages + 1;
+	int n = m->modes, width = m->width, nodes = m->collocation.stages + 1;
 	double *force = to + 2 * n;
 	const double *old = from + 2 * n;
 	for (int i = 0; i < n; i++)
-		force[i] = old[m->stages * n + i];
+		force[i] = old[m->collocation.stages * n + i];
 	for (int k = 1; k < nodes; k++)
 		for (int i = 0; i < n; i++) {
 			double sum = 0;
 			for (int l = 0; l < nodes; l++)
-				sum += m->ahead[(k - 1) * nodes + l] * old[l * n + i];
+				sum += m->collocation.ahead[(k - 1) * nodes + l] * old[l * n + i];
 			force[k * n + i] = sum;
 		}
-	for (int sweep = 0; sweep < m->sweeps; sweep++)
+	for (int sweep = 0; sweep < m->collocation.sweeps; sweep++)
 		for (int k = 1; k < nodes; k++) {
-			const double *flow = m->stage[k - 1].flow + z->bank * 4 * width;
-			const double *weight = m->stage[k - 1].weight + z->bank * nodes * 2 * width;
+			const double *flow = m->collocation.stage[k - 1].flow + z->bank * 4 * width;
+			const double *weight = m->collocation.stage[k - 1].weight + z->bank * nodes * 2 * width;
 			for (int i = 0; i < n; i++) {
 				int at = m->place[i];
 				double eta = flow[at] * from[i] + flow[width + at] * from[n + i];
@@ -125,7 +126,7 @@ static void collocation_of_frozen(const struct frozen *z, const double *from, do
 
 static void map_of_frozen(const struct frozen *z, bool twice, const double *from, double *to)
 {
-	if (z->normal->points)
+	if (z->normal->multistep.points)
 		step_of_frozen(z, twice, from, to);
 	else
 		collocation_of_frozen(z, from, to);

@@ -44,7 +44,7 @@ static void check_left(const struct step *step)
 {
 	const struct model *model = step->model;
 	if (model->schedule.operators > 1 && model->remainder.split->selector < 0)
-		error(model->spec->operator_at, "of one operator, or of a bank by time or a let of time",
+		error(model->spec->operators.at, "of one operator, or of a bank by time or a let of time",
 		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));
 	const struct node *mixed = model->remainder.split->mixed;
 	if (mixed)
@@ -176,43 +176,43 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 static void find_multistep(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
-	int width = normal->width, points = normal->points;
+	int width = normal->width, points = normal->multistep.points;
 	mpq_t *node = past_nodes(points + 1);
 	RATIONAL one = RATIO(1, 1);
 	struct lagrange past = lagrange_of(points, node);
 	REALS *value = reals((size_t)points, NORMAL_BITS);
-	normal->step = stage_of(w, one, &past);
+	normal->multistep.step = stage_of(w, one, &past);
 	lagrange_at(&past, one, value);
-	normal->extrapolate = ARRAY(double, points);
+	normal->multistep.extrapolate = ARRAY(double, points);
 	for (int k = 0; k < points; k++)
-		normal->extrapolate[k] = round_real(value[k]);
+		normal->multistep.extrapolate[k] = round_real(value[k]);
 	mpq_set_ui(node[points], 1, 1);
 	struct lagrange all = lagrange_of(points + 1, node);
 	struct normal_stage corrector = stage_of(w, one, &all);
-	normal->correct = ARRAY(double, (size_t)(normal->banks * 2 * width));
+	normal->multistep.correct = ARRAY(double, (size_t)(normal->banks * 2 * width));
 	for (int b = 0; b < normal->banks; b++)
 		for (int i = 0; i < 2 * width; i++)
-			normal->correct[b * 2 * width + i] =
+			normal->multistep.correct[b * 2 * width + i] =
 				corrector.weight[(b * (points + 1) + points) * 2 * width + i];
 }
 
 static void find_stages(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
-	normal->node = lobatto_nodes(normal->stages);
-	struct lagrange l = lagrange_of(normal->stages + 1, normal->node);
-	normal->stage = ARRAY(struct normal_stage, normal->stages);
-	for (int i = 0; i < normal->stages; i++)
-		normal->stage[i] = stage_of(w, normal->node[i + 1], &l);
+	normal->collocation.node = lobatto_nodes(normal->collocation.stages);
+	struct lagrange l = lagrange_of(normal->collocation.stages + 1, normal->collocation.node);
+	normal->collocation.stage = ARRAY(struct normal_stage, normal->collocation.stages);
+	for (int i = 0; i < normal->collocation.stages; i++)
+		normal->collocation.stage[i] = stage_of(w, normal->collocation.node[i + 1], &l);
 	REALS *value = reals((size_t)l.nodes, NORMAL_BITS);
 	RATIONAL later = ZERO;
-	normal->ahead = ARRAY(double, (size_t)(normal->stages * l.nodes));
-	for (int i = 0; i < normal->stages; i++) {
+	normal->collocation.ahead = ARRAY(double, (size_t)(normal->collocation.stages * l.nodes));
+	for (int i = 0; i < normal->collocation.stages; i++) {
 		mpq_set_ui(later, 1, 1);
-		mpq_add(later, later, normal->node[i + 1]);
+		mpq_add(later, later, normal->collocation.node[i + 1]);
 		lagrange_at(&l, later, value);
 		for (int k = 0; k < l.nodes; k++)
-			normal->ahead[i * l.nodes + k] = round_real(value[k]);
+			normal->collocation.ahead[i * l.nodes + k] = round_real(value[k]);
 	}
 }
 
@@ -233,27 +233,27 @@ static void find_settled(struct normal_work *w)
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
 	int n = normal->modes, size = settled_size(model), width = normal->width;
-	int bank = normal->settled_bank = last_bank(model);
+	int bank = normal->steady.bank = last_bank(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
-	normal->omega = ARRAY(double, width);
-	normal->period = ARRAY(double, width);
-	normal->settled = ARRAY(double, (size_t)(size * 2 * width));
+	normal->steady.omega = ARRAY(double, width);
+	normal->steady.period = ARRAY(double, width);
+	normal->steady.flow = ARRAY(double, (size_t)(size * 2 * width));
 	for (int j = 0; j < n; j++) {
 		mpfr_srcptr lambda = w->mode[bank * n + j].lambda;
 		mpfr_set_ui(omega[j], 1, MPFR_RNDN);
 		if (mpfr_sgn(lambda) > 0)
 			mpfr_sqrt(omega[j], lambda, MPFR_RNDN);
-		normal->omega[normal->place[j]] = round_real(omega[j]);
-		mpfr_set_d(omega[j], normal->omega[normal->place[j]], MPFR_RNDN);       /* as the target has it */
+		normal->steady.omega[normal->place[j]] = round_real(omega[j]);
+		mpfr_set_d(omega[j], normal->steady.omega[normal->place[j]], MPFR_RNDN); /* as the target has it */
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
-		normal->period[normal->place[j]] = round_real(omega[j]);
+		normal->steady.period[normal->place[j]] = round_real(omega[j]);
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
 	}
 	Phi = settled_matrix(model, w->M, by_coordinates(model, model->schedule.operator[0].C),
 			     by_coordinates(model, model->schedule.operator[0].K), &w->pairs[bank], omega);
 	for (int i = 0; i < 2 * n; i++)
 		for (int j = 0; j < size; j++)
-			normal->settled[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
+			normal->steady.flow[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
 				round_real(Phi[i * size + j]);
 }
 
@@ -307,14 +307,14 @@ static void choose_evaluations(struct normal_work *w)
 	normal->stability = once;
 	if (once.growth <= CALM)
 		return;
-	if (normal->points == 0) {
+	if (normal->multistep.points == 0) {
 		if (!(once.growth <= MOST))
 			tell_growth(w->step, &once, NULL);
 		return;
 	}
 	again = stability_of(w->step, true);
 	if (again.growth < once.growth) {
-		normal->twice = true;
+		normal->multistep.twice = true;
 		normal->stability = again;
 	}
 	if (!(normal->stability.growth <= MOST))
@@ -338,7 +338,7 @@ struct normal *normal_of(struct step *step)
 	check_symmetry(&w);
 	normal->modes = model->n;
 	normal->banks = model->schedule.operators;
-	normal->points = row->points;
+	normal->multistep.points = row->points;
 	w.pairs = ARRAY(struct eigenpairs, normal->banks);
 	w.mode = ARRAY(struct normal_mode, (size_t)(normal->banks * model->n));
 	for (int b = 0; b < normal->banks; b++)
@@ -349,10 +349,10 @@ struct normal *normal_of(struct step *step)
 	find_matrices(&w);
 	find_forces(&w);
 	find_waves(&w);
-	normal->stages = row->points ? row->points - 1 : model->truncation.stages;
+	normal->collocation.stages = row->points ? row->points - 1 : model->truncation.stages;
 	normal->kept = row->points ? row->points : model->truncation.stages + 1;
-	normal->sweeps = SWEEPS;
-	normal->first_sweeps = normal->stages + FIRST_SWEEPS;
+	normal->collocation.sweeps = SWEEPS;
+	normal->collocation.first_sweeps = normal->collocation.stages + FIRST_SWEEPS;
 	if (row->points)
 		find_multistep(&w);
 	find_stages(&w);

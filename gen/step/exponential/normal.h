@@ -43,6 +43,26 @@ struct within {                     /* a step: states inside it, by Taylor serie
 	 * at all nodes */
 	double *past, *nodes;
 };
+struct normal_multistep {
+	int points;                 /* 0: each step is by collocation */
+	bool twice;                 /* predict, evaluate, correct, evaluate; else the last is left out */
+	struct normal_stage step;   /* the predictor: points past forces, the last first */
+	double *correct;            /* [bank][eta, eta'][place]: of the force's excess over its extrapolation */
+	double *extrapolate;        /* [point] */
+};
+struct normal_collocation {
+	int stages;
+	/* its sweeps, from forces extrapolated from the step before; where there is none, all equal at first */
+	int sweeps, first_sweeps;
+	double *ahead;              /* [stage][node]: forces extrapolated to this step's nodes from those of the last */
+	struct normal_stage *stage;
+	mpq_t *node;                /* stages + 1, from 0 to 1 */
+};
+struct normal_steady {              /* once all functions of time are constant */
+	/* over [omega eta, eta', 1, waves], by columns: [size][2 width]; NULL: they never are */
+	double *flow, *omega, *period; /* omega and 1/omega: [place] */
+	int bank;                   /* the operator whose modes they are */
+};
 struct normal {
 	int modes, width;           /* n; length of a vector of modes */
 	int banks, blocks;
@@ -55,22 +75,10 @@ struct normal {
 	struct normal_matrix *matrix;
 	double **force;             /* per function: [bank][place]; NULL: none */
 	double *wave;               /* forces of waves: [bank][wave][cos, sin][place] */
-	int points;                 /* of the multistep method; 0: each step is by collocation */
-	bool twice;                 /* predict, evaluate, correct, evaluate; else the last is left out */
-	struct normal_stage step;   /* the predictor: points past forces, the last first */
-	double *correct;            /* [bank][eta, eta'][place]: of the force's excess over its extrapolation */
-	double *extrapolate;        /* [point] */
-	int stages;                 /* of a step by collocation; */
-	/* its sweeps, from forces extrapolated from the step before; where there is none, all equal at first */
-	int sweeps, first_sweeps;
-	double *ahead;              /* [stage][node]: forces extrapolated to this step's nodes from those of the last */
+	struct normal_multistep multistep;
+	struct normal_collocation collocation;
 	int kept;                   /* forces that are kept between steps: points, or stages + 1 */
-	struct normal_stage *stage;
-	mpq_t *node;                /* stages + 1, from 0 to 1 */
-	/* Once all functions of time are constant: over [omega eta, eta', 1, waves], by columns: [size][2 width]; the
-	 * operator whose modes they are. NULL: they never are */
-	double *settled, *omega, *period; /* omega and 1/omega: [place] */
-	int settled_bank;
+	struct normal_steady steady;
 	struct stability stability; /* of a multistep method */
 	struct within within;
 };

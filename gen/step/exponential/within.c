@@ -33,10 +33,10 @@ static void last_norms(const struct normal *m, const struct splitting *split, do
 	size_t cells = (size_t)m->modes * (size_t)m->modes;
 	norm[0] = norm[1] = 0;
 	for (int k = 0; k < m->matrices; k++) {
-		double size = norm_of_rows(m->modes, m->matrix[k].value + (size_t)m->settled_bank * cells);
+		double size = norm_of_rows(m->modes, m->matrix[k].value + (size_t)m->steady.bank * cells);
 		for (int t = 0; t < m->matrix[k].terms; t++)
 			norm[m->matrix[k].term[t].velocity] +=
-				fabs(m->matrix[k].term[t].factor[m->settled_bank] *
+				fabs(m->matrix[k].term[t].factor[m->steady.bank] *
 				     nearest_double(split->function[m->matrix[k].term[t].function].last)) * size;
 	}
 }
@@ -58,7 +58,7 @@ static double angle_of_step(const struct normal_work *w)
 		double turn = fabs(nearest_double(wave->a)) + nearest_double(wave->w);
 		angle = turn > angle ? turn : angle;
 	}
-	if (m->settled) {
+	if (m->steady.flow) {
 		last_norms(m, w->model->remainder.split, norm);
 		angle += norm[1];
 		fastest = fastest > norm[0] ? fastest : norm[0];
@@ -71,7 +71,8 @@ void find_within(struct normal_work *w)
 {
 	struct normal *m = w->normal;
 	struct within *within = &m->within;
-	int most = m->points ? m->points : m->stages, terms = w->model->asked.single ? FLOAT_TERMS : DOUBLE_TERMS;
+	int most = m->multistep.points ? m->multistep.points : m->collocation.stages,
+	    terms = w->model->asked.single ? FLOAT_TERMS : DOUBLE_TERMS;
 	bool damped = false;
 	within->angle = angle_of_step(w);
 	within->terms = terms > most + FURTHER_TERMS ? terms : most + FURTHER_TERMS;
@@ -84,10 +85,10 @@ void find_within(struct normal_work *w)
 		damped = damped || within->damping[at] != 0;
 	}
 	within->damping = damped ? within->damping : NULL;
-	within->nodes = powers_of(m->stages + 1, m->node);
-	if (m->points) {
-		mpq_t *node = past_nodes(m->points + 1);
-		mpq_set_ui(node[m->points], 1, 1);
-		within->past = powers_of(m->points + 1, node);
+	within->nodes = powers_of(m->collocation.stages + 1, m->collocation.node);
+	if (m->multistep.points) {
+		mpq_t *node = past_nodes(m->multistep.points + 1);
+		mpq_set_ui(node[m->multistep.points], 1, 1);
+		within->past = powers_of(m->multistep.points + 1, node);
 	}
 }

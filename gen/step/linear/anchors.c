@@ -67,7 +67,7 @@ static bool is_steady(const struct step *step, const struct anchors *anchors, in
 
 static bool fits(const struct step *step, const struct anchors *anchors, int steps)
 {
-	return steps * anchors->terms * (step->model->asked.compensated ? 2 : 1) <= TABLE_NUMBERS;
+	return steps * anchors->terms * (step->is.two_words ? 2 : 1) <= TABLE_NUMBERS;
 }
 
 /* Where more than 1 was asked for */

@@ -69,7 +69,7 @@ void take_operators(struct step *step)
 	const struct switching *regions = model->switching;
 	bool holds = scheme_row(model->scheme)->holds_coupling;
 	/* in normal modes, what else reads a branch is content with the first operator's */
-	int operators = step->kind == KIND_NORMAL ? 1 : model->schedule.operators;
+	int operators = step->is.flow == FLOW_NORMAL && step->is.events == EVENTS_NONE ? 1 : model->schedule.operators;
 	step->branches = regions ? regions->systems : operators ? operators : 1;
 	step->branch = ARRAY(struct branch, step->branches);
 	for (int k = 0; k < step->branches; k++) {

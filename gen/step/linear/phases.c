@@ -145,7 +145,7 @@ static struct load_phase phase_of(const struct step *step, const struct wave *wa
 void plan_phases(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	step->phase = ARRAY(struct load_phase, system->loads);
+	step->linear.phase = ARRAY(struct load_phase, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		step->phase[l] = phase_of(step, system->load[l].wave);
+		step->linear.phase[l] = phase_of(step, system->load[l].wave);
 }

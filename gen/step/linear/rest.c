@@ -88,5 +88,5 @@ void plan_rest(struct step *step)
 		part_modes(step->modal, rest->part);
 		rest->parts = step->modal->pairs + step->modal->reals;
 	}
-	step->rest = any && (all || !step->modal) ? rest : NULL;
+	step->linear.rest = any && (all || !step->modal) ? rest : NULL;
 }

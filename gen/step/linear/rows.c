@@ -79,8 +79,8 @@ static struct share share_of_state(const struct step *step, const struct output 
 	struct share share = { 0 };
 	mpq_t *initial = rationals(system->states);
 	mpq_set_ui(initial[state], 1, 1);
-	if (step->kicks.momenta && state >= system->n)
-		mpq_inv(initial[state], step->kicks.mass[system->coord[state]]);
+	if (step->linear.kicks.momenta && state >= system->n)
+		mpq_inv(initial[state], step->linear.kicks.mass[system->coord[state]]);
 	add_started(&share, output_of_states(step->branch->resolvent, output, initial), 0, step->model->h);
 	return share;
 }
@@ -220,7 +220,7 @@ static struct step *block_of(const struct step *step, int count)
 	struct wanted *wanted = NEW(struct wanted);
 	struct linear *system = NEW(struct linear);
 	*wanted = (struct wanted){ .Phi = true, .two_words = step->program->compensated, .name = "block",
-				   .increments = step->form == FORM_DELTA, .mass = step->kicks.mass };
+				   .increments = step->form == FORM_DELTA, .mass = step->linear.kicks.mass };
 	mpq_init(wanted->fraction);
 	mpq_set_si(wanted->fraction, count, 1);
 	*system = step->branch->system;
@@ -309,7 +309,7 @@ static bool try_rows(struct step *step, int count)
 void plan_rows(struct step *step)
 {
 	const struct request *asked = &step->model->asked;
-	if (asked->rows == 1 || (!asked->rows && (asked->single || step->kind != KIND_LINEAR)))
+	if (asked->rows == 1 || (!asked->rows && (asked->single || !is_linear_alone(step) || step->is.tuned)))
 		return;
 	step->no.rows = step_objection(step, CAN_ROWS);
 	if (step->no.rows)

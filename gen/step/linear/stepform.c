@@ -114,16 +114,16 @@ static const char *kick_objection(struct step *step)
 	if (!accelerations(system, a))
 		return system->states == 2 * n ? "there is damping, or a term that depends on velocities"
 					       : "a coordinate has no velocity";
-	step->kicks.mass = relative_masses(system, a);
-	if (!step->kicks.mass)
+	step->linear.kicks.mass = relative_masses(system, a);
+	if (!step->linear.kicks.mass)
 		return "its stiffness is not symmetric, whatever the masses";
 	if (largest_pole_angle(step) > 2.5)
 		return "the largest |pole| times h is above 2.5";
 	for (int i = 0; i < n; i++)
-		if (beyond_range(step->kicks.mass[i]) || round_rational(step->kicks.mass[i]) == 0)
+		if (beyond_range(step->linear.kicks.mass[i]) || round_rational(step->linear.kicks.mass[i]) == 0)
 			return format("a mass, in units of the first, is beyond the range of %s", target_name());
-	step->kicks.momenta = !all_equal(n, step->kicks.mass);
-	if (step->kicks.momenta && (load_columns(system) || input_columns(system)))
+	step->linear.kicks.momenta = !all_equal(n, step->linear.kicks.mass);
+	if (step->linear.kicks.momenta && (load_columns(system) || input_columns(system)))
 		/* they would have to be multiplied by the masses */
 		return "masses are unequal and there are loads or inputs";
 	return NULL;
@@ -144,10 +144,9 @@ void leave_form(struct step *step, const char *why)
 /* The form of a step that is not linear; of one that is, whatever its coefficients let it be: FORM_AUTO */
 static enum step_form only_form(const struct step *step)
 {
-	const bool regions = step->kind == KIND_REGIONS || step->kind == KIND_PARTS;
-	if (step->kind == KIND_LINEAR || step->kind == KIND_TUNED)
+	if (is_linear_alone(step))
 		return FORM_AUTO;
-	return regions && step->model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
+	return step->model->switching && step->is.two_words ? FORM_DELTA : FORM_DIRECT;
 }
 
 void check_step_form(struct step *step)
@@ -159,7 +158,7 @@ void check_step_form(struct step *step)
 		leave_form(step, "--accuracy compensated takes the form delta of a piecewise-linear step");
 	if (only == FORM_DIRECT)
 		leave_form(step, "it is of a linear step");
-	if (step->model->asked.compensated && (asked == FORM_DIRECT || asked == FORM_MODAL))
+	if (step->is.two_words && (asked == FORM_DIRECT || asked == FORM_MODAL))
 		leave_form(step, "--accuracy compensated takes the form delta or kick-drift-kick");
 	if (asked == FORM_MODAL && step->model->asked.batch)
 		leave_form(step, "it keeps modes in the place of states, which --batch steps");
@@ -197,8 +196,8 @@ void choose_form(struct step *step)
 			leave_form(step, objection);
 	}
 	if (step->form != FORM_KICK_DRIFT_KICK) {
-		step->kicks.mass = NULL;
-		step->kicks.momenta = false;
+		step->linear.kicks.mass = NULL;
+		step->linear.kicks.momenta = false;
 	}
 }
 
@@ -286,7 +285,7 @@ void find_carries(struct step *step)
 	step->carried.count = 0;
 	for (int i = 0; i < n; i++)
 		step->carried.place[i] = -1;
-	if (step->model->asked.compensated || step->branch->system.heldK)
+	if (step->is.two_words || step->branch->system.heldK)
 		return;
 	bool *reads = readings(step), *elsewhere = read_elsewhere(step);
 	for (int k = 0; k < n && listed; k++)
@@ -445,7 +444,7 @@ struct program *linear_program(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
 	struct program *program = NEW(struct program);
-	program->compensated = step->model->asked.compensated;
+	program->compensated = step->is.two_words;
 	program->tuned = step->model->params.tuning != NULL;
 	program->reads = ARRAY(bool, table->states);
 	program->uses = ARRAY(bool, table->columns);

@@ -113,7 +113,7 @@ static void fill_gain_of_states(const struct step *step, const struct table *tab
 double *gain_of(const struct step *step, const struct table *table, int halvings)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
-	if (!step->model->asked.compensated)
+	if (!step->is.two_words)
 		return NULL;
 	double *first = ARRAY(double, 2 * cells), *second = first + cells;
 	RATIONAL d = ZERO;

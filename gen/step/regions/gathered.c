@@ -24,7 +24,7 @@ int *staying_columns(const struct step *step, int *count)
 	for (int l = 0; l < system->loads; l++)
 		if (layout->load[l] >= 0 && is_polynomial(system->load[l].wave))
 			column[(*count)++] = layout->load[l];
-	for (int i = step->model->spec->inputs; i < system->inputs; i++)
+	for (int i = step->model->spec->count.inputs; i < system->inputs; i++)
 		column[(*count)++] = layout->input[i];
 	return column;
 }
@@ -46,7 +46,7 @@ bool any_still(const struct step *step)
 
 int param_of_column(const struct step *step, int column)
 {
-	int i = step->model->spec->inputs;
+	int i = step->model->spec->count.inputs;
 	while (i < step->branch->system.inputs && step->layout.input[i] != column)
 		i++;
 	return i < step->branch->system.inputs ? param_of_input(step->model->spec, i) : -1;

@@ -105,7 +105,7 @@ void plan_ladder(struct step *step, int branch)
 static double *rung_of(const struct step *step, const struct table *table, int halvings)
 {
 	int size = step->layout.size, states = table->states;
-	if (step->model->asked.compensated)
+	if (step->is.two_words)
 		return gain_of(step, table, halvings);
 	SCRATCH double *Phi = Phi_over(step, table, halvings);
 	double *rung = ARRAY(double, (size_t)(size + 1) * (size_t)size);

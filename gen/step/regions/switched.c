@@ -13,8 +13,8 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	struct recipe *r = NEW(struct recipe);
 	r->step = step;
 	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
-	r->table[piece].two_words = step->model->asked.compensated;
-	r->table[piece].increments = step->model->asked.compensated || halvings > 0;
+	r->table[piece].two_words = step->is.two_words;
+	r->table[piece].increments = step->is.two_words || halvings > 0;
 	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
 	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
 	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
@@ -34,7 +34,7 @@ static const char *no_look(const struct step *step)
 	return step->model->asked.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
 	       : events && step->model->params.retuned          ? "what sticks, slips and bounces has tunable params"
-	       : events && step->model->asked.compensated ? "what sticks, slips and bounces is kept in two words"
+	       : events && step->is.two_words ? "what sticks, slips and bounces is kept in two words"
 	       : turns ? format("the fastest pole turns by more than %d in a step", events ? 1 : 2)
 	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
@@ -58,7 +58,7 @@ static struct table *table_over(const struct step *step, struct branch *b, int h
 /* How often an entry of e^{A d} is multiplied: of two words the first with x and with its rest, the second with x */
 static int products_of_words(const struct step *step)
 {
-	return step->model->asked.compensated ? 3 : 1;
+	return step->is.two_words ? 3 : 1;
 }
 
 int products_of_piece(const struct step *step)
@@ -91,13 +91,14 @@ long products_of_unmet(const struct step *step)
 static void plan_look(struct step *step)
 {
 	bool any = false;
-	step->look.searches = no_look(step);
-	step->look.clears = !step->look.searches;
+	step->regions.look.searches = no_look(step);
+	step->regions.look.clears = !step->regions.look.searches;
 	/* crossings go by tables of fixed numbers */
-	step->look.swift = step->look.clears && !step->model->params.retuned && !has_events(step->model->switching);
+	step->regions.look.swift = step->regions.look.clears && !step->model->params.retuned &&
+				   !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (!step->look.clears)
+	if (!step->regions.look.clears)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =
@@ -105,7 +106,7 @@ static void plan_look(struct step *step)
 			? (int)products_of_unmet(step)
 			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications + 2 * expressions;
-	step->look.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
+	step->regions.look.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
 static void halve_region(struct step *step, int k)
@@ -180,7 +181,8 @@ static struct step *step_of_part(const struct step *whole, const struct region_p
 	struct step *step = NEW(struct step);
 	step->model = part->model;
 	step->shown = whole;
-	step->kind = KIND_REGIONS;
+	step->is = whole->is;
+	step->is.apart = false;
 	step->no.anchors = "a part is given its load states";
 	take_operators(step);
 	step->written = step->branch->resolvent;
@@ -195,9 +197,9 @@ static void carry_of_parts(struct step *step)
 	step->carried.place = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
 		step->carried.place[i] = -1;
-	for (int p = 0; p < step->parts; p++)
-		for (int i = 0; i < step->part[p]->layout.states; i++)
-			if (step->part[p]->carried.place[i] >= 0)
+	for (int p = 0; p < step->regions.parts; p++)
+		for (int i = 0; i < step->regions.part[p]->layout.states; i++)
+			if (step->regions.part[p]->carried.place[i] >= 0)
 				step->carried.place[s->part[p].state[i]] = step->carried.count++;
 }
 
@@ -206,8 +208,8 @@ static void count_parts(struct step *step)
 {
 	int multiplications = 0, additions = 0;
 	step->program = linear_program(step);
-	for (int p = 0; p < step->parts; p++) {
-		const struct step *part = step->part[p];
+	for (int p = 0; p < step->regions.parts; p++) {
+		const struct step *part = step->regions.part[p];
 		multiplications += part->program->multiplications;
 		additions += part->program->additions;
 		step->series.degree =
@@ -227,10 +229,10 @@ void build_parts_step(struct step *step)
 	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
 	first->whole = first->table[0];
 	first->system.channels = 0;
-	step->parts = s->parts;
-	step->part = ARRAY(struct step *, s->parts);
+	step->regions.parts = s->parts;
+	step->regions.part = ARRAY(struct step *, s->parts);
 	for (int p = 0; p < s->parts; p++)
-		step->part[p] = step_of_part(step, &s->part[p]);
+		step->regions.part[p] = step_of_part(step, &s->part[p]);
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	carry_of_parts(step);
 	plan_anchors(step);

@@ -206,9 +206,9 @@ mpq_t *rising_breakpoints(const struct divided *d)
 const char *divided_text(const struct step *step, int expression)
 {
 	const struct step *shown = step->shown;
-	bool same = shown->divided && shown->divided->expressions == step->divided->expressions;
+	bool same = shown->taylor.divided && shown->taylor.divided->expressions == step->taylor.divided->expressions;
 	shown = same ? shown : step;
-	return form_text(shown->model, shown->divided->expression[expression].form);
+	return form_text(shown->model, shown->taylor.divided->expression[expression].form);
 }
 
 int regions_of_series(const struct expansion *x)
@@ -224,7 +224,7 @@ int regions_of_series(const struct expansion *x)
 
 void check_divided(const struct step *step)
 {
-	const struct expansion *x = step->divided;
+	const struct expansion *x = step->taylor.divided;
 	const struct model *model = step->model;
 	const struct smoothness *smooth = &model->remainder.smooth;
 	if (!x)

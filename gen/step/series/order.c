@@ -16,7 +16,7 @@ enum { SHORT = 1000, AROUND = 100 };    /* multiplications: up to where each cos
 static double cost_of_order(struct step *step, int order, int *multiplications)
 {
 	struct program counted = *step->program;
-	step->expansion = expansion_of(step, order);
+	step->taylor.expansion = expansion_of(step, order);
 	count_expansion(step, &counted);
 	double count = counted.multiplications, beyond = count > SHORT ? 0.8 * (count - SHORT) : 0;
 	*multiplications = counted.multiplications;
@@ -51,5 +51,6 @@ int economical_order(struct step *step)
 
 int order_of_step(const struct step *step)
 {
-	return step->expansion && !step->collocation ? step->expansion->order : order_of_scheme(step->model);
+	return step->taylor.expansion && !step->collocation ? step->taylor.expansion->order
+							    : order_of_scheme(step->model);
 }

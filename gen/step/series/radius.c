@@ -141,7 +141,7 @@ static double find_served(const struct values *v)
 	enum { MOST_HALVINGS = 60 };
 	const struct truncation *truncation = &v->step->model->truncation;
 	double tolerance = mpq_get_d(truncation->tolerance), served = ldexp(1, -MOST_HALVINGS);
-	int order = v->step->expansion->order;
+	int order = v->step->taylor.expansion->order;
 	for (double steps = served; steps <= EXPANSION_SERVES; steps = steps < 1 ? 2 * steps : steps + 1) {
 		if (!(remainder_at(v, order, steps) <= tolerance && remainder_at(v, order - 1, steps) <= tolerance))
 			break;

@@ -532,7 +532,7 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 /* What the instance holds: the same at all times */
 static int sequence_of_param(struct sequencing *w, const struct atom *atom)
 {
-	struct sum sum = single_key(TERM_PARAM, atom->param->tunable - 1, 0);
+	struct sum sum = single_key(TERM_PARAM, atom->param->tuning.number - 1, 0);
 	return sum_sequence(w, &sum);
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the C of each kind of step has: a row for each of what it has of its own, functions and words. */
+/* What the C of a step has by its flow and events, functions and words. */
 #include "declarations.h"
-#include "kinds.h"
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"
 #include "steps.h"
@@ -13,26 +12,21 @@
 
 static void emit_pass_of_changes(const struct emitter *e)
 {
-	if (e->system->segments > 1)
+	if (e->system->segments > 1 && !e->step->is.tuned)
 		emit_passing(e);
 }
 
-static const struct kind linear = {
+static void emit_linear_at(const struct emitter *e)
+{
+	(e->step->is.tuned ? emit_tuned_at : emit_at)(e);
+}
+
+static const struct printers linear = {
 	.banner = banner_linear,
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.pass = emit_pass_of_changes,
 	.step = emit_step,
-	.at = emit_at
-};
-
-/* ---- tuned: a linear step whose factors the instance has, of a large model those of blocks that params touch ---- */
-
-static const struct kind tuned = {
-	.banner = banner_linear,
-	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
-	.own_factors = true,
-	.step = emit_step,
-	.at = emit_tuned_at
+	.at = emit_linear_at
 };
 
 /* ---- regions ---- */
@@ -47,8 +41,8 @@ static bool always(const struct emitter *e)
 static void emit_event_limit(const struct emitter *e)
 {
 	int parts = 0;
-	for (int p = 0; p < e->step->parts; p++)
-		parts += e->step->part[p]->model->switching->expressions > 0;
+	for (int p = 0; p < e->step->regions.parts; p++)
+		parts += e->step->regions.part[p]->model->switching->expressions > 0;
 	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step%s */\n",
 	    parts ? parts * MAX_EVENTS : max_events(e->model), parts ? format(", %d of each part", MAX_EVENTS) : "");
 }
@@ -62,11 +56,11 @@ static void emit_region_tables(const struct emitter *e)
 /* What both kinds of regions have */
 #define OF_REGIONS \
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n", \
-	.constants = emit_event_limit, .keeps_status = true, \
+	.constants = emit_event_limit, \
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS", .declare_state = emit_crossing_declarations, \
 	.places = always
 
-static const struct kind regions = {
+static const struct printers regions = {
 	.banner = banner_regions,
 	OF_REGIONS,
 	.members = emit_region_members,
@@ -83,7 +77,7 @@ static void emit_tables_of_parts(const struct emitter *e)
 	emit_part_start(e);
 }
 
-static const struct kind parts = {
+static const struct printers parts = {
 	.banner = banner_parts,
 	OF_REGIONS,
 	.members = emit_part_members,
@@ -94,20 +88,9 @@ static const struct kind parts = {
 
 /* ---- remainder: a list of actions ---- */
 
-static bool flows_whole(const struct step *step)
-{
-	const struct program *program = step->program;
-	bool whole = false;
-	for (int i = 0; i < program->actions; i++)
-		whole = whole || program->action[i].flow == 0;
-	return whole && program->loops;
-}
-
-static const struct kind with_remainder = {
+static const struct printers with_remainder = {
 	.banner = banner_remainder,
-	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
-	.reads_phi = flows_whole,
 	.pass = emit_pass_of_changes,
 	.step = emit_remainder_step,
 	.held = emit_held_remainder,
@@ -125,15 +108,14 @@ static void emit_expansion_constants(const struct emitter *e)
 /* What all have whose state may choose formulas */
 #define OF_SERIES \
 	.constants = emit_expansion_constants, \
-	.types = emit_divided_types, .keeps_status = true, .status_note = "0, or PL_... bits (plrt.h)", \
+	.types = emit_divided_types, .status_note = "0, or PL_... bits (plrt.h)", \
 	.declare_state = emit_divided_declarations
 
-static const struct kind cut = {
+static const struct printers cut = {
 	.banner = banner_cut,
 	OF_SERIES,
 	.members = emit_cut_members,
 	.places = always,
-	.reads_phi = flows_whole,
 	.tables = emit_cut_place,
 	.step = emit_cut_step,
 	.at = emit_expansion_at
@@ -141,7 +123,7 @@ static const struct kind cut = {
 
 /* ---- expanded: the Taylor series of the solution ---- */
 
-static const struct kind expanded = {
+static const struct printers expanded = {
 	.banner = banner_expanded,
 	OF_SERIES,
 	.members = emit_expansion_members,
@@ -153,7 +135,7 @@ static const struct kind expanded = {
 
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
 
-static const struct kind collocated = {
+static const struct printers collocated = {
 	.banner = banner_collocated,
 	OF_SERIES,
 	.members = emit_collocation_members,
@@ -165,23 +147,21 @@ static const struct kind collocated = {
 
 /* ---- normal modes ---- */
 
-static const struct kind normal_modes = {
+static const struct printers normal_modes = {
 	.banner = banner_normal,
 	.members = emit_normal_members,
-	.keeps_status = true,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.places = always,
 	.tables = emit_normal_tables
 };
 
-const struct kind *row_of_kind(enum step_kind kind)
+const struct printers *printers_of(const struct step *step)
 {
-	static const struct kind *const row[KINDS] = {
-		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned,
-		[KIND_REGIONS] = &regions,
-		[KIND_PARTS] = &parts, [KIND_REMAINDER] = &with_remainder, [KIND_CUT] = &cut,
-		[KIND_EXPANDED] = &expanded, [KIND_COLLOCATED] = &collocated,
-		[KIND_NORMAL] = &normal_modes
+	static const struct printers *const of[] = {
+		[FLOW_LINEAR] = &linear, [FLOW_RECIPE] = &with_remainder, [FLOW_SERIES] = &expanded,
+		[FLOW_COLLOCATION] = &collocated, [FLOW_NORMAL] = &normal_modes
 	};
-	return row[kind];
+	if (step->is.events == EVENTS_OF_REGIONS)
+		return step->is.apart ? &parts : &regions;
+	return step->is.events == EVENTS_SPLIT ? &cut : of[step->is.flow];
 }
