@@ -102,15 +102,18 @@ static uint64_t steps_between(const struct options *o, const struct machine *m)
 struct watchers {
 	struct rows *rows;
 	struct picture *picture;
+	struct stats *stats;
 };
 
-static void watch_both(void *who, uint64_t k, const double *out)
+static void watch_all(void *who, uint64_t k, const double *out)
 {
 	struct watchers *w = who;
 	if (w->rows)
 		rows_add(w->rows, k, out);
 	if (w->picture)
 		picture_add(w->picture, k, out);
+	if (w->stats)
+		stats_add(w->stats, k, out);
 }
 
 /* Rows on a terminal, beside a picture, would hide what is said about it. */
@@ -119,7 +122,8 @@ static int run_once(struct start *s)
 	const struct options *o = &s->options;
 	const struct machine *m = s->machine;
 	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .told = true };
-	struct watchers w = { NULL, NULL };
+	struct watchers w = { NULL, NULL, NULL };
+	struct stats stats = stats_new(m->outputs);
 	uint64_t every = steps_between(o, m);
 	job.record = o->input ? record_read(o, m) : NULL;
 	char *error = plan_run(&job);
@@ -131,14 +135,18 @@ static int run_once(struct start *s)
 		record_say(job.record, job.h);
 	struct output *output;
 	FILE *to = output_open(o->output, &output);
-	if (!o->plot || o->output || !isatty(STDOUT_FILENO))
+	if (o->stats)
+		w.stats = &stats;
+	else if (!o->plot || o->output || !isatty(STDOUT_FILENO))
 		w.rows = rows_new(to, m, job.h, every);
 	if (o->plot)
 		w.picture = picture_new(m, job.h, every);
-	error = run_steps(&job, watch_both, &w);
+	error = run_steps(&job, watch_all, &w);
 	progress_end();
 	if (w.rows)
 		rows_end(w.rows);
+	if (w.stats)
+		stats_print(to, w.stats, m, job.h);
 	output_done(output, to);
 	if (w.picture)
 		picture_draw(w.picture, o->plot_file);

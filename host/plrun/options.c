@@ -55,9 +55,21 @@ static void take_every(struct options *o, const char *value) { o->every = time_o
 static void take_input(struct options *o, const char *value) { o->input = value; }
 static void take_time(struct options *o, const char *value) { o->time = value; }
 static void take_output(struct options *o, const char *value) { o->output = value; }
-static void take_sweep(struct options *o, const char *value) { o->sweep = value; }
+static void take_stats(struct options *o, const char *value) { (void)value; o->stats = true; }
 static void take_peak(struct options *o, const char *value) { (void)value; o->peak = true; }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
+
+/* A file, or ranges: of several every combination */
+static void take_sweep(struct options *o, const char *value)
+{
+	if (o->sweep && (!is_range(value) || o->ranges == 0))
+		wrong_usage("--sweep: one file, or ranges");
+	o->sweep = o->sweep ? o->sweep : value;
+	if (!is_range(value))
+		return;
+	o->range = need(reallocarray(o->range, o->ranges + 1, sizeof *o->range));
+	o->range[o->ranges++] = range_of(value);
+}
 
 static void take_column(struct options *o, const char *value)
 {
@@ -115,7 +127,11 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
 	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
-	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares",
+	{ "stats", NULL, "in the place of rows a line for each output: final, mean, rms, least, largest, peak and when",
+	  take_stats },
+	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares;",
+	  take_sweep },
+	{ "sweep", "K=A:B:N", "... for N values of K from A to B, with :log in equal ratios; again: every combination",
 	  take_sweep },
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
@@ -233,8 +249,10 @@ static void check(const struct options *o)
 		wrong_usage("no spec is given");
 	if (!o->sweep && (o->peak || o->resume || o->jobs))
 		wrong_usage(format("%s goes with --sweep", o->peak ? "--peak" : o->resume ? "--resume" : "--jobs"));
-	if (o->sweep && o->plot)
-		wrong_usage("--plot draws one run, and a sweep has many");
+	if (o->sweep && o->plot && (o->ranges == 0 || o->ranges > 2))
+		wrong_usage("--plot draws a sweep over one range, or two");
+	if (o->sweep && o->stats)
+		wrong_usage("--stats is of one run; a line of a sweep has them of its own");
 	if (o->sweep && o->every >= 0)
 		wrong_usage("--every is for the rows of one run; a sweep looks at every step");
 	if (o->sweep && strcmp(o->spec, "-") == 0)

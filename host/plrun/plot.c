@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A picture of a run by gnuplot: a panel for each output over one axis of time. A long run is kept as the least and the
- * largest value of each output in buckets of equal length, more of them than a picture has points across. */
+/* Pictures by gnuplot. Of a run: a panel for each output over one axis of time; a long run is kept as the least and the
+ * largest value of each output in buckets of equal length, more of them than a picture has points across. Of a sweep: a
+ * panel for each output over the range, or a map over two. */
 #define _GNU_SOURCE
 #include "plrun.h"
 
@@ -110,9 +111,9 @@ static void print_data(FILE *to, const struct picture *p)
 }
 
 /* Nothing of the file's name is in the script: the picture comes out of gnuplot's standard output. */
-static void print_terminal(FILE *to, const struct picture *p, const char *file)
+static void print_terminal(FILE *to, int panels, const char *file)
 {
-	int height = 120 + (p->panels == 1 ? 360 : 180 * p->panels);
+	int height = 120 + (panels == 1 ? 360 : 180 * panels);
 	const char *end = file ? file + strlen(file) - 3 : "";
 	if (!file)
 		return;
@@ -148,20 +149,18 @@ static void write_picture(const struct said *said, const char *file)
 	output_done(output, to);
 }
 
-/* -d: gnuplot without what the user has it do at its start */
-void picture_draw(struct picture *p, const char *file)
+static void check_display(const char *file)
 {
-	FILE *script = need(tmpfile());
-	const char *window[] = { "gnuplot", "-d", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-d", "-", NULL };
-	struct said said = { 0 };
 	const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
 	if (!file && !(display && *display) && !(wayland && *wayland))
 		fail(WRONG_DATA, "there is no display for a window: --plot FILE.svg draws a file");
-	if (p->panels < p->machine->outputs)
-		say_note(format("the first %d of %d outputs are drawn", p->panels, p->machine->outputs));
-	print_terminal(script, p, file);
-	print_data(script, p);
-	print_panels(script, p);
+}
+
+/* -d: gnuplot without what the user has it do at its start */
+static void draw(FILE *script, const char *file)
+{
+	const char *window[] = { "gnuplot", "-d", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-d", "-", NULL };
+	struct said said = { 0 };
 	char *error = run_command(file ? drawn : window, script, &said);
 	if (!error && said.status)
 		error = format("gnuplot could not draw:\n%s", said.err);
@@ -170,4 +169,85 @@ void picture_draw(struct picture *p, const char *file)
 	if (file)
 		write_picture(&said, file);
 	fclose(script);
+}
+
+static void say_panels(int panels, const struct machine *m)
+{
+	if (panels < m->outputs)
+		say_note(format("the first %d of %d outputs are drawn", panels, m->outputs));
+}
+
+void picture_draw(struct picture *p, const char *file)
+{
+	FILE *script = need(tmpfile());
+	check_display(file);
+	say_panels(p->panels, p->machine);
+	print_terminal(script, p->panels, file);
+	print_data(script, p);
+	print_panels(script, p);
+	draw(script, file);
+}
+
+/* ---- sweeps ---- */
+
+static void print_label(FILE *to, char axis, const char *text)
+{
+	fprintf(to, "set %clabel ", axis);
+	print_quoted(to, text);
+	fputs(" noenhanced\n", to);
+}
+
+/* Curves of one output over one range: they differ in points and dashes, too. Columns: run, the param, the values. */
+static void print_curves(FILE *to, const struct machine *m, int output, bool peak)
+{
+	static const char *const what[] = { "final", "rms", "peak" };
+	static const char *const style[] = { "pt 7 dt 1 lc rgb '#1f5fa8'", "pt 4 dt 2 lc rgb '#d55e00'",
+					     "pt 8 dt 4 lc rgb '#333333'" };
+	print_label(to, 'y', m->output_names[output]);
+	for (int k = 0; k < 2 + peak; k++)
+		fprintf(to, "%s $data using 2:%d with linespoints title '%s' ps 0.5 lw 1.2 %s", k ? "," : "plot",
+			3 + k * m->outputs + output, what[k], style[k]);
+	putc('\n', to);
+}
+
+static void print_map(FILE *to, const struct machine *m, int output, bool peak)
+{
+	fputs("set title ", to);
+	print_quoted(to, format("%s of %s", peak ? "peak" : "rms", m->output_names[output]));
+	fprintf(to, " noenhanced\nsplot $data using 2:3:%d with pm3d notitle\n",
+		4 + (1 + peak) * m->outputs + output);
+}
+
+static void print_axis(FILE *to, char axis, const struct range *r, bool map)
+{
+	const bool up = r->from < r->to;
+	fprintf(to, "set %crange [%.17g:%.17g]\n", axis, up ? r->from : r->to, up ? r->to : r->from);
+	fprintf(to, "set %clabel offset %d,0\n", axis, axis == 'y' && map ? -3 : 0);
+	if (r->log)
+		fprintf(to, "set logscale %c\n", axis);
+	print_label(to, axis, r->name);
+}
+
+void picture_sweep(const struct machine *m, const struct options *o, const char *lines)
+{
+	FILE *script = need(tmpfile());
+	const int panels = m->outputs < PANELS ? m->outputs : PANELS;
+	const bool map = o->ranges == 2;
+	check_display(o->plot_file);
+	say_panels(panels, m);
+	print_terminal(script, map ? 2 * panels : panels, o->plot_file);
+	fprintf(script, "set datafile separator ','\n$data << END\n%sEND\n", lines);
+	fprintf(script, "set multiplot layout %d,1 title ", panels);
+	print_quoted(script, m->name);
+	fputs(" noenhanced\nset grid lt 1 lc rgb '#dddddd'\nset lmargin 12\nset key outside right\n"
+	      "set format y '%.3g'\n", script);
+	for (size_t i = 0; i < o->ranges; i++)
+		print_axis(script, i ? 'y' : 'x', &o->range[i], map);
+	if (map)
+		fputs("set view map\nset pm3d interpolate 4,4\nset format cb '%.3g'\nset palette defined "
+		      "(0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n", script);
+	for (int i = 0; i < panels; i++)
+		(map ? print_map : print_curves)(script, m, i, o->peak);
+	fputs("unset multiplot\n", script);
+	draw(script, o->plot_file);
 }

@@ -27,6 +27,8 @@
  *     run.c       steps, and what watches them
  *     rows.c      the rows of a run as CSV
  *     plot.c      ... as a picture
+ *     stats.c     ... as a line for each output: final and mean value, rms, extremes
+ *     grid.c      the table of a sweep over ranges
  *     sweep.c     lines of params, and what a run with each comes to
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
@@ -89,6 +91,12 @@ bool read_number(const char *text, double *value);      /* all of it, finite, de
 struct pair {
 	const char *name, *value;
 };
+struct range {                          /* of a sweep: NAME=FROM:TO:COUNT[:log] */
+	const char *name;
+	double from, to;
+	size_t count;
+	bool log;
+};
 struct options {
 	const char *spec, *output;
 	double until, every;                    /* [s]; below 0: not given */
@@ -99,11 +107,19 @@ struct options {
 	size_t passed_count, passed_room;
 	bool plot;
 	const char *plot_file;                  /* NULL: a window */
-	const char *sweep;
-	bool peak, resume;
+	const char *sweep;                      /* the file, or the first range as it was given; NULL: one run */
+	struct range *range;
+	size_t ranges;                          /* 0: of the file */
+	bool peak, resume, stats;
 	int jobs;                               /* 0: as many as there are cores */
 };
 void read_options(int argc, char **argv, struct options *o);
+
+/* ---- grid.c ---- */
+
+bool is_range(const char *text);                /* NAME=...; else a file's name */
+struct range range_of(const char *text);
+char *grid_text(const struct range *range, size_t ranges, size_t *length);        /* as CSV, on the heap */
 
 /* ---- unfinished.c ---- */
 
@@ -232,6 +248,7 @@ struct table {
 	struct place header_at;
 };
 void table_open(struct table *t, const char *path);
+void table_begin(struct table *t, const char *path, char *text, size_t length);   /* of a text, which it keeps */
 bool table_next(struct table *t);                       /* false: at its end */
 double table_number(struct table *t, size_t cell);      /* finite, or the program ends at its place */
 struct place table_place(const struct table *t, size_t column);
@@ -281,7 +298,26 @@ void rows_end(struct rows *r);
 struct picture;
 struct picture *picture_new(const struct machine *m, double h, uint64_t every); /* of every so many steps */
 watch picture_add;
+/* `lines`: of a sweep over one range or two, as printed, without their names; an empty one before each scan */
+void picture_sweep(const struct machine *m, const struct options *o, const char *lines);
 void picture_draw(struct picture *p, const char *file); /* NULL: a window */
+
+/* ---- stats.c ---- */
+
+struct output_stats {
+	double last, least, most, peak;         /* peak: the largest |value| */
+	long double sum, squares;               /* so that squares of large values stay finite */
+	uint64_t peak_at;                       /* the first row that has it */
+};
+struct stats {                          /* of a run */
+	int outputs;
+	uint64_t rows;
+	struct output_stats *of;                        /* per output */
+};
+struct stats stats_new(int outputs);
+void stats_add(void *who, uint64_t k, const double *out);
+double stats_rms(const struct stats *s, int output);
+void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h);
 
 /* ---- sweep.c, journal.c, workers.c ---- */
 

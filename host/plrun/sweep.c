@@ -40,7 +40,9 @@ struct sweep {
 	size_t variants;
 	FILE *to;                               /* of the first process: */
 	struct journal *journal;
-	char **line;
+	char **line, *drawn;                    /* drawn: the lines for a picture */
+	size_t drawn_length;
+	FILE *to_draw;                          /* NULL: there is none */
 	size_t written, done, failed;
 };
 
@@ -103,10 +105,20 @@ static const char *value_text(struct table *t, size_t cell, bool is_number)
 	return value;
 }
 
+static void read_grid(const struct options *o, struct table *t)
+{
+	size_t length;
+	char *text = grid_text(o->range, o->ranges, &length);
+	table_begin(t, "--sweep", text, length);
+}
+
 static void read_table(struct sweep *s, const struct code *c)
 {
 	struct table t;
-	table_open(&t, s->options->sweep);
+	if (s->options->ranges)
+		read_grid(s->options, &t);
+	else
+		table_open(&t, s->options->sweep);
 	take_header(s, &t, c);
 	while (table_next(&t)) {
 		s->text = grown(s->text, s->rows, &s->rows_room, sizeof *s->text * s->params);
@@ -236,25 +248,6 @@ static void leave_variant(struct variant *v)
 
 /* ---- a line ---- */
 
-struct sums {                           /* of a run */
-	int outputs;
-	double *last, *largest;
-	long double *squares;           /* a long double, so that squares of large values stay finite */
-	uint64_t rows;
-};
-
-static void add_up(void *who, uint64_t k, const double *out)
-{
-	struct sums *sums = who;
-	for (int i = 0; i < sums->outputs; i++) {
-		sums->last[i] = out[i];
-		sums->squares[i] += (long double)out[i] * (long double)out[i];
-		if (fabs(out[i]) > sums->largest[i])
-			sums->largest[i] = fabs(out[i]);
-	}
-	sums->rows = k + 1;
-}
-
 static void print_cell(FILE *to, const char *text)
 {
 	if (!strpbrk(text, ",\"\n")) {
@@ -308,19 +301,19 @@ static double *params_of(const struct sweep *s, size_t row, const struct machine
 }
 
 /* NULL, or how it went wrong */
-static char *run_row(struct sweep *s, size_t row, const struct machine *m, struct sums *sums)
+static char *run_row(struct sweep *s, size_t row, const struct machine *m, struct stats *stats)
 {
 	struct job job = { .machine = m, .record = s->record, .until = s->options->until };
 	double *params = params_of(s, row, m, &job.h);
 	job.params = is_tuned(s) ? params : NULL;
 	char *error = plan_run(&job);
 	if (!error)
-		error = run_steps(&job, add_up, sums);
+		error = run_steps(&job, stats_add, stats);
 	free(params);
 	return error;
 }
 
-static void print_line(FILE *to, const struct sweep *s, size_t row, const struct sums *sums, const char *error)
+static void print_line(FILE *to, const struct sweep *s, size_t row, const struct stats *stats, const char *error)
 {
 	bool single = s->machine->single;
 	fprintf(to, "%zu", row + 1);
@@ -329,11 +322,11 @@ static void print_line(FILE *to, const struct sweep *s, size_t row, const struct
 		print_cell(to, value_of(s, row, i));
 	}
 	for (int i = 0; i < s->machine->outputs; i++)
-		print_value(to, !error, sums->last[i], single);
+		print_value(to, !error, stats->of[i].last, single);
 	for (int i = 0; i < s->machine->outputs; i++)
-		print_value(to, !error, error ? 0 : (double)sqrtl(sums->squares[i] / (long double)sums->rows), single);
+		print_value(to, !error, error ? 0 : stats_rms(stats, i), single);
 	for (int i = 0; s->options->peak && i < s->machine->outputs; i++)
-		print_value(to, !error, sums->largest[i], single);
+		print_value(to, !error, stats->of[i].peak, single);
 	putc(',', to);
 	print_cell(to, error ? format("failed: %s", error) : "ok");
 	putc('\n', to);
@@ -342,19 +335,16 @@ static void print_line(FILE *to, const struct sweep *s, size_t row, const struct
 char *sweep_line(struct sweep *s, size_t row)
 {
 	struct variant *v = &s->variant[s->variant_of[row]];
-	size_t outputs = (size_t)s->machine->outputs + 1, length;
-	struct sums sums = { s->machine->outputs, need(calloc(outputs, sizeof(double))),
-			     need(calloc(outputs, sizeof(double))), need(calloc(outputs, sizeof(long double))), 0 };
+	struct stats stats = stats_new(s->machine->outputs);
+	size_t length;
 	char *line, *error;
 	FILE *to = need(open_memstream(&line, &length));
 	const struct machine *m = take_variant(s, v);
-	error = m ? run_row(s, row, m, &sums) : v->error;
+	error = m ? run_row(s, row, m, &stats) : v->error;
 	leave_variant(v);
-	print_line(to, s, row, &sums, error);
+	print_line(to, s, row, &stats, error);
 	fclose(to);
-	free(sums.last);
-	free(sums.largest);
-	free(sums.squares);
+	free(stats.of);
 	return line;
 }
 
@@ -388,6 +378,9 @@ static void write_done(struct sweep *s)
 	for (; s->written < s->rows && s->line[s->written]; s->written++) {
 		char *line = s->line[s->written];
 		s->failed += has_failed(line);
+		if (s->to_draw)                 /* one scan after the other, where there are two ranges */
+			fprintf(s->to_draw, "%s%s", s->options->ranges == 2 && s->written &&
+				s->written % s->options->range[1].count == 0 ? "\n" : "", line);
 		if (fputs(line, s->to) < 0)
 			fail(WRONG_DATA, format("cannot write the lines: %s", strerror(errno)));
 		free(line);
@@ -427,7 +420,11 @@ static char *key_of(const struct sweep *s, const struct code *c)
 	hash_tools(s->tools, &h);
 	hash_text(&h, c->text);
 	add_file(&h, o->spec);
-	add_file(&h, o->sweep);
+	for (size_t i = 0; i < o->ranges; i++)
+		hash_text(&h, format("%s=%a:%a:%zu:%d", o->range[i].name, o->range[i].from, o->range[i].to,
+				     o->range[i].count, o->range[i].log));
+	if (o->ranges == 0)
+		add_file(&h, o->sweep);
 	hash_text(&h, shortest(o->until, false));
 	hash_text(&h, o->time ? o->time : "");
 	hash_text(&h, o->peak ? "peak" : "");
@@ -448,6 +445,8 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 	if (s->record && !record_on_grid(s->record, s->machine->h))
 		record_say(s->record, s->machine->h);
 	s->line = need(calloc(s->rows, sizeof *s->line));
+	if (s->options->plot && w.rank == 0)
+		s->to_draw = need(open_memstream(&s->drawn, &s->drawn_length));
 	if (w.rank != 0)
 		return;
 	s->journal = journal_open(key_of(s, c), s->options->resume, s->rows, s->line);
@@ -473,6 +472,10 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 		return 0;
 	progress_end();
 	journal_end(s.journal);
+	if (s.to_draw) {
+		fclose(s.to_draw);
+		picture_sweep(m, o, s.drawn);
+	}
 	if (s.failed)
 		fprintf(stderr, "plrun: error: %zu of %zu runs failed: see the column status\n", s.failed, s.rows);
 	return s.failed ? WRONG_DATA : 0;

@@ -156,10 +156,18 @@ static void keep_header(struct table *t)
 
 void table_open(struct table *t, const char *path)
 {
-	*t = (struct table){ .path = path, .at = { .path = strcmp(path, "-") == 0 ? "<stdin>" : path } };
-	t->text = read_whole(path, &t->length);
-	if (!t->text)
+	size_t length;
+	char *text = read_whole(path, &length);
+	if (!text)
 		fail(WRONG_DATA, format("cannot read '%s': %s", path, strerror(errno)));
+	table_begin(t, path, text, length);
+}
+
+void table_begin(struct table *t, const char *path, char *text, size_t length)
+{
+	*t = (struct table){ .path = path, .at = { .path = strcmp(path, "-") == 0 ? "<stdin>" : path } };
+	t->text = text;
+	t->length = length;
 	if (t->length >= 2 && (memcmp(t->text, "\xFF\xFE", 2) == 0 || memcmp(t->text, "\xFE\xFF", 2) == 0))
 		fail(WRONG_DATA, format("%s is UTF-16: save it as UTF-8", t->at.path));
 	if (t->length >= 3 && memcmp(t->text, "\xEF\xBB\xBF", 3) == 0)

@@ -76,8 +76,29 @@ refuses 'jobs' 2 "plrun: error: --jobs takes a number from 1 to 4096, found '0'
 $usage" swing.spec 1 --sweep s.csv --jobs 0
 refuses 'jobs of one run' 2 "plrun: error: --jobs goes with --sweep
 $usage" swing.spec 1 --jobs 2
-refuses 'a picture of a sweep' 2 "plrun: error: --plot draws one run, and a sweep has many
+refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one range, or two
 $usage" swing.spec 1 --sweep s.csv --plot
+refuses 'statistics of a sweep' 2 "plrun: error: --stats is of one run; a line of a sweep has them of its own
+$usage" swing.spec 1 --sweep s.csv --stats
+for range in k= k=1 k=1:2 k=1:b:3 k=1:2:3:lin k=1:2:3:log:4; do
+	form="--sweep takes FILE.csv or NAME=FROM:TO:COUNT[:log]"
+	refuses "a sweep over $range" 2 "plrun: error: $form, found '$range'
+$usage" swing.spec 1 --sweep "$range"
+done
+refuses 'a range of one value' 2 "plrun: error: --sweep k=1:2:1: a range has 2 to 10000000 values
+$usage" swing.spec 1 --sweep k=1:2:1
+refuses 'a range of half a value' 2 "plrun: error: --sweep k=1:2:2.5: a range has 2 to 10000000 values
+$usage" swing.spec 1 --sweep k=1:2:2.5
+refuses 'a range of nothing' 2 "plrun: error: --sweep k=1:1:3: a range ends elsewhere than it begins
+$usage" swing.spec 1 --sweep k=1:1:3
+refuses 'a logarithmic range through 0' 2 "plrun: error: --sweep k=-1:2:3:log: a logarithmic range is above 0
+$usage" swing.spec 1 --sweep k=-1:2:3:log
+refuses 'ranges of too many runs' 2 "plrun: error: --sweep: more than 10000000 runs
+$usage" swing.spec 1 --sweep k=1:2:10000 --sweep step=1:2:10000
+refuses 'a range and a file' 2 "plrun: error: --sweep: one file, or ranges
+$usage" swing.spec 1 --sweep k=1:2:3 --sweep s.csv
+refuses 'two files' 2 "plrun: error: --sweep: one file, or ranges
+$usage" swing.spec 1 --sweep s.csv --sweep s.csv
 refuses 'a picture of another kind' 2 "plrun: error: --plot draws .svg, .png or .pdf, found 'a.jpg'
 $usage" swing.spec 1 --plot a.jpg
 refuses 'rows apart by no whole steps' 2 "plrun: error: --every takes a multiple of the step, 0.1 s, found 0.25

@@ -53,6 +53,42 @@ for row in 3 12 24; do
 	result $? "line $row is the run with its params"
 done
 
+# ---- ranges: as the table of their values ----
+printf 'k,m\n12000,250\n12000,300\n12000,350\n16000,250\n16000,300\n16000,350\n20000,250\n20000,300\n20000,350\n' \
+	>grid.csv
+run car.spec --input road.csv --sweep grid.csv --peak >table.csv
+run car.spec --input road.csv --sweep k=12e3:2e4:3 --sweep m=250:350:3 --peak >ranges.csv
+same table.csv ranges.csv 'two ranges, the second of which changes faster'
+for c in 0.1 0.2 0.3; do printf '9e4,%s\n9e3,%s\n9e2,%s\n' $c $c $c; done | sed '1s/^/k,c\n/' >grid.csv
+run car.spec --input road.csv --sweep grid.csv >table.csv
+run car.spec --input road.csv --sweep c=0.1:0.3:3 --sweep k=9e4:9e2:3:log >ranges.csv
+awk -F, -v OFS=, 'NR > 1 { print $1, $2 + 0, $3, $4, $5, $6, $7, $8 }' table.csv >expected
+awk -F, -v OFS=, 'NR > 1 { print $1, $3, $2, $4, $5, $6, $7, $8 }' ranges.csv >found
+same expected found 'values in 15 digits, in equal ratios downwards'
+run car.spec --input road.csv --sweep k=12e3:2e4:3 --plot range.svg >ranges.csv
+{ xmllint --noout range.svg && [ "$(grep -c 'final' range.svg)" -ge 2 ] && grep -q '>body<' range.svg; } >log 2>&1
+result $? 'a picture over one range'
+run car.spec --input road.csv --sweep k=12e3:2e4:3 --sweep m=250:350:3 --peak --plot map.svg >ranges.csv
+{ xmllint --noout map.svg && grep -q 'peak of comfort' map.svg && grep -q 'polygon' map.svg; } >log 2>&1
+result $? 'a map over two ranges'
+
+# ---- statistics of one run, against those of its rows ----
+run car.spec --input road.csv >rows.csv
+run car.spec --input road.csv --stats >stats.csv
+cat rows.csv stats.csv | awk -F, '
+	function off(a, b) { return (a - b) * (a - b) > 1e-24 * (b * b + 1e-30) }
+	/^output/ { stats = 1; next }
+	!stats && NR > 1 { n++; for (i = 2; i <= 3; i++) {
+		v = $i < 0 ? -$i : $i; last[i] = $i; sum[i] += $i; sq[i] += $i * $i
+		if (n == 1 || $i < low[i]) low[i] = $i; if (n == 1 || $i > top[i]) top[i] = $i
+		if (n == 1 || v > peak[i]) { peak[i] = v; at[i] = $1 } } }
+	stats { i = ++lines + 1
+		print $0; print last[i], sum[i] / n, sqrt(sq[i] / n), low[i], top[i], peak[i], at[i]
+		bad = bad || $1 != (i == 2 ? "body" : "comfort") || $2 != last[i] || off($3, sum[i] / n) ||
+			off($4, sqrt(sq[i] / n)) || $5 != low[i] || $6 != top[i] || $7 != peak[i] || $8 != at[i] }
+	END { exit bad || n != 2001 || lines != 2 }' >log
+result $? 'statistics of a run are those of its rows'
+
 run car.spec --input road.csv --sweep params.csv --peak --jobs 2 >two.csv
 same one.csv two.csv 'jobs 1 and 2'
 run car.spec --input road.csv --sweep params.csv --peak --jobs 2 -o file.csv

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a run comes to: of each output the last value, mean, root mean square and extremes of all rows, from t = 0 on.
+ * The rows are those at the ends of steps, each of the same weight. */
+#include "plrun.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct stats stats_new(int outputs)
+{
+	return (struct stats){ outputs, 0, need(calloc((size_t)outputs + 1, sizeof(struct output_stats))) };
+}
+
+void stats_add(void *who, uint64_t k, const double *out)
+{
+	struct stats *stats = who;
+	for (int i = 0; i < stats->outputs; i++) {
+		struct output_stats *s = &stats->of[i];
+		const double size = fabs(out[i]);
+		s->last = out[i];
+		s->sum += (long double)out[i];
+		s->squares += (long double)out[i] * (long double)out[i];
+		if (k == 0 || out[i] < s->least)
+			s->least = out[i];
+		if (k == 0 || out[i] > s->most)
+			s->most = out[i];
+		if (k == 0 || size > s->peak) {
+			s->peak = size;
+			s->peak_at = k;
+		}
+	}
+	stats->rows = k + 1;
+}
+
+double stats_rms(const struct stats *s, int output)
+{
+	return (double)sqrtl(s->of[output].squares / (long double)s->rows);
+}
+
+void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h)
+{
+	char when[LONGEST];
+	fputs("output,final,mean,rms,least,largest,peak,t of peak\n", to);
+	for (int i = 0; i < stats->outputs && stats->rows; i++) {
+		const struct output_stats *s = &stats->of[i];
+		const double value[] = { s->last, (double)(s->sum / (long double)stats->rows), stats_rms(stats, i),
+					 s->least, s->most, s->peak };
+		fputs(m->output_names[i], to);
+		for (size_t k = 0; k < sizeof value / sizeof *value; k++)
+			fprintf(to, ",%s", shortest(value[k], m->single));
+		*put_time(when, s->peak_at, h, m->single) = 0;
+		fprintf(to, ",%s\n", when);
+	}
+}
