@@ -38,6 +38,15 @@ static void complain(const char *what)
         printf("# %s: %s\n", trial.variant, what);
 }
 
+/* Warnings may stand before it */
+static const char *first_error(void)
+{
+    const char *text = diagnostics(), *error = strstr(text, ": error: ");
+    while (error && error > text && error[-1] != '\n')
+        error--;
+    return first_line(error ? error : text);
+}
+
 /* ---- a variant ---- */
 
 struct variant {
@@ -135,7 +144,7 @@ static void want_loads_and_inputs(struct wanting *w, int i)
             const struct wave *wave = system->load[l].wave;
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
             const struct judged_number *number = &j->step[i * j->columns + j->states + column];
-            if (!changes && !is_anchored(w->step, l))
+            if (!changes && !is_anchored(w->step, l) && !is_forced(w->step, column))
                 want(w, number, constant, w->variant->compensated,
                      format("load column %d in %s", column, state_name(w, i)));
         }
@@ -184,18 +193,33 @@ static void want_kick(struct wanting *w, int i)
     want_second_words(w);
 }
 
+/* A sum stands before the first one that reads it: a position's drift behind the first kicks of all of its block. */
+static void want_kicks_of_block(struct wanting *w, int i, bool *kicked)
+{
+    for (int k = 0; k < w->judge->system->n; k++)
+        if (!kicked[k] && w->judge->block[k] == w->judge->block[i]) {
+            want_kick(w, k);
+            kicked[k] = true;
+        }
+}
+
+static void want_drift(struct wanting *w, int i)
+{
+    const struct linear *system = w->judge->system;
+    for (int k = 0; k < system->n; k++)
+        want(w, &w->judge->drift[i * system->n + k], false, w->variant->compensated,
+             format("drift of %s in %s", state_name(w, system->velocity[k]), state_name(w, i)));
+    want_second_words(w);
+    want_loads_and_inputs(w, i);
+}
+
 static void want_kick_drift_kick(struct wanting *w)
 {
-    const struct judge *j = w->judge;
-    const struct linear *system = j->system;
-    for (int i = 0; i < system->n; i++)
-        want_kick(w, i);
+    const struct linear *system = w->judge->system;
+    bool *kicked = ARRAY(bool, (size_t)system->n);
     for (int i = 0; i < system->n; i++) {
-        for (int k = 0; k < system->n; k++)
-            want(w, &j->drift[i * system->n + k], false, w->variant->compensated,
-                 format("drift of %s in %s", state_name(w, system->velocity[k]), state_name(w, i)));
-        want_second_words(w);
-        want_loads_and_inputs(w, i);
+        want_kicks_of_block(w, i, kicked);
+        want_drift(w, i);
     }
     for (int i = 0; i < system->n; i++) {
         want_kick(w, i);
@@ -210,18 +234,20 @@ static bool starts_with(const char *text, const char *start)
     return strncmp(text, start, strlen(start)) == 0;
 }
 
-/* A sum that stands apart, by its number: its numbers, once for each row that has it */
-static struct {
-    int first, count, met;
-} shared[LIMIT_STATES];
+/* A sum that stands apart, by its number: its numbers are read wherever another one has it as a term */
+static struct list shared[LIMIT_STATES];
+
+static unsigned long part_number(const char *name)
+{
+    const unsigned long part = starts_with(name, "part") ? strtoul(name + strlen("part"), NULL, 10) : 0;
+    return part < LIMIT_STATES ? part : 0;
+}
 
 static void use_part(const char *name, struct list *list)
 {
-    const unsigned long part = starts_with(name, "part") ? strtoul(name + strlen("part"), NULL, 10) : 0;
-    if (part == 0 || part >= LIMIT_STATES || ++shared[part].met <= 2)
-        return; /* where it is made, and in the first row that has it */
-    for (int i = 0; i < shared[part].count; i++)
-        append(list, list->value[shared[part].first + i], "");
+    const struct list *part = &shared[part_number(name)];
+    for (int i = 0; i < part->count; i++)
+        append(list, part->value[i], "");
 }
 
 /* Numbers with a point or an exponent from `text` to `end`, in their order; not those in comments.  A minus before one
@@ -271,16 +297,9 @@ static bool is_sum(const char *text, const char *end)
 
 static void read_sum(const char *text, const char *end, bool single, struct list *list)
 {
-    const int before = list->count;
-    const char *name = strstr(text, " part");
-    read_numbers(text, end, single, list);
-    if (starts_with(text, "const ") && name && name < end) {
-        const unsigned long part = strtoul(name + strlen(" part"), NULL, 10);
-        if (part < LIMIT_STATES) {
-            shared[part].first = before;
-            shared[part].count = list->count - before;
-        }
-    }
+    const char *type = single ? "const float " : "const double ";
+    const unsigned long part = starts_with(text, type) ? part_number(text + strlen(type)) : 0;
+    read_numbers(part ? strchr(text, '=') : text, end, single, part ? &shared[part] : list);
 }
 
 static void read_step(const char *code, const char *name, bool single, struct list *list)
@@ -554,7 +573,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const struct model *model = model_of(text, v);
     if (!model) {
         if (!v->single)
-            complain(format("not accepted: %s", first_line(diagnostics())));
+            complain(format("not accepted: %s", first_error()));
         return;                         /* beyond the range of float, say */
     }
     if (v->compensated && j->states > LIMIT_UNROLLED_STATES)
@@ -562,7 +581,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const bool may = v->form != FORM_KICK_DRIFT_KICK || may_kick(j);
     const struct step *step = step_build(model);
     if (!step) {
-        const char *said = first_line(diagnostics());
+        const char *said = first_error();
         const bool beyond = strstr(said, "beyond the range of") && overflows(j, v->single);
         trial.compared += beyond;
         if (may && !strstr(said, "times h is above 2.5") && !beyond)
@@ -585,7 +604,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const bool emitted = statement_guard(emit, &e);
     fclose(e.to);
     if (!emitted) {
-        const char *said = first_line(diagnostics());
+        const char *said = first_error();
         if (!v->single || !strstr(said, "beyond the range of float"))
             complain(format("not emitted: %s", said));
         return;
@@ -640,7 +659,7 @@ static bool try_spec(const char *text)
     bool good = true, compared = false;
     const struct model *model = model_of(text, &variants[0]);
     if (!model) {
-        printf("# not accepted: %s\n", first_line(diagnostics()));
+        printf("# not accepted: %s\n", first_error());
         return false;
     }
     const struct judge *judge = judge_of(&model->system, model->h);
