@@ -11,7 +11,8 @@
  *     states x states      16 ulp of the largest entry of Phi
  *     a load, an input     16 ulp of the largest entry of its column, in each segment of time
  *     outputs              16 ulp of the largest factor of the row
- *     phases, growths      bit for bit; where a frequency is 2 pi f, within 2^-104, in floats 2^-45 of itself
+ *     phases, growths      bit for bit; where a frequency is 2 pi f, what rounds to it is within 2^-104, in
+ *                          floats 2^-45, of w h / (2 pi)
  *
  * NAME_nominal is what the generator has for the spec's values, bit for bit. The largest met is printed for each
  * family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of that of both columns.
@@ -459,25 +460,46 @@ static int integers_of(const char *text, uint64_t *word)
     return count;
 }
 
-/* A frequency 2 pi f is known in two words on the target: a phase of sweep may be off by 2^-104 of itself, in floats
- * 2^-45. */
-static bool nearly(const uint64_t *found, const uint64_t *expected, int words)
+/* w h / (2 pi), of a turn, in units of a phase's last word */
+static void exact_phase(mpfr_t phase, mpq_srcptr w, mpq_srcptr h, int words)
 {
-    mpz_t a, b;
-    if (!strstr(model_now->name, "sweep"))
+    mpfr_t pi;
+    mpfr_init2(pi, mpfr_get_prec(phase));
+    mpfr_const_pi(pi, MPFR_RNDN);
+    mpfr_set_q(phase, w, MPFR_RNDN);
+    mpfr_mul_q(phase, phase, h, MPFR_RNDN);
+    mpfr_div(phase, phase, pi, MPFR_RNDN);
+    mpfr_div_2ui(phase, phase, 1, MPFR_RNDN);
+    mpfr_frac(phase, phase, MPFR_RNDN);
+    mpfr_mul_2ui(phase, phase, (unsigned long)(64 * words), MPFR_RNDN);
+    mpfr_clear(pi);
+}
+
+/* A frequency 2 pi f is known in two words on the target: a phase of sweep is the nearest number of units to one that
+ * is off by 2^-104 of itself, in floats 2^-45. */
+static bool nearly(const uint64_t *found, int words, mpq_srcptr w, mpq_srcptr h)
+{
+    mpz_t units;
+    mpfr_t phase, most;
+    if (!w || !strstr(model_now->name, "sweep"))
         return false;
-    mpz_inits(a, b, NULL);
-    mpz_import(a, (size_t)words, 1, sizeof *found, 0, 0, found);
-    mpz_import(b, (size_t)words, 1, sizeof *expected, 0, 0, expected);
-    mpz_sub(a, a, b);
-    mpz_mul_2exp(a, a, BITS == 53 ? 104 : 45);
-    const bool near = mpz_cmpabs(a, b) <= 0;
-    mpz_clears(a, b, NULL);
+    mpz_init(units);
+    mpfr_inits2(400, phase, most, NULL);
+    mpz_import(units, (size_t)words, 1, sizeof *found, 0, 0, found);
+    exact_phase(phase, w, h, words);
+    mpfr_div_2ui(most, phase, BITS == 53 ? 104 : 45, MPFR_RNDN);
+    mpfr_add_d(most, most, 0.5, MPFR_RNDN);
+    mpfr_sub_z(phase, phase, units, MPFR_RNDN);
+    const bool near = mpfr_cmpabs(phase, most) <= 0;
+    mpz_clear(units);
+    mpfr_clears(phase, most, NULL);
     return near;
 }
 
-static void compare_words(const char *coeffs, size_t place, int index, const char *text, const char *what)
+/* w: of a phase, its frequency; else NULL */
+static void compare_words(const char *coeffs, size_t place, int index, const char *text, mpq_srcptr w, mpq_srcptr h)
 {
+    const char *what = w ? "phase" : "growth";
     uint64_t word[2], found[2];
     const int words = integers_of(text, word), expected = BITS == 53 ? 2 : 1;
     if (words != expected) {
@@ -486,7 +508,7 @@ static void compare_words(const char *coeffs, size_t place, int index, const cha
     }
     memcpy(found, coeffs + place + (size_t)(index * words) * sizeof *word, (size_t)words * sizeof *word);
     met.compared++;
-    if (memcmp(found, word, (size_t)words * sizeof *word) != 0 && !nearly(found, word, words))
+    if (memcmp(found, word, (size_t)words * sizeof *word) != 0 && !nearly(found, words, w, h))
         complain(format("%s %d: found %016llx %016llx, expected %s", what, index, (unsigned long long)found[0],
                         (unsigned long long)found[words - 1], text));
 }
@@ -498,9 +520,9 @@ static void compare_loads(const struct tuned *m, const char *coeffs, const struc
     for (int l = 0; l < step->branch->system.loads; l++) {
         const struct wave *wave = step->branch->system.load[l].wave;
         if (mpq_sgn(wave->w) != 0)
-            compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), "phase");
+            compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), wave->w, step->model->h);
         if (mpq_sgn(wave->a) != 0)
-            compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), "growth");
+            compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), NULL, NULL);
     }
     if (phases != m->phase_step_entries || growths != m->growth_step_entries)
         complain(format("%d phases and %d growths, expected %d and %d", m->phase_step_entries, m->growth_step_entries,
