@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the file CORPUS, then the specs that
-# GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus,
-# and for each block of seeds.  PLGEN is built with sanitizers; it makes every third of them, and the plain one, beside
-# it without `_sanitized`, the others. What is emitted is compiled to be run, every third with all warnings as errors
-# and sanitizers; with MERGE=1 or LONG=1 in the environment all have sanitizers, by gcc and clang in turn; and drive.c
-# holds it against other roads.  A spec may be refused only with a message of refusals.list.
-# With KEEP=FOLDER the specs that fail are kept there; each finding belongs into the corpus.
+# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with MERGE=1
+# or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST
+# to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of seeds.  PLGEN is built with
+# sanitizers; it makes every third of them, and the plain one, beside it without `_sanitized`, the others. What is
+# emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1 all have
+# sanitizers, by gcc and clang in turn; and drive.c holds it against other roads.  A spec may be refused only with a
+# message of refusals.list.
 set -u
 absolute() {
 	case $1 in
@@ -79,6 +79,7 @@ if [ -n "$corpus" ]; then
 	awk '/^=== / { if (name) close(name); name = $2 ".spec"; blank = ""; print $2; next }
 		name && /^$/ { blank = blank "\n"; next }
 		name { printf "%s", blank >name; blank = ""; print >name }' "$corpus" >names
+	merging || { awk 'NR % 2' names >half && mv half names; }
 	names=$(cat names)
 	for name in $names; do
 		add "c_$name" "$name.spec"
