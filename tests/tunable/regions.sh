@@ -17,7 +17,7 @@ for spec in "$@"; do
 	name=$(basename "$spec" .spec)_$real
 	compile=$run_cc
 	turn=$((turn + 1))
-	! merging && [ $((turn % 3)) -ne 0 ] || compile=$sanitizing
+	! merging && [ $((turn % 5)) -ne 3 ] || compile=$sanitizing
 	chosen "$name" || continue
 	there=$(sed -n 's/^#there //p' "$spec")
 	defines=''
