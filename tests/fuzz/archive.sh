@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# archive.sh SOURCE COMPILER OUT [RUNTIME.a]: drive.c, CVODE's wrapper and the runtime, with sanitizers, as one archive;
-# RUNTIME.a: the runtime so, as the build folder has it.
+# archive.sh SOURCE COMPILER OUT [RUNTIME.a]: drive*.c, the wrapper of CVODE and the runtime, with sanitizers, as one
+# archive; RUNTIME.a: the runtime so, as the build folder has it.
 set -eu
 source=$1
 cc=$2
@@ -17,7 +17,7 @@ esac
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-set -- "$source/tests/fuzz/drive.c"
+set -- "$source"/tests/fuzz/drive*.c
 [ -n "$runtime" ] || set -- "$source"/runtime/*.c "$@"
 "$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
 	-I"$source/tests/remainder" -c "$@"
