@@ -48,11 +48,11 @@ END {
 	rival = "exact in regions, bisection"
 	if (wanted ? least[rival] > (name == "two_masses" ? 1e-6 : 1e-10) || rows[rival] < 5 : rows[rival])
 		say(rival ": " rows[rival] + 0 " rows, least error " least[rival])
-	# What each reaches with its least tolerance, by a limit a little above that. Forces that jump cost digits, and so
-	# do long steps of Radau across kinks (in doc/charts/matrix.csv RADAU9 has 8.4e-7 for gear1), the more the more
-	# stages: found are up to 1.5e-8, 1.9e-7 and 8.1e-7 (gear1, gear1, gear3). Nothing damps what each leaves in
-	# bilinear, DOP853 2.4e-9. Radau of s stages holds its estimate to tolerance^((s + 1)/(2 s))/10, for 1e-13 2e-10,
-	# 2e-9 and 4e-9: stiff ones have 1.5e-8, 3.7e-8 and 5.8e-8 (beam4) of it.
+	# What each reaches with its least tolerance, by a limit a little above that. Forces that jump cost digits, and
+	# so do long steps of Radau across kinks (in doc/charts/matrix.csv RADAU9 has 8.4e-7 for gear1), the more the
+	# more stages: found are up to 1.5e-8, 1.9e-7 and 8.1e-7 (gear1, gear1, gear3). Nothing damps what each leaves
+	# in bilinear, DOP853 2.4e-9. Radau of s stages holds its estimate to tolerance^((s + 1)/(2 s))/10, for 1e-13
+	# 2e-10, 2e-9 and 4e-9: stiff ones have 1.5e-8, 3.7e-8 and 5.8e-8 (beam4) of it.
 	m = split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF;DOP853;RADAU5;RADAU9;RADAU13", method_of, ";")
 	limits = "1e-6;2e-9;2e-9;1e-7;1e-7;2e-9;"
 	if (index(" gear1 gear2 gear3 half_car bilinear quarter_car_bumps ", " " name " "))
