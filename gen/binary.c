@@ -3,7 +3,6 @@
  * load. */
 #define _GNU_SOURCE     /* environ */
 #include "command.h"
-#include "command.h"
 
 #include <errno.h>
 #include <spawn.h>

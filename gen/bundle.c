@@ -4,7 +4,6 @@
  * what has no name of the runtime's gets one, so that they meet no name of a model. */
 #define _GNU_SOURCE     /* strchrnul, open_memstream */
 #include "command.h"
-#include "command.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -8,7 +8,6 @@
  * tried, where there are such. Where all modes are kept the states are those that were written. */
 #include "measuring.h"
 #include "command.h"
-#include "measuring.h"
 #include "model/checks.h"
 #include "model/linear/shortening.h"
 #include "report/report.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plgen: the pipeline as one column of calls. Text is written to memory and published only when all went well. */
 #include "command.h"
-#include "command.h"
 #include "emit/emit.h"
 #include "model/checks.h"
 #include "model/tunable/elsewhere.h"

@@ -5,7 +5,6 @@
  * certified. */
 #include "measuring.h"
 #include "command.h"
-#include "measuring.h"
 #include "model/checks.h"
 #include "report/report.h"
 #include "step/certify/certify.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Starts and loads beside those of the spec: what is chosen is tried from there too. */
 #include "measuring.h"
-#include "measuring.h"
 #include "model/checks.h"
 #include "step/certify/certify.h"
 

@@ -2,7 +2,6 @@
 /* The command line: options as a table, from which usage is written, and what goes together. */
 #define _GNU_SOURCE     /* getopt_long */
 #include "command.h"
-#include "command.h"
 #include "report/report.h"
 #include "step/linear/forms.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The runtime's text in pieces, each of which can be left out. */
 #include "command.h"
-#include "command.h"
 
 #include <ctype.h>
 #include <string.h>

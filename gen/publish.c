@@ -2,7 +2,6 @@
 /* What is written: texts grow in memory, and become files when all went well. */
 #define _GNU_SOURCE     /* fopencookie, realpath */
 #include "command.h"
-#include "command.h"
 
 #include <errno.h>
 #include <fcntl.h>

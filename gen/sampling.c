@@ -3,7 +3,6 @@
  * counts is what its samples show: two in the shortest period of the loads and of the modes that are kept, as Nyquist
  * and Shannon ask for; and a hundred until the first need ends. */
 #include "command.h"
-#include "command.h"
 #include "step/linear/images.h"
 
 #include <math.h>

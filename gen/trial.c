@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One step that is tried for needs that are measured: built, run beside a reference, counted, put in order. */
 #include "measuring.h"
-#include "measuring.h"
 #include "model/checks.h"
 #include "model/linear/shortening.h"
 #include "step/certify/certify.h"

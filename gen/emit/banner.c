@@ -497,8 +497,7 @@ static void banner_cost(const struct emitter *e)
 				   "show that none is passed.");
 	else if (has_peaks(e))
 		say(e, " * The look for peaks takes %d and %d more, the outputs counted, where a bound shows that none "
-		       "passes its peak.\n",
-		    program->peak_multiplications, program->peak_additions);
+		       "passes its peak.\n", program->peak_multiplications, program->peak_additions);
 	if (e->step->anchors && e->step->anchors->terms)
 		say(e, " * What loads add in the steps between comes from a table of %d bytes, each number correctly "
 		       "rounded.\n", 8 * anchor_numbers(e->step));
@@ -508,9 +507,8 @@ static void banner_cost(const struct emitter *e)
 static void banner_needs(const struct emitter *e)
 {
 	for (int i = 0; i < e->model->needs.requirements && e->step->choice; i++)
-		say(e, " * Needed: %s;\n"
-		       " *     %s.\n",
-		    printable(need_text(&e->model->needs.requirement[i])), margin_text(e->step, i));
+		say(e, " * Needed: %s;\n *     %s.\n", printable(need_text(&e->model->needs.requirement[i])),
+		    margin_text(e->step, i));
 }
 
 static const char *input_text(int hold)
@@ -543,8 +541,7 @@ static void banner_run(const struct emitter *e)
 	const struct rows *rows = e->step->rows;
 	if (rows)
 		say(e, " * $n_run takes %d rows at a time, each from the state at the start of its block: "
-		       "tables of %d numbers.\n",
-		    rows->count, row_numbers(e->step));
+		       "tables of %d numbers.\n", rows->count, row_numbers(e->step));
 	else if (runs_in_blocks(e))
 		say(e, " * $n_run takes %d rows at a time, those of an expansion.\n", e->model->truncation.over);
 	else if (e->step->no.rows)

@@ -92,7 +92,7 @@ void put(FILE *to, const char *text, size_t length)
 
 /* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for
  * one. */
-const char *tree(int terms, const char *const *term, int indent)
+static const char *tree(int terms, const char *const *term, int indent)
 {
 	enum { WIDTH = 100 };
 	if (terms == 1)

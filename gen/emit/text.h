@@ -62,7 +62,6 @@ void number_member(const struct emitter *e, const char *name, const char *value,
 void declare_members(const struct emitter *e, void (*print)(const struct emitter *e));
 void emit_nominal_of(const struct emitter *e, void (*print)(const struct emitter *e));    /* NAME_nominal */
 
-const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 struct summands {
 	int terms;
 	const char **term;

@@ -8,7 +8,6 @@
 struct step;
 struct model;
 
-
 /* ---- archive.c: files in one file ---- */
 
 struct member {

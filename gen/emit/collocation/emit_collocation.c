@@ -170,16 +170,12 @@ static void emit_stage_tables(const struct emitter *e)
 static const char *row_bound(const struct emitter *e, int coord, bool twice)
 {
 	const struct motion *m = e->step->collocation->motion;
-	const char **term = ARRAY(const char *, (size_t)m->entries + 1);
-	int terms = 0;
-	for (int k = 0; k < m->entries; k++) {
-		const struct motion_entry *entry = &m->entry[k];
-		if (entry->coord != coord || entry->twice != twice)
-			continue;
-		term[terms++] = !twice && entry->of == coord ? format("-slope_of[%d]", k)
-							     : format("pl_magnitude(slope_of[%d])", k);
-	}
-	return terms ? tree(terms, term, 12) : NULL;
+	struct summands s = { 0 };
+	for (int k = 0; k < m->entries; k++)
+		if (m->entry[k].coord == coord && m->entry[k].twice == twice)
+			add_summand(&s, format(!twice && m->entry[k].of == coord ? "-slope_of[%d]"
+					       : "pl_magnitude(slope_of[%d])", k));
+	return s.terms ? sum_of(&s, 12) : NULL;
 }
 
 /* Of Gershgorin's circles how far they reach to the left; of the derivatives by coordinates, which are squared rates,

@@ -74,7 +74,7 @@ void say_row_sum(const struct emitter *e, const char *target, int rows, const st
 	for (int first = 0; first < s->terms; first += TERMS) {
 		int count = s->terms - first < TERMS ? s->terms - first : TERMS;
 		say(e, "    for (i = 0; i < %d; i++) { %s %s %s; }\n",
-		    rows, target, first ? "+=" : "=", tree(count, s->term + first, 12));
+		    rows, target, first ? "+=" : "=", sum_of(&(struct summands){ count, s->term + first }, 12));
 	}
 }
 
@@ -280,8 +280,8 @@ static struct combination combination_of(const struct emitter *e, int matrix)
 		const char *name = format("factor%d_%d", matrix + 1, k + 1);
 		add_summand(&part[m->term[k].velocity], factor_text(e, name, m->term[k].function, m->term[k].factor));
 	}
-	return (struct combination){ part[0].terms ? tree(part[0].terms, part[0].term, 20) : NULL,
-				     part[1].terms ? tree(part[1].terms, part[1].term, 20) : NULL };
+	return (struct combination){ part[0].terms ? sum_of(&part[0], 20) : NULL,
+				     part[1].terms ? sum_of(&part[1], 20) : NULL };
 }
 
 /* ---- what is not linear ---- */
@@ -368,7 +368,7 @@ static void emit_rest_values(const struct emitter *e)
 		for (int j = 0; j < own->modes; j++)
 			add_summand(&s, format("%s[%d][%d] * %s[%d]", table, j, place, i < m->modes ? "eta" : "rate",
 					       own->place + j));
-		say(e, "    y[%d] = %s;\n", i, tree(s.terms, s.term, 11));
+		say(e, "    y[%d] = %s;\n", i, sum_of(&s, 11));
 	}
 	say(e, "    $n_rest(s, y, left);\n");
 	for (int k = 0; k < split->rests; k++)

@@ -103,7 +103,7 @@ static const char *stage_sum(const struct emitter *e, int row, int forces, const
 	for (int k = 0; k < forces; k++)
 		add_summand(&s, format("weight[%d][i] * %s", 2 * k + row, format(force, k)));
 	add_waves(e, &s, "of_wave", row);
-	return tree(s.terms, s.term, 21);
+	return sum_of(&s, 21);
 }
 
 /* Over a whole step, from past forces, rows of the last node serve but for the weights of forces. */
@@ -154,7 +154,7 @@ static void emit_forces_ahead(const struct emitter *e)
 		struct summands s = { 0 };
 		for (int k = 0; k < nodes; k++)
 			add_summand(&s, scaled(m->collocation.ahead[i * nodes + k], format("s->force[%d][i]", k)));
-		say(e, "        force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 22));
+		say(e, "        force[%d][i] = %s;\n", i + 1, sum_of(&s, 22));
 	}
 	say(e, "    }\n");
 	close_function(e, "");
@@ -176,7 +176,7 @@ static void emit_predict(const struct emitter *e)
 	for (int k = 0; k < m->multistep.points; k++)
 		say(e, "    const double *const force%d = s->force[%s];\n", k, k == 0 ? "s->newest" :
 		    format("s->newest >= %d ? s->newest - %d : s->newest + %d", k, k, m->multistep.points - k));
-	emit_stage_sums(e, m->multistep.points, "force%d[i]", tree(extrapolated.terms, extrapolated.term, 22));
+	emit_stage_sums(e, m->multistep.points, "force%d[i]", sum_of(&extrapolated, 22));
 }
 
 /* ---- a bank ---- */
@@ -261,7 +261,7 @@ static void emit_swing(const struct emitter *e)
 	for (int k = 0; k < count; k++)
 		if (is_there(e, k))
 			add_summand(&sum, spell(e, "$n_swing[which][%d][i] * swing[%d]", k, k));
-	say(e, "    for (i = 0; i < %d; i++) { force[i] += %s; }\n", m->width, tree(sum.terms, sum.term, 20));
+	say(e, "    for (i = 0; i < %d; i++) { force[i] += %s; }\n", m->width, sum_of(&sum, 20));
 	for (int k = 0; k < count; k += 2)
 		emit_next_term(e, k / 2, !is_there(e, k + 1));
 	close_function(e, "before");

@@ -276,19 +276,18 @@ static const char *place_of_block(const struct emitter *e, const struct group *g
 static const char *alike_row(const struct emitter *e, const struct group *g, int row, int index, int *count)
 {
 	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states + acting(g)));
-	const char **text = ARRAY(const char *, 2 * (size_t)(g->states + acting(g)));
-	int terms = 0;
+	struct summands s = { 0 };
 	for (int changing = 0; changing < 2; changing++) {
 		const int here = alike_terms(e, g, row, changing, term);
 		for (int k = 0; k < here; k++) {
 			const char *table = group_table(e, g, "alike", index);
 			const char *factor = changing ? format("changing[%d][i]", count[1]++)
 						      : format("%s[%d][i]", table, count[0]++);
-			text[terms++] = format("%s * %s%d", factor, term[k].acting < 0 ? "y" : "act",
-					       term[k].acting < 0 ? term[k].operand.index : term[k].acting);
+			add_summand(&s, format("%s * %s%d", factor, term[k].acting < 0 ? "y" : "act",
+					       term[k].acting < 0 ? term[k].operand.index : term[k].acting));
 		}
 	}
-	return terms ? tree(terms, text, 22) : NULL;
+	return s.terms ? sum_of(&s, 22) : NULL;
 }
 
 static void emit_alike_function(const struct emitter *e, const struct group *g, int index)

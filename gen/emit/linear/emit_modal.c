@@ -125,11 +125,10 @@ void emit_modes(const struct emitter *e)
 /* + D[0][at] * driven0 ... */
 static const char *driven_sum(const struct emitter *e, int count, const char *at)
 {
-	const char **term = ARRAY(const char *, (size_t)count + 1);
+	struct summands s = { 0 };
 	for (int k = 0; k < count; k++)
-		term[k] = spell(e, "$n_driven[%d][%s] * driven%d", k, at, k);
-	const char *sum = count ? tree(count, term, 22) : "";
-	return count > 1 ? format(" + (%s)", sum) : count ? format(" + %s", sum) : "";
+		add_summand(&s, spell(e, "$n_driven[%d][%s] * driven%d", k, at, k));
+	return count ? format(count > 1 ? " + (%s)" : " + %s", sum_of(&s, 22)) : "";
 }
 
 void emit_modal_step(const struct emitter *e, const char *const *acting_text)

@@ -223,22 +223,21 @@ void emit_lanes_out(struct batch *b)
 static const char *bend_over_lanes(struct batch *b, int p)
 {
 	const struct emitter *e = b->e;
-	const char **term = ARRAY(const char *, (size_t)e->system->states + 1);
 	const struct peaks peaks = peaks_of(e->step);
-	int terms = 0;
+	struct summands s = { 0 };
 	for (int i = 0; i < e->system->states; i++) {
 		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), state[%d]%s%s)", i,
 					  factor_of_momentum(e, i) ? " / " : "",
 					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
-		term[terms++] = e->step->is.tuned
+		add_summand(&s, e->step->is.tuned
 			? format("%s * %s", batch_factor(b, format("s->coeffs.bend[%d][%d]", p, i)), size)
-			: scaled(peaks.bend[p * e->step->layout.size + i], size);
+			: scaled(peaks.bend[p * e->step->layout.size + i], size));
 	}
 	if (acts_beside_states(e) && e->step->is.tuned)
-		term[terms++] = format("%s * reach[%d]", batch_factor(b, format("s->coeffs.reach[%d]", p)), p);
+		add_summand(&s, format("%s * reach[%d]", batch_factor(b, format("s->coeffs.reach[%d]", p)), p));
 	else if (acts_beside_states(e))
-		term[terms++] = format("reach[%d]", p);
-	return tree(terms, term, 15);
+		add_summand(&s, format("reach[%d]", p));
+	return sum_of(&s, 15);
 }
 
 void emit_lanes_bend(struct batch *b)

@@ -33,17 +33,16 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 /* `what` of the entries of x that `row` reads, summed */
 static void emit_product(const struct emitter *e, const char *name, const char *const *what, const bool *reads)
 {
-	int size = e->step->layout.size, terms = 0;
-	const char **term = ARRAY(const char *, (size_t)size);
+	const int size = e->step->layout.size;
+	struct summands s = { 0 };
 	bool any = false;
 	for (int j = 0; j < size; j++)
 		if (reads[j]) {
-			term[terms++] = *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j);
+			add_summand(&s, *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j));
 			any = any || *what[j];
 		}
 	open_function(e, NULL, "static double $o_%s(const double row[%d], const double x[%d])", name, size, size);
-	say(e, "%s%s    return %s;\n", terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n",
-	    terms ? tree(terms, term, 11) : "0.0");
+	say(e, "%s%s    return %s;\n", s.terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n", sum_of(&s, 11));
 	close_function(e, "");
 }
 
@@ -134,20 +133,14 @@ static const char *turn_times(const struct region_tables *t, int i, int j, const
 static const char *turned_row(const struct emitter *e, const struct region_tables *t, int row, const char *layout,
 			      bool first)
 {
-	const char **early = ARRAY(const char *, (size_t)t->columns), **late = ARRAY(const char *, (size_t)t->columns);
-	int earlies = 0, lates = 0;
-	for (int j = 0; j < t->columns; j++) {
-		if (!acts_at(t, row, j) || !(first || moves(t, j)))
-			continue;
-		const char *text = turn_times(t, row, j, format(layout, j));
-		if (j >= e->system->n && j < e->system->states)
-			late[lates++] = text;
-		else
-			early[earlies++] = text;
-	}
-	if (earlies && lates)
-		return format("(%s)\n%26s+ (%s)", tree(earlies, early, 26), "", tree(lates, late, 28));
-	return earlies ? tree(earlies, early, 25) : lates ? tree(lates, late, 25) : "0.0";
+	struct summands early = { 0 }, late = { 0 };
+	for (int j = 0; j < t->columns; j++)
+		if (acts_at(t, row, j) && (first || moves(t, j)))
+			add_summand(j >= e->system->n && j < e->system->states ? &late : &early,
+				    turn_times(t, row, j, format(layout, j)));
+	if (early.terms && late.terms)
+		return format("(%s)\n%26s+ (%s)", sum_of(&early, 26), "", sum_of(&late, 28));
+	return sum_of(early.terms ? &early : &late, 25);
 }
 
 static void emit_turn(const struct emitter *e, const struct region_tables *t)

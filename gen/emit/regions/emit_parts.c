@@ -319,15 +319,15 @@ static void emit_linear_step(const struct emitter *part)
 {
 	enum { TERMS = 400 };
 	const double *whole = whole_step_of(part->step, 0);
-	const char **size = ARRAY(const char *, (size_t)part->system->states);
+	struct summands size = { 0 };
 	if (regions_change(part) || keeps_rest(part))
 		emit_linear_by_pieces(part);
 	else
 		(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
 	for (int i = 0; i < part->system->states; i++)
-		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
+		add_summand(&size, format("pl_magnitude(s->y[%d])", place_of_state(part, i)));
 	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
-	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
+	    sum_of(&size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
 	close_function(part, given_names(part));
 }
 

@@ -5,6 +5,9 @@
 
 #include "tunable.h"
 
+struct fixed_slope;
+struct tuned_equations;
+
 /* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
 
 void emit_tuned_members(const struct emitter *e);                 /* of NAME_coeffs */

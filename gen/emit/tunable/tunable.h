@@ -5,9 +5,6 @@
 
 #include "emit/state.h"
 
-struct fixed_slope;
-struct tuned_equations;
-
 /* ---- emit_held.c: params that an instance holds; of models without, nothing is printed ---- */
 
 void emit_held_types(const struct emitter *e);

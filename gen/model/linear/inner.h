@@ -18,9 +18,6 @@ bool mode_refine(struct modes *modes, int index);
 
 /* ---- what modes.c and survey.c share ---- */
 
-struct modes;
-struct mode;
-
 struct mode_basis {
 	struct invariants *invariants; /* of A, or of M^-1 K */
 	bool moves;                 /* of M^-1 K */

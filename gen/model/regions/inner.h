@@ -29,8 +29,6 @@ _Noreturn void too_many(const struct building *b, const struct switching *s);
 
 /* ---- sides.c: surfaces where a form is 0 that something decides on, and the equations on either side ---- */
 
-struct atom;
-
 struct side {
 	struct collector *c;
 	const struct form *g;

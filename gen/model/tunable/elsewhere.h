@@ -6,9 +6,7 @@
 #include "math/math.h"
 #include "model/model.h"
 
-struct building;
 struct retuned_row;
-struct tuned_equations;
 
 /* ---- elsewhere.c: a model at other values of its tunable params, and how its entries follow from these ---- */
 

@@ -6,9 +6,6 @@
 
 #include "base/base.h"
 
-struct spread;
-struct linear;
-
 struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); without waves cos(p) = 1 */
 	int power;
 	bool turns, sine;

@@ -6,7 +6,6 @@
 #include "math/math.h"
 #include "model/linear/linear.h"
 
-struct output;
 struct telling;
 
 /* What so many bits do not tell apart is one: two instants, a force and its limit. */

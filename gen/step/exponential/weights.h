@@ -5,8 +5,6 @@
 
 #include "step/step.h"
 
-struct normal_work;
-
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */
 
 struct normal_mode { mpfr_t lambda, delta; };      /* eta'' + 2 delta eta' + lambda eta = F [1/s^2, 1/s] */

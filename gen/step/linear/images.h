@@ -34,7 +34,6 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 				   mpq_srcptr h);
 /* of one load: z_to(t+tau) from z_from(t) */
 struct response *response_of_load_state(const struct load *load, int to, int from);
-struct kernel_part;
 /* what its unit force gives the states' derivatives */
 mpq_t *impulse_of_channel(const struct linear *system, int channel);
 struct started {                    /* a response that starts at a time of its own */

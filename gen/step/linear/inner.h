@@ -45,7 +45,6 @@ struct response *output_of_load(struct resolvent *r, const struct linear *system
 /* ---- numbers.c: a number of a step before it is rounded ---- */
 
 struct coefficient;
-struct model;
 
 enum { FIRST_PRECISION = 128 };     /* doubled while a number is not decided */
 
