@@ -7,16 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
+
+#include "timing.h"
 
 extern char **environ;
-
-static double milliseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
 
 static double run(char **command)
 {
@@ -25,27 +19,21 @@ static double run(char **command)
 	int status;
 	posix_spawn_file_actions_init(&quiet);
 	posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
-	double start = milliseconds();
+	double start = nanoseconds();
 	if (posix_spawnp(&child, command[0], &quiet, NULL, command, environ) != 0 ||
 	    waitpid(child, &status, 0) != child || status != 0) {
 		fprintf(stderr, "clock: %s failed\n", command[0]);
 		exit(1);
 	}
-	double end = milliseconds();
+	double end = nanoseconds();
 	posix_spawn_file_actions_destroy(&quiet);
-	return end - start;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
+	return 1e-6 * (end - start);
 }
 
 static void report(const char *name, int runs, double *time)
 {
-	qsort(time, (size_t)runs, sizeof *time, ascending);
-	printf("%-48s min %8.2f  median %8.2f  max %8.2f ms\n", name, time[0], time[runs / 2], time[runs - 1]);
+	const double median_ms = middle((size_t)runs, time);
+	printf("%-48s min %8.2f  median %8.2f  max %8.2f ms\n", name, time[0], median_ms, time[runs - 1]);
 }
 
 int main(int argc, char **argv)

@@ -5,22 +5,15 @@
 #include "masses_pl.h"
 #include "outputs_pl.h"
 #include "oscillators_pl.h"
+#include "timing.h"
 
 #include <stdio.h>
-#include <time.h>
 
 enum { SAMPLES = 400, STEPS = 40, N = MASSES_STATES };
 static masses all;
 static outputs few;
 static oscillators apart;
 static double y[N], z[N], seen[OUTPUTS_OUTPUTS], u[1] = { 0.25 };
-
-static double nanoseconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
 
 static void step_masses(void)
 {
@@ -89,10 +82,10 @@ int main(int argc, char **argv)
             outputs_init(&few);
             oscillators_init(&apart);
             masses_get(&all, y);
-            const double start = nanoseconds();
+            const double start = own_nanoseconds();
             for (int i = 0; i < STEPS; i++)
                 rivals[r].step();
-            const double taken = (nanoseconds() - start) / STEPS;
+            const double taken = (own_nanoseconds() - start) / STEPS;
             least[r] = taken < least[r] ? taken : least[r];
         }
     printf("%s:\n", argc > 1 ? argv[1] : "");

@@ -10,14 +10,14 @@ trap 'exit 99' HUP INT TERM
 sed 's/= F\*cos(w\*t)$/= 0/' models/sdcsf.spec >"$work/none.spec"
 "$plgen" --prefix none -o "$work/none.c" "$work/none.spec"
 "$plgen" --prefix anchored -o "$work/anchored.c" models/sdcsf.spec
-"$plgen" --prefix each --anchors 1 -o "$work/each.c" models/sdcsf.spec
+"$plgen" --prefix direct --anchors 1 -o "$work/direct.c" models/sdcsf.spec
 for compiler in gcc clang; do
 	command -v "$compiler" >"$work/found" || continue
 	for options in -O2 '-O2 -march=native'; do
 		echo "$compiler $options:"
 		# shellcheck disable=SC2086
 		"$compiler" -std=c99 $options -Iruntime -I"$work" bench/loads.c "$work/none.c" "$work/anchored.c" \
-			"$work/each.c" runtime/*.c -o "$work/loads"
+			"$work/direct.c" runtime/*.c -o "$work/loads"
 		"$work/loads"
 	done
 done

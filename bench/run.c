@@ -3,13 +3,13 @@
  * turn, so that all meet the same machine. To memory: rows that go out of every cache, beside memset of as many
  * bytes. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROWS = 512, ROUNDS = 400, LARGE = 1 << 23 };      /* numbers: 64 MB */
 
@@ -34,13 +34,6 @@ enum { BUILDS = sizeof build / sizeof *build };
 static double *near, *far, *samples;
 static size_t at;
 
-static double now(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 static double *next_far(size_t numbers)
 {
 	if (at + numbers > LARGE)
@@ -53,19 +46,19 @@ static void sample(struct build *b, int where, int calls)
 {
 	size_t numbers = (size_t)ROWS * (size_t)b->model->outputs;
 	b->model->init(b->state);               /* before what is free has decayed to nothing */
-	double start = now();
+	double start = own_nanoseconds();
 	for (int i = 0; i < calls; i++)
 		b->model->run(b->state, ROWS, samples, where ? next_far(numbers) : near);
-	double each = (now() - start) / calls / ROWS;
+	double each = (own_nanoseconds() - start) / calls / ROWS;
 	b->least[where] = fmin(b->least[where], each);
 }
 
 static double sample_memset(size_t bytes, int calls)
 {
-	double start = now();
+	double start = own_nanoseconds();
 	for (int i = 0; i < calls; i++)
 		memset(next_far(bytes / sizeof *far), i, bytes);
-	return (now() - start) / calls / ROWS;
+	return (own_nanoseconds() - start) / calls / ROWS;
 }
 
 int main(void)

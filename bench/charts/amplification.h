@@ -26,11 +26,12 @@ struct free_motion {
 };
 void free_motion_of(struct free_motion *m, const char *name, int n, const double *A);
 void free_oscillator(struct free_motion *m, double w, double zeta);     /* x'' + 2 zeta w x' + w^2 x = 0 */
-/* the same with w = 1, its operator all of it; it stays until the next call */
-const struct system *oscillator_by_hand(double zeta);
-/* x'' + x = 0 under an operator of another frequency: x'' + ratio^2 x is exact, (ratio^2 - 1) x left over; it stays
- * until the next call */
-const struct system *mismatched_by_hand(double ratio);
+/* the same with w = 1 under an operator of another frequency: x'' + 2 zeta x' + ratio^2 x is exact, (ratio^2 - 1) x the
+ * remainder; it stays until the next call */
+const struct system *oscillator_by_hand(double zeta, double ratio);
+/* The schemes that have one */
+enum { REMAINDER_SCHEMES = 7 };
+extern const char *const remainder_schemes[REMAINDER_SCHEMES];
 
 /* Both return how many eigenvalues there are, of falling modulus; 0: the method could not, or what it gave is not
  * finite. */
@@ -68,5 +69,11 @@ void map_row(const struct map *map, const char *name, growth_function *growth, c
 
 /* what is charted, from i = 0: fixed_methods, dormand_prince_fixed and rk8pd at a fixed step; NULL at the end */
 const struct method *charted_method(int i);
+
+/* The k-th of these; then exact; then scheme pl in the two modes of equal masses with k2/k1 = 0.1, where it is etd1
+ * with an operator of own frequency sqrt(k1 + k2) beside the true sqrt(k1) (in phase) and sqrt(k1 + 2 k2) (out of
+ * phase). false: none */
+bool subject_at(int k, struct subject *s);
+struct subject subject_named(const char *name, double zeta);
 
 #endif

@@ -48,7 +48,6 @@ struct problem {
 /* file: a shared object made by variant.sh, whose prefix is always `subject`; it keeps subject_model and subject_rhs.
  * frequency: of its load, 0 where it has none. Leaves the program with a message where it cannot. */
 struct problem *problem_load(const char *file, const char *name, double unit, int units, bool linear, double frequency);
-void problem_slope(const struct problem *p, double t, const double *y, double *dydt);
 /* Its right-hand side, as a run keeps it */
 struct asked {
 	void (*rhs)(double t, const double y[], double dydt[]);
@@ -65,6 +64,10 @@ INLINE void right_side(const struct asked *a, double t, const double *y, double 
 		a->rhs(t, y, dydt);
 	else
 		a->rhs_of(a->of, t, y, dydt);
+}
+static inline void problem_slope(const struct problem *p, double t, const double *y, double *dydt)
+{
+	right_side(&(struct asked){p->rhs_of ? NULL : p->rhs, p->rhs_of, p->of}, t, y, dydt);
 }
 /* Of that length in a unit; 0: it does not divide it */
 static inline int steps_of(const struct problem *p, double step)

@@ -17,30 +17,5 @@
 #else
 #define JOINED(model, part) model##_##part
 #define OF_MODEL(model, part) JOINED(model, part)
-#define MODEL pendulum
-#include "instances.h"
-#define MODEL vanderpol
-#include "instances.h"
-#define MODEL vanderpol_stiff
-#include "instances.h"
-#define MODEL vanderpol_stiffer
-#include "instances.h"
-#define MODEL quad2dof
-#include "instances.h"
-#define MODEL duffing
-#include "instances.h"
-#define MODEL mathieu
-#include "instances.h"
-#define MODEL henon_heiles
-#include "instances.h"
-#define MODEL coupled_vanderpol
-#include "instances.h"
-#define MODEL double_pendulum
-#include "instances.h"
-#define MODEL rayleigh
-#include "instances.h"
-#define MODEL duffing_pair
-#include "instances.h"
-#define MODEL spherical_pendulum
-#include "instances.h"
+#include "each_model.h"
 #endif

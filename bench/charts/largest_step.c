@@ -147,7 +147,6 @@ static void free_entry(FILE *csv, const struct free_subject *s, double fastest, 
 
 static void linear_model(FILE *csv, const struct problem *p)
 {
-	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
 	struct free_motion motion;
 	double complex eigenvalue[MOST_EIGENVALUES];
 	free_motion_of(&motion, p->name, p->n, p->A);
@@ -157,8 +156,8 @@ static void linear_model(FILE *csv, const struct problem *p)
 		           charted_method(k)->name);
 	free_entry(csv, &(struct free_subject){&motion, NULL, "flow"}, fastest, "exact");
 	free_entry(csv, &(struct free_subject){&motion, NULL, "pl"}, fastest, "pl");
-	for (int k = 0; k < 7; k++)
-		entry(csv, p->name, schemes[k], "any", "", "nothing is left over: as exact");
+	for (int k = 0; k < REMAINDER_SCHEMES; k++)
+		entry(csv, p->name, remainder_schemes[k], "any", "", "nothing is left over: as exact");
 }
 
 /* ---- histories ---- */
@@ -341,7 +340,6 @@ static void exact_entry(FILE *csv, const struct history *s, const char *variants
 
 static void other_model(FILE *csv, const struct model *m, struct problem *p, const char *variants)
 {
-	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
 	const bool gears = m->from_by_hand <= 0;
 	struct history s = {.model = m, .problem = p};
 	s.bounds = reference_bounds(&s);
@@ -354,14 +352,14 @@ static void other_model(FILE *csv, const struct model *m, struct problem *p, con
 	entry(csv, m->name, "pl", "-", "", "the paper's scheme is for linear models; for one coordinate it is etd1");
 	beam_speed = m->beam;
 	s.system = gears ? NULL : m->beam > 0 ? &beam_by_hand : system_of(m->name);
-	for (int k = 0; k < 7; k++) {
-		s.scheme = schemes[k];
+	for (int k = 0; k < REMAINDER_SCHEMES; k++) {
+		s.scheme = remainder_schemes[k];
 		if (gears)
-			entry(csv, m->name, schemes[k], "-", "", "exact is at hand");
+			entry(csv, m->name, remainder_schemes[k], "-", "", "exact is at hand");
 		else if (m->beam > 0 && effort.shorter < 1)
-			entry(csv, m->name, schemes[k], "-", "", "in the full run only");
+			entry(csv, m->name, remainder_schemes[k], "-", "", "in the full run only");
 		else    /* etd is stable far beyond the others on the beam, and grows slowly where it does */
-			history_entry(csv, &s, m->beam > 0 && k < 3 ? 0.01 : m->from_by_hand, schemes[k]);
+			history_entry(csv, &s, m->beam > 0 && k < 3 ? 0.01 : m->from_by_hand, remainder_schemes[k]);
 	}
 }
 

@@ -75,12 +75,11 @@ static void chart(const struct map *map, const char *scheme, int rows, double le
 
 static void charts(const char *folder, bool quick)
 {
-	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
 	struct map map = {.ends = table_open(folder, "operator_boundary.csv", "method,wh,across"),
 	                  .csv = table_open(folder, "operator_map_raw.csv", "method,wh,ratio,rho,growth"),
 	                  .steps = quick ? 22 : 71, .decades = 3.5, .periods = true};
-	for (int k = 0; k < 7; k++)
-		chart(&map, schemes[k], quick ? 13 : 41, -1, 1);
+	for (int k = 0; k < REMAINDER_SCHEMES; k++)
+		chart(&map, remainder_schemes[k], quick ? 13 : 41, -1, 1);
 	table_close(map.csv, "operator_map_raw.csv");
 	map.csv = table_open(folder, "pl_map_raw.csv", "method,wh,coupling,rho,growth");
 	map.steps = quick ? 29 : 71;

@@ -62,14 +62,6 @@ struct problem *problem_load(const char *file, const char *name, double unit, in
 	return p;
 }
 
-void problem_slope(const struct problem *p, double t, const double *y, double *dydt)
-{
-	if (p->rhs_of)
-		p->rhs_of(p->of, t, y, dydt);
-	else
-		p->rhs(t, y, dydt);
-}
-
 /* The loads: at rest the slope is b0 + b1 cos(w t) + b2 sin(w t). */
 static void ask_loads(struct problem *p, const double *y)
 {

@@ -18,22 +18,6 @@ struct quality {
 	double elongation, decay, damping;      /* relative, per period; xi */
 };
 
-/* What is charted: a method; or by hand: exact, or scheme pl in one of the modes of two equal masses with k2/k1 = 0.1,
- * where it is etd1 with an operator of own frequency sqrt(k1 + k2) beside the true sqrt(k1) (in phase) and sqrt(k1 + 2
- * k2) (out of phase) */
-static bool subject_at(int k, struct subject *s)
-{
-	const struct subject ours[] = {{"exact", NULL, "flow", 0, 0}, {"pl 0.1 in phase", NULL, "etd1", 0, sqrt(1.1)},
-	                               {"pl 0.1 out of phase", NULL, "etd1", 0, sqrt(1.1 / 1.2)}};
-	for (int i = 0; i <= k; i++)
-		if (!charted_method(i)) {
-			*s = ours[k - i < 3 ? k - i : 0];
-			return k - i < 3;
-		}
-	*s = (struct subject){charted_method(k)->name, charted_method(k), NULL, 0, 0};
-	return true;
-}
-
 static struct quality quality_of(const struct subject *s, double wh)
 {
 	double complex eigenvalue[MOST_EIGENVALUES];
@@ -70,20 +54,11 @@ static void chart(FILE *csv, int points)
 	}
 }
 
-static struct subject named(const char *name)
-{
-	struct subject s;
-	int k = 0;
-	while (subject_at(k, &s) && strcmp(s.name, name) != 0)
-		k++;
-	return s;
-}
-
 /* What the literature has for small steps: the first power of w h with its factor */
 static void check_small(struct checks *c, const char *name, double wh, double elongation, double damping,
                         double tolerance)
 {
-	const struct subject s = named(name);
+	const struct subject s = subject_named(name, 0);
 	const struct quality q = quality_of(&s, wh);
 	check(c, elongation, q.elongation, elongation == 0 ? 1e-13 : tolerance,
 	      "%s: period elongation at w h = %g, first term for small steps", name, wh);
@@ -93,7 +68,7 @@ static void check_small(struct checks *c, const char *name, double wh, double el
 
 static void check_damping(struct checks *c, const char *name, double wh, double damping)
 {
-	const struct subject s = named(name);
+	const struct subject s = subject_named(name, 0);
 	check(c, damping, quality_of(&s, wh).damping, 1e-2, "%s: algorithmic damping ratio at w h = %g, first term",
 	      name, wh);
 }
