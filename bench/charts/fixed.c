@@ -495,6 +495,7 @@ MARCH(explicit_step)
 	.linear = WAY(newmark_linear), .wants_linear = WANTED, .prepare = newmark_prepare, .unknowns = 1, \
 	.keeps_acceleration = true, .c = {__VA_ARGS__}
 #define COMPOSITE .linear = WAY(composite), .prepare = composite_prepare
+#define ALPHA .linear = WAY(newmark_linear), .prepare = newmark_prepare
 #define EXPLICIT .linear = WAY(explicit_step), .prepare = explicit_prepare
 /* Of the spectral radius for large steps */
 #define ALPHA_OF(M, F) {M, F, 0.25 * (1.0 - (M) + (F)) * (1.0 - (M) + (F)), 0.5 - (M) + (F)}
@@ -537,33 +538,29 @@ static const struct scheme dormand_prince_5 = {
 	.method = {.name = "Dormand-Prince 5 (fixed step)", .family = FIXED, .order = 5,
 	           .settings = "the formula of order 5 at a fixed step", .open = fixed_open},
 	.plain = WAY(dormand_prince), .keeps_acceleration = true};
-/* By its alpha, -1/3 to 0 */
-static const struct scheme hht = {
-	STRUCTURAL("HHT-alpha", ONE_SOLUTION "Hilber, Hughes and Taylor 1977, alpha = -0.1"),
-	.linear = WAY(newmark_linear),
-	.prepare = newmark_prepare, .c = ALPHA_OF(0.0, 0.1)};
-static const struct scheme alpha_5 = {
-	STRUCTURAL("generalized-alpha 0.5", ONE_SOLUTION CHUNG "0.5"), .linear = WAY(newmark_linear),
-	.prepare = newmark_prepare, .c = OF_RHO(0.5)};
-static const struct scheme bathe = {
-	STRUCTURAL("Bathe", TWO_SOLUTIONS "Bathe 2007, substeps h/2"), COMPOSITE, .substep = 0.5};
-static const struct scheme rho_bathe_0 = {STRUCTURAL("rho-Bathe 0", TWO_SOLUTIONS NOH "0"), COMPOSITE, .rho = 0.0};
-static const struct scheme rho_bathe_5 = {STRUCTURAL("rho-Bathe 0.5", TWO_SOLUTIONS NOH "0.5"), COMPOSITE, .rho = 0.5};
-static const struct scheme rho_bathe_1 = {STRUCTURAL("rho-Bathe 1", TWO_SOLUTIONS NOH "1"), COMPOSITE, .rho = 1.0};
-static const struct scheme cr = {
-	STRUCTURAL("CR", NO_SOLUTION "Chen and Ricles 2008"), EXPLICIT, .c = ALPHA_OF(0.0, 0.0)};
-static const struct scheme kr_0 = {STRUCTURAL("KR-alpha 0", NO_SOLUTION KOLAY "0"), EXPLICIT, .c = OF_RHO(0.0)};
-static const struct scheme kr_5 = {STRUCTURAL("KR-alpha 0.5", NO_SOLUTION KOLAY "0.5"), EXPLICIT, .c = OF_RHO(0.5)};
-static const struct scheme kr_1 = {STRUCTURAL("KR-alpha 1", NO_SOLUTION KOLAY "1"), EXPLICIT, .c = OF_RHO(1.0)};
+/* Of structural dynamics; HHT-alpha by its alpha, -1/3 to 0 */
+enum { HHT, BATHE, RHO_BATHE_5, CR, KR_5, ALPHA_5, RHO_BATHE_0, RHO_BATHE_1, KR_0, KR_1 };
+static const struct scheme structural[] = {
+	[HHT] = {STRUCTURAL("HHT-alpha", ONE_SOLUTION "Hilber, Hughes and Taylor 1977, alpha = -0.1"), ALPHA,
+	         .c = ALPHA_OF(0.0, 0.1)},
+	[ALPHA_5] = {STRUCTURAL("generalized-alpha 0.5", ONE_SOLUTION CHUNG "0.5"), ALPHA, .c = OF_RHO(0.5)},
+	[BATHE] = {STRUCTURAL("Bathe", TWO_SOLUTIONS "Bathe 2007, substeps h/2"), COMPOSITE, .substep = 0.5},
+	[RHO_BATHE_0] = {STRUCTURAL("rho-Bathe 0", TWO_SOLUTIONS NOH "0"), COMPOSITE, .rho = 0.0},
+	[RHO_BATHE_5] = {STRUCTURAL("rho-Bathe 0.5", TWO_SOLUTIONS NOH "0.5"), COMPOSITE, .rho = 0.5},
+	[RHO_BATHE_1] = {STRUCTURAL("rho-Bathe 1", TWO_SOLUTIONS NOH "1"), COMPOSITE, .rho = 1.0},
+	[CR] = {STRUCTURAL("CR", NO_SOLUTION "Chen and Ricles 2008"), EXPLICIT, .c = ALPHA_OF(0.0, 0.0)},
+	[KR_0] = {STRUCTURAL("KR-alpha 0", NO_SOLUTION KOLAY "0"), EXPLICIT, .c = OF_RHO(0.0)},
+	[KR_5] = {STRUCTURAL("KR-alpha 0.5", NO_SOLUTION KOLAY "0.5"), EXPLICIT, .c = OF_RHO(0.5)},
+	[KR_1] = {STRUCTURAL("KR-alpha 1", NO_SOLUTION KOLAY "1"), EXPLICIT, .c = OF_RHO(1.0)},
+};
 
 const struct method *const fixed_methods[] = {
 	&schemes[0].method, &schemes[1].method, &schemes[2].method, &schemes[3].method, &schemes[4].method,
 	&schemes[5].method, &schemes[6].method, NULL,
 };
 const struct method *const dormand_prince_fixed = &dormand_prince_5.method;
-const struct method *const structural_methods[] = {
-	&hht.method, &bathe.method, &rho_bathe_5.method, &cr.method, &kr_5.method, NULL,
-};
-const struct method *const structural_others[] = {
-	&alpha_5.method, &rho_bathe_0.method, &rho_bathe_1.method, &kr_0.method, &kr_1.method, NULL,
-};
+#define EACH_OF_FIVE(FIRST) \
+	&structural[FIRST].method, &structural[FIRST + 1].method, &structural[FIRST + 2].method, \
+	&structural[FIRST + 3].method, &structural[FIRST + 4].method
+const struct method *const structural_methods[] = {EACH_OF_FIVE(HHT), NULL};
+const struct method *const structural_others[] = {EACH_OF_FIVE(ALPHA_5), NULL};

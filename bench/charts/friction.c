@@ -118,9 +118,7 @@ struct way {
 	double setting;                 /* step [s], relative tolerance, or eps [m/s] */
 	double eps, sign;               /* eps 0: from phase to phase; sign 0: it sticks */
 	struct problem problem;
-	struct run *run, steps;         /* steps: of RK4 */
-	int units;                      /* gone since its start */
-	double y[2];
+	struct run *run;
 };
 
 static void slope_of(const void *of, double t, const double *y, double *f)
@@ -193,53 +191,6 @@ static const struct kind bdf = {.method = BY_TOLERANCE("CVODE BDF, roots", 0, ""
                                 .formula = CV_BDF};
 static const struct method exact = {.name = "exact", .family = OURS};
 
-/* RK4 with what is smoothed compiled into it */
-static void smooth(const struct way *way, double t, const double *y, double *f)
-{
-	f[0] = y[1];
-	f[1] = (push(t, y[0]) - hold * tanh(y[1] / way->eps)) / mass;
-}
-
-static void rk4_restart(struct run *run)
-{
-	struct way *way = (struct way *)run->problem->of;
-	way->units = 0;
-	run->asked = 0;
-	way->y[0] = way->y[1] = 0;
-}
-
-static bool rk4_advance(struct run *run, int units, double *rows)
-{
-	struct way *way = (struct way *)run->problem->of;
-	const int steps = (int)lround(unit / run->setting);
-	const double h = unit / steps;
-	double *y = way->y;
-	for (int k = 0; k < units; k++, way->units++) {
-		for (int i = 0; i < steps; i++) {
-			const double t = way->units * unit + i * h;
-			double f[4][2], z[2];
-			smooth(way, t, y, f[0]);
-			for (int stage = 1; stage < 4; stage++) {
-				const double part = stage == 3 ? h : h / 2;
-				for (int j = 0; j < 2; j++)
-					z[j] = y[j] + part * f[stage - 1][j];
-				smooth(way, t + part, z, f[stage]);
-			}
-			for (int j = 0; j < 2; j++)
-				y[j] += h / 6 * (f[0][j] + 2 * f[1][j] + 2 * f[2][j] + f[3][j]);
-		}
-		if (rows)
-			memcpy(rows + 2 * k, y, sizeof way->y);
-	}
-	run->asked += 4L * units * steps;
-	return true;
-}
-
-static void rk4_close(struct run *run)
-{
-	(void)run;
-}
-
 /* Smoothing's step: m eps/F, the time of what is smoothed, or an output's; its tolerance: a hundredth of eps */
 static void way_open(struct way *way, const char *variants, const struct truth_of_friction *truth)
 {
@@ -251,10 +202,7 @@ static void way_open(struct way *way, const char *variants, const struct truth_o
 	const double setting = way->how == ROOTS ? way->setting : way->how == SMOOTH ? fmax(1e-10, way->eps / 100)
 	                       : unit / ceil(unit * hold / (mass * way->eps));
 	const char *file = text("%s/friction-%ld.so", variants, lround(unit / way->setting));
-	way->steps = (struct run){.problem = &way->problem, .setting = setting, .restart = rk4_restart,
-	                          .advance = rk4_advance, .evaluations = run_evaluations, .close = rk4_close};
-	way->run = way->how == STEPS ? &way->steps
-		: way->how == EXACT ? generated_open(way->method, &way->problem, file)
+	way->run = way->how == EXACT ? generated_open(way->method, &way->problem, file)
 		: way->method->open(way->method, &way->problem, setting);
 	if (!way->run)
 		leave(way->name, "cannot be opened");
@@ -313,7 +261,7 @@ static void list(struct ways *ways)
 	static const struct { const char *name, *method; enum how how; int first, last; } ladder[] = {
 		{ "CVODE Adams, roots", NULL, ROOTS, 3, 11 }, { "CVODE BDF, roots", NULL, ROOTS, 3, 9 },
 		{ "tanh, CVODE BDF", "CVODE BDF", SMOOTH, 1, 6 }, { "tanh, CVODE Adams", "CVODE Adams", SMOOTH, 1, 4 },
-		{ "tanh, RK4", NULL, STEPS, 1, 4 },
+		{ "tanh, RK4", "RK4", STEPS, 1, 4 },
 	};
 	for (int parts = 1; parts <= 5; parts += 4)
 		ways->way[ways->count++] = (struct way){ .name = "exact", .method = &exact, .setting = unit / parts };

@@ -39,6 +39,9 @@ int remainder_evaluations(const char *scheme)
 	return -1;
 }
 
+/* What both kinds of descriptor have under one name */
+#define OF(g, member) ((g)->single ? (g)->single->member : (g)->model->member)
+
 static struct generated *of(struct run *run)
 {
 	return (struct generated *)run;
@@ -52,10 +55,7 @@ static const struct generated *of_const(const struct run *run)
 static void restart(struct run *run)
 {
 	struct generated *g = of(run);
-	if (g->single)
-		g->single->init(g->state);
-	else
-		g->model->init(g->state);
+	OF(g, init)(g->state);
 	g->taken = 0;
 }
 
@@ -83,7 +83,7 @@ static void get(const struct run *run, double *y)
 
 static bool good(const struct generated *g)
 {
-	int (*status)(const void *s) = g->single ? g->single->status : g->model->status;
+	int (*status)(const void *s) = OF(g, status);
 	return !status || status(g->state) == 0;
 }
 
@@ -178,7 +178,7 @@ static void hermite(const struct generated *g, void *state, double t, double tau
 const char *generated_between(const struct run *run)
 {
 	const struct generated *g = of_const(run);
-	return (g->single ? g->single->at != NULL : g->model->at != NULL) ? "inside a step NAME_at"
+	return OF(g, at != NULL) ? "inside a step NAME_at"
 	       : "inside a step Hermite's polynomial of degree 5 with NAME_rhs";
 }
 
@@ -244,19 +244,14 @@ static bool load(struct generated *g, const char *file)
 	g->evaluations = evaluations_of(options);
 	if (options && strstr(options, "--real float")) {
 		g->single = model;
-		g->h = g->single->h;
-		g->size = g->single->size;
-		g->rows_are_states = same_names(g->single->states, g->single->outputs, g->single->state_names,
-		                                g->single->output_names);
 		g->run.timed = advance_single;
 	} else {
 		g->model = model;
-		g->h = g->model->h;
-		g->size = g->model->size;
-		g->rows_are_states = same_names(g->model->states, g->model->outputs, g->model->state_names,
-		                                g->model->output_names);
 	}
-	return (g->single ? g->single->states : g->model->states) == 2 * g->run.problem->n;
+	g->h = OF(g, h);
+	g->size = OF(g, size);
+	g->rows_are_states = same_names(OF(g, states), OF(g, outputs), OF(g, state_names), OF(g, output_names));
+	return OF(g, states) == 2 * g->run.problem->n;
 }
 
 static bool divides(struct generated *g)

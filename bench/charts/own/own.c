@@ -60,6 +60,9 @@ struct line {
 
 /* ---- ours ---- */
 
+/* What both kinds of descriptor have under one name */
+#define OF(line, member) ((line)->single ? (line)->single->member : (line)->model->member)
+
 static void open_ours(struct line *line, const char *folder)
 {
 	char path[4096];
@@ -78,10 +81,9 @@ static void open_ours(struct line *line, const char *folder)
 	else
 		line->model = model;
 	line->steps = line->tolerance ? 1 : (int)line->setting;
-	line->state = room_for(1, line->single ? line->single->size : line->model->size);
-	line->rows = line->steps == 1 && (line->single ?
-		same_names(N, line->single->outputs, line->single->state_names, line->single->output_names) :
-		same_names(N, line->model->outputs, line->model->state_names, line->model->output_names));
+	line->state = room_for(1, OF(line, size));
+	line->rows = line->steps == 1 &&
+		same_names(N, OF(line, outputs), OF(line, state_names), OF(line, output_names));
 }
 
 /* Rows of inputs for the steps of output k: as plrt.h has it, row j + 1 where an input is a ramp */
