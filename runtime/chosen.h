@@ -34,7 +34,7 @@ static inline int PL(segment_of)(const PL_TYPE *s)
 }
 #endif
 
-#if PL_SEGMENTS > 1 && (PL_ADAPTIVE || (PL_CHOICES && (PL_LOCATES || (PL_CONTACTS && PL_IN_PARTS))))
+#if PL_SEGMENTS > 1 && (PL_ADAPTIVE || (PL_CHOICES && (PL_LOCATES || (PL_CONTACTS && PL_IN_PARTS && !defined(PL_WAY)))))
 /* How long the loads have the formulas that they have now [s]; `most`, where that does not end */
 static inline real PL(change_after)(const PL_TYPE *s, real most)
 {
@@ -91,7 +91,7 @@ static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
 }
 #endif
 
-#if PL_ADAPTIVE || PL_LOCATES || (PL_CONTACTS && PL_IN_PARTS)
+#if PL_ADAPTIVE || PL_LOCATES || (PL_CONTACTS && PL_IN_PARTS && !defined(PL_WAY))
 /* A time in the middle of the step, before the loads change: there it is on one side of conditions on t, also when it
  * is late, or float. */
 static inline real PL(middle)(const PL_TYPE *s)

@@ -9,6 +9,7 @@
  *     PL_PARTS                   steps of the core in one of the model
  *     PL_RING                    samples of each input, the newest among them
  *     PL_RAMPS                   whether some input goes straight from sample to sample
+ *     PL_PARAMS                  tunable ones; PL_SPEC_H then: step of the model [s]
  *     PL_AT                      whether there are values between steps; PL_CORE_H then: step of the core [s]
  *
  *     PL(input_of)[PL_ALL]       of each input of the core: of which sample it is,
@@ -165,6 +166,19 @@ void PL(run)(PL_TYPE *s, size_t n, const real *u, real *out)
         }
     }
 }
+
+#if PL_PARAMS > 0
+/* Delays are so many steps of the core, of which none is another. */
+int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
+{
+    return h == PL_SPEC_H ? PL_CORE(retune)(c, params, PL_CORE_H) : PL_NO_STEP;
+}
+
+void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
+{
+    PL_CORE(use)(&s->core, c);
+}
+#endif
 
 #if PL_AT
 void PL(at)(const PL_TYPE *s, const real u[PL_INPUTS], real tau, real y[PL_STATES])

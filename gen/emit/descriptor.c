@@ -118,7 +118,7 @@ static void emit_allowed(const struct emitter *e)
 
 void emit_model(const struct emitter *e, int inputs, bool core)
 {
-	const struct tuning *tunable = core ? tunables_of(e->model) : NULL;
+	const struct tuning *tunable = tunables_of(e->model);
 	emit_names(e, inputs, tunable);
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
 		   { "PARAMS", tunable ? tunable->given : 0 }, { "AT", e->step->series.emitted },

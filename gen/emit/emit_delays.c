@@ -2,6 +2,7 @@
 /* Delayed inputs: the model is NAME_core, which has them as inputs; around it NAME, which keeps the samples. */
 #include "declarations.h"
 #include "steps.h"
+#include "model/tunable/tuning.h"
 
 #include <string.h>
 
@@ -50,6 +51,17 @@ static void emit_delay_struct(const struct emitter *e, int samples, bool ramps)
 	       "};\n\n");
 }
 
+/* Coefficients are those of the core, and NAME_nominal is its name */
+static void declare_params(const struct emitter *e)
+{
+	say(e, "\n/* As $n_core_retune and $n_core_use; of h, the spec's alone: a delay is so many steps */\n"
+	       "enum { $N_PARAMS = $N_CORE_PARAMS };\n"
+	       "typedef $n_core_coeffs $n_coeffs;\n"
+	       "#define $n_nominal $n_core_nominal\n"
+	       "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
+	       "void   $n_use($n *s, const $n_coeffs *c);\n\n");
+}
+
 void emit_delay_declarations(const struct emitter *core)
 {
 	const struct delays *d = delays_of(core);
@@ -65,6 +77,8 @@ void emit_delay_declarations(const struct emitter *core)
 	if (core->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"), "the sample now");
 	declare_driven_step(e, "one step of h");
+	if (tunables_of(e->model))
+		declare_params(e);
 	if (e->model->asked.batch)
 		emit_batch_declarations(e);
 	announce(e, spell(e, "extern const pl_model $n_model;"), "");
@@ -109,9 +123,11 @@ static void emit_samples_of_core(const struct emitter *e)
 		emit_int_list(e, "is_ramp", d->inputs + d->count, list_of(e, is_ramp));
 	emit_sizes(e, { "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
 		   { "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
-		   { "RAMPS", e->ramps }, { "AT", e->step->series.emitted });
+		   { "RAMPS", e->ramps }, { "AT", e->step->series.emitted },
+		   { "PARAMS", tunables_of(e->model) ? tunables_of(e->model)->given : 0 });
 	say(e, "#define PL_CORE(name) $n_core_##name\n"
 	       "#define PL_CORE_H $N_CORE_H\n"
+	       "#define PL_SPEC_H $N_H\n"
 	       "#include \"delays.h\"\n");
 }
 

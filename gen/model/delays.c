@@ -22,10 +22,12 @@ static void number_inputs(struct spec *spec)
 				s->index = index++;
 }
 
-/* d of t - d */
+/* d of t - d, by the spec's values of params */
 static void evaluate_delay(struct building *b, const struct symbol *s, mpq_ptr d)
 {
-	struct value *value = collect(&b->collector, s->when);
+	struct collector own = b->collector;
+	own.params = PARAMS_VALUES;
+	struct value *value = collect(&own, s->when);
 	mpq_srcptr zero = rationals(1)[0];
 	const struct basis time = { .kind = BASIS_WAVE, .wave = wave_of(&b->collector, zero, zero, zero), .power = 1 };
 	const struct form *rest = NULL;
@@ -87,7 +89,6 @@ static void check_request(const struct building *b, const struct symbol *s)
 	const struct facts facts = { .delays = true };
 	const bool asked[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution,
 					   [CAN_SELFTEST] = b->request->selftest,
-					   [CAN_TUNABLE] = b->spec->tunables > 0,
 					   [CAN_NEED] = b->spec->required.needs > 0 };
 	for (int k = 0; k < CAPABILITIES; k++)
 		if (asked[k])
@@ -126,8 +127,17 @@ static void build_delays(void *context)
 	mpq_div(b->model->h, b->model->h, parts);
 }
 
+/* With other values of params, which move no delay */
+static void keep_delays(struct building *b)
+{
+	number_inputs(b->spec);
+	b->model->delays = NEW(struct delays);
+}
+
 void find_delays(struct building *b)
 {
-	if (next_delayed(b->spec->first) && !diagnostics_errors())
+	if (next_delayed(b->spec->first) && b->request->again.tunable)
+		keep_delays(b);
+	else if (next_delayed(b->spec->first) && !diagnostics_errors())
 		statement_guard(build_delays, b);
 }

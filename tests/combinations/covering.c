@@ -533,7 +533,7 @@ static void print_options(FILE *to)
 	if (has("tunable"))
 		fputs(has("smooth") || has("kinked") || has("loads") || has("piecewise") || has("friction") ||
 				has("impact") ||
-		      expands() || moves()
+		      expands() || moves() || has("delayed")
 			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
 }
 

@@ -38,6 +38,14 @@ static long double ramped(long double t, long double w, double h)
 	return x;
 }
 
+/* Another frequency at the spec's step, and at no other */
+static void retune(const pl_model *m, void *s, double h)
+{
+	const double w = 3;
+	ok(m->retune(s, &w, h / 2) == PL_NO_STEP, "%s: another step is refused", m->name);
+	ok(m->retune(s, &w, h) == 0, "%s: retuned", m->name);
+}
+
 /* h and d as decimals */
 static void oscillator(const pl_model *m, bool ramp, long double h, long double d)
 {
@@ -45,6 +53,8 @@ static void oscillator(const pl_model *m, bool ramp, long double h, long double 
 	double worst = 0, y[2];
 	bool good = true;
 	m->init(s);
+	if (m->retune)
+		retune(m, s, (double)h);
 	for (int k = 0; k < SAMPLES; k++) {
 		const double u = sample(k);
 		for (int part = 1; part <= 4; part++) {
@@ -142,6 +152,9 @@ int main(void)
 	oscillator(&held0_1_model, false, 0.1L, 0.1L);
 	oscillator(&held1_7_model, false, 0.1L, 1.7L);
 	oscillator(&held0_model, false, 0.1L, 0);
+	oscillator(&tuned_model, false, 0.1L, 0.25L);
+	oscillator(&tuned_ramp_model, true, 0.1L, 0.04L);
+	oscillator(&tuned_delay_model, false, 0.1L, 0.3L);      /* by the spec's value of w */
 	oscillator(&other_step_model, false, 0.04L, 0.25L);
 	oscillator(&ramp0_25_model, true, 0.1L, 0.25L);
 	oscillator(&ramp0_3_model, true, 0.1L, 0.3L);

@@ -27,6 +27,11 @@ done
 for d in 0.03 0.1 0.25 0; do
 	add "jumps$(echo "$d" | tr . _)" jumps '' -D "d=$d"
 done
+tunable='s/^param.*/&\
+tunable w/'
+add tuned echo "$tunable" -D w=2 -D d=0.25
+add tuned_ramp echo "$tunable;$ramp" -D w=2 -D d=0.04
+add tuned_delay echo "$tunable;s/u(t - d)/u(t - 0.6\/w)/" -D w=2
 add other_step echo '' -D d=0.25 --step 0.04
 for model in stopped bent; do
 	add "$model" "$model" ''

@@ -261,7 +261,10 @@ batch_add() {
 	fi
 	facts_of "$id"
 	fine=
-	[ "$eighths" ] || order=0
+	case $eighths:$scheme:$class in
+		yes:* | *:pl:*sticking | *:etd1:*sticking) ;;  # of first order the bound of what sticks is narrow
+		*) order=0 ;;
+	esac
 	if [ "$few" ] || [ "$order" -gt 0 ] ||
 	    { [ -n "$beside" ] && [ "$tolerance" = 0 ] && [ "$scheme" != exact ]; }; then
 		fine=f$id
