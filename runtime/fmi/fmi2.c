@@ -237,154 +237,39 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
 
 /* ---- what this FMU does not offer: no variables of other types, no derivatives, no model exchange ---- */
 
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2GetInteger");
-}
+/* Such a function reads its instance alone. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
 
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2GetBoolean");
-}
+#define ABSENT(function, parameters) \
+    fmi2Status fmi2##function parameters \
+    { \
+        return absent(c, "fmi2" #function); \
+    }
+#define ABSENT_TYPE(type) \
+    ABSENT(Get##type, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##type value[])) \
+    ABSENT(Set##type, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##type value[]))
 
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2GetString");
-}
-
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2SetInteger");
-}
-
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2SetBoolean");
-}
-
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)value;
-    return absent(c, "fmi2SetString");
-}
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
-                                        const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
-                                        fmi2Real dvUnknown[])
-{
-    (void)vUnknown_ref;
-    (void)nUnknown;
-    (void)vKnown_ref;
-    (void)nKnown;
-    (void)dvKnown;
-    (void)dvUnknown;
-    return absent(c, "fmi2GetDirectionalDerivative");
-}
-
-fmi2Status fmi2EnterEventMode(fmi2Component c)
-{
-    return absent(c, "fmi2EnterEventMode");
-}
-
-fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *fmi2eventInfo)
-{
-    (void)fmi2eventInfo;
-    return absent(c, "fmi2NewDiscreteStates");
-}
-
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
-{
-    return absent(c, "fmi2EnterContinuousTimeMode");
-}
-
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
-                                       fmi2Boolean *enterEventMode, fmi2Boolean *terminateSimulation)
-{
-    (void)noSetFMUStatePriorToCurrentPoint;
-    (void)enterEventMode;
-    (void)terminateSimulation;
-    return absent(c, "fmi2CompletedIntegratorStep");
-}
-
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
-{
-    (void)time;
-    return absent(c, "fmi2SetTime");
-}
-
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx)
-{
-    (void)x;
-    (void)nx;
-    return absent(c, "fmi2SetContinuousStates");
-}
-
-fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx)
-{
-    (void)derivatives;
-    (void)nx;
-    return absent(c, "fmi2GetDerivatives");
-}
-
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni)
-{
-    (void)eventIndicators;
-    (void)ni;
-    return absent(c, "fmi2GetEventIndicators");
-}
-
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx)
-{
-    (void)x;
-    (void)nx;
-    return absent(c, "fmi2GetContinuousStates");
-}
-
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal[], size_t nx)
-{
-    (void)x_nominal;
-    (void)nx;
-    return absent(c, "fmi2GetNominalsOfContinuousStates");
-}
-
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                                       const fmi2Integer order[], const fmi2Real value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)order;
-    (void)value;
-    return absent(c, "fmi2SetRealInputDerivatives");
-}
-
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
-                                        const fmi2Integer order[], fmi2Real value[])
-{
-    (void)vr;
-    (void)nvr;
-    (void)order;
-    (void)value;
-    return absent(c, "fmi2GetRealOutputDerivatives");
-}
-
-fmi2Status fmi2CancelStep(fmi2Component c)
-{
-    return absent(c, "fmi2CancelStep");
-}
+ABSENT_TYPE(Integer)
+ABSENT_TYPE(Boolean)
+ABSENT_TYPE(String)
+ABSENT(GetDirectionalDerivative, (fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
+                                  const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+                                  fmi2Real dvUnknown[]))
+ABSENT(EnterEventMode, (fmi2Component c))
+ABSENT(NewDiscreteStates, (fmi2Component c, fmi2EventInfo *fmi2eventInfo))
+ABSENT(EnterContinuousTimeMode, (fmi2Component c))
+ABSENT(CompletedIntegratorStep, (fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
+                                 fmi2Boolean *enterEventMode, fmi2Boolean *terminateSimulation))
+ABSENT(SetTime, (fmi2Component c, fmi2Real time))
+ABSENT(SetContinuousStates, (fmi2Component c, const fmi2Real x[], size_t nx))
+ABSENT(GetDerivatives, (fmi2Component c, fmi2Real derivatives[], size_t nx))
+ABSENT(GetEventIndicators, (fmi2Component c, fmi2Real eventIndicators[], size_t ni))
+ABSENT(GetContinuousStates, (fmi2Component c, fmi2Real x[], size_t nx))
+ABSENT(GetNominalsOfContinuousStates, (fmi2Component c, fmi2Real x_nominal[], size_t nx))
+ABSENT(SetRealInputDerivatives, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                 const fmi2Real value[]))
+ABSENT(GetRealOutputDerivatives, (fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                  fmi2Real value[]))
+ABSENT(CancelStep, (fmi2Component c))

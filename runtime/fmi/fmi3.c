@@ -247,520 +247,89 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte seriali
 
 /* ---- what this FMU does not offer: no variables of other types, no derivatives, events, clocks, configuration ---- */
 
-fmi3Status fmi3EnterEventMode(fmi3Instance instance)
-{
-    return absent(instance, "fmi3EnterEventMode");
-}
+/* Such a function reads its instance alone. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
 
-fmi3Status fmi3GetFloat32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          fmi3Float32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetFloat32");
-}
+#define ABSENT(function, parameters) \
+    fmi3Status fmi3##function parameters \
+    { \
+        return absent(instance, "fmi3" #function); \
+    }
+#define ABSENT_TYPE(type) \
+    ABSENT(Get##type, (fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                       size_t nValueReferences, fmi3##type values[], size_t nValues)) \
+    ABSENT(Set##type, (fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                       size_t nValueReferences, const fmi3##type values[], size_t nValues))
 
-fmi3Status fmi3GetInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                       fmi3Int8 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetInt8");
-}
-
-fmi3Status fmi3GetUInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        fmi3UInt8 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetUInt8");
-}
-
-fmi3Status fmi3GetInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        fmi3Int16 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetInt16");
-}
-
-fmi3Status fmi3GetUInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         fmi3UInt16 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetUInt16");
-}
-
-fmi3Status fmi3GetInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        fmi3Int32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetInt32");
-}
-
-fmi3Status fmi3GetUInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         fmi3UInt32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetUInt32");
-}
-
-fmi3Status fmi3GetInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        fmi3Int64 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetInt64");
-}
-
-fmi3Status fmi3GetUInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         fmi3UInt64 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetUInt64");
-}
-
-fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          fmi3Boolean values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetBoolean");
-}
-
-fmi3Status fmi3GetString(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         fmi3String values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetString");
-}
-
-fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         size_t valueSizes[], fmi3Binary values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)valueSizes;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetBinary");
-}
-
-fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        fmi3Clock values[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    return absent(instance, "fmi3GetClock");
-}
-
-fmi3Status fmi3SetFloat32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          const fmi3Float32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetFloat32");
-}
-
-fmi3Status fmi3SetInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                       const fmi3Int8 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetInt8");
-}
-
-fmi3Status fmi3SetUInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        const fmi3UInt8 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetUInt8");
-}
-
-fmi3Status fmi3SetInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        const fmi3Int16 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetInt16");
-}
-
-fmi3Status fmi3SetUInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const fmi3UInt16 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetUInt16");
-}
-
-fmi3Status fmi3SetInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        const fmi3Int32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetInt32");
-}
-
-fmi3Status fmi3SetUInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const fmi3UInt32 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetUInt32");
-}
-
-fmi3Status fmi3SetInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        const fmi3Int64 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetInt64");
-}
-
-fmi3Status fmi3SetUInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const fmi3UInt64 values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetUInt64");
-}
-
-fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          const fmi3Boolean values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetBoolean");
-}
-
-fmi3Status fmi3SetString(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const fmi3String values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetString");
-}
-
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const size_t valueSizes[], const fmi3Binary values[], size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)valueSizes;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3SetBinary");
-}
-
-fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                        const fmi3Clock values[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)values;
-    return absent(instance, "fmi3SetClock");
-}
-
-fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference valueReference,
-                                               size_t *nDependencies)
-{
-    (void)valueReference;
-    (void)nDependencies;
-    return absent(instance, "fmi3GetNumberOfVariableDependencies");
-}
-
-fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
-                                       size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
-                                       size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
-                                       size_t nDependencies)
-{
-    (void)dependent;
-    (void)elementIndicesOfDependent;
-    (void)independents;
-    (void)elementIndicesOfIndependents;
-    (void)dependencyKinds;
-    (void)nDependencies;
-    return absent(instance, "fmi3GetVariableDependencies");
-}
-
-fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
-                                        const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
-                                        size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
-{
-    (void)unknowns;
-    (void)nUnknowns;
-    (void)knowns;
-    (void)nKnowns;
-    (void)seed;
-    (void)nSeed;
-    (void)sensitivity;
-    (void)nSensitivity;
-    return absent(instance, "fmi3GetDirectionalDerivative");
-}
-
-fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
-                                    const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
-                                    size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
-{
-    (void)unknowns;
-    (void)nUnknowns;
-    (void)knowns;
-    (void)nKnowns;
-    (void)seed;
-    (void)nSeed;
-    (void)sensitivity;
-    (void)nSensitivity;
-    return absent(instance, "fmi3GetAdjointDerivative");
-}
-
-fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
-{
-    return absent(instance, "fmi3EnterConfigurationMode");
-}
-
-fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance)
-{
-    return absent(instance, "fmi3ExitConfigurationMode");
-}
-
-fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                  size_t nValueReferences, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)intervals;
-    (void)qualifiers;
-    return absent(instance, "fmi3GetIntervalDecimal");
-}
-
-fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
-                                   fmi3IntervalQualifier qualifiers[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    (void)qualifiers;
-    return absent(instance, "fmi3GetIntervalFraction");
-}
-
-fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                               size_t nValueReferences, fmi3Float64 shifts[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)shifts;
-    return absent(instance, "fmi3GetShiftDecimal");
-}
-
-fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return absent(instance, "fmi3GetShiftFraction");
-}
-
-fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                  size_t nValueReferences, const fmi3Float64 intervals[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)intervals;
-    return absent(instance, "fmi3SetIntervalDecimal");
-}
-
-fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return absent(instance, "fmi3SetIntervalFraction");
-}
-
-fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                               size_t nValueReferences, const fmi3Float64 shifts[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)shifts;
-    return absent(instance, "fmi3SetShiftDecimal");
-}
-
-fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                size_t nValueReferences, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)counters;
-    (void)resolutions;
-    return absent(instance, "fmi3SetShiftFraction");
-}
-
-fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance)
-{
-    return absent(instance, "fmi3EvaluateDiscreteStates");
-}
-
-fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
-                                    fmi3Boolean *terminateSimulation, fmi3Boolean *nominalsOfContinuousStatesChanged,
-                                    fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
-                                    fmi3Float64 *nextEventTime)
-{
-    (void)discreteStatesNeedUpdate;
-    (void)terminateSimulation;
-    (void)nominalsOfContinuousStatesChanged;
-    (void)valuesOfContinuousStatesChanged;
-    (void)nextEventTimeDefined;
-    (void)nextEventTime;
-    return absent(instance, "fmi3UpdateDiscreteStates");
-}
-
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance)
-{
-    return absent(instance, "fmi3EnterContinuousTimeMode");
-}
-
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                                       fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation)
-{
-    (void)noSetFMUStatePriorToCurrentPoint;
-    (void)enterEventMode;
-    (void)terminateSimulation;
-    return absent(instance, "fmi3CompletedIntegratorStep");
-}
-
-fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)
-{
-    (void)time;
-    return absent(instance, "fmi3SetTime");
-}
-
-fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 continuousStates[],
-                                   size_t nContinuousStates)
-{
-    (void)continuousStates;
-    (void)nContinuousStates;
-    return absent(instance, "fmi3SetContinuousStates");
-}
-
-fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[], size_t nContinuousStates)
-{
-    (void)derivatives;
-    (void)nContinuousStates;
-    return absent(instance, "fmi3GetContinuousStateDerivatives");
-}
-
-fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators)
-{
-    (void)eventIndicators;
-    (void)nEventIndicators;
-    return absent(instance, "fmi3GetEventIndicators");
-}
-
-fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates)
-{
-    (void)continuousStates;
-    (void)nContinuousStates;
-    return absent(instance, "fmi3GetContinuousStates");
-}
-
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates)
-{
-    (void)nominals;
-    (void)nContinuousStates;
-    return absent(instance, "fmi3GetNominalsOfContinuousStates");
-}
-
-fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators)
-{
-    (void)nEventIndicators;
-    return absent(instance, "fmi3GetNumberOfEventIndicators");
-}
-
-fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates)
-{
-    (void)nContinuousStates;
-    return absent(instance, "fmi3GetNumberOfContinuousStates");
-}
-
-fmi3Status fmi3EnterStepMode(fmi3Instance instance)
-{
-    return absent(instance, "fmi3EnterStepMode");
-}
-
-fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                    size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
-                                    size_t nValues)
-{
-    (void)valueReferences;
-    (void)nValueReferences;
-    (void)orders;
-    (void)values;
-    (void)nValues;
-    return absent(instance, "fmi3GetOutputDerivatives");
-}
-
-fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clockReference,
-                                      fmi3Float64 activationTime)
-{
-    (void)clockReference;
-    (void)activationTime;
-    return absent(instance, "fmi3ActivateModelPartition");
-}
+ABSENT_TYPE(Float32)
+ABSENT_TYPE(Int8)
+ABSENT_TYPE(UInt8)
+ABSENT_TYPE(Int16)
+ABSENT_TYPE(UInt16)
+ABSENT_TYPE(Int32)
+ABSENT_TYPE(UInt32)
+ABSENT_TYPE(Int64)
+ABSENT_TYPE(UInt64)
+ABSENT_TYPE(Boolean)
+ABSENT_TYPE(String)
+ABSENT(EnterEventMode, (fmi3Instance instance))
+ABSENT(GetBinary, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                   size_t valueSizes[], fmi3Binary values[], size_t nValues))
+ABSENT(GetClock, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                  fmi3Clock values[]))
+ABSENT(SetBinary, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                   const size_t valueSizes[], const fmi3Binary values[], size_t nValues))
+ABSENT(SetClock, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                  const fmi3Clock values[]))
+ABSENT(GetNumberOfVariableDependencies, (fmi3Instance instance, fmi3ValueReference valueReference,
+                                         size_t *nDependencies))
+ABSENT(GetVariableDependencies, (fmi3Instance instance, fmi3ValueReference dependent,
+                                 size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
+                                 size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
+                                 size_t nDependencies))
+ABSENT(GetDirectionalDerivative, (fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                                  const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+                                  size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity))
+ABSENT(GetAdjointDerivative, (fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                              const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[], size_t nSeed,
+                              fmi3Float64 sensitivity[], size_t nSensitivity))
+ABSENT(EnterConfigurationMode, (fmi3Instance instance))
+ABSENT(ExitConfigurationMode, (fmi3Instance instance))
+ABSENT(GetIntervalDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                            fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[]))
+ABSENT(GetIntervalFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                             fmi3UInt64 counters[], fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[]))
+ABSENT(GetShiftDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         fmi3Float64 shifts[]))
+ABSENT(GetShiftFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          fmi3UInt64 counters[], fmi3UInt64 resolutions[]))
+ABSENT(SetIntervalDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                            const fmi3Float64 intervals[]))
+ABSENT(SetIntervalFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                             const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]))
+ABSENT(SetShiftDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const fmi3Float64 shifts[]))
+ABSENT(SetShiftFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]))
+ABSENT(EvaluateDiscreteStates, (fmi3Instance instance))
+ABSENT(UpdateDiscreteStates, (fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
+                              fmi3Boolean *terminateSimulation, fmi3Boolean *nominalsOfContinuousStatesChanged,
+                              fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
+                              fmi3Float64 *nextEventTime))
+ABSENT(EnterContinuousTimeMode, (fmi3Instance instance))
+ABSENT(CompletedIntegratorStep, (fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                                 fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation))
+ABSENT(SetTime, (fmi3Instance instance, fmi3Float64 time))
+ABSENT(SetContinuousStates, (fmi3Instance instance, const fmi3Float64 continuousStates[], size_t nContinuousStates))
+ABSENT(GetContinuousStateDerivatives, (fmi3Instance instance, fmi3Float64 derivatives[], size_t nContinuousStates))
+ABSENT(GetEventIndicators, (fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators))
+ABSENT(GetContinuousStates, (fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates))
+ABSENT(GetNominalsOfContinuousStates, (fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates))
+ABSENT(GetNumberOfEventIndicators, (fmi3Instance instance, size_t *nEventIndicators))
+ABSENT(GetNumberOfContinuousStates, (fmi3Instance instance, size_t *nContinuousStates))
+ABSENT(EnterStepMode, (fmi3Instance instance))
+ABSENT(GetOutputDerivatives, (fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                              size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues))
+ABSENT(ActivateModelPartition, (fmi3Instance instance, fmi3ValueReference clockReference, fmi3Float64 activationTime))
