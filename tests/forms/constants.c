@@ -589,9 +589,12 @@ static void try_variant(const char *text, const struct judge *j, const struct va
         return;
     }
     if (v->form == FORM_KICK_DRIFT_KICK && step->form != v->form) {
+        const char *aside = strstr(diagnostics(), "stands aside");
         trial.compared++;
-        if (!strstr(diagnostics(), "stands aside"))
+        if (!aside)
             complain("another form, of which nothing is said");
+        else if (may && !strstr(aside, "times h is above 2.5") && !strstr(aside, "beyond the range of"))
+            complain(format("another form: it %s", first_line(aside)));
         return;
     }
     if (!may) {
