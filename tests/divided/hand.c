@@ -32,6 +32,7 @@
 #define PL_SWIFT 0
 #define PL_FASTEST 2
 #define PL_CERTAIN 1
+#define PL_IN_MODES 0
 
 typedef struct spring_contact {
     uint64_t total;
@@ -52,7 +53,7 @@ static const pl_divided spring_divided = {1, 2, 2, spring_column, spring_breaks,
 static const pl_divided spring_passing = {1, 1, 3, spring_column, spring_breaks, spring_breakpoint};
 
 /* x' = v, v' = -x + force */
-static const real spring_flow[1][5][5] = {
+static const real spring_slope_matrix[1][5][5] = {
     {{0, 1, 0, 0, 0}, {-1, 0, 1, 0, 0}, {0, 0, 0, 1, 0}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0}}};
 
 static void spring_inputs_now(const spring *s, const real u[], real start[], real slope[])
