@@ -42,8 +42,8 @@ WAYS(none)
 int main(void)
 {
     static void (*const way[3][3])(void) = {
-        {none_calls, anchored_calls, direct_calls}, {none_read, anchored_read, direct_read},
-        {none_runs, anchored_runs, direct_runs}
+        {none_calls, refreshed_calls, direct_calls}, {none_read, refreshed_read, direct_read},
+        {none_runs, refreshed_runs, direct_runs}
     };
     static const char *const name[] = {"step", "step, out", "run"};
     for (int w = 0; w < 3; w++) {

@@ -104,9 +104,9 @@ static void try_schemes(struct measuring *m)
 		try_scheme(m, NULL);
 		return;
 	}
-	if (m->model->switching || m->model->remainder.channels == 0)
+	if (m->model->switching || m->model->remainder.force_columns == 0)
 		try_scheme(m, scheme_name(SCHEME_EXACT));
-	if (m->model->remainder.channels == 0 && !m->model->switching)
+	if (m->model->remainder.force_columns == 0 && !m->model->switching)
 		return;
 	/* What is likely to do comes first: what is dearer is not tried. */
 	for (int likely = 1; likely >= 0; likely--)

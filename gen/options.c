@@ -114,11 +114,11 @@ static int count_of(const char *value, int most)
 	return *value < '0' || *value > '9' || *end || count < 1 || count > most ? 0 : (int)count;
 }
 
-static void take_anchors(struct options *options, const char *value)
+static void take_refresh(struct options *options, const char *value)
 {
-	options->request.anchors = count_of(value, MOST_ANCHORED);
-	if (!options->request.anchors)
-		wrong_usage(format("--anchors takes a number of steps, 1 to %d, found '%s'", MOST_ANCHORED, value));
+	options->request.refresh = count_of(value, MOST_REFRESHED);
+	if (!options->request.refresh)
+		wrong_usage(format("--anchors takes a number of steps, 1 to %d, found '%s'", MOST_REFRESHED, value));
 }
 
 static void take_definition(struct options *options, const char *value)
@@ -240,7 +240,7 @@ static const struct row {
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  .take = take_accuracy },
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
-	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", .take = take_anchors },
+	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", .take = take_refresh },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", .take = take_definition },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
 	{ "reduce", NULL, "leave out what the outputs cannot see", .take = take_reduce },
@@ -425,7 +425,7 @@ static void note_all(struct options *options)
 	note_flag(options, "--real float", request->single);
 	note_value(options, "--form", request->form != FORM_AUTO ? step_form_name(request->form) : NULL);
 	note_flag(options, "--accuracy compensated", request->compensated);
-	note_value(options, "--anchors", request->anchors ? format("%d", request->anchors) : NULL);
+	note_value(options, "--anchors", request->refresh ? format("%d", request->refresh) : NULL);
 	note_value(options, "--rows", request->rows ? format("%d", request->rows) : NULL);
 	note_flag(options, "--selftest", request->selftest);
 	note_flag(options, "--rhs", options->rhs);

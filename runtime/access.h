@@ -14,7 +14,7 @@
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
  *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
- *     PL_ANCHORED                1: loads have an anchor: since, PL(drop_anchor)(s)
+ *     PL_REFRESHED                1: loads have a refresh: since, PL(drop_refresh)(s)
  *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
  *     PL_STATUS, PL_RANGES       1: member status; ranges of PL(range_state)[]: PL(range)[][2]
  *     PL_PLACES                  1: PL(place)(s) finds what follows from a state that was set
@@ -200,9 +200,9 @@ static void PL(begin_time)(PL_TYPE *s, real t)
 #endif
     }
 #endif
-#if PL_ANCHORED
+#if PL_REFRESHED
     s->since = 0;
-    PL(drop_anchor)(s);
+    PL(drop_refresh)(s);
 #endif
 #if PL_SEGMENTS > 1
     s->segment = 0;

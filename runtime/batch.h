@@ -453,7 +453,7 @@ PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(ahead) *ahead, 
 }
 
 /* Instances from `first` on: mostly clear by what states and outputs are at most */
-PL_LANES_INLINE void PL(lanes_clear)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, const int groups)
+PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, const int groups)
 {
     pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
     pl_lanes state[PL_GROUPS][PL_STATES], top[PL_GROUPS][PL_OUTPUTS]; /* the largest |state|, |output| */
@@ -495,7 +495,7 @@ PL_LANES_INLINE void PL(lanes_clear)(PL_INSTANCES *b, size_t first, PL(ahead) *a
         PL(lanes_end)(b, first + (size_t)g * PL_AT_ONCE, ahead, y[g], factor[g], state[g], top[g], peak[g]);
     }
 }
-#define PL_GO(groups) PL(lanes_clear)(b, first, ahead, groups)
+#define PL_GO(groups) PL(lanes_event_free)(b, first, ahead, groups)
 #else
 #define PL_GO(groups) PL(lanes_go)(b, first, ahead, out, groups)
 #endif

@@ -9,7 +9,7 @@
 #include "roots.h"
 
 typedef pl_switching searched;
-#define PLAY(m, i) 0
+#define AMPLITUDE(m, i) 0
 #include "regions.h"
 
 static const real *rows_of(const real *all, const pl_switching *m, const pl_contact *c)
@@ -89,7 +89,7 @@ static void span(int switches, const real *from, const real *to, const real *off
 }
 
 /* Whether it is certain that nothing is crossed between x and y, a shortest piece on.  work: size + 5 switches */
-static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x, const real *y, real *work)
+static int stays_event_free(const pl_switching *m, const pl_contact *c, const real *x, const real *y, real *work)
 {
     const int n = m->size, s = m->switches;
     real *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
@@ -119,7 +119,7 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
 }
 
 /* The same of a longer one, by x'' where it begins.  work: 2 size + 5 switches */
-static int stays_clear_far(const pl_switching *m, const pl_contact *c, climb *at, const real *x, const real *y,
+static int stays_event_free_far(const pl_switching *m, const pl_contact *c, climb *at, const real *x, const real *y,
                            real *bend, real *work)
 {
     const int n = m->size, s = m->switches;
@@ -188,9 +188,10 @@ static PL_APART event first_event(const pl_switching *m, const instant *at, real
 #define limited(m, at, length) (length)
 #define hold(m, at, y, work) ((void)0) /* nothing is */
 
-static int is_clear(const pl_switching *m, const instant *at, climb *up, const real *y, real *bend, real *work)
+static int is_event_free(const pl_switching *m, const instant *at, climb *up, const real *y, real *bend, real *work)
 {
-    return up->rung > 0 ? stays_clear_far(m, at->c, up, at->x, y, bend, work) : stays_clear(m, at->c, at->x, y, work);
+    return up->rung > 0 ? stays_event_free_far(m, at->c, up, at->x, y, bend, work)
+        : stays_event_free(m, at->c, at->x, y, work);
 }
 
 /* An expression that has left its interval, other than by a crossing, goes into that where it is. */

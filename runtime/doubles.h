@@ -4,9 +4,9 @@
 #undef pl_block
 #undef pl_chain
 #undef pl_crossing
-#undef pl_cut
-#undef pl_cut_begin
-#undef pl_cut_flow
+#undef pl_event_split
+#undef pl_event_split_begin
+#undef pl_event_split_flow
 #undef pl_divided
 #undef pl_divided_left
 #undef pl_divided_next

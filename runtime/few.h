@@ -11,10 +11,10 @@
  *
  * Included by search.h, which says what the model's file defines for both; and beside that
  *
- *     PL_FEW, PL_LOOKS, PL_LARGE crossings and looks at most; how large the sum of |x| may be
+ *     PL_FEW, PL_EVENT_CHECKS, PL_LARGE crossings and looks at most; how large the sum of |x| may be
  *     PL_OPEN_END                beyond all breakpoints
  *     PL_MOVES                   the degree of polynomials over h, of x in two words
- *     PL_LEAN, PL_SWAY           of whole steps: a third of h e'; h^4/384 e'''' at most; each [which][i][PL_SIZE]
+ * PL_TANGENT, PL_CUBIC_ERROR           of whole steps: a third of h e'; h^4/384 e'''' at most; each [which][i][PL_SIZE]
  *
  *     PL(within), PL(beyond)     [region][i][up]: the ends of its interval, and the region behind; -1: none can be
  *     PL(span)                   [region][i]: its interval, from the lowest one
@@ -133,7 +133,7 @@ static double PL(noise)(int which, int i, double b, const double x[PL_SIZE])
 /* h e' of expression i */
 static double PL(slope)(int which, int i, const double x[PL_SIZE])
 {
-    return 3.0 * PL(along)(PL_LEAN[which][i], x);
+    return 3.0 * PL(along)(PL_TANGENT[which][i], x);
 }
 
 /* Whether expression i certainly keeps off the ends of its interval over h times `rest`, from x to end: by its chord,
@@ -143,7 +143,7 @@ static int PL(keeps)(int region, int which, int i, int behind, const double x[PL
                      double rest, double off)
 {
     const double from = PL(expression)(i, x), to = PL(expression)(i, end), two = rest * rest;
-    double low = PL(within)[region][i][0], high = PL(within)[region][i][1], sway;
+    double low = PL(within)[region][i][0], high = PL(within)[region][i][1], cubic_error;
     if (behind >= 0) {
         const double sign = behind ? -1.0 : 1.0, b = behind ? high : low;
         const double noise = PL(noise)(which, i, b, x), jerk = two * PL(most)(PL(jerk)[which][i], x);
@@ -159,10 +159,10 @@ static int PL(keeps)(int region, int which, int i, int behind, const double x[PL
     if (PL(between)(low, high, from, to, two * off)) {
         return 1;
     }
-    sway = two * two * PL(sizes)(PL_SWAY[which][i], x);
-    return PL(between)(low, high, from, to, sway) &&
-           PL(between)(low, high, from + rest * PL(along)(PL_LEAN[which][i], x),
-                       to - rest * PL(along)(PL_LEAN[which][i], end), sway);
+    cubic_error = two * two * PL(sizes)(PL_CUBIC_ERROR[which][i], x);
+    return PL(between)(low, high, from, to, cubic_error) &&
+           PL(between)(low, high, from + rest * PL(along)(PL_TANGENT[which][i], x),
+                       to - rest * PL(along)(PL_TANGENT[which][i], end), cubic_error);
 }
 
 /* Whether it surely meets the lower or the upper end at y, after h times z, and none before; and passes it by more than
@@ -172,7 +172,7 @@ static int PL(meets)(int region, int which, int i, int up, int behind, const dou
 {
     const double sign = up ? 1.0 : -1.0, b = PL(within)[region][i][up];
     const double noise = PL(noise)(which, i, b, x), zz = z * z;
-    const double more = behind == up ? 4.0 * z * zz * PL(sizes)(PL_SWAY[which][i], x)
+    const double more = behind == up ? 4.0 * z * zz * PL(sizes)(PL_CUBIC_ERROR[which][i], x)
                                      : zz * PL(most)(PL(jerk)[which][i], x);
     return pl_magnitude(PL(expression)(i, y) - b) <= noise &&
            PL(passes)(sign, PL(expression)(i, x), b, PL(within)[region][i][!up], sign * PL(slope)(which, i, x),
@@ -323,7 +323,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
         return 0;
     }
     PL(advance)(part.which, x, end);
-    for (look = 0; look < PL_LOOKS; look++) {
+    for (look = 0; look < PL_EVENT_CHECKS; look++) {
         int found = -2;
         if (PL(size_of)(end) < PL_LARGE && count < PL_FEW) {
             found = PL(first)(&part, x, end, &crossing[count]);
@@ -347,7 +347,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
             end[i] += x[i];
         }
     }
-    if (look == PL_LOOKS) {
+    if (look == PL_EVENT_CHECKS) {
         return 0;
     }
 #if PL_KEPT

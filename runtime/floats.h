@@ -4,9 +4,9 @@
 #define pl_block pl_blockf
 #define pl_chain pl_chainf
 #define pl_crossing pl_crossingf
-#define pl_cut pl_cutf
-#define pl_cut_begin pl_cutf_begin
-#define pl_cut_flow pl_cutf_flow
+#define pl_event_split pl_event_splitf
+#define pl_event_split_begin pl_event_splitf_begin
+#define pl_event_split_flow pl_event_splitf_flow
 #define pl_divided pl_dividedf
 #define pl_divided_left pl_dividedf_left
 #define pl_divided_next pl_dividedf_next

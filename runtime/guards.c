@@ -82,7 +82,7 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
 /* ---- a piece ---- */
 
 /* Whether it is certain that no guard becomes greater than its limit between x and y, a piece on.  work: size */
-static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, const real *y, real *work)
+static int stays_event_free(const pl_guards *m, const pl_contact *c, const real *x, const real *y, real *work)
 {
     const int n = m->size;
     int i, k;
@@ -92,15 +92,15 @@ static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, c
     for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
         const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
         real from, to, off, leaving, arriving;
-        from = dot(n, m->gate + at, x);
-        to = dot(n, m->gate + at, y);
+        from = dot(n, m->guard_row + at, x);
+        to = dot(n, m->guard_row + at, y);
         off = dot(n, m->chord_error + at, work);
         if (larger(from, to) + off < m->limit[k]) {
             continue;
         }
         off = dot(n, m->cubic_error + at, work);
-        leaving = dot(n, m->gate_tangent + at, x);
-        arriving = dot(n, m->gate_tangent + at, y);
+        leaving = dot(n, m->guard_tangent + at, x);
+        arriving = dot(n, m->guard_tangent + at, y);
         if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k])) {
             return 0;
         }
@@ -109,7 +109,8 @@ static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, c
 }
 
 /* The same of a piece that is longer than the shortest, by x'' where it begins.  work: 2 size */
-static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, const real *x, const real *y, real *bend,
+static int stays_event_free_far(const pl_guards *m, const pl_contact *c, climb *at, const real *x, const real *y,
+                                real *bend,
                            real *work)
 {
     const int n = m->size;
@@ -117,11 +118,11 @@ static int stays_clear_far(const pl_guards *m, const pl_contact *c, climb *at, c
     look_at_bend(at, n, matrix_of(m->A, m, c->matrix), x, bend, work);
     for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
         const int row = m->guard[k].row;
-        const real *gate = m->gate + (ptrdiff_t)row * n;
+        const real *guard_row = m->guard_row + (ptrdiff_t)row * n;
         real from, to, off;
-        from = dot(n, gate, x);
-        to = dot(n, gate, y);
-        off = dot(n, m->ladder.reach + ((ptrdiff_t)m->ladder.gates[row] + at->rung - 1) * n, bend);
+        from = dot(n, guard_row, x);
+        to = dot(n, guard_row, y);
+        off = dot(n, m->ladder.reach + ((ptrdiff_t)m->ladder.guard_rows[row] + at->rung - 1) * n, bend);
         if (!(larger(from, to) + off < m->limit[k])) {
             return 0;
         }
@@ -154,7 +155,7 @@ static void level(const pl_guards *m, int region, const pl_guard *g, const real 
  * interval, is passed already, also if it comes back. */
 static int is_turned(const pl_guards *m, int region, const pl_guard *g, const beyond *f)
 {
-    const real *gate = m->gate + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
+    const real *guard_row = m->guard_row + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
     real apart = 0;
     int i;
     if (g->impact >= 0 || !(f->coefficient[0] > f->noise) || !(f->coefficient[1] < 0)) {
@@ -164,7 +165,7 @@ static int is_turned(const pl_guards *m, int region, const pl_guard *g, const be
         return 0; /* it sticks: what lets it go is decided with others that rest */
     }
     for (i = 0; i < m->size; i++) {
-        apart = larger(apart, magnitude(gate[i] - (g->upward ? row[i] : -row[i])));
+        apart = larger(apart, magnitude(guard_row[i] - (g->upward ? row[i] : -row[i])));
     }
     return apart > 0;
 }
@@ -183,7 +184,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
-        const real *row = m->gate + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
+        const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
         real s, next;
         int has_left;
         pl_multiply(terms, n, coefficients, row, e);
@@ -211,10 +212,10 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
 #define limited shortened
 #define hold(m, at, y, work) assign(m, (m)->hold[(at)->c->region], y, work)
 
-static int is_clear(const pl_guards *m, const instant *at, climb *up, const real *y, real *bend, real *work)
+static int is_event_free(const pl_guards *m, const instant *at, climb *up, const real *y, real *bend, real *work)
 {
-    return can_be(m, at) && (up->rung > 0 ? stays_clear_far(m, at->c, up, at->x, y, bend, work)
-                                          : stays_clear(m, at->c, at->x, y, work));
+    return can_be(m, at) && (up->rung > 0 ? stays_event_free_far(m, at->c, up, at->x, y, bend, work)
+                                          : stays_event_free(m, at->c, at->x, y, work));
 }
 
 /* Into the region to which a guard leads, or by the impact that begins there */

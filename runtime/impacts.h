@@ -5,7 +5,7 @@
 #define PLRT_IMPACTS_H
 
 typedef pl_guards searched, contacts;
-#define PLAY(m, i) (m)->play[i]
+#define AMPLITUDE(m, i) (m)->amplitude[i]
 #include "regions.h"
 
 /* How many at rest are looked at together: 3^MOST combinations */
@@ -186,7 +186,7 @@ static real speed_of(const pl_guards *m, const instant *at, int k)
     const real *row = m->speed + (ptrdiff_t)k * m->size;
     real speed;
     speed = dot(m->size, row, at->x);
-    return magnitude(speed) <= noise_of(sizes(m->size, row, at->x) + m->impact[k].play) ? 0 : speed;
+    return magnitude(speed) <= noise_of(sizes(m->size, row, at->x) + m->impact[k].amplitude) ? 0 : speed;
 }
 
 static real speed_of_met(const pl_guards *m, instant *at, int k)
@@ -297,19 +297,21 @@ static int find_resting(const pl_guards *m, const instant *at, resting *found)
 /* The force of a guard of what sticks, less its limit: above 0 where it lets go, 0 where that is but rounding */
 static real pull_of(const pl_guards *m, int k, const real *x)
 {
-    const int n = m->size, gate = m->guard[k].row;
-    const real *row = m->gate + (ptrdiff_t)gate * n, *tangent = m->gate_tangent + (ptrdiff_t)gate * n;
+    const int n = m->size, guard_row = m->guard[k].row;
+    const real *row = m->guard_row + (ptrdiff_t)guard_row * n, *tangent = m->guard_tangent + (ptrdiff_t)guard_row * n;
     real e, noise;
     e = dot(n, row, x);
     e -= m->limit[k];
-    noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->gate_play[gate]);
+    noise =
+        noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->guard_amplitude[guard_row]);
     return e > noise || e < -noise ? e : 0;
 }
 
 static int rises(const pl_guards *m, int region, int k, const real *x, real *work)
 {
     const int n = m->size;
-    return heading(n, matrix_of(m->A, m, m->matrix[region]), m->gate + (ptrdiff_t)m->guard[k].row * n, x, work) > 0;
+    return heading(n, matrix_of(m->A, m, m->matrix[region]), m->guard_row + (ptrdiff_t)m->guard[k].row * n, x,
+                   work) > 0;
 }
 
 static int holds_in(const pl_guards *m, instant *at, int region, int expression)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* met.h: impacts, contacts at rest and friction in a part of a step, part of cut.h: of what is watched the cubics
- * through values and slopes at both ends are looked at as passage.h looks at the polynomials of a collocation; at an
- * event the law of events.c is asked of a series there.  What holds is a force like others that are left over, to the
- * order of the scheme: behind each part what is held is put back. */
+/* met.h: impacts, contacts at rest and friction in a part of a step, part of event_split.h: of what is watched the
+ * cubics through values and slopes at both ends are looked at as passage.h looks at the polynomials of a collocation;
+ * at an event the law of events.c is asked of a series there.  What holds is a force like others that are left over, to
+ * the order of the scheme: behind each part what is held is put back. */
 
 /* ---- where a part begins, and along it ---- */
 
@@ -115,7 +115,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
     if (p->splits < 0) {
         return PL(gave_up)(p);
     }
-#if PL_SWIFT
+#if PL_FAST_PATH
     if (size > PL_CERTAIN && (met >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
                                                      p->contact->interval, size, terms, PL_NOISE))) {
         p->longest = size / 2;
@@ -136,7 +136,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
         p->at.status |= pl_events_places(&PL(along), &p->at, end, 0);
         p->contact->last.expression = -1;
     }
-    p->longest = PL_SWIFT && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
+    p->longest = PL_FAST_PATH && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
     for (i = 0; i < PL_STATES && end > 0; i++) {
         y[i] = next[i];
     }
@@ -151,13 +151,13 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
 /* ---- the step ---- */
 
 /* Whether a step over all of h stands that comes near an event.  c, d: of its ends */
-static PL_APART int PL(is_clear)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+static PL_APART int PL(is_event_free)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
                                  real terms[PL_TERMS])
 {
     real y[PL_STATES], end = 1, met;
     PL(watch)(p, y);
     met = PL(look_along)(p, c, d, terms, &end);
-#if PL_SWIFT
+#if PL_FAST_PATH
     if (!PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
         return 0;
     }

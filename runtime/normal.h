@@ -8,7 +8,7 @@
  *     PL_TYPE                    the model, with members y, k, eta[PL_WIDTH], rate[PL_WIDTH], status, which, known, and
  *                                force[][PL_WIDTH], past[][2][PL_WIDTH], f[][PL_FUNCTIONS] of points or else nodes; of
  *                                methods with points newest, of several segments segment; past of the latter and of
- *                                banks alone, f where there are functions
+ *                                operators alone, f where there are functions
  *     PL_MODES, PL_WIDTH         modes; length of a vector of them
  *     PL_POINTS                  past forces of an Adams method, as many as nodes; 0: each step is by collocation
  *     PL_TWICE                   whether those evaluate forces again once they have corrected
@@ -16,24 +16,25 @@
  *     PL_SWEEPS, PL_FIRST_SWEEPS from forces of the step before; where it begins anew
  *     PL_FUNCTIONS               of time, that forces read
  *     PL_WAVES                   values of known loads
- *     PL_BANKS                   operators; of several PL_SELECTOR is the function of time that says which one serves
+ * PL_OPERATORS                   operators; of several PL_SELECTOR is the function of time that says which one serves
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
- *     PL_IN_MODES                1: part of cut.h, whose step is PL(whole), by collocation: s->y is the state, and
+ * PL_IN_MODES                1: part of event_split.h, whose step is PL(whole), by collocation: s->y is the state, and
  *                                functions of time are the time of the node alone
  *     PL_PEAKS                   above 0: peaks.h has PL(step), and its PL(one_step) is here
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
  *     PL(waves)(s, wave)                 values of known loads now
- *     PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in cut.h PL(on_modes)(which, left, force): those
+ * PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in event_split.h PL(on_modes)(which, left, force):
+ * those
  *                                of what is left over
  *     PL(modes_of)(which, q, mode), PL(of_modes)(which, mode, q)   modes of coordinates, and back
  *     PL(node_modes)(s, which, node, force, wave, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
  *     PL(forces_ahead)(s, force)         of collocation: those at the nodes that go on from the step before
  *     PL(predict)(s, which, wave, eta, rate, expected)   of points: modes after the step, and the forces there
  *     PL(correct)[][2][PL_WIDTH]         what a force adds by its excess over that, of all operators or of one
- *     PL(bound)[], PL(next)[][][]        of a bank: value up to which each operator serves; modes of the next from its
+ * PL(bound)[], PL(next)[][][]        of a schedule: value up to which each operator serves; modes of the next from its
  *     PL(still)(x, wave, sum)            once settled: [omega eta, eta'] after a step from those before
  *     PL(omega)[2][PL_WIDTH]             omega, 1 over it
  *     PL(until), PL(change)              of segments: time to each change, and the changes
@@ -41,7 +42,7 @@
 #include "numbers.h"
 
 #define PL_NODES (PL_STAGES + 1)
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
 #define PL_SERVING s->which
 #else
 #define PL_SERVING 0
@@ -89,13 +90,13 @@ static inline void PL(keep_functions)(PL_TYPE *s, int place, const real f[])
 #endif
 }
 
-/* ---- a bank of operators ---- */
+/* ---- a schedule of operators ---- */
 
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
 /* The first operator whose value is not below this */
 static int PL(operator_at)(int which, real now)
 {
-    while (which < PL_BANKS - 1 && now > PL(bound)[which]) {
+    while (which < PL_OPERATORS - 1 && now > PL(bound)[which]) {
         which++;
     }
     while (which > 0 && now <= PL(bound)[which - 1]) {
@@ -211,7 +212,7 @@ static void PL(collocate)(PL_TYPE *s)
     if (s->known == 0) {
         PL(keep_point)(s, f[0], force[0]);
     }
-#elif PL_BANKS > 1
+#elif PL_OPERATORS > 1
     for (i = 0; i < PL_WIDTH; i++) {
         eta[0][i] = s->eta[i];
         rate[0][i] = s->rate[i];
@@ -233,7 +234,7 @@ static void PL(collocate)(PL_TYPE *s)
     for (k = 0; k < PL_NODES; k++) {
         for (i = 0; i < PL_WIDTH; i++) {
             s->force[k][i] = force[k][i];
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
             s->past[k][0][i] = eta[k][i];
             s->past[k][1][i] = rate[k][i];
 #endif
@@ -284,7 +285,7 @@ static void PL(settled_step)(PL_TYPE *s)
     real x[2 * PL_WIDTH], sum[2 * PL_WIDTH], wave[PL_WAVES + 1];
     int i;
     PL(waves_now)(s, wave);
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
     if (s->which != PL_SETTLED_IN) {
         PL(serve)(s, PL_SETTLED_IN);
     }
@@ -313,7 +314,7 @@ static void PL(take_modes)(PL_TYPE *s)
     PL(modes_of)(0, s->y + PL_MODES, s->rate);
 }
 
-/* The step, of which cut.h asks whether it stands */
+/* The step, of which event_split.h asks whether it stands */
 static inline void PL(whole)(PL_TYPE *s)
 {
     PL(collocate)(s);
@@ -334,7 +335,7 @@ static inline void PL(forget)(PL_TYPE *s)
 /* What follows from a state that was set */
 static void PL(place)(PL_TYPE *s)
 {
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
     real f[PL_FUNCTIONS + 1];
     PL(functions_at)(s, 0, 0, f);
     s->which = PL(operator_at)(0, f[PL_SELECTOR]);
@@ -367,7 +368,7 @@ static inline void PL(pass_changes)(PL_TYPE *s)
 }
 #endif
 
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
 /* The operator for what the function of time is at the end of the step */
 static inline void PL(choose)(PL_TYPE *s)
 {
@@ -397,7 +398,7 @@ static inline void PL(changing_step)(PL_TYPE *s)
     PL(collocate)(s);
     PL(pass_time)(s, NULL);
 #endif
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
     PL(choose)(s);
 #endif
 #if PL_SEGMENTS > 1

@@ -6,7 +6,7 @@
  * Included by the file of the model behind its step, which defines before it
  *
  *     PL_TYPE                    the model, with member y
- *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_CHANNEL on of each of
+ *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_FORCE_COLUMN on of each of
  *     PL_FORCES                  remainders its value and two derivatives
  *     PL_MIDDLE, PL_END          points of the step: as PL(left_at) counts them, whose first is 0
  *     PL_BARE                    the step that looks for no peaks
@@ -23,7 +23,7 @@ static void PL(under)(const PL_TYPE *s, const real *u, int which, real left[3][P
     int i;
     PL(vector_now)(s, u, x);
     for (i = 0; i < PL_FORCES; i++) {
-        real *const of = x + PL_CHANNEL + 3 * i;
+        real *const of = x + PL_FORCE_COLUMN + 3 * i;
         of[0] = left[0][i];
         of[1] = (4 * left[1][i] - 3 * left[0][i] - left[2][i]) / PL_H;
         of[2] = 4 * ((left[0][i] - left[1][i]) + (left[2][i] - left[1][i])) / PL_H / PL_H;

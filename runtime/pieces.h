@@ -6,7 +6,7 @@
  *     event, no_event            a place s in a piece, 0 to 1, whether there is one, any, and what it is
  *     limited(m, at, length)     a length of a piece [s] that is at most this one
  *     hold(m, at, y, work)       y, but what is held is in its place
- *     is_clear(m, at, up, y, bend, work)   whether it is certain that nothing happens between x and y, a piece on
+ *     is_event_free(m, at, up, y, bend, work)   whether it is certain that nothing happens between x and y, a piece on
  *     first_event(m, at, coefficients, splits)   in a piece, of x(s); behind them is room for work
  *     take_up(m, at, time)       the region may be another one than before
  *     pass(m, at, which, time)   that event, and how it goes on */
@@ -56,7 +56,7 @@ static int go(const searched *m, instant *at, real tau, int fresh)
         if (whole) {
             take_piece(n, &up, &m->ladder, m->Phi, at->c->matrix, at->x, y, rest);
             hold(m, at, y, work);
-            if (is_clear(m, at, &up, y, bend, work)) {
+            if (is_event_free(m, at, &up, y, bend, work)) {
                 keep_piece(n, &up, y, at->x, rest);
                 left -= dt;
                 fresh = 0;

@@ -136,7 +136,7 @@ typedef struct pl_ladder {
     /* In a piece of the rung after this one an expression, or a row of guards, is off the chord through its ends by at
      * most reach . |x''(0)|: of each matrix its rungs for the first expression, for the second; ... */
     const PL_REAL *reach;
-    const int *gates;   /* of each row of guards: the number of the first of its rows of reach; else not read */
+    const int *guard_rows; /* of each row of guards: the number of the first of its rows of reach; else not read */
 } pl_ladder;
 
 typedef struct pl_switching {
@@ -339,7 +339,7 @@ typedef struct pl_impact {
     int rest;                           /* that interval; -1: it is no bounce */
     int jump, still;                    /* sets of assignments: its jump; of a bounce that with restitution 0 */
     PL_REAL restitution;
-    PL_REAL play;                       /* the sizes of the factors of cos and sin in its speed */
+    PL_REAL amplitude;                  /* the sizes of the factors of cos and sin in its speed */
 } pl_impact;
 
 typedef struct pl_guards {
@@ -362,10 +362,10 @@ typedef struct pl_guards {
     const PL_REAL *limit; /* of each guard */
     const int *hold;
     /* Rows of guards, of each: d/3 times its slope; bounds as for pl_switching.  All rows x size */
-    const PL_REAL *gate, *gate_tangent, *chord_error, *cubic_error;
+    const PL_REAL *guard_row, *guard_tangent, *chord_error, *cubic_error;
     /* Of each expression and each row of guards: the sizes of its factors of cos and sin, to tell rounding from what
      * is more where these are evaluated anew */
-    const PL_REAL *play, *gate_play;
+    const PL_REAL *amplitude, *guard_amplitude;
     /* Assignments: x[state] = value . x, those of a set from the same x: set[k] to set[k + 1] - 1 */
     const int *set, *state;
     const PL_REAL *value;
@@ -523,27 +523,29 @@ void pl_region_reach(int size, PL_REAL h, int halvings, int spacing, const PL_RE
                      PL_REAL *reach, PL_REAL *work);
 #define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
 
-/* ---- cut.c: a part of a step of a scheme with a remainder ------------------------------------------------------ */
+/* ---- event_split.c: a part of a step of a scheme with a remainder
+ * ------------------------------------------------------ */
 
 /* e^{A tau} of x' = A x, of what is set up for one tau */
-typedef struct pl_cut {
+typedef struct pl_event_split {
     int size, terms; /* entries of x; of the series, 0: there are tables */
     PL_REAL tau;     /* [s] */
     const PL_REAL *A, *D;
     PL_REAL *room;
-} pl_cut;
+} pl_event_split;
 
 /* By the series, or where fastest times tau is above 2 by tables that are made here.
  *     A        size x size [1/s], kept as long as m is
  *     fastest  the sizes |A| have no larger pole [1/s]
- *     work     PL_CUT_WORK(size) entries, kept as long as m is; room: PL_CUT_ROOM(size) entries
+ *     work     PL_EVENT_SPLIT_WORK(size) entries, kept as long as m is; room: PL_EVENT_SPLIT_ROOM(size) entries
  * 0, or PL_NOT_FINITE and m has no meaning */
-int pl_cut_begin(pl_cut *m, int size, const PL_REAL *A, PL_REAL fastest, PL_REAL tau, PL_REAL *work, pl_two *room);
+int pl_event_split_begin(pl_event_split *m, int size, const PL_REAL *A, PL_REAL fastest, PL_REAL tau, PL_REAL *work,
+                         pl_two *room);
 
 /* out = e^{A tau} x, or where half is not 0 e^{A tau / 2} x */
-void pl_cut_flow(const pl_cut *m, int half, const PL_REAL *x, PL_REAL *out);
-#define PL_CUT_ROOM(size) (8 * (size) * (size))
-#define PL_CUT_WORK(size) ((2 * (size) + 2) * (size))
+void pl_event_split_flow(const pl_event_split *m, int half, const PL_REAL *x, PL_REAL *out);
+#define PL_EVENT_SPLIT_ROOM(size) (8 * (size) * (size))
+#define PL_EVENT_SPLIT_WORK(size) ((2 * (size) + 2) * (size))
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

@@ -16,7 +16,7 @@
  *     crossings_kept.c, guards_kept.c
  *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
- *     cut.c       a part of a step: schemes with a remainder, from crossing to crossing
+ *     event_split.c       a part of a step: schemes with a remainder, from crossing to crossing
  *     rate.c      the rate of a load's phase from another frequency; phases that go on where one changes
  *     root.c      rough roots: the length of a step by its error
  *     dense.c     linear equations: Newton's method of implicit schemes
@@ -411,7 +411,7 @@ enum { PL_MODEL_VERSION = 2 };
 #undef PL_REAL
 
 /* As pl_guards_advance, but h sooner where it is sure that no guard is met: chord_error has 8 units in the last place
- * of |gate| + 3 |gate_tangent| more, for what rounding may hide where the step begins. */
+ * of |guard_row| + 3 |guard_tangent| more, for what rounding may hide where the step begins. */
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* None: w has been the same since t = 0. */

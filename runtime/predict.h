@@ -5,13 +5,13 @@
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_FORCES       states; forces that are left over
  *     PL_DRIVEN                  1: loads and inputs have a part in them
- *     PL_CUT                     1: a step of cut.h, of the forces of given intervals, which that says
+ *     PL_EVENT_SPLIT                     1: a step of event_split.h, of the forces of given intervals, which that says
  *
  *     PL(remainder)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
  *     PL(slope_of)(which, z, left, dz)                 A z + B left */
 #include "numbers.h"
 
-#if PL_CUT
+#if PL_EVENT_SPLIT
 #define PL_FORMULAS real when, const int interval[],
 #else
 #define PL_FORMULAS
@@ -39,7 +39,7 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
             y[i] = z[i];
 #endif
         }
-#if PL_CUT
+#if PL_EVENT_SPLIT
         PL(forces_at)(s, u, slope, k < 2 ? tau / 2 : tau, when, which, interval, y, left);
         PL(slope_of)(0, z, left, dz);
 #else

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* regions.h: regions as intervals of expressions between breakpoints, and a state in one of them, for the runtime's own
- * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and PLAY(m, i), the size of
- * what is never above 1 in expression i.  It has no guard, for it is a part of these. */
+ * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and AMPLITUDE(m, i), the
+ * size of what is never above 1 in expression i.  It has no guard, for it is a part of these. */
 #include "kept.h"
 
 typedef struct instant {
@@ -92,7 +92,8 @@ static real excess(const searched *m, const pl_contact *c, int expression, real 
     const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + expression) * m->size;
     real e;
     e = dot(m->size, row, x);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + PLAY(m, expression));
+    *noise =
+        noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + AMPLITUDE(m, expression));
     return e - b;
 }
 

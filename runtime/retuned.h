@@ -19,11 +19,12 @@
  *     PL_ENTRIES, PL(entry)[], PL_HIGHEST, PL(highest)[]     of x' = A x: what stays; rows of highest derivatives
  *     PL_WORK, PL_HALVINGS, PL_RUNGS     numbers of two words to work in; of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
- *     PL_GUARDS, PL_GATES, PL_VALUES, PL_IMPACTS, PL_GRIPS   of friction and impacts: guards, their rows, what is held,
+ * PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_GRIPS   of friction and impacts: guards, their rows, what is
+ * held,
  *                                        impacts in all segments of time, what friction carries; else 0
- *     PL(gate_branch)[], PL(gate_rung)[] of rows of guards
+ *     PL(guard_branch)[], PL(guard_rung)[] of rows of guards
  *     PL_BOUNDED, PL(bounded)[]          columns of x that are never above 1
- *     PL_CLEARS                          1: steps that stay clear need no search, for which
+ *     PL_EVENT_FREE                          1: steps that stay clear need no search, for which
  *     PL_STAYS, PL(stays)[], PL(stay_param)[]    columns of x stay; which param each is, -1: 1
  *     PL_PAIRS, PL(pair)[]               loads oscillate, the first column of each; the next is its other one
  *     PL_STILL                           1: steps are looked at that stay still
@@ -82,10 +83,10 @@ static PL_APART const short *PL(take)(const short *from, int rows, int columns, 
     return from;
 }
 
-#if PL_GATES > 0
+#if PL_GUARD_ROWS > 0
 #if PL_BOUNDED > 0
 /* The sizes of a row's factors of what is never above 1 */
-static real PL(play)(const real *row)
+static real PL(amplitude)(const real *row)
 {
     real sum = 0;
     int j;
@@ -99,7 +100,7 @@ static real PL(play)(const real *row)
 static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *value)
 {
     int i;
-    from = PL(take)(from, PL_GATES, PL_SIZE, value, c->gate[0]);
+    from = PL(take)(from, PL_GUARD_ROWS, PL_SIZE, value, c->guard_row[0]);
     from = PL(take)(from, PL_GUARDS, 1, value, c->limit);
     from = PL(take)(from, PL_VALUES, PL_SIZE, value, c->value[0]);
     for (i = 0; i < PL_IMPACTS; i++) {
@@ -114,16 +115,16 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
 #if PL_BOUNDED > 0
     for (i = 0; i < PL_SEGMENTS * PL_EXPRESSIONS; i++) {
 #if PL_SEGMENTS > 1
-        c->play[i] = PL(play)(c->row[i / PL_EXPRESSIONS][i % PL_EXPRESSIONS]);
+        c->amplitude[i] = PL(amplitude)(c->row[i / PL_EXPRESSIONS][i % PL_EXPRESSIONS]);
 #else
-        c->play[i] = PL(play)(c->row[i]);
+        c->amplitude[i] = PL(amplitude)(c->row[i]);
 #endif
     }
-    for (i = 0; i < PL_GATES; i++) {
-        c->gate_play[i] = PL(play)(c->gate[i]);
+    for (i = 0; i < PL_GUARD_ROWS; i++) {
+        c->guard_amplitude[i] = PL(amplitude)(c->guard_row[i]);
     }
     for (i = 0; i < PL_IMPACTS; i++) {
-        c->impact[i].play = PL(play)(c->speed[i]);
+        c->impact[i].amplitude = PL(amplitude)(c->speed[i]);
     }
 #endif
 }
@@ -138,7 +139,7 @@ static void PL(take_all)(PL(coeffs) *c, const pl_two *value)
     from = PL(take)(from, PL_EXPRESSIONS, PL_SIZE, value, c->row[0]);
 #endif
     from = PL(take)(from, PL_BREAKS, 1, value, c->breakpoint);
-#if PL_GATES > 0
+#if PL_GUARD_ROWS > 0
     PL(take_guards)(c, from, value);
 #endif
     (void)from;
@@ -169,7 +170,7 @@ static int PL(matrices)(PL(coeffs) *c, int k, const pl_two *value, real h, pl_tw
     }
     status = pl_region_of(PL_SIZE, A, h, PL_HALVINGS, PL_RUNGS, &c->halvings[k], &c->spacing[k], c->slopes[k][0],
                           c->pieces[k][0], c->rungs[PL(first_rung)[k]][0], work);
-#if PL_CLEARS
+#if PL_EVENT_FREE
     if (status == 0) {
         c->large[k] = pl_region_large(PL_SIZE, c->halvings[k], c->pieces[k][0], PL_LARGE);
     }
@@ -179,22 +180,22 @@ static int PL(matrices)(PL(coeffs) *c, int k, const pl_two *value, real h, pl_tw
 
 /* ---- bounds ---- */
 
-#if PL_GATES > 0
+#if PL_GUARD_ROWS > 0
 /* Of the rows of guards that are a system's; they stand together */
-static void PL(bound_gates)(PL(coeffs) *c, int k, real h, real d, real *room)
+static void PL(bound_guard_rows)(PL(coeffs) *c, int k, real h, real d, real *room)
 {
     int first, last;
-    for (first = 0; first < PL_GATES; first = last) {
-        const int own = PL(gate_branch)[first] == k;
-        for (last = first + 1; last < PL_GATES && PL(gate_branch)[last] == PL(gate_branch)[first]; last++) {
+    for (first = 0; first < PL_GUARD_ROWS; first = last) {
+        const int own = PL(guard_branch)[first] == k;
+        for (last = first + 1; last < PL_GUARD_ROWS && PL(guard_branch)[last] == PL(guard_branch)[first]; last++) {
         }
         if (own) {
-            pl_region_bounds(PL_SIZE, d, c->slopes[k][0], last - first, c->gate[first], c->gate_lean[first],
-                             c->gate_sag[first], c->gate_sway[first], room);
+            pl_region_bounds(PL_SIZE, d, c->slopes[k][0], last - first, c->guard_row[first], c->guard_tangent[first],
+                             c->guard_chord_error[first], c->guard_cubic_error[first], room);
         }
         for (; own && first < last; first++) {
-            pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], 1, c->gate[first],
-                            c->bend[PL(gate_rung)[first]], room);
+            pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], 1, c->guard_row[first],
+                            c->bend[PL(guard_rung)[first]], room);
         }
     }
 }
@@ -204,7 +205,7 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
 {
     const real d = h / (real)((uint32_t)1 << c->halvings[k]);
     real room[PL_REACH_WORK(PL_SIZE, PL_EXPRESSIONS)];
-#if PL_GATES > 0 || PL_CLEARS
+#if PL_GUARD_ROWS > 0 || PL_EVENT_FREE
     real spare[2][PL_EXPRESSIONS * PL_SIZE];
 #endif
 #if PL_SEGMENTS > 1
@@ -212,16 +213,17 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
 #else
     const real *const row = c->row[0];
 #endif
-#if PL_GATES > 0
-    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->lean[k][0], spare[0], spare[1], room);
-    PL(bound_gates)(c, k, h, d, room);
+#if PL_GUARD_ROWS > 0
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->tangent[k][0], spare[0], spare[1], room);
+    PL(bound_guard_rows)(c, k, h, d, room);
 #else
-    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->lean[k][0], c->sag[k][0], c->sway[k][0],
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->tangent[k][0], c->chord_error[k][0],
+                     c->cubic_error[k][0],
                      room);
     pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], PL_EXPRESSIONS, row,
                     c->bend[PL(first_rung)[k] * PL_EXPRESSIONS], room);
 #endif
-#if PL_CLEARS
+#if PL_EVENT_FREE
     if (c->halvings[k] == 1) {
         pl_region_bounds(PL_SIZE, h, c->slopes[k][0], PL_EXPRESSIONS, row, spare[0], c->chord_off[k][0], spare[1],
                          room);
@@ -230,7 +232,7 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
         int i, j;
         for (i = 0; i < PL_EXPRESSIONS; i++) {
             for (j = 0; j < PL_SIZE; j++) {
-                c->chord_off[k][i][j] = c->sag[k][i][j];
+                c->chord_off[k][i][j] = c->chord_error[k][i][j];
             }
         }
     }
@@ -239,7 +241,7 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
 
 /* ---- steps that stay clear: what stays of x from step to step summed, bounds over what is never above 1 ---- */
 
-#if PL_CLEARS
+#if PL_EVENT_FREE
 #if PL_STILL
 /* At least the root of a^2 + b^2 */
 static real PL(folded)(real a, real b)
@@ -343,7 +345,7 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
             PL(bound)(&made, i, h);
         }
     }
-#if PL_CLEARS
+#if PL_EVENT_FREE
     PL(gather)(&made);
 #endif
     *c = made;

@@ -7,7 +7,7 @@
  *     PL_ROWS                    steps that PL(block) takes at once, with their outputs; 0: there is none
  *     PL_OVER                    1: they are those of one series, member served, and 0 of PL(block): its end is not
  *                                finite, and s as it was
- *     PL_ANCHORED                1: loads have an anchor, which stands at the start of a block
+ *     PL_REFRESHED                1: loads have a refresh, which stands at the start of a block
  *     PL_RESTS                   0: nothing comes to rest; 1: all states at once; n: n - 1 parts, of each state
  *                                PL(part)[], -1: that does not
  *     PL_IN_STEP                 1: the step looks for that, not the run
@@ -99,8 +99,8 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
 #if PL_ROWS > 0
     if (n >= PL_ROWS) {
         PL_TYPE now = *s; /* over all blocks, so that its states may be in registers */
-#if PL_ANCHORED
-        PL(drop_anchor)(&now);
+#if PL_REFRESHED
+        PL(drop_refresh)(&now);
 #endif
         for (; n >= PL_ROWS; n -= PL_ROWS) {
 #if PL_OVER

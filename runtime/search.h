@@ -22,7 +22,7 @@
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
- *     PL_CLEARS, PL_CAPPED       whether most steps are seen to be clear before it is asked: of guards by unmet.h, with
+ * PL_EVENT_FREE, PL_CAPPED       whether most steps are seen to be clear before it is asked: of guards by unmet.h, with
  *                                bit i where x_i is never above 1
  *     PL_FEW                     crossings by few.h, which is included then; 0: none */
 #include "numbers.h"
@@ -52,14 +52,15 @@
 #define PL_MATRICES PL(matrix), PL_OF(halvings), PL_OF(slopes)[0][0], PL_OF(pieces)[0][0], PL_LADDER
 
 #if PL_GUARDS
-#define PL_GATES PL_OF(gate)[0], PL_OF(gate_lean)[0], PL_OF(gate_sag)[0], PL_OF(gate_sway)[0]
-#define PL_PLAYS PL_OF(play) + PL_FIRST(PL_EXPRESSIONS), PL_OF(gate_play)
-#define PL_ENDED PL_OF(lean)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GATES, PL_PLAYS
+#define PL_GUARD_ERRORS PL_OF(guard_chord_error)[0], PL_OF(guard_cubic_error)[0]
+#define PL_GUARD_TABLES PL_OF(guard_row)[0], PL_OF(guard_tangent)[0], PL_GUARD_ERRORS
+#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_EXPRESSIONS), PL_OF(guard_amplitude)
+#define PL_ENDED PL_OF(tangent)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GUARD_TABLES, PL_AMPLITUDES
 #define PL_SET PL(sets), PL(held), PL_OF(value)[0]
 #define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(back)[PL_FIRST(PL_IMPACTS)]
 #define PL_BOUNDS PL_ENDED, PL_SET, PL_IMPACTS, PL_OF(impact) + PL_FIRST(PL_IMPACTS), PL_SPEEDS
 #elif PL_EXPRESSIONS > 0
-#define PL_BOUNDS PL_OF(lean)[0][0], PL_OF(sag)[0][0], PL_OF(sway)[0][0]
+#define PL_BOUNDS PL_OF(tangent)[0][0], PL_OF(chord_error)[0][0], PL_OF(cubic_error)[0][0]
 #else
 #define PL_BOUNDS PL(slopes)[0][0], PL(slopes)[0][0], PL(slopes)[0][0]
 #endif
@@ -181,7 +182,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
     PL_ADVANCE(&here, tau, x, contact, crossing, work);
 #else
     (void)s;
-#if PL_CLEARS && PL_GUARDS
+#if PL_EVENT_FREE && PL_GUARDS
     if (PL_SOFT) {
         pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
         return;
@@ -195,9 +196,9 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 
 /* ---- a step, and what is asked about it ---- */
 
-#if PL_CLEARS && PL_GUARDS
+#if PL_EVENT_FREE && PL_GUARDS
 #define PL_SOUGHT PL_APART_HARD void PL(by_search)
-#elif PL_CLEARS
+#elif PL_EVENT_FREE
 #define PL_SOUGHT PL_APART void PL(seek)
 #else
 #define PL_SOUGHT void PL(seek)
@@ -208,7 +209,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 {
     int i;
-#if PL_CLEARS && PL_GUARDS
+#if PL_EVENT_FREE && PL_GUARDS
     for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
         x[i] = s->y[PL_PLACE(i)];
     }
@@ -224,7 +225,7 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 }
 #endif
 
-#if PL_CLEARS && PL_GUARDS
+#if PL_EVENT_FREE && PL_GUARDS
 /* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
 #define PL_FEW_REGIONS (PL_REGIONS <= 16 && PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
 

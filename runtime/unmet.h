@@ -30,9 +30,9 @@ static PL_INLINE int PL(holds)(const pl_guards *m, int set, const double *x, dou
 static PL_INLINE int PL(keeps)(const pl_guards *m, int k, const double *x, const double *end, const double *size)
 {
     const int row = m->guard[k].row;
-    const double from = PL_SUM(m->gate + row * PL_SIZE, x), to = PL_SUM(m->gate + row * PL_SIZE, end);
+    const double from = PL_SUM(m->guard_row + row * PL_SIZE, x), to = PL_SUM(m->guard_row + row * PL_SIZE, end);
     const double off = PL_SUM(m->chord_error + row * PL_SIZE, size);
-    return (from > to ? from : to) + off < m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->gate_play[row]);
+    return (from > to ? from : to) + off < m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->guard_amplitude[row]);
 }
 
 /* Row i of a product, with 0 in the place of -0 as the search has it.  Where what multiplies x_i is above 0 there is no

@@ -147,7 +147,7 @@ void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
     if (s->segment == PL_SEGMENTS - 1) {
         PL(functions_at)(s, 0, 0, f);
         settled = f;
-#if PL_BANKS > 1
+#if PL_OPERATORS > 1
         if (s->which != PL_SETTLED_IN) {
             PL(serve)(&next, PL_SETTLED_IN);
         }

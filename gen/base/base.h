@@ -48,7 +48,7 @@ enum {
 	LIMIT_REGIONS_IN_TIME = 1024, /* in all */
 	LIMIT_IMPACTS = 30,         /* 'when' and stops that bounce: bits of a word in pl_guards */
 	MAX_EVENTS = 32,            /* crossings in a step of generated code */
-	CUT_POWERS = 3,             /* of a force over a part of a step: its value and two derivatives */
+	SPLIT_POWERS = 3,           /* of a force over a part of a step: its value and two derivatives */
 	LIMIT_COMPARED = 6,         /* operands of min and max whose crossings are found */
 	LIMIT_STRAIGHTS = 100,      /* pieces of a table likewise */
 	LIMIT_PIECES = 30,          /* halvings of a step in which crossings are looked for */

@@ -35,7 +35,7 @@ enum { CELL = sizeof(struct cell), KINDS = SMALL / CELL + 1, SLAB = 1 << 18 };
 static struct chunk ring;
 static struct slab *slabs;
 static struct cell *free_cells[KINDS];   /* blocks of up to so many times CELL */
-static char *uncut, *end_of_slab;
+static char *unsplit, *end_of_slab;
 static size_t held, terms;          /* bytes now; terms so far */
 static bool over;                   /* a budget is spent, and that is being told */
 
@@ -62,20 +62,20 @@ static size_t kind_of(size_t size)
 	return (size + CELL - 1) / CELL;
 }
 
-static void *cut_cell(size_t kind)
+static void *event_split_cell(size_t kind)
 {
 	size_t length = (kind + 1) * CELL;
-	if ((size_t)(end_of_slab - uncut) < length) {
+	if ((size_t)(end_of_slab - unsplit) < length) {
 		struct slab *slab = malloc(SLAB);
 		if (!slab)
 			out_of_memory();
 		slab->before = slabs;
 		slabs = slab;
-		uncut = (char *)(slab + 1);
+		unsplit = (char *)(slab + 1);
 		end_of_slab = (char *)slab + SLAB;
 	}
-	struct cell *cell = (struct cell *)uncut;
-	uncut += length;
+	struct cell *cell = (struct cell *)unsplit;
+	unsplit += length;
 	return cell + 1;
 }
 
@@ -84,7 +84,7 @@ static void *new_cell(size_t size)
 	size_t kind = kind_of(size);
 	struct cell *cell = free_cells[kind];
 	if (!cell)
-		return cut_cell(kind);
+		return event_split_cell(kind);
 	free_cells[kind] = cell->next;
 	return cell + 1;
 }
@@ -202,7 +202,7 @@ void memory_close(void)
 		free(slabs);
 	}
 	memset(free_cells, 0, sizeof free_cells);
-	uncut = end_of_slab = NULL;
+	unsplit = end_of_slab = NULL;
 }
 
 static void stop(const char *message)

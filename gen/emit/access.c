@@ -97,7 +97,7 @@ void emit_access(const struct emitter *e)
 		   { "PHASES", e->phases },
 		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
 		   { "BY_VALUES", peaks_by_values(e->step) },
-		   { "ANCHORED", step->anchors != NULL }, { "SEGMENTS", e->system->segments },
+		   { "REFRESHED", step->refresh != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
 		   { "OWN", e->model->params.held || e->step->is.tuned }, { "RAMPS", e->ramps },
 		   { "TAPS", most_taps_before(e) });

@@ -150,8 +150,8 @@ void banner_remainder(const struct emitter *e)
 	say(e, " * y' = A y + loads + inputs + r(t, y). A: the %s%s.\n", operator_text(model),
 	    e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
 	say(e, " * Exact: A%s, each constant correctly rounded; approximated: r, a force on %d equation%s.\n",
-	    model->remainder.loads ? " and the inputs" : ", the loads and the inputs", model->remainder.channels,
-	    model->remainder.channels == 1 ? "" : "s");
+	    model->remainder.loads ? " and the inputs" : ", the loads and the inputs", model->remainder.force_columns,
+	    model->remainder.force_columns == 1 ? "" : "s");
 	banner_growth(e);
 }
 
@@ -308,17 +308,18 @@ void banner_normal(const struct emitter *e)
 }
 
 /* From crossing to crossing */
-void banner_cut(const struct emitter *e)
+void banner_event_split(const struct emitter *e)
 {
-	const struct cut *cut = e->step->cut;
+	const struct event_split *event_split = e->step->event_split;
 	(e->step->normal ? banner_normal : banner_remainder)(e);
 	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
 			"cubic through an expression's values and slopes at both ends; there the formulas change.");
-	banner_breakpoints(e, cut->look);
+	banner_breakpoints(e, event_split->event_check);
 	banner_sentence(e, "Parts of such a step%s go by scheme etdrk4, with e^{A tau} made by the target: some %d KB "
 			"of stack. The look takes %d multiplications and %d additions beside the costs below.",
-			cut->certain < 1 ? ", so short that no pole turns by more than 1," : "", cut->kilobytes,
-			cut->multiplications, cut->additions);
+			event_split->certain < 1 ? ", so short that no pole turns by more than 1," : "",
+			event_split->kilobytes,
+			event_split->multiplications, event_split->additions);
 }
 
 static void banner_expressions(const struct emitter *e)
@@ -353,12 +354,14 @@ void banner_regions(const struct emitter *e)
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);
-	const struct looking *look = &e->step->regions.look;
-	banner_sentence(e, "%s", look->swift ? format("A step is one product where a bound shows it clear of every "
+	const struct event_check *event_check = &e->step->regions.event_check;
+	banner_sentence(e, "%s",
+			event_check->fast_path ? format("A step is one product where a bound shows it clear of every "
 			"breakpoint; up to %d crossings that are certain go by the model's own Taylor polynomials, of "
-			"degree %d; all else by the search.", MOST_SWIFT, look->degree) : look->clears ?
+			"degree %d; all else by the search.", MOST_FAST_PATH,
+				event_check->degree) : event_check->event_free ?
 			"A step is one product where a bound shows it clear of every breakpoint; all else goes by the "
-			"search." : format("Every step goes by the search: %s.", look->searches));
+			"search." : format("Every step goes by the search: %s.", event_check->searches));
 	banner_region_number(e);
 }
 
@@ -377,14 +380,15 @@ static void banner_part(const struct emitter *e, int index)
 	else
 		say(e, " *     %s; expression%s%s; %d regions, %d different%s\n", text, s->expressions > 1 ? "s" : "",
 		    divides, possible_regions(s), s->systems,
-		    part->regions.look.swift ? format("; polynomials of degree %d", part->regions.look.degree)
-				: format("; every step goes by the search: %s", part->regions.look.searches));
+		    part->regions.event_check.fast_path
+		    ? format("; polynomials of degree %d", part->regions.event_check.degree)
+				: format("; every step goes by the search: %s", part->regions.event_check.searches));
 }
 
 /* Of independent parts */
 void banner_parts(const struct emitter *e)
 {
-	bool swift = false;
+	bool fast_path = false;
 	say(e, " * Scheme exact: nothing is approximated. The equations are piecewise linear, in %d independent parts, "
 	       "each with\n"
 	       " * regions and crossings of its own: in each region every constant is its closed form, correctly "
@@ -393,12 +397,12 @@ void banner_parts(const struct emitter *e)
 	banner_expressions(e);
 	for (int p = 0; p < e->step->regions.parts; p++) {
 		banner_part(e, p);
-		swift = swift || e->step->regions.part[p]->regions.look.swift;
+		fast_path = fast_path || e->step->regions.part[p]->regions.event_check.fast_path;
 	}
-	if (swift)
+	if (fast_path)
 		banner_sentence(e, "A step of a part is one product where a bound shows it clear of every breakpoint; "
 				"up to %d crossings that are certain go by the part's own Taylor polynomials; all "
-				"else by the search.", MOST_SWIFT);
+				"else by the search.", MOST_FAST_PATH);
 	banner_region_number(e);
 }
 
@@ -483,9 +487,9 @@ static void banner_cost(const struct emitter *e)
 	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions",
 	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), step_form_text(e->step),
 	    program->multiplications, program->additions);
-	if (e->step->anchors)
+	if (e->step->refresh)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
-		    e->step->anchors->steps, program->wave_multiplications, program->wave_additions);
+		    e->step->refresh->steps, program->wave_multiplications, program->wave_additions);
 	else if (program->wave_multiplications)
 		say(e, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
 		    program->wave_additions);
@@ -498,9 +502,9 @@ static void banner_cost(const struct emitter *e)
 	else if (has_peaks(e))
 		say(e, " * The look for peaks takes %d and %d more, the outputs counted, where a bound shows that none "
 		       "passes its peak.\n", program->peak_multiplications, program->peak_additions);
-	if (e->step->anchors && e->step->anchors->terms)
+	if (e->step->refresh && e->step->refresh->terms)
 		say(e, " * What loads add in the steps between comes from a table of %d bytes, each number correctly "
-		       "rounded.\n", 8 * anchor_numbers(e->step));
+		       "rounded.\n", 8 * refresh_numbers(e->step));
 }
 
 /* Each need, and what is certified: two lines */

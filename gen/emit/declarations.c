@@ -51,7 +51,7 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->ramps)
 		say(e, "    double slope[$N_INPUTS];  /* of the inputs over the last step [1/s] */\n");
 	emit_load_members(e);
-	emit_anchor_members(e);
+	emit_refresh_members(e);
 	if (e->system->segments > 1)
 		say(e, "    int segment;          /* of time: how many changes of the loads are past */\n");
 	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"

@@ -10,7 +10,7 @@
 void emit_banner(const struct emitter *e);
 void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
 void banner_remainder(const struct emitter *e);
-void banner_cut(const struct emitter *e);
+void banner_event_split(const struct emitter *e);
 void banner_regions(const struct emitter *e);
 void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);

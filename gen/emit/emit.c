@@ -55,7 +55,7 @@ static bool step_reads_load(const struct emitter *e, int load)
 		read = step->regions.parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
 	for (int k = 0; step->normal && k < split->waves; k++)
 		read = read || split->wave[k].wave == e->system->load[load].wave;
-	return read || (step->cut && step->cut->look->load[load]) ||
+	return read || (step->event_split && step->event_split->event_check->load[load]) ||
 	       (step->taylor.expansion && step->taylor.expansion->load[load]) ||
 	       (step->collocation && motion_reads_load(e, load));
 }
@@ -70,14 +70,14 @@ static void number_loads(struct emitter *e)
 {
 	e->phase = ARRAY(int, (size_t)e->system->loads);
 	e->growth = ARRAY(int, (size_t)e->system->loads);
-	e->anchor = ARRAY(int, (size_t)e->system->loads);
+	e->phasor = ARRAY(int, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct wave *wave = e->system->load[l].wave;
 		bool needed = load_is_needed(e, l);
 		e->phase[l] = needed && oscillates(wave) ? e->phases++ : -1;
 		e->growth[l] = needed && mpq_sgn(wave->a) != 0 ? e->growths++ : -1;
-		e->anchor[l] = is_anchored(e->step, l) ? e->anchored : -1;
-		e->anchored += is_anchored(e->step, l) ? e->system->load[l].columns : 0;
+		e->phasor[l] = is_refreshed(e->step, l) ? e->refreshed : -1;
+		e->refreshed += is_refreshed(e->step, l) ? e->system->load[l].columns : 0;
 	}
 }
 
@@ -112,7 +112,7 @@ static bool forms_need_math(const struct emitter *e)
 	}
 	for (int k = 0; k < model->schedule.operators; k++) {
 		const struct form *const *left = (const struct form *const *)model->schedule.operator[k].left;
-		math = math || reads_of(model, model->remainder.channels, left).math;
+		math = math || reads_of(model, model->remainder.force_columns, left).math;
 	}
 	return math;
 }
@@ -156,7 +156,7 @@ static void emit_all_tables(const struct emitter *e)
 		emit_gamma(e);
 	emit_mode_matrices(e);
 	emit_load_tables(e);
-	emit_anchor_tables(e);
+	emit_refresh_tables(e);
 	if (!e->model->params.retuned)
 		emit_nominal(e);                /* else with the tables of regions */
 	if (e->system->segments > 1)
@@ -206,7 +206,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_access(e);
 	emit_held_retune(e);
 	emit_if_any(e->prints->pass, e);
-	if ((e->step->is.flow == FLOW_RECIPE && !e->step->cut) || reads_channels(e->model))
+	if ((e->step->is.flow == FLOW_RECIPE && !e->step->event_split) || reads_force_columns(e->model))
 		emit_remainder(e);
 	emit_if_any(e->prints->step, e);
 	emit_out(e);

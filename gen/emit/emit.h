@@ -5,7 +5,7 @@
 
 #include "state.h"
 
-/* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _rhs: a step as C ---- */
+/* ---- emit.c and emit_step, _out, _run, _loads, _forced, _refresh, _time, _rhs: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */

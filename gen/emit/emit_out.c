@@ -123,10 +123,10 @@ void emit_out(const struct emitter *e)
 	emit_input_locals(e, r.input);
 	if (r.time)
 		say(e, "    const double t = $n_time(s);\n");
-	emit_turned_loads(e, r.load, r.time);
+	emit_rotated_loads(e, r.load, r.time);
 	if (left)
 		say(e, "    double left[%d];\n"
-		       "    %s\n", model->remainder.channels, remainder_of_outputs(e));
+		       "    %s\n", model->remainder.force_columns, remainder_of_outputs(e));
 	emit_formulas(f, 4);
 	say(e, "    (void)s;\n"
 	       "}\n");

@@ -133,7 +133,7 @@ static struct formulas *collected(const struct emitter *e, int segment, int inde
 	const struct model *model = e->model;
 	int rows = model->written->n;
 	const struct residual *from = model->equations.whole ? model->equations.whole->residual
-							     : model->equations.snapshot[segment].residual;
+							     : model->equations.segment_equations[segment].residual;
 	const struct form **form = ARRAY(const struct form *, (size_t)rows);
 	for (int i = 0; i < rows; i++)
 		form[i] = without_highest(model, from[i].form);

@@ -160,7 +160,7 @@ static void mark_operand(const struct emitter *e, const struct operand *operand,
 		loads[load_of_column(e->system, operand->index, &first)] = true;
 }
 
-/* e: of the block's step; where loads have anchors, one stands at the start of a block. */
+/* e: of the block's step; where loads have refreshes, one stands at the start of a block. */
 static void emit_block_locals(const struct emitter *e, const struct emitter *of_step)
 {
 	const struct rows *rows = e->step->rows;
@@ -175,8 +175,8 @@ static void emit_block_locals(const struct emitter *e, const struct emitter *of_
 			mark_operand(e, &(struct operand){ OPERAND_LOAD, k }, reads, loads);
 	emit_raw_locals(e, reads);
 	emit_sample_locals(e);
-	if (of_step->step->anchors)
-		emit_loads_at_anchor(of_step, loads);
+	if (of_step->step->refresh)
+		emit_loads_at_refresh(of_step, loads);
 	else
 		emit_load_states(e, loads, false);
 	emit_start(e);
@@ -287,12 +287,12 @@ static void emit_block(const struct emitter *e)
 	emit_block_step(&block);
 	if (inputs)
 		emit_keep_inputs(e, e->step->rows->count);
-	if (!e->step->anchors)
+	if (!e->step->refresh)
 		emit_load_advance(e, spell(e, "$N_ROWS"));
 	say(e, "    s->k += $N_ROWS;\n");
-	if (e->step->anchors)
+	if (e->step->refresh)
 		say(e, "    s->since = $N_ROWS;\n"
-		       "    $n_drop_anchor(s);\n");
+		       "    $n_drop_refresh(s);\n");
 	say(e, "    if (out != NULL) { $n_rows(start, %sout); }\n", inputs ? "u, " : "");
 	close_function(e, "");
 }
@@ -330,7 +330,7 @@ void emit_run(const struct emitter *e)
 	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
-		   { "OVER", over }, { "ANCHORED", e->step->anchors != NULL }, { "RESTS", rests },
+		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL }, { "RESTS", rests },
 		   { "IN_STEP", rests && e->step->linear.rest->in_step }, { "KEPT", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");
 }

@@ -111,13 +111,13 @@ static void emit_expansion_constants(const struct emitter *e)
 	.types = emit_divided_types, .status_note = "0, or PL_... bits (plrt.h)", \
 	.declare_state = emit_divided_declarations
 
-static const struct printers cut = {
-	.banner = banner_cut,
+static const struct printers event_split = {
+	.banner = banner_event_split,
 	OF_SERIES,
-	.members = emit_cut_members,
+	.members = emit_event_split_members,
 	.places = always,
-	.tables = emit_cut_place,
-	.step = emit_cut_step,
+	.tables = emit_event_split_place,
+	.step = emit_event_split_step,
 	.at = emit_expansion_at
 };
 
@@ -163,5 +163,5 @@ const struct printers *printers_of(const struct step *step)
 	};
 	if (step->is.events == EVENTS_OF_REGIONS)
 		return step->is.apart ? &parts : &regions;
-	return step->is.events == EVENTS_SPLIT ? &cut : of[step->is.flow];
+	return step->is.events == EVENTS_SPLIT ? &event_split : of[step->is.flow];
 }

@@ -35,10 +35,10 @@ const char *samples_of_step(const struct emitter *e);
 const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left);
 const char *remainder_of_outputs(const struct emitter *e);
 /* Does an output read an acceleration that something left over acts on? */
-bool reads_channels(const struct model *model);
-void emit_remainder(const struct emitter *e);                      /* and of a bank the choice of an operator */
+bool reads_force_columns(const struct model *model);
+void emit_remainder(const struct emitter *e);                      /* and of a schedule the choice of an operator */
 
-const char *selection_call(const struct emitter *e);              /* of a bank: which operator serves now */
+const char *selection_call(const struct emitter *e);              /* of a schedule: which operator serves now */
 
 /* ---- actions.c: the step of a scheme that leaves something over ---- */
 

@@ -194,7 +194,7 @@ const char *place_in_loop(const struct emitter *e)
 
 bool keeps_modes(const struct emitter *e)
 {
-	return e->step->normal && !e->step->cut;
+	return e->step->normal && !e->step->event_split;
 }
 
 /* s->y is not the state as it is known outside: NAME_get makes that */

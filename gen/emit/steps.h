@@ -13,10 +13,10 @@ void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` N
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
 bool outputs_read(const struct emitter *e, int load);
-void emit_anchor_tables(const struct emitter *e);                 /* of anchors: tables, and NAME_anchor */
-void emit_anchor_members(const struct emitter *e);
-void emit_loads_at_anchor(const struct emitter *e, const bool *loads);    /* where one stands now */
-void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
+void emit_refresh_tables(const struct emitter *e);                /* of refreshes: tables, and NAME_refresh */
+void emit_refresh_members(const struct emitter *e);
+void emit_loads_at_refresh(const struct emitter *e, const bool *loads);   /* where one stands now */
+void emit_rotated_loads(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
 void banner_forced(const struct emitter *e);                      /* what of the state it is, what that costs */
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */

@@ -28,9 +28,9 @@ struct emitter {
 	int phases, growths;        /* in the state */
 	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
 	bool ramps;                 /* some input is of first order */
-	int anchored;               /* load states in the state, at the last anchor */
-	int *anchor;                /* per load: index of its first there; -1: none */
-	bool at_anchor;             /* load states are written where the anchor keeps them */
+	int refreshed;              /* load states in the state, at the last refresh */
+	int *phasor;                /* per load: index of its first there; -1: none */
+	bool at_refresh;            /* load states are written where the refresh keeps them */
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */

@@ -21,9 +21,10 @@ struct building {                   /* what the builders share */
 	struct collector collector;
 	const struct request *request;
 	const struct wave *polynomial; /* the wave of t^k alone */
-	struct snapshot *snapshot;  /* per interval between changes of formula in time */
-	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no remainder */
-	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
+	struct segment_equations *segment_equations; /* per interval between changes of formula in time */
+	struct segment_equations *whole; /* the same for all time, with atoms; NULL: there is no remainder */
+	/* with the spec's values, where `segment_equations` has tunable params; else NULL */
+	struct segment_equations *nominal;
 	int nominals;               /* its intervals */
 	const bool *factor;         /* per tunable param: a number of regions, and no input; NULL: none is */
 	struct point *values;       /* nothing fixed but tunable params; made on first use */
@@ -32,7 +33,7 @@ struct building {                   /* what the builders share */
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
 	int *owner;                 /* per coordinate: its residual */
 };
-struct snapshot {                   /* the equations and outputs in one interval of time */
+struct segment_equations {          /* the equations and outputs in one interval of time */
 	int residuals, written;     /* all; those of written equations come first */
 	struct residual *residual;
 	struct form **element;      /* per element of the sketch: its force */
@@ -42,8 +43,8 @@ struct snapshot {                   /* the equations and outputs in one interval
 
 /* ---- equations.c: equations and sketches to residuals ---- */
 
-void collect_equations(struct building *b, struct snapshot *snapshot);
-void collect_outputs(struct building *b, struct snapshot *snapshot);
+void collect_equations(struct building *b, struct segment_equations *segment_equations);
+void collect_outputs(struct building *b, struct segment_equations *segment_equations);
 int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
@@ -53,7 +54,7 @@ struct output *row_of_form(struct building *b, struct form *form);
 struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
-void add_elements(struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
+void add_elements(struct building *b, struct segment_equations *s); /* the sketch's forces to the residuals */
 void check_mass(const struct building *b);
 
 /* ---- delays.c: inputs as they were some time ago ---- */
@@ -62,7 +63,7 @@ void find_delays(struct building *b);                       /* model->delays; af
 
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
 
-void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
+void fill_states(struct building *b, const struct segment_equations *rows); /* M, C, K, inputs */
 /* Tunable params that the instance has, at the spec's values: what is linear there belongs to the linear core, and the
  * difference is left over. Itself, where it reads none. */
 const struct form *nominal_form(struct building *b, const struct form *form);

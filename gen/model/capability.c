@@ -12,7 +12,7 @@
 enum flow flow_of(const struct model *model)
 {
 	const struct scheme_row *row = scheme_row(model->scheme);
-	if (model->switching || model->params.tuning || (model->remainder.channels == 0 && !has_contacts(model)))
+	if (model->switching || model->params.tuning || (model->remainder.force_columns == 0 && !has_contacts(model)))
 		return FLOW_LINEAR;
 	return row->modes ? FLOW_NORMAL : row->collocates ? FLOW_COLLOCATION : row->expands ? FLOW_SERIES : FLOW_RECIPE;
 }
@@ -25,7 +25,8 @@ bool has_contacts(const struct model *model)
 bool steps_exactly(const struct model *model)
 {
 	return model->scheme == SCHEME_EXACT ||
-	       (model->remainder.channels == 0 && !has_contacts(model) && !scheme_row(model->scheme)->holds_coupling);
+	       (model->remainder.force_columns == 0 && !has_contacts(model) &&
+		!scheme_row(model->scheme)->holds_coupling);
 }
 
 int output_named(const struct model *model, const char *name)
@@ -39,7 +40,7 @@ int output_named(const struct model *model, const char *name)
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
 bool is_measured(const struct model *model)
 {
-	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.channels > 0;
+	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.force_columns > 0;
 	for (int i = 0; i < model->spec->required.needs && !measured; i++) {
 		const int o = output_named(model, model->spec->required.need[i].output);
 		const struct output *output = o < 0 ? NULL : &model->output[o];

@@ -6,13 +6,13 @@
 
 struct indexed {
 	struct building *b;
-	struct snapshot *snapshot;
+	struct segment_equations *segment_equations;
 	int index;
 };
 
 /* ---- collection ---- */
 
-static void add_residual(struct snapshot *s, struct form *form, struct place at, struct place end)
+static void add_residual(struct segment_equations *s, struct form *form, struct place at, struct place end)
 {
 	*MORE(s->residual, s->residuals) = (struct residual){ form, at, end };
 }
@@ -32,7 +32,7 @@ static void collect_equation(void *context)
 	for (int i = 0; i < shape->rows * shape->columns; i++) {
 		const struct form *l = is_plain_zero(left) ? left->cell[0] : left->cell[i],
 				  *r = is_plain_zero(right) ? right->cell[0] : right->cell[i];
-		add_residual(work->snapshot, form_sum(l, r, true), equation->at, equation->end);
+		add_residual(work->segment_equations, form_sum(l, r, true), equation->at, equation->end);
 	}
 }
 
@@ -78,21 +78,21 @@ static void collect_element(void *context)
 		form = is_constant(value->cell[0]) ? form_product(&b->collector, value->cell[0], form)
 						   : kept_product(&b->collector, element->value, value->cell[0], form);
 	}
-	work->snapshot->element[work->index] = form;
+	work->segment_equations->element[work->index] = form;
 }
 
 /* Up to the first statement that changes its formula where none did before: the interval is then collected again, and
  * an atom that several equations have is met first where it is in the other intervals. */
-void collect_equations(struct building *b, struct snapshot *snapshot)
+void collect_equations(struct building *b, struct segment_equations *segment_equations)
 {
 	const int *changes = &b->collector.changes, known = *changes;
 	for (int i = 0; i < b->spec->equations && *changes == known; i++)
 		if (b->spec->equation[i].right)
-			statement_guard(collect_equation, &(struct indexed){ b, snapshot, i });
-	snapshot->written = snapshot->residuals;
-	snapshot->element = ARRAY(struct form *, b->spec->elements);
+			statement_guard(collect_equation, &(struct indexed){ b, segment_equations, i });
+	segment_equations->written = segment_equations->residuals;
+	segment_equations->element = ARRAY(struct form *, b->spec->elements);
 	for (int i = 0; i < b->spec->elements && *changes == known; i++)
-		statement_guard(collect_element, &(struct indexed){ b, snapshot, i });
+		statement_guard(collect_element, &(struct indexed){ b, segment_equations, i });
 }
 
 /* ---- where a derivative stands ---- */
@@ -182,7 +182,7 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 	if (choice == UNTOUCHED && is_sketched(b, coord))
 		return false;
 	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
-	const struct form *form = b->snapshot->residual[row].form;
+	const struct form *form = b->segment_equations->residual[row].form;
 	return has_coordinate_of_order(form, coord, order) || (order == 1 && has_slider(b, form, coord));
 }
 
@@ -242,7 +242,7 @@ bool assign_equations(struct building *b)
 		b->owner = b->model->equations.owner;
 		return true;
 	}
-	int n = b->model->n, written = b->snapshot->written, all = written, surplus = -1, missing = -1;
+	int n = b->model->n, written = b->segment_equations->written, all = written, surplus = -1, missing = -1;
 	b->owner = ARRAY(int, n);
 	for (int j = 0; j < n; j++)
 		b->owner[j] = -1;
@@ -259,7 +259,7 @@ bool assign_equations(struct building *b)
 			missing = j;
 	}
 	if (all > n)
-		say_error(b->snapshot->residual[surplus < 0 ? written - 1 : surplus].at, NULL,
+		say_error(b->segment_equations->residual[surplus < 0 ? written - 1 : surplus].at, NULL,
 			  "surplus equation: %s for %s", plural(all, "equation"), plural(n, "coordinate"));
 	else if (all < n)
 		tell_missing(b, missing, all);
@@ -268,7 +268,7 @@ bool assign_equations(struct building *b)
 
 /* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand
  * alone */
-static void combine_residuals(const struct building *b, struct snapshot *s)
+static void combine_residuals(const struct building *b, struct segment_equations *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->count.components;
@@ -283,7 +283,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 }
 
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
-void add_elements(struct building *b, struct snapshot *s)
+void add_elements(struct building *b, struct segment_equations *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->count.components;
@@ -352,7 +352,7 @@ void collect_whole(struct building *b)
 {
 	int keep = (int)b->collector.keep;
 	b->collector.keep = KEEP_ALL;
-	b->whole = NEW(struct snapshot);
+	b->whole = NEW(struct segment_equations);
 	b->collector.whole_time = true;
 	forget_lets(b->spec);
 	collect_equations(b, b->whole);

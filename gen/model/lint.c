@@ -565,7 +565,8 @@ void lint(struct building *b)
 	check_names(b->spec);
 	check_elements(&lint);
 	check_equations(b);
-	if (model->switching || model->schedule.operators || model->remainder.channels || model->scheme != SCHEME_EXACT)
+	if (model->switching || model->schedule.operators || model->remainder.force_columns ||
+	    model->scheme != SCHEME_EXACT)
 		return;
 	int states = model->system.states;
 	if (states <= MOST_POLES) {

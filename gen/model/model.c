@@ -291,20 +291,20 @@ static void check_parts(const struct building *b)
 			  LIMIT_STATES);
 }
 
-static void collect_interval(struct building *b, struct snapshot *snapshot)
+static void collect_interval(struct building *b, struct segment_equations *segment_equations)
 {
 	forget_lets(b->spec);
-	collect_equations(b, snapshot);
-	collect_impacts(b, snapshot);
+	collect_equations(b, segment_equations);
+	collect_impacts(b, segment_equations);
 	forget_lets(b->spec);                   /* collected anew: in an output no atom is kept */
-	collect_outputs(b, snapshot);
+	collect_outputs(b, segment_equations);
 }
 
 /* Intervals that were one when they were collected get residuals of their own. */
-static void part_snapshots(struct snapshot *snapshot, int count)
+static void part_segments(struct segment_equations *segment_equations, int count)
 {
 	for (int i = count - 1; i > 0; i--) {
-		struct snapshot *s = &snapshot[i];
+		struct segment_equations *s = &segment_equations[i];
 		struct residual *residual = s->residual;
 		if (residual != s[-1].residual)
 			continue;
@@ -320,13 +320,13 @@ static void collect_intervals(struct building *b)
 {
 	struct collector *c = &b->collector;
 	/* of the intervals that the changes known then left, the first `done` of them */
-	struct snapshot *old = NULL;
+	struct segment_equations *old = NULL;
 	const mpq_t *change = NULL;
 	int known, done = 0;
 	do {
 		const mpq_t *list = c->change;
 		known = c->changes;
-		b->snapshot = ARRAY(struct snapshot, known + 1);
+		b->segment_equations = ARRAY(struct segment_equations, known + 1);
 		int within = 0;                 /* the old interval in which this one lies */
 		for (c->interval = 0;
 		     c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors());
@@ -334,16 +334,16 @@ static void collect_intervals(struct building *b)
 			if (within < done && c->interval > 0 && mpq_equal(change[within], list[c->interval - 1]))
 				within++;
 			if (within < done)
-				b->snapshot[c->interval] = old[within];
+				b->segment_equations[c->interval] = old[within];
 			else
-				collect_interval(b, &b->snapshot[c->interval]);
+				collect_interval(b, &b->segment_equations[c->interval]);
 		}
 		discard(old);
-		old = b->snapshot;
+		old = b->segment_equations;
 		change = list;
 		done = c->interval - 1;         /* in the last one a change was met */
 	} while (c->changes != known && !diagnostics_errors());
-	part_snapshots(b->snapshot, known + 1);
+	part_segments(b->segment_equations, known + 1);
 	c->interval = 0;
 	b->model->system.segments = c->changes + 1;
 	b->model->system.change = c->change;
@@ -406,7 +406,7 @@ static void collect_with_params(struct building *b)
 	spread_tuned(b->spec);
 	if (!left)
 		part_factors(b);
-	b->nominal = b->snapshot;
+	b->nominal = b->segment_equations;
 	b->nominals = c->changes + 1;
 	b->model->params.kept = true;
 	c->params = left ? PARAMS_ATOMS : PARAMS_INPUTS;

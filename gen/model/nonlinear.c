@@ -38,7 +38,7 @@ void find_nonlinear(void *building)
 	struct building *b = building;
 	struct model *model = b->model;
 	const struct spec *spec = b->spec;
-	const struct snapshot *s = b->nominal ? b->nominal : b->snapshot;
+	const struct segment_equations *s = b->nominal ? b->nominal : b->segment_equations;
 	const int segments = b->nominal ? b->nominals : model->system.segments;
 	for (int k = 0; k < segments; k++) {
 		for (int i = 0; i < s[k].residuals; i++)

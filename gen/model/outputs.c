@@ -16,9 +16,9 @@ static void add_highest(const struct model *model, const struct linear *system, 
 		rational_addmul(output->state[j], factor, highest[coord * system->states + j]);
 	for (int i = 0; i < model->n; i++) {
 		mpq_mul(weight, inverse[coord * model->n + i], factor);
-		for (int c = 0; c < model->remainder.channels; c++)
+		for (int c = 0; c < model->remainder.force_columns; c++)
 			if (model->remainder.row[c] == i)
-				mpq_add(output->channel[c], output->channel[c], weight);
+				mpq_add(output->force_column[c], output->force_column[c], weight);
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				for (int s = 0; s < model->system.segments; s++) {
@@ -41,7 +41,7 @@ static int state_of(const struct model *model, const struct basis *basis)
 /* Its form in one segment of time */
 static const struct form *output_form(const struct building *b, const struct output *output, int segment)
 {
-	return b->snapshot[segment].output[output->statement]->cell[output->cell];
+	return b->segment_equations[segment].output[output->statement]->cell[output->cell];
 }
 
 struct direct_row {
@@ -123,17 +123,17 @@ static const char *component_name(const char *name, int component)
 }
 
 /* What is not linear becomes forms with atoms, printed as C. */
-void collect_outputs(struct building *b, struct snapshot *snapshot)
+void collect_outputs(struct building *b, struct segment_equations *segment_equations)
 {
 	int index = 0;
-	snapshot->output = ARRAY(struct value *, b->spec->count.outputs);
+	segment_equations->output = ARRAY(struct value *, b->spec->count.outputs);
 	b->collector.tolerant = b->collector.reading = true;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		struct output_work work = { b, s, NULL };
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
 		statement_guard(collect_output, &work);
-		snapshot->output[index++] = work.value;
+		segment_equations->output[index++] = work.value;
 	}
 	b->collector.tolerant = b->collector.reading = false;
 }
@@ -141,9 +141,9 @@ void collect_outputs(struct building *b, struct snapshot *snapshot)
 /* An output is a row over states and loads if it is so in all segments of time, with the same states. */
 static bool is_row(const struct building *b, int index)
 {
-	const struct value *first = b->snapshot->output[index];
+	const struct value *first = b->segment_equations->output[index];
 	for (int s = 0; s < b->model->system.segments; s++) {
-		const struct value *value = b->snapshot[s].output[index];
+		const struct value *value = b->segment_equations[s].output[index];
 		if (!value || value->rows != first->rows || value->columns != first->columns)
 			return false;
 		for (int i = 0; i < value->rows * value->columns; i++)
@@ -181,7 +181,7 @@ static bool becomes_row(struct building *b, int index, struct value *value, bool
 		row = row && (borne->terms == 0 || !borne->term[borne->terms - 1].basis.atom);
 	}
 	for (int s = 0; row && s < b->model->system.segments; s++)
-		b->snapshot[s].output[index] = value;
+		b->segment_equations[s].output[index] = value;
 	return row;
 }
 
@@ -193,7 +193,7 @@ static void name_outputs(struct building *b)
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
 		bool row = is_row(b, index), bears = false;
-		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
+		struct output_work work = { b, s, row ? b->segment_equations->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
 		row = row || becomes_row(b, index, work.value, &bears);
@@ -234,7 +234,7 @@ static bool check_output(const struct model *model, const struct output *output)
 	return false;
 }
 
-static void make_rows(const struct linear *system, int channels, struct output *output)
+static void make_rows(const struct linear *system, int force_columns, struct output *output)
 {
 	output->state = rationals(system->states);
 	output->load = ARRAY(mpq_t *, system->loads);
@@ -242,7 +242,7 @@ static void make_rows(const struct linear *system, int channels, struct output *
 		output->load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
 	for (int k = 0; k < 2; k++)
 		output->input[k] = rationals(system->inputs);
-	output->channel = rationals(channels);
+	output->force_column = rationals(force_columns);
 }
 
 /* ---- an expression as a row ---- */
@@ -262,7 +262,7 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 {
 	struct output *row = NEW(struct output);
 	int segments = b->model->system.segments;
-	make_rows(&b->model->system, b->model->remainder.channels, row);
+	make_rows(&b->model->system, b->model->remainder.force_columns, row);
 	for (int s = 0; s < segments; s++) {
 		int known = s < of->segments ? s : 0;
 		spread_loads(b, form_in(e, known), add_direct, &(struct direct_row){ row, segments, s });
@@ -284,7 +284,7 @@ struct output *row_of_form(struct building *b, struct form *form)
 {
 	const struct linear *system = &b->model->system;
 	struct output *row = NEW(struct output);
-	make_rows(system, b->model->remainder.channels, row);
+	make_rows(system, b->model->remainder.force_columns, row);
 	spread_loads(b, form, add_direct, &(struct direct_row){ row, system->segments, 0 });
 	add_states_and_inputs(b, form, row);
 	repeat_loads(system, row);
@@ -335,7 +335,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 			model->equations.highest[k] = NEW(struct output);
 			model->equations.highest[k]->value = model->output[i].value;
 			model->equations.highest[k]->name = model->output[i].name;
-			make_rows(&model->system, model->remainder.channels, model->equations.highest[k]);
+			make_rows(&model->system, model->remainder.force_columns, model->equations.highest[k]);
 			add_highest(model, &model->system, inverse, highest, k, one, model->equations.highest[k]);
 		}
 	}
@@ -370,7 +370,7 @@ void build_outputs(struct building *b)
 		struct output *output = &model->output[i];
 		if (output->statement != told && !check_output(model, output))
 			told = output->statement;
-		make_rows(system, model->remainder.channels, output);
+		make_rows(system, model->remainder.force_columns, output);
 		if (!output->value)
 			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())

@@ -36,7 +36,7 @@ struct request {                    /* what the user asks for on the command lin
 	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
-	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
+	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	int definitions;

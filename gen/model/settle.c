@@ -7,7 +7,7 @@
 
 struct change {                     /* of formula in time */
 	struct building *b;
-	const struct snapshot *snapshot; /* after it */
+	const struct segment_equations *segment_equations; /* after it */
 	int index;
 };
 
@@ -59,7 +59,7 @@ static void tell_change(void *context)
 	const struct spec *spec = b->spec;
 	for (int i = 0; i < spec->elements; i++)
 		if (spec->element[i].kind != ELEMENT_FORCE && spec->element[i].kind != ELEMENT_FRICTION &&
-		    !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
+		    !same_in_states(b->segment_equations[0].element[i], work->segment_equations->element[i]))
 			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force",
 			      "a mass, spring or damper needs a constant");
 	const struct node *term = first_changing_term(b, work->index);
@@ -69,10 +69,10 @@ static void tell_change(void *context)
 			  readable_text(b->model->system.change[work->index - 1])));
 }
 
-static bool same_equations(const struct building *b, const struct snapshot *s)
+static bool same_equations(const struct building *b, const struct segment_equations *s)
 {
 	for (int i = 0; i < b->model->n; i++)
-		if (!same_in_states(b->snapshot->residual[i].form, s->residual[i].form))
+		if (!same_in_states(b->segment_equations->residual[i].form, s->residual[i].form))
 			return false;
 	return true;
 }
@@ -87,7 +87,7 @@ struct demands { bool linear, piecewise; }; /* linear equations do; switching be
 
 static struct demands demands_of(const struct building *b)
 {
-	const struct snapshot *first = b->snapshot;
+	const struct segment_equations *first = b->segment_equations;
 	const int segments = b->model->system.segments;
 	bool atoms = false, same = true, piecewise = true;
 	for (int s = 0; s < segments; s++) {
@@ -125,14 +125,14 @@ bool needs_regions(const struct building *b)
 static bool check_changes(struct building *b)
 {
 	for (int s = 1; s < b->model->system.segments; s++)
-		if (!same_equations(b, &b->snapshot[s]))
-			return statement_guard(tell_change, &(struct change){ b, &b->snapshot[s], s });
+		if (!same_equations(b, &b->segment_equations[s]))
+			return statement_guard(tell_change, &(struct change){ b, &b->segment_equations[s], s });
 	return true;
 }
 
 const struct node *changing_factor(struct building *b, int segment)
 {
-	if (same_equations(b, &b->snapshot[segment]))
+	if (same_equations(b, &b->segment_equations[segment]))
 		return NULL;
 	const struct node *term = first_changing_term(b, segment);
 	b->collector.interval = 0;
@@ -143,7 +143,7 @@ const struct node *changing_factor(struct building *b, int segment)
 /* An equation is as many scalar ones at all times. */
 static bool check_sizes(const struct building *b)
 {
-	const struct snapshot *first = b->snapshot;
+	const struct segment_equations *first = b->segment_equations;
 	for (int s = 1; s < b->model->system.segments; s++)
 		for (int i = 0; i < first->written || i < first[s].written; i++)
 			if (i >= first->written || i >= first[s].written ||
@@ -160,7 +160,8 @@ bool is_linear(const struct building *b)
 {
 	for (int s = 0; s < b->model->system.segments; s++)
 		for (int i = 0; i < b->model->n; i++)
-			if (holds_atom(b->snapshot[s].residual[i].form) || !same_equations(b, &b->snapshot[s]))
+			if (holds_atom(b->segment_equations[s].residual[i].form) ||
+			    !same_equations(b, &b->segment_equations[s]))
 				return false;
 	return true;
 }
@@ -207,18 +208,18 @@ static void part_loads(void *context)
 
 static const struct form *load_form(const struct building *b, int segment, int row)
 {
-	return b->whole ? b->load[segment * b->model->n + row] : b->snapshot[segment].residual[row].form;
+	return b->whole ? b->load[segment * b->model->n + row] : b->segment_equations[segment].residual[row].form;
 }
 
 /* The first in the text of those that are not piecewise linear; or of all */
 static const struct atom *first_atom(const struct building *b, bool all)
 {
 	const struct atom *first = NULL;
-	const struct snapshot *snapshot = b->nominal ? b->nominal : b->snapshot;
+	const struct segment_equations *segment_equations = b->nominal ? b->nominal : b->segment_equations;
 	for (int s = 0; s < (b->nominal ? b->nominals : b->model->system.segments); s++)
-		for (int i = 0; i < snapshot[s].residuals; i++)
-			for (int k = 0; k < snapshot[s].residual[i].form->terms; k++) {
-				const struct basis *basis = &snapshot[s].residual[i].form->term[k].basis;
+		for (int i = 0; i < segment_equations[s].residuals; i++)
+			for (int k = 0; k < segment_equations[s].residual[i].form->terms; k++) {
+				const struct basis *basis = &segment_equations[s].residual[i].form->term[k].basis;
 				const struct atom *a = basis->atom;
 				if (a && (!first || a->node->start.offset < first->node->start.offset) &&
 				    (all || !is_piecewise_form(form_unit(*basis))))
@@ -392,10 +393,10 @@ void build_system(struct building *b)
 	if (!check_sizes(b) || !assign_equations(b))
 		return;
 	for (int s = 0; s < system->segments; s++)
-		add_elements(b, &b->snapshot[s]);
+		add_elements(b, &b->segment_equations[s]);
 	if (diagnostics_errors() || !settle_scheme(b))
 		return;
-	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
+	const struct segment_equations *rows = b->whole ? b->whole : b->segment_equations;
 	fill_states(b, rows);
 	for (int s = 0; s < system->segments && !model->remainder.loads; s++)
 		for (int i = 0; i < model->n; i++)
@@ -409,7 +410,7 @@ void build_system(struct building *b)
 			fill_loads(b, s, i, load_form(b, s, i));
 	model->equations.owner = b->owner;
 	model->equations.residual = rows->residual;
-	model->equations.snapshot = b->snapshot;
+	model->equations.segment_equations = b->segment_equations;
 	model->equations.whole = b->whole;
 	if (b->whole && !diagnostics_errors())
 		prefer_stiff(b);

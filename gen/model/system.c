@@ -159,7 +159,7 @@ bool parts_params(const struct building *b)
 	       !scheme_row(b->model->scheme)->expands;
 }
 
-void fill_states(struct building *b, const struct snapshot *rows)
+void fill_states(struct building *b, const struct segment_equations *rows)
 {
 	struct model *model = b->model;
 	struct linear *system = &model->system;

@@ -54,7 +54,7 @@ static void check_predictor(struct jacobian *j)
 
 /* ---- operators that are too soft ---- */
 
-/* Of a bank: that which serves at this point */
+/* Of a schedule: that which serves at this point */
 struct choice_work {
 	struct jacobian *j;
 	int which;
@@ -491,7 +491,7 @@ static void check_phases(const struct model *model)
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
-	bool left = model->remainder.channels > 0;
+	bool left = model->remainder.force_columns > 0;
 	struct jacobian j = { .b = b };
 	lint(b);
 	if (left && model->nonlinear.obstacle && b->spec->required.needs == 0)     /* else the scheme is chosen */

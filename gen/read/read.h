@@ -225,7 +225,7 @@ struct asked_scheme {
 };
 struct asked_operators {
 	bool given;
-	struct node *count;         /* of a bank between two values; NULL: each has a value of its own */
+	struct node *count;         /* of a schedule between two values; NULL: each has a value of its own */
 	struct place at;
 	int fixeds;
 	struct fixed *fixed;
@@ -326,7 +326,7 @@ struct scheme_row {
 	bool by_default;            /* where exact is not possible and no scheme is asked for */
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_remainder;        /* over the step: there is a value of its order at any time between steps */
-	bool cuts;                  /* its steps end where the state chooses other formulas: see follows_crossings() */
+	bool event_split;           /* its steps end where the state chooses other formulas: see follows_crossings() */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
 	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
 	bool collocates;            /* or by collocation, which bears stiffness; */
@@ -348,7 +348,7 @@ const char *all_schemes(const char *separator);             /* their names */
 const char *leaving_schemes(const char *last);              /* of those with a quadrature: a, b<last>c */
 const char *stopping_schemes(void);                         /* of those that go from event to event by events.c */
 bool stops_at_events(enum scheme scheme);                   /* whether it does, with steps that are cut into parts */
-bool is_cut(enum scheme scheme);
+bool is_event_split(enum scheme scheme);
 const char *holding_schemes(void);                          /* of those that hold coupling terms */
 /* Scheme etd1, of first order in h: ... `order`: of a scheme that expands */
 const char *scheme_note(enum scheme scheme, int order);

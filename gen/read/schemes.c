@@ -102,7 +102,7 @@ bool stops_at_events(enum scheme scheme)
 	return stops(&rows[scheme]);
 }
 
-bool is_cut(enum scheme scheme)
+bool is_event_split(enum scheme scheme)
 {
 	return stops(&rows[scheme]) && !rows[scheme].expands;
 }

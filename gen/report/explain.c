@@ -114,13 +114,13 @@ static void person_operations(FILE *to, const struct step *step)
 	const struct program *program = step->program;
 	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", step_form_text(step),
 		readable_text(model->h), program->multiplications, program->additions);
-	if (step->anchors)
-		fprintf(to, "; every %d steps, for the functions of the loads, %d and %d more", step->anchors->steps,
+	if (step->refresh)
+		fprintf(to, "; every %d steps, for the functions of the loads, %d and %d more", step->refresh->steps,
 			program->wave_multiplications, program->wave_additions);
 	else if (program->wave_multiplications)
 		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->wave_multiplications,
-			program->wave_additions, step->no.anchors ? "; no anchors: " : "",
-			step->no.anchors ? step->no.anchors : "");
+			program->wave_additions, step->no.refresh ? "; no refresh: " : "",
+			step->no.refresh ? step->no.refresh : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
 	if (step->program->peak_multiplications)
@@ -174,7 +174,7 @@ static void person_step(FILE *to, const struct step *step)
 	else if (model->params.tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
-	else if (step->cut)
+	else if (step->event_split)
 		fprintf(to, "%s_at: a part of a step, with every crossing on the way.\n", model->name);
 	else if (step->collocation)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
@@ -262,7 +262,7 @@ static void person_split(FILE *to, const struct step *step)
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		model->schedule.operators > 1 ? " (with the first operator; with the others its linear terms differ)"
 					      : "");
-	for (int c = 0; c < model->remainder.channels; c++)
+	for (int c = 0; c < model->remainder.force_columns; c++)
 		fprintf(to, "    %s: %s\n", model->names.coord[coordinate_of_row(model, model->remainder.row[c])],
 			form_text(model, model->schedule.operator[0].left[c]));
 }

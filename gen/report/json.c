@@ -132,7 +132,7 @@ static void json_split(FILE *to, const struct step *step)
 		fputs("}", to);
 	}
 	fputs("],\n  \"remainder\": [", to);
-	for (int c = 0; c < model->remainder.channels; c++)
+	for (int c = 0; c < model->remainder.force_columns; c++)
 		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
 			model->names.coord[coordinate_of_row(model, model->remainder.row[c])],
 			form_text(model, model->schedule.operator[0].left[c]));
@@ -148,7 +148,7 @@ static void json_tuning(FILE *to, const struct tuning *t)
 	fputs("],\n", to);
 }
 
-/* A step; beside it what anchors, peaks, blocks of rows and forced parts take */
+/* A step; beside it what refreshes, peaks, blocks of rows and forced parts take */
 static void json_cost(FILE *to, const struct step *step)
 {
 	const struct program *program = step->program;
@@ -159,8 +159,8 @@ static void json_cost(FILE *to, const struct step *step)
 	if (program->wave_multiplications)
 		fprintf(to, ",\n    \"loads\": {\"every\": %d, \"multiplications\": %d, \"additions\": %d, "
 			"\"numbers\": %d}",
-			step->anchors ? step->anchors->steps : 1, program->wave_multiplications,
-			program->wave_additions, anchor_numbers(step));
+			step->refresh ? step->refresh->steps : 1, program->wave_multiplications,
+			program->wave_additions, refresh_numbers(step));
 	if (program->peak_multiplications)
 		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
 			program->peak_multiplications, program->peak_additions);

@@ -56,8 +56,8 @@ int numbers_of_modes(const struct step *step)
 	int forces = 0;
 	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		forces += m->force[f] ? width : 0;
-	return (m->banks - 1) * width * width +
-	       m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
+	return (m->operators - 1) * width * width +
+	       m->operators * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
 	       (m->steady.flow ? settled_size(step->model) * 2 * width : 0);
 }
 
@@ -66,9 +66,9 @@ void person_normal(FILE *to, const struct step *step)
 	const struct normal *m = step->normal;
 	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. Exact: %s. All else is r: a force on each "
 		    "mode.\n", operators_of_modes(step), exact_in_modes(step));
-	for (int b = 0; b < m->banks; b += m->banks > 1 ? m->banks - 1 : 1) {
-		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->banks > 1 ? " at " : "",
-			m->banks > 1 ? step->model->schedule.operator[b].text : "");
+	for (int b = 0; b < m->operators; b += m->operators > 1 ? m->operators - 1 : 1) {
+		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->operators > 1 ? " at " : "",
+			m->operators > 1 ? step->model->schedule.operator[b].text : "");
 		for (int j = 0; j < m->modes; j++)
 			fprintf(to, "    %-24.8g %.8g\n", m->frequency[b * m->modes + j] / 6.283185307179586,
 				m->ratio[b * m->modes + j]);
@@ -84,7 +84,7 @@ void json_normal(FILE *to, const struct step *step)
 {
 	const struct normal *m = step->normal;
 	fprintf(to, "  \"normal_modes\": {\"count\": %d, \"operators\": [", m->modes);
-	for (int b = 0; b < m->banks; b++) {
+	for (int b = 0; b < m->operators; b++) {
 		fprintf(to, "%s\n    {\"at\": \"%s\", \"hertz\": [", b ? "," : "",
 			step->model->schedule.operator[b].text);
 		for (int j = 0; j < m->modes; j++)
@@ -109,8 +109,8 @@ static const char *factor_text(const struct step *step, int function, const doub
 	const struct normal *m = step->normal;
 	const char *text = function ? form_text(step->model, step->model->remainder.split->function[function].form)
 				    : "1";
-	if (m->banks > 1 && factor[0] != factor[m->banks - 1])
-		return format("(%s to %s) %s", shortest(factor[0]), shortest(factor[m->banks - 1]), text);
+	if (m->operators > 1 && factor[0] != factor[m->operators - 1])
+		return format("(%s to %s) %s", shortest(factor[0]), shortest(factor[m->operators - 1]), text);
 	return factor[0] == 1 ? text : format("%s (%s)", shortest(factor[0]), text);
 }
 

@@ -302,7 +302,7 @@ static double crossing(struct mover *m, int system, int region, double outside, 
 /* ---- what is told of a period ---- */
 
 /* y e^{-iwt} and its first two derivatives, of state j */
-static void turned(const struct mover *m, const double *z, const double *slope, const double *second, int j,
+static void rotated(const struct mover *m, const double *z, const double *slope, const double *second, int j,
 		   double (*f)[2])
 {
 	double c = z[m->states] / m->amplitude, s = z[m->states + 1] / m->amplitude, w = m->w;
@@ -324,8 +324,8 @@ static void integrate(struct mover *m, int system, double t, const double *z, co
 	apply(m->size, A, end, m->work[2]);
 	apply(m->size, A, m->work[2], m->work[3]);
 	for (int j = 0; j < m->states; j++) {
-		turned(m, z, m->work[0], m->work[1], j, f);
-		turned(m, end, m->work[2], m->work[3], j, g);
+		rotated(m, z, m->work[0], m->work[1], j, f);
+		rotated(m, end, m->work[2], m->work[3], j, g);
 		for (int k = 0; k < 2; k++)
 			m->integral[k][j] += t / 2 * (f[0][k] + g[0][k]) + t * t / 10 * (f[1][k] - g[1][k]) +
 					     t * t * t / 120 * (f[2][k] + g[2][k]);

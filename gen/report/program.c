@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* ---- tables and kernels ---- */
+/* ---- tables and phi-function weights ---- */
 
 /* p/q h, or h */
 static const char *time_text(mpq_srcptr fraction)
@@ -23,7 +23,7 @@ static const char *time_text(mpq_srcptr fraction)
 }
 
 /* 1 - 3 (s/h) + 2 (s/h)^2 */
-static const char *powers_text(const struct kernel_part *part)
+static const char *powers_text(const struct phi_weight_part *part)
 {
 	static const char *const power[PART_POWERS] = { "", " s/h", " (s/h)^2" };
 	const char *text = "";
@@ -42,11 +42,11 @@ static const char *powers_text(const struct kernel_part *part)
 }
 
 /* What a unit remainder adds: e^{A tau} B times a number, the response to a force over a part of the step */
-static const char *kernel_text(const struct kernel *kernel)
+static const char *phi_weight_text(const struct phi_weight *phi_weight)
 {
 	const char *text = "";
-	for (int i = 0; i < kernel->parts; i++) {
-		const struct kernel_part *part = &kernel->part[i];
+	for (int i = 0; i < phi_weight->parts; i++) {
+		const struct phi_weight_part *part = &phi_weight->part[i];
 		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "";
 		const char *at = mpq_sgn(part->fraction) == 0 ? "" : format("e^{A tau}, tau = %s, times ", time);
 		if (mpq_sgn(part->impulse) != 0)
@@ -69,9 +69,10 @@ static void print_table(FILE *to, const struct table *table)
 		fprintf(to, " kicks and drifts,");
 	fprintf(to, " %d load column%s, %d input column%s\n", table->columns, table->columns == 1 ? "" : "s",
 		table->inputs, table->inputs == 1 ? "" : "s");
-	for (int k = 0; k < wanted->kernels; k++)
-		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels,
-			kernel_text(&wanted->kernel[k]));
+	for (int k = 0; k < wanted->phi_weights; k++)
+		fprintf(to, "        %s (%d x %d): %s\n", wanted->phi_weight[k].name, table->states,
+			table->force_columns,
+			phi_weight_text(&wanted->phi_weight[k]));
 }
 
 static void print_tables(FILE *to, const struct step *step)
@@ -103,10 +104,10 @@ static const char *sum_text(const struct step *step, const struct action *a)
 		text = format("%s%s%s.Phi y%s%s", text, *text ? " + " : "", flow->wanted->name,
 			      flow->columns ? " + loads" : "", flow->inputs ? " + inputs" : "");
 	}
-	for (int k = 0; k < a->kernels; k++) {
-		const struct wanted *wanted = table[a->kernel[k].table]->wanted;
+	for (int k = 0; k < a->phi_weights; k++) {
+		const struct wanted *wanted = table[a->phi_weight[k].table]->wanted;
 		text = format("%s%s%s.%s left%d", text, *text ? " + " : "", wanted->name,
-			      wanted->kernel[a->kernel[k].kernel].name, a->kernel[k].left);
+			      wanted->phi_weight[a->phi_weight[k].phi_weight].name, a->phi_weight[k].left);
 	}
 	return text;
 }
@@ -149,7 +150,7 @@ static void print_nodes(FILE *to, const struct step *step)
 		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i), loads);
 	}
 	fprintf(to, "\nStages: %d; remainders: %d, each of %d number%s\n", program->stages, program->lefts,
-		step->branch->system.channels, step->branch->system.channels == 1 ? "" : "s");
+		step->branch->system.force_columns, step->branch->system.force_columns == 1 ? "" : "s");
 }
 
 static void print_actions(FILE *to, const struct step *step)
@@ -266,11 +267,11 @@ static void print_list(FILE *to, const struct step *step)
 	if (step->branch->system.segments > 1)
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
-	if (step->anchors && step->anchors->terms)
+	if (step->refresh && step->refresh->terms)
 		fprintf(to,
-			"Loads are evaluated every %d steps, at an anchor; these are their factors there, of %d, which "
+			"Loads are evaluated every %d steps, at a refresh; these are their factors there, of %d, which "
 			"change from step to step.\n",
-			step->anchors->steps, step->anchors->terms);
+			step->refresh->steps, step->refresh->terms);
 	if (program->loops) {
 		print_groups(to, step);
 		return;
@@ -422,12 +423,12 @@ static void print_expansion(FILE *to, const struct step *step)
 }
 
 /* What a step is looked at by, with the formulas that hold */
-static void print_look(FILE *to, const struct step *step)
+static void print_check(FILE *to, const struct step *step)
 {
 	struct step view = *step;
-	view.taylor.expansion = step->cut->look;
+	view.taylor.expansion = step->event_split->event_check;
 	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a "
-		    "breakpoint in parts, by e^{A tau} of %d numbers:\n", step->cut->layout.size);
+		    "breakpoint in parts, by e^{A tau} of %d numbers:\n", step->event_split->layout.size);
 	print_series(to, &view);
 }
 
@@ -509,15 +510,15 @@ void explain_program(FILE *to, const struct step *step)
 		print_actions(to, step);
 	else
 		print_list(to, step);
-	if (step->cut)
-		print_look(to, step);
+	if (step->event_split)
+		print_check(to, step);
 	print_reads(to, step);
 	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s%s\n", program->multiplications,
 		program->additions, program->calls,
 		step->program->peak_multiplications ? format("; the look for peaks %d and %d more",
 						       program->peak_multiplications, program->peak_additions)
 					      : "",
-		step->anchors ? format("; every %d steps %d and %d more", step->anchors->steps,
+		step->refresh ? format("; every %d steps %d and %d more", step->refresh->steps,
 				       program->wave_multiplications, program->wave_additions)
 			      : "",
 		step->forced ? "; the state is kept less what its loads sustain" : "");

@@ -16,19 +16,19 @@ static long words_of(const struct step *step)
 	return step->is.two_words ? 2 : 1;
 }
 
-/* Of the tables of a swift step: bounds for each matrix; for each region and expression, where it is and which are
+/* Of the tables of a fast path: bounds for each matrix; for each region and expression, where it is and which are
  * beside it */
-static long swift_bytes(const struct step *step)
+static long fast_path_bytes(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, halves = 0;
 	for (int k = 0; k < step->branches; k++)
 		halves = halves || step->branch[k].halvings > 0;
-	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
+	long off = halves || is_checked_by_tables(step) ? size + 1 : 0;
 	return 8 * s->systems *
 		       (s->expressions * (2 * size + off) +
 			halves * size * 2 * s->expressions) +
-	       28 * (long)s->regions * s->expressions + 8 * (step->regions.look.degree + 1);
+	       28 * (long)s->regions * s->expressions + 8 * (step->regions.event_check.degree + 1);
 }
 
 /* Of pieces that are shorter than h, but for what bounds guards */
@@ -42,24 +42,25 @@ static long ladder_bytes(const struct step *step)
 	return !has_ladder(step) ? 0 : 8 * rungs * (rows + bounds) * size + 8 * (long)step->branches;
 }
 
-/* Of cos, sin and e^{at} in the steps after an anchor */
-static long anchor_bytes(const struct step *step)
+/* Of cos, sin and e^{at} in the steps after a refresh */
+static long refresh_bytes(const struct step *step)
 {
 	long numbers = 0;
-	for (int l = 0; l < step->branch->system.loads && step->anchors; l++)
-		if (is_anchored(step, l))
-			numbers += step->anchors->steps * (1 + oscillates(step->branch->system.load[l].wave));
+	for (int l = 0; l < step->branch->system.loads && step->refresh; l++)
+		if (is_refreshed(step, l))
+			numbers += step->refresh->steps * (1 + oscillates(step->branch->system.load[l].wave));
 	return 8 * numbers;
 }
 
-/* What a swift step does before it leaves it to the search, at most: in each part of the step bounds, and polynomials
- * of x, corrected */
-static long swift_multiplications(const struct step *step)
+/* What the fast path does before it leaves the step to the search, at most: in each part of the step bounds, and
+ * polynomials of x, corrected */
+static long fast_path_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
-	long moves = 6 * step->regions.look.degree * (size * size + size) + 12 * size * size;
-	return !step->regions.look.clears                         ? 0
-	       : step->regions.look.swift                        ? size * size + MOST_LOOKS * (bounds + moves)
+	long moves = 6 * step->regions.event_check.degree * (size * size + size) + 12 * size * size;
+	return !step->regions.event_check.event_free                         ? 0
+	       : step->regions.event_check.fast_path
+		       ? size * size + MOST_EVENT_CHECKS * (bounds + moves)
 	       : has_events(step->model->switching) ? products_of_unmet(step)
 						    : size * size;
 }
@@ -85,10 +86,10 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->regions.look.clears && step->model->params.retuned)
+	if (step->regions.event_check.event_free && step->model->params.retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
-	return bytes + ladder_bytes(step) + (step->regions.look.swift ? swift_bytes(step) : 0) +
+	return bytes + ladder_bytes(step) + (step->regions.event_check.fast_path ? fast_path_bytes(step) : 0) +
 	       (has_events(s) ? guard_bytes(step) : 0);
 }
 
@@ -105,7 +106,7 @@ static long most_of_regions(const struct step *step)
 			 (degree + 1) * s->expressions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
 		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
-	       swift_multiplications(step);
+	       fast_path_multiplications(step);
 }
 
 /* ---- for a person ---- */
@@ -123,11 +124,11 @@ static void person_expressions(FILE *to, const struct step *step)
 void person_divided(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->taylor.divided;
-	const char *ends = step->cut ? "a step goes on with others where an expression passes a breakpoint"
+	const char *ends = step->event_split ? "a step goes on with others where an expression passes a breakpoint"
 				     : format("%s ends where an expression passes a breakpoint",
 					      step->collocation ? "an internal step" : "a series");
 	fprintf(to, "The state chooses formulas; %s, at most %d times%s:\n", ends, max_events(step->model),
-		step->cut ? "" : " in a step");
+		step->event_split ? "" : " in a step");
 	for (int i = 0; i < x->expressions; i++)
 		fprintf(to, "    expression %d: %s, breakpoints %s\n", i, divided_text(step, i),
 			rising_text(&x->expression[i]));
@@ -162,16 +163,16 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 
 static void person_way(FILE *to, const struct step *step, const char *of)
 {
-	if (step->regions.look.swift)
+	if (step->regions.event_check.fast_path)
 		fprintf(to,
 			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
 			"degree %d, all else by the search.\n",
-			of, MOST_SWIFT, step->regions.look.degree);
-	else if (step->regions.look.clears)
+			of, MOST_FAST_PATH, step->regions.event_check.degree);
+	else if (step->regions.event_check.event_free)
 		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
 	else
 		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of,
-			step->regions.look.searches);
+			step->regions.event_check.searches);
 }
 
 static void person_impacts(FILE *to, const struct model *model)
@@ -207,7 +208,7 @@ static void person_of_one_part(FILE *to, const struct step *step)
 		}
 	person_way(to, step, "A step");
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
-		bytes_of_regions(step) + anchor_bytes(step), max_events(step->model), max_splits(step->model),
+		bytes_of_regions(step) + refresh_bytes(step), max_events(step->model), max_splits(step->model),
 		most_of_regions(step));
 }
 
@@ -237,7 +238,7 @@ static void person_part(FILE *to, const struct step *whole, int index)
 
 static void person_parts(FILE *to, const struct step *step)
 {
-	long bytes = anchor_bytes(step), most = 0;
+	long bytes = refresh_bytes(step), most = 0;
 	fprintf(to,
 		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
 		"approximated, every constant is correctly rounded.\n",

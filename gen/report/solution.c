@@ -20,7 +20,8 @@ static void check_outputs(const struct model *model)
 			      "output '%s' has no closed form", model->output[j].name);
 	for (int j = 0; j < model->outputs; j++)
 		/* the rate of what a stop, friction or another piecewise linear term acts on */
-		if (model->switching && !rationals_zero((size_t)model->remainder.channels, model->output[j].channel))
+		if (model->switching &&
+		    !rationals_zero((size_t)model->remainder.force_columns, model->output[j].force_column))
 			error(model->output[j].value ? model->output[j].value->start : model->asked.end_at,
 			      "positions, velocities and loads have one formula in all of them",
 			      "output '%s' has another formula in each region, which --solution does not print",

@@ -51,6 +51,6 @@ const void *const pl_counts = &pl_counted;
 #define pl_switchingf_kept_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_kept_advance(m, t, x, c, e, w))
 
 /* A part of a step with a remainder */
-#define PL_CUT_FLOWS(m) PL_TAKES_BOTH((m)->size * (m)->size * ((m)->terms > 0 ? (m)->terms : 1))
-#define pl_cut_flow(m, half, x, out) (PL_CUT_FLOWS(m), pl_cut_flow(m, half, x, out))
-#define pl_cutf_flow(m, half, x, out) (PL_CUT_FLOWS(m), pl_cutf_flow(m, half, x, out))
+#define PL_EVENT_SPLIT_FLOWS(m) PL_TAKES_BOTH((m)->size * (m)->size * ((m)->terms > 0 ? (m)->terms : 1))
+#define pl_event_split_flow(m, half, x, out) (PL_EVENT_SPLIT_FLOWS(m), pl_event_split_flow(m, half, x, out))
+#define pl_event_splitf_flow(m, half, x, out) (PL_EVENT_SPLIT_FLOWS(m), pl_event_splitf_flow(m, half, x, out))

@@ -47,13 +47,13 @@ static char *rewritten(char *text, rewriter *print, const char *name)
 /* What nobody calls here is left out: batches, the selftest. */
 static char *model_text(const struct step *step, enum running_with with)
 {
-	struct step lean = *step;
+	struct step tangent = *step;
 	struct model model = *step->model;
 	struct printing p;
 	model.asked.batch = model.asked.selftest = false;
-	lean.model = &model;
+	tangent.model = &model;
 	start_text(&p);
-	emit_code(p.to, &lean, "", NULL, with & WITH_RHS);
+	emit_code(p.to, &tangent, "", NULL, with & WITH_RHS);
 	char *text = rewritten(text_printed(&p), print_included, model.name);
 	if (model.asked.single)
 		text = rewritten(text, print_single, model.name);

@@ -34,9 +34,10 @@ static void check_table(const struct check *c, const struct table *table)
 	need(c, !table->wanted->Phi || table->Phi, "a table without its Phi");
 	need(c, !table->columns || table->load, "a table without the columns of its loads");
 	need(c, !table->inputs || table->input, "a table without the columns of its inputs");
-	need(c, among(table->wanted->kernels, TABLE_KERNELS + 1), "a table with more kernels than the limit");
-	for (int k = 0; k < table->wanted->kernels; k++)
-		need(c, table->kernel[k], "a table without one of its kernels");
+	need(c, among(table->wanted->phi_weights, TABLE_PHI_WEIGHTS + 1),
+	     "a table with more phi-function weights than the limit");
+	for (int k = 0; k < table->wanted->phi_weights; k++)
+		need(c, table->phi_weight[k], "a table without one of its phi-function weights");
 }
 
 static void check_tables(struct check *c)
@@ -172,15 +173,16 @@ static void check_sum(struct check *c, const struct action *a)
 	struct table *const *table = c->step->branch->table;
 	need(c, a->flow == NONE || among(a->flow, c->step->tables), "its table is out of range");
 	need(c, a->flow == NONE || table[a->flow]->Phi, "its table has no Phi");
-	need(c, among(a->kernels, SUM_KERNELS + 1), "it has more kernels than the limit");
-	need(c, a->flow != NONE || a->plain != NONE || a->kernels > 0, "a sum of nothing");
+	need(c, among(a->phi_weights, SUM_PHI_WEIGHTS + 1), "it has more phi-function weights than the limit");
+	need(c, a->flow != NONE || a->plain != NONE || a->phi_weights > 0, "a sum of nothing");
 	if (a->plain != NONE)
 		check_stage_read(c, a->plain);
-	for (int k = 0; k < a->kernels; k++) {
-		need(c, among(a->kernel[k].table, c->step->tables), "the table of a kernel is out of range");
-		need(c, among(a->kernel[k].kernel, table[a->kernel[k].table]->wanted->kernels),
-		     "a kernel is out of range");
-		check_left_read(c, a->kernel[k].left);
+	for (int k = 0; k < a->phi_weights; k++) {
+		need(c, among(a->phi_weight[k].table, c->step->tables),
+		     "the table of a phi-function weight is out of range");
+		need(c, among(a->phi_weight[k].phi_weight, table[a->phi_weight[k].table]->wanted->phi_weights),
+		     "a phi-function weight is out of range");
+		check_left_read(c, a->phi_weight[k].left);
 	}
 	check_stage_target(c, a->target);
 }
@@ -260,7 +262,7 @@ static void check_regions(struct check *c, const struct step *step)
 	for (int k = 0; k < step->branches; k++) {
 		const struct wanted *wanted = step->branch[k].table[0]->wanted;
 		need(c, among(step->branch[k].halvings, LIMIT_PIECES + 1), "pieces of a step that are out of range");
-		need(c, wanted->kernels == 2, "a table without what inputs add, held and as ramps");
+		need(c, wanted->phi_weights == 2, "a table without what inputs add, held and as ramps");
 	}
 	for (int p = 0; p < step->regions.parts; p++)
 		check_regions(c, step->regions.part[p]);
@@ -293,7 +295,7 @@ void program_check(const struct step *step)
 	else if (step->is.flow == FLOW_COLLOCATION)
 		check_collocation(&c);
 	else if (step->is.flow == FLOW_NORMAL)
-		need(&c, step->normal && step->normal->banks > 0, "there are no normal modes");
+		need(&c, step->normal && step->normal->operators > 0, "there are no normal modes");
 	else if (has_remainder(step))
 		check_actions(&c);
 	else

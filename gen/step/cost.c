@@ -82,7 +82,7 @@ static int products_of_load(const struct load *load)
 				      : 0;
 }
 
-/* ... and what turns the load states of an anchor into those of now */
+/* ... and what turns the load states of a refresh into those of now */
 static struct cost turning_of_load(const struct load *load)
 {
 	bool turns = oscillates(load->wave);
@@ -92,33 +92,33 @@ static struct cost turning_of_load(const struct load *load)
 void count_loads(struct program *program, const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	int anchored = 0;
+	int refreshed = 0;
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
 		const struct load *load = &system->load[l];
-		if (!is_used(program, load, column) && !is_anchored(step, l))
+		if (!is_used(program, load, column) && !is_refreshed(step, l))
 			continue;
-		*(is_anchored(step, l) ? &anchored : &program->multiplications) += products_of_load(load);
+		*(is_refreshed(step, l) ? &refreshed : &program->multiplications) += products_of_load(load);
 		struct cost functions = functions_of_load(load, step->model->asked.single);
 		program->wave_multiplications += functions.multiplications;
 		program->wave_additions += functions.additions;
 	}
-	program->wave_multiplications += anchored;
-	if (step->anchors)
+	program->wave_multiplications += refreshed;
+	if (step->refresh)
 		return;
 	program->multiplications += program->wave_multiplications;
 	program->additions += program->wave_additions;
 }
 
-void count_turned_loads(struct program *program, const struct step *step)
+void count_rotated_loads(struct program *program, const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
 		const struct load *load = &system->load[l];
 		if (!is_used(program, load, column))
 			continue;
-		program->multiplications += is_anchored(step, l) ? turning_of_load(load).multiplications
+		program->multiplications += is_refreshed(step, l) ? turning_of_load(load).multiplications
 								 : products_of_load(load);
-		program->additions += is_anchored(step, l) ? turning_of_load(load).additions : 0;
+		program->additions += is_refreshed(step, l) ? turning_of_load(load).additions : 0;
 	}
 }
 
@@ -146,15 +146,15 @@ static struct cost cost_of_outputs(const struct step *step, bool (*counts)(const
 	return cost_of_tape(t);
 }
 
-/* Load states: anew, or from the anchor's */
-static void cost_load(struct cost *cost, const struct step *step, int l, bool turned)
+/* Load states: anew, or from the refresh's */
+static void cost_load(struct cost *cost, const struct step *step, int l, bool rotated)
 {
 	const struct load *load = &step->branch->system.load[l];
-	add_cost(cost, 1, turned ? turning_of_load(load) : functions_of_load(load, step->model->asked.single));
-	cost->multiplications += turned ? 0 : products_of_load(load);
+	add_cost(cost, 1, rotated ? turning_of_load(load) : functions_of_load(load, step->model->asked.single));
+	cost->multiplications += rotated ? 0 : products_of_load(load);
 }
 
-/* Of the loads whose functions a step evaluates, in the mean over the steps to an anchor */
+/* Of the loads whose functions a step evaluates, in the mean over the steps to a refresh */
 static int waves_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
@@ -169,7 +169,7 @@ double cost_of_step(const struct step *step, const struct target *target)
 	const struct model *model = step->model;
 	const struct program *program = step->program;
 	const bool single = model->asked.single;
-	const int anchor = step->anchors ? step->anchors->steps : 1;
+	const int refresh = step->refresh ? step->refresh->steps : 1;
 	struct cost cost = { program->multiplications, program->additions, 0 };
 	bool *reads = ARRAY(bool, (size_t)step->branch->system.loads);
 	if (step->forced)
@@ -179,14 +179,14 @@ double cost_of_step(const struct step *step, const struct target *target)
 	else if (model->declared_outputs)
 		add_cost(&cost, 1, cost_of_outputs(step, is_row, reads));
 	double multiplications = cost.multiplications, additions = cost.additions;
-	if (step->anchors) {
-		multiplications += (double)program->wave_multiplications / anchor;
-		additions += (double)program->wave_additions / anchor;
+	if (step->refresh) {
+		multiplications += (double)program->wave_multiplications / refresh;
+		additions += (double)program->wave_additions / refresh;
 	}
 	if (!target)
 		return (multiplications + additions) * (single ? 1 : 2);
 	return target->cost[single].multiplication * multiplications + target->cost[single].addition * additions +
-	       target->cost[single].wave * waves_of(step) / anchor + target->cost[single].step;
+	       target->cost[single].wave * waves_of(step) / refresh + target->cost[single].step;
 }
 
 void count_peaks(struct step *step)
@@ -205,7 +205,7 @@ void count_peaks(struct step *step)
 		if (step->layout.load[l] >= 0)
 			cost_load(&cost, step, l, false);
 		if (reads[l])
-			cost_load(&cost, step, l, is_anchored(step, l));
+			cost_load(&cost, step, l, is_refreshed(step, l));
 	}
 	step->program->peak_multiplications = cost.multiplications;
 	step->program->peak_additions = cost.additions;
@@ -218,10 +218,10 @@ void count_regions(struct step *step, int multiplications, int additions)
 	const struct linear *system = &step->branch->system;
 	struct program *program = step->program;
 	struct cost functions = { 0, 0, 0 };
-	if (step->anchors) {
+	if (step->refresh) {
 		program->multiplications = multiplications;
 		program->additions = additions;
-		count_turned_loads(program, step);
+		count_rotated_loads(program, step);
 		return;
 	}
 	for (int l = 0; l < system->loads; l++) {
@@ -238,9 +238,9 @@ void count_regions(struct step *step, int multiplications, int additions)
 
 /* ---- tables ---- */
 
-int anchor_numbers(const struct step *step)
+int refresh_numbers(const struct step *step)
 {
-	const struct anchors *a = step->anchors;
+	const struct refresh *a = step->refresh;
 	return a ? a->steps * a->terms * (step->program->compensated ? 2 : 1) : 0;
 }
 
@@ -285,9 +285,9 @@ static void tally_sum(struct tally *t, const struct action *a)
 	t->terms = ARRAY(int, (size_t)rows);
 	if (a->flow != NONE)
 		tally_flow(t, table[a->flow]);
-	for (int k = 0; k < a->kernels; k++)
-		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel],
-			     t->step->branch->system.channels);
+	for (int k = 0; k < a->phi_weights; k++)
+		tally_matrix(t, table[a->phi_weight[k].table]->phi_weight[a->phi_weight[k].phi_weight],
+			     t->step->branch->system.force_columns);
 	for (int i = 0; i < rows; i++)
 		t->program->additions += t->terms[i] + (a->plain != NONE) - (t->terms[i] > 0 || a->plain != NONE);
 }
@@ -296,7 +296,7 @@ static void tally_sum(struct tally *t, const struct action *a)
 static void tally_prediction(struct tally *t, bool first)
 {
 	int rows = t->step->branch->system.states, slopes = first ? 4 : 3, n = t->step->branch->system.n;
-	int terms = n * (rows + t->step->branch->system.channels);
+	int terms = n * (rows + t->step->branch->system.force_columns);
 	t->program->multiplications += slopes * terms + 4 * rows;
 	t->program->additions += slopes * terms + 6 * rows;
 }
@@ -315,14 +315,14 @@ void count_program(const struct step *step, struct program *program)
 {
 	struct tally t = { step, program, NULL };
 	bool first = true;
-	struct cost left = cost_of_forms(step, step->model->remainder.channels,
+	struct cost left = cost_of_forms(step, step->model->remainder.force_columns,
 					 (const struct form *const *)step->model->schedule.operator[0].left);
 	for (int i = 0; i < program->actions; i++) {
 		const struct action *a = &program->action[i];
 		if (a->kind == ACTION_SUM)
 			tally_sum(&t, a);
 		if (a->kind == ACTION_COMBINE)
-			program->additions += step->branch->system.channels;
+			program->additions += step->branch->system.force_columns;
 		if (a->kind == ACTION_PREDICT) {
 			tally_prediction(&t, first);
 			first = false;

@@ -12,16 +12,16 @@ void count_expansion(const struct step *step, struct program *program); /* of on
 /* of a collocated step an iteration of Newton's method; where there is no series, that is what its program costs */
 void count_collocation(struct step *step);
 void count_normal(const struct step *step, struct program *program); /* of a multistep step in normal modes */
-/* what the load states of the columns in use cost; where there are anchors, at each of them */
+/* what the load states of the columns in use cost; where there are refreshes, at each of them */
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
-void count_turned_loads(struct program *program, const struct step *step);
+void count_rotated_loads(struct program *program, const struct step *step);
 /* of a step of regions: its sums, and the load states of all of them */
 void count_regions(struct step *step, int multiplications, int additions);
 /* a step, and its outputs where they are linear: instructions; without a target operations, those of double twice */
 double cost_of_step(const struct step *step, const struct target *target);
 void count_peaks(struct step *step);                        /* after its program and layout */
-int anchor_numbers(const struct step *step);                /* of the table for steps between anchors */
+int refresh_numbers(const struct step *step);               /* of the table for steps between refreshes */
 int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
 
 #endif

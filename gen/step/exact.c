@@ -20,16 +20,16 @@ double time_in_step(const struct model *model, mpq_srcptr fraction)
 struct slopes state_slopes(const struct step *step, int operator)
 {
 	const struct linear *system = &step->branch[operator].system;
-	int states = system->states, channels = system->channels;
+	int states = system->states, force_columns = system->force_columns;
 	struct slopes slopes = { ARRAY(struct coefficient, (size_t)(states * states)),
-				 ARRAY(struct coefficient, (size_t)(states * channels)) };
+				 ARRAY(struct coefficient, (size_t)(states * force_columns)) };
 	RATIONALS *A = state_matrix(system, false);
 	for (int i = 0; i < states * states; i++)
 		slopes.A[i] = equation_number(step->model, A[i]);
-	for (int c = 0; c < channels; c++) {
-		RATIONALS *force = impulse_of_channel(system, c);
+	for (int c = 0; c < force_columns; c++) {
+		RATIONALS *force = impulse_of_force_column(system, c);
 		for (int i = 0; i < states; i++)
-			slopes.B[i * channels + c] = equation_number(step->model, force[i]);
+			slopes.B[i * force_columns + c] = equation_number(step->model, force[i]);
 	}
 	return slopes;
 }

@@ -21,7 +21,7 @@ bool peaks_by_values(const struct step *step)
 /* The polynomials of a series and of nodes have values at any time. */
 static bool lacks_values(const struct step *step)
 {
-	return !step->series.emitted && !step->cut && !step->taylor.expansion && !step->collocation;
+	return !step->series.emitted && !step->event_split && !step->taylor.expansion && !step->collocation;
 }
 
 struct facts facts_of_step(const struct step *step)

@@ -21,9 +21,9 @@ bool is_linear_alone(const struct step *step)
 	return step->is.flow == FLOW_LINEAR && step->is.events == EVENTS_NONE;
 }
 
-bool is_anchored(const struct step *step, int load)
+bool is_refreshed(const struct step *step, int load)
 {
-	return step->anchors && step->anchors->load[load];
+	return step->refresh && step->refresh->load[load];
 }
 
 int load_of_column(const struct linear *system, int column, int *first)

@@ -43,7 +43,7 @@ struct group {
 };
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are remainders. */
-enum { STAGE_STATE = 0, NONE = -1, SUM_KERNELS = 4 };
+enum { STAGE_STATE = 0, NONE = -1, SUM_PHI_WEIGHTS = 4 };
 struct action {
 	enum { ACTION_REMAINDER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
 	int target;                 /* REMAINDER, COMBINE: a left; SUM, PREDICT: a stage */
@@ -53,8 +53,8 @@ struct action {
 	bool added;
 	int flow;                   /* SUM: table whose Phi, loads and inputs act on the state, or NONE */
 	int plain;                  /* SUM: stage added as it is, or NONE */
-	int kernels;                /* SUM: kernel of table times left, added */
-	struct { int table, kernel, left; } kernel[SUM_KERNELS];
+	int phi_weights;            /* SUM: phi-function weight of table times left, added */
+	struct { int table, phi_weight, left; } phi_weight[SUM_PHI_WEIGHTS];
 	const char *note;           /* a = F y + q1 r0 */
 };
 struct program {
@@ -65,7 +65,7 @@ struct program {
 	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
-	/* for cos/sin pairs and exponentials: counted below too, or beside it what comes at each anchor */
+	/* for cos/sin pairs and exponentials: counted below too, or beside it what comes at each refresh */
 	int wave_multiplications, wave_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	int peak_multiplications, peak_additions; /* beside them: the outputs, and that none passes its peak */

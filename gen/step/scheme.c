@@ -25,7 +25,7 @@ static bool is_page(const struct step *step)
 		const struct action *a = &step->program->action[i];
 		if (a->kind == ACTION_SUM)
 			terms += step->branch->system.states * ((a->flow != NONE ? step->branch->system.states : 0) +
-								a->kernels * step->branch->system.channels);
+								a->phi_weights * step->branch->system.force_columns);
 	}
 	return step->branches == 1 && step->branch->system.segments == 1 &&
 	       step->branch->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
@@ -90,14 +90,14 @@ static void build_exact(struct step *step)
 		mark_tuned_zeros(step);
 	leave_out_lost(step);
 	find_carries(step);
-	plan_anchors(step);
+	plan_refresh(step);
 	step->program = linear_program(step);
 	plan_modal(step);
 	if (!step->modal)
 		plan_forced(step);
 	if (step->forced)
 		step->program = linear_program(step);
-	fill_anchors(step);
+	fill_refresh(step);
 	plan_rest(step);
 }
 
@@ -326,7 +326,7 @@ static void build_flow(struct step *step)
 	else
 		(step->is.tuned ? build_tuned_step : build_of[step->is.flow])(step);
 	if (step->is.events == EVENTS_SPLIT)
-		plan_cut(step);
+		plan_event_split(step);
 }
 
 /* Where a model is stepped in several ways, that of the equations as written is made once. */
@@ -342,19 +342,19 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 }
 
 /* Friction and impacts are events inside steps. */
-static void check_cuts(const struct model *model)
+static void check_event_splits(const struct model *model)
 {
-	if (has_contacts(model) && !scheme_row(model->scheme)->expands && why_not_cut(model))
+	if (has_contacts(model) && !scheme_row(model->scheme)->expands && why_not_split(model))
 		error(model->asked.scheme_at, "taylor, radau and auto have no part of a step to make",
 		      "scheme %s does not stop at events of friction and impacts here: %s", scheme_name(model->scheme),
-		      why_not_cut(model));
+		      why_not_split(model));
 }
 
 static void build(void *context)
 {
 	struct step *step = context;
 	const struct model *model = step->model;
-	check_cuts(model);
+	check_event_splits(model);
 	step->is = descriptor_of(model);
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of_written(model);
@@ -368,7 +368,7 @@ static void build(void *context)
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
 	check_step_form(step);
-	check_anchors(step);
+	check_refresh(step);
 	build_flow(step);
 	if (model->asked.selftest)
 		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
@@ -395,7 +395,7 @@ struct step *step_build(const struct model *model)
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
 	plain->asked.compensated = plain->asked.selftest = plain->asked.batch = false;
-	plain->asked.anchors = plain->asked.rows = 1;
+	plain->asked.refresh = plain->asked.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -7,10 +7,10 @@
 #include "program.h"
 #include "slopes.h"
 
-struct anchors;
+struct refresh;
 struct choice;
 struct collocation;
-struct cut;
+struct event_split;
 struct expansion;
 struct forced;
 struct modal;
@@ -30,14 +30,14 @@ struct rounding {                   /* a bound over the first steps from the ini
 struct absent {                     /* why it is not there, where a reader would ask; NULL: it is, or nobody would */
 	const char *modal;          /* though it would be cheaper */
 	const char *lanes;          /* instances of a batch step each by itself */
-	const char *anchors;        /* of loads that have functions */
+	const char *refresh;        /* of loads that have functions */
 	const char *rows;           /* NAME_run goes step by step */
 	const char *phi;            /* e^{A h}, which a collocated step does not need */
 };
-struct looking {                    /* of regions: a step looks over the whole of h whether it is clear, */
-	bool clears, swift;         /* and for few crossings, by Taylor polynomials of this degree */
+struct event_check {                /* of regions: whether a step is first checked for events over the whole of h, */
+	bool event_free, fast_path; /* and for few crossings, by Taylor polynomials of this degree */
 	int degree;
-	const char *searches;       /* why it does not look whether it is clear */
+	const char *searches;       /* why a step is not checked, and goes by the search */
 };
 struct kicks {                      /* of kick-drift-kick */
 	const mpq_t *mass;          /* per coordinate; in units of the first */
@@ -53,7 +53,7 @@ struct linear_step {                /* what steps of linear models alone have */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 };
 struct region_step {                /* steps of piecewise-linear ones */
-	struct looking look;
+	struct event_check event_check;
 	int parts;                  /* that are independent, each with a step of its own */
 	struct step **part;
 };
@@ -79,7 +79,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
 	struct carried carried;
 	struct absent no;
-	struct anchors *anchors;    /* NULL: functions of loads in every step */
+	struct refresh *refresh;    /* NULL: functions of loads in every step */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
@@ -88,14 +88,14 @@ struct step {                       /* everything that is emitted for one model 
 	struct series series;
 	struct region_step regions;
 	struct taylor_step taylor;
-	struct cut *cut;            /* of a step of this kind; else NULL */
+	struct event_split *event_split; /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct normal *normal;      /* of a step in normal modes; else NULL */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 };
 struct descriptor descriptor_of(const struct model *model);
 bool is_linear_alone(const struct step *step);                /* without regions, tunable params or none */
-bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
+bool is_refreshed(const struct step *step, int load);       /* its functions are evaluated at refreshes only */
 const char *text_of_column(const struct linear *system, int column);
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */

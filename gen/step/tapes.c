@@ -73,16 +73,16 @@ static bool has_own_factors(const struct step *step, int state)
 	return step->program->tuned && (!step->program->loops || group_of_state(step, state, &index, &row)->tuned);
 }
 
-static bool is_turned(const struct product *p, const struct step *step)
+static bool is_rotated(const struct product *p, const struct step *step)
 {
 	int first;
 	return p->operand.kind == OPERAND_LOAD &&
-	       is_anchored(step, load_of_column(&step->branch->system, p->operand.index, &first));
+	       is_refreshed(step, load_of_column(&step->branch->system, p->operand.index, &first));
 }
 
 bool has_second_word(const struct product *p, const struct step *step)
 {
-	return is_turned(p, step) ||
+	return is_rotated(p, step) ||
 	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
 }
 
@@ -106,10 +106,10 @@ static tape_ref term_ref(const struct sums *s, const struct assignment *a, const
 	const struct step *step = s->step;
 	const struct table *table = step->branch->whole;
 	const bool load = p->operand.kind == OPERAND_LOAD;
-	int turned = load ? anchored_term(step, a->target, p->operand.index) : -1;
+	int rotated = load ? refreshed_term(step, a->target, p->operand.index) : -1;
 	tape_ref x = operand_ref(s, &p->operand);
-	if (turned >= 0)
-		return entry(s->t, TABLE_TURNED, turned + second * step->anchors->terms, x);
+	if (rotated >= 0)
+		return entry(s->t, TABLE_ROTATED, rotated + second * step->refresh->terms, x);
 	if (has_own_factors(step, a->target)) {
 		int width = table->states + table->columns + table->inputs;
 		return entry(s->t, TABLE_OWN, a->target * width + place_of_operand(table, &p->operand), x);
@@ -305,7 +305,7 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 	const bool seen = is_seen_of_modes(step, output);
 	if (own_row(step, output) >= 0)
 		return own_row_ref(t, step, own_row(step, output));
-	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->remainder.channels,
+	int most = system->states + load_columns(system) + 2 * system->inputs + step->model->remainder.force_columns,
 	    terms = 0;
 	tape_ref *term = ARRAY(tape_ref, most + 1);
 	if (seen)
@@ -320,9 +320,9 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 			if (mpq_sgn(output->input[k][i]) != 0)
 				term[terms++] = tape_scaled(t, row_factor(output, output->input[k][i]),
 							    tape_operand(t, TAPE_INPUT, i, k));
-	for (int c = 0; c < step->model->remainder.channels; c++)
-		if (mpq_sgn(output->channel[c]) != 0)
-			term[terms++] = tape_scaled(t, row_factor(output, output->channel[c]),
+	for (int c = 0; c < step->model->remainder.force_columns; c++)
+		if (mpq_sgn(output->force_column[c]) != 0)
+			term[terms++] = tape_scaled(t, row_factor(output, output->force_column[c]),
 						    entry(t, TABLE_LEFT, c, TAPE_NONE));
 	return tape_sum(t, terms, term);
 }

@@ -14,13 +14,13 @@ tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct
 
 /* What TAPE_TABLE is an entry of: */
 enum linear_table {
-	TABLE_TURNED,               /* factors of load states at an anchor, second words behind them */
+	TABLE_ROTATED,              /* factors of load states at a refresh, second words behind them */
 	TABLE_OWN,                  /* the instance's, of a step: state x states, then loads, then inputs */
 	TABLE_OWN_OUT,              /* the same, of outputs: row x column of tuning->x */
 	TABLE_FACTOR,               /* of load states that change their formula: state x column */
 	TABLE_DIRECT,               /* likewise of outputs: place of an output x column */
 	TABLE_FORCED,               /* likewise of what the step leaves out: state x column */
-	TABLE_LEFT,                 /* what is left over: channel */
+	TABLE_LEFT,                 /* what is left over: force column */
 	TABLE_SEEN,                 /* what an output sees of the modes */
 	LINEAR_TABLES
 };

@@ -56,8 +56,8 @@ static void complain(const char *what, const char *message)
  * 0, whose u0 is the force on its equation: the response to a unit u2 is tau^3 phi3(A tau) B, B what a unit force gives
  * the derivatives. */
 struct plant {
-    size_t states, held, loads, inputs, channels;
-    size_t load_at, input_at, channel_at, size;
+    size_t states, held, loads, inputs, force_columns;
+    size_t load_at, input_at, force_column_at, size;
     mpq_t *A, *B;                       /* B: channels x size, 0 beyond the states */
 };
 
@@ -70,7 +70,7 @@ static mpq_t *highest_rows(const struct model *model, int which, int segment, si
     const struct operator *operator = &model->schedule.operator[which];
     const size_t n = (size_t)system->n, states = (size_t)system->states;
     const size_t all = states + (size_t)load_columns(system) + 2 * (size_t)system->inputs +
-		       (size_t)model->remainder.channels;
+		       (size_t)model->remainder.force_columns;
     mpq_t *W = rationals(n * (n + all)), *R = rationals(n * all);
     for (size_t i = 0; i < n; i++) {
         mpq_t *right = W + i * (n + all) + n;
@@ -88,7 +88,7 @@ static mpq_t *highest_rows(const struct model *model, int which, int segment, si
         for (int u = 0; u < system->inputs; u++)
             for (int k = 0; k < 2; k++)
                 mpq_set(*right++, system->input[u].force[k][i]);
-        for (int e = 0; e < model->remainder.channels; e++)
+        for (int e = 0; e < model->remainder.force_columns; e++)
             mpq_set_ui(*right++, (size_t)model->remainder.row[e] == i, 1);
     }
     if (!eliminate(n, n + all, W)) {
@@ -118,8 +118,8 @@ static void fill_row(const struct model *model, const struct plant *p, size_t i,
         for (int k = 0; k <= system->input[u].hold; k++)
             mpq_set(row[at++], right[2 * u + (size_t)k]);
     right += 2 * (size_t)system->inputs;
-    for (size_t e = 0; e < p->channels; e++) {
-        mpq_set(row[p->channel_at + 3 * e], right[e]);
+    for (size_t e = 0; e < p->force_columns; e++) {
+        mpq_set(row[p->force_column_at + 3 * e], right[e]);
         mpq_set(p->B[e * p->size + target], right[e]);
     }
 }
@@ -131,15 +131,15 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
     *p = (struct plant){ .states = (size_t)system->states,
                          .held = split ? (size_t)system->states : 0,
                          .loads = (size_t)load_columns(system),
-                         .channels = (size_t)model->remainder.channels };
+                         .force_columns = (size_t)model->remainder.force_columns };
     for (int u = 0; u < system->inputs; u++)
         p->inputs += system->input[u].hold ? 2 : 1;
     p->load_at = p->states + p->held;
     p->input_at = p->load_at + p->loads;
-    p->channel_at = p->input_at + p->inputs;
-    p->size = p->channel_at + 3 * p->channels;
+    p->force_column_at = p->input_at + p->inputs;
+    p->size = p->force_column_at + 3 * p->force_columns;
     p->A = rationals(p->size * p->size);
-    p->B = rationals(p->channels * p->size);
+    p->B = rationals(p->force_columns * p->size);
     const mpq_t *R = (const mpq_t *)highest_rows(model, which, segment, &width);
     if (!R)
         return false;
@@ -150,9 +150,9 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
     for (size_t u = 0, at = p->input_at; u < (size_t)system->inputs; at += system->input[u++].hold ? 2 : 1)
         if (system->input[u].hold)
             mpq_set_ui(p->A[at * p->size + at + 1], 1, 1);
-    for (size_t e = 0; e < p->channels; e++)
+    for (size_t e = 0; e < p->force_columns; e++)
         for (size_t k = 0; k < 2; k++)
-            mpq_set_ui(p->A[(p->channel_at + 3 * e + k) * p->size + p->channel_at + 3 * e + k + 1], 1, 1);
+            mpq_set_ui(p->A[(p->force_column_at + 3 * e + k) * p->size + p->force_column_at + 3 * e + k + 1], 1, 1);
     return true;
 }
 
@@ -412,7 +412,7 @@ static void compare_column(const struct model *model, const struct judge *judge,
 /* ---- what each scheme needs, written from the papers ---- */
 
 struct fraction { long p; unsigned long q; };
-struct kernel_term { /* tau = f h: tau phi1(A tau), and where f = 1 also h phi2(A h), h phi3(A h), times these */
+struct phi_weight_term { /* tau = f h: tau phi1(A tau), and where f = 1 also h phi2(A h), h phi3(A h), times these */
     struct fraction f;
     long phi[3];
 };
@@ -421,7 +421,7 @@ struct definition {
     struct fraction table;              /* at which time it stands */
     const char *name;
     int terms;
-    struct kernel_term term[2];
+    struct phi_weight_term term[2];
 };
 
 static const struct definition definitions[] = {
@@ -452,7 +452,7 @@ static void set_fraction(mpq_ptr q, struct fraction f)
 }
 
 /* Unit chains: tau^{k+1} phi_{k+1}(A tau) B from u_k; at tau = h that is h^k times h phi_{k+1}. */
-static struct column defined_column(struct judge *judge, const struct definition *d, size_t channel)
+static struct column defined_column(struct judge *judge, const struct definition *d, size_t force_column)
 {
     struct column column = { 0 };
     mpq_t q, power;
@@ -463,7 +463,7 @@ static struct column defined_column(struct judge *judge, const struct definition
         mpq_set_ui(power, 1, 1);
         for (size_t k = 0; k < 3; k++) {
             mpq_set_si(q, d->term[t].phi[k], 1);
-            mpq_div(part->w[judge->plant.channel_at + 3 * channel + k], q, power);
+            mpq_div(part->w[judge->plant.force_column_at + 3 * force_column + k], q, power);
             mpq_mul(power, power, judge->h);
         }
     }
@@ -472,7 +472,8 @@ static struct column defined_column(struct judge *judge, const struct definition
 }
 
 /* h weight e^{A (1 - c) h} B */
-static struct column weighted_column(struct judge *judge, struct fraction c, struct fraction weight, size_t channel)
+static struct column weighted_column(struct judge *judge, struct fraction c, struct fraction weight,
+				     size_t force_column)
 {
     const struct plant *p = &judge->plant;
     struct column column = { 0 };
@@ -483,7 +484,7 @@ static struct column weighted_column(struct judge *judge, struct fraction c, str
     set_fraction(q, weight);
     mpq_mul(q, q, judge->h);
     for (size_t i = 0; i < p->states; i++)
-        mpq_mul(part->w[i], p->B[channel * p->size + i], q);
+        mpq_mul(part->w[i], p->B[force_column * p->size + i], q);
     mpq_clear(q);
     return column;
 }
@@ -543,11 +544,11 @@ static void compare_inputs(const struct model *model, struct judge *judge, const
         }
 }
 
-static void compare_kernel(const struct model *model, const struct judge *judge, struct column *column,
-                           const struct table *table, int kernel, size_t channel)
+static void compare_phi_weight(const struct model *model, const struct judge *judge, struct column *column,
+                           const struct table *table, int phi_weight, size_t force_column)
 {
-    trial.name = format("%s of channel %zu", table->wanted->kernel[kernel].name, channel + 1);
-    compare_column(model, judge, column, table->kernel[kernel] + channel, judge->plant.channels);
+    trial.name = format("%s of channel %zu", table->wanted->phi_weight[phi_weight].name, force_column + 1);
+    compare_column(model, judge, column, table->phi_weight[phi_weight] + force_column, judge->plant.force_columns);
 }
 
 static const struct definition *definition_of(enum scheme scheme, const struct wanted *wanted, const char *name)
@@ -562,15 +563,15 @@ static const struct definition *definition_of(enum scheme scheme, const struct w
 /* Kernels with a name of their own */
 static void compare_defined(const struct model *model, struct judge *judge, const struct table *table)
 {
-    for (int k = 0; k < table->wanted->kernels; k++) {
-        const struct definition *d = definition_of(model->scheme, table->wanted, table->wanted->kernel[k].name);
+    for (int k = 0; k < table->wanted->phi_weights; k++) {
+        const struct definition *d = definition_of(model->scheme, table->wanted, table->wanted->phi_weight[k].name);
         if (!d)
-            complain(table->wanted->kernel[k].name, "no such factor in this scheme");
-        for (size_t e = 0; d && e < judge->plant.channels; e++) {
+            complain(table->wanted->phi_weight[k].name, "no such factor in this scheme");
+        for (size_t e = 0; d && e < judge->plant.force_columns; e++) {
             if (!is_sampled(judge, e))
                 continue;
             struct column column = defined_column(judge, d, e);
-            compare_kernel(model, judge, &column, table, k, e);
+            compare_phi_weight(model, judge, &column, table, k, e);
         }
     }
 }
@@ -602,24 +603,25 @@ static void compare_quadrature(const struct model *model, struct judge *judge, c
     for (int i = 0; i < quadratures[model->scheme].nodes; i++) {
         const struct fraction c = quadratures[model->scheme].c[i], weight = quadratures[model->scheme].weight[i];
         int found = 0;
-        for (int k = 0; sum && k < sum->kernels; k++) {
-            mpq_srcptr node = node_of_left(step->program, sum->kernel[k].left);
+        for (int k = 0; sum && k < sum->phi_weights; k++) {
+            mpq_srcptr node = node_of_left(step->program, sum->phi_weight[k].left);
             if (!node || mpq_cmp_si(node, c.p, c.q) != 0)
                 continue;
             found++;
-            for (size_t e = 0; e < judge->plant.channels; e++) {
+            for (size_t e = 0; e < judge->plant.force_columns; e++) {
                 if (!is_sampled(judge, e))
                     continue;
                 struct column column = weighted_column(judge, c, weight, e);
-                trial.table = tables[sum->kernel[k].table]->wanted->name;
-                compare_kernel(model, judge, &column, tables[sum->kernel[k].table], sum->kernel[k].kernel, e);
+                trial.table = tables[sum->phi_weight[k].table]->wanted->name;
+                compare_phi_weight(model, judge, &column, tables[sum->phi_weight[k].table],
+				   sum->phi_weight[k].phi_weight, e);
             }
         }
         used += found;
         if (found != (weight.p != 0))
             complain("", format("node %ld/%lu is used %d times", c.p, c.q, found));
     }
-    if (!sum || used != sum->kernels)
+    if (!sum || used != sum->phi_weights)
         complain("", "a node that the scheme has not");
 }
 
@@ -668,7 +670,7 @@ static struct expected_tables expected_tables(const struct model *model)
 static void check_tables(const struct model *model, const struct step *step, struct table *const *tables)
 {
     const struct expected_tables e = expected_tables(model);
-    int kernels = 0, defined = 0;
+    int phi_weights = 0, defined = 0;
     for (int i = 0; i < e.count; i++) {
         int found = 0;
         for (int t = 0; t < step->tables; t++)
@@ -679,13 +681,13 @@ static void check_tables(const struct model *model, const struct step *step, str
     if (step->tables != e.count)
         complain("", format("%d tables, expected %d", step->tables, e.count));
     for (int t = 0; t < step->tables; t++)
-        kernels += tables[t]->wanted->kernels;
+        phi_weights += tables[t]->wanted->phi_weights;
     for (int i = 0; i < DEFINITIONS; i++)
         defined += definitions[i].scheme == model->scheme;
     for (int i = 0; i < quadratures[model->scheme].nodes; i++)
         defined += quadratures[model->scheme].weight[i].p != 0;
-    if (kernels != defined)
-        complain("", format("%d factors of remainders, expected %d", kernels, defined));
+    if (phi_weights != defined)
+        complain("", format("%d factors of remainders, expected %d", phi_weights, defined));
     for (int i = 0; i < step->program->nodes; i++)
         if (step->program->node_table[i] != NONE &&
             !mpq_equal(step->program->node[i], tables[step->program->node_table[i]]->wanted->fraction))
@@ -718,7 +720,7 @@ static struct judge *judge_of(const struct model *model, int which, int segment)
 static bool has_size(const struct table *table, const struct plant *p)
 {
     return (size_t)table->states == p->states && (size_t)table->columns == p->loads &&
-           (size_t)table->inputs == p->inputs && (size_t)table->channels == p->channels;
+           (size_t)table->inputs == p->inputs && (size_t)table->force_columns == p->force_columns;
 }
 
 static void compare_segment(const struct model *model, const struct step *step, int which, int segment)
@@ -790,9 +792,9 @@ static struct model *model_of(const char *scheme)
     struct model *model = model_build(spec_of(trial.path, trial.spec), &request);
     if (!model)
         complain("not accepted: ", first_error());
-    else if (model->remainder.channels == 0)
+    else if (model->remainder.force_columns == 0)
         complain("", "nothing is left over");
-    return model && model->remainder.channels ? model : NULL;
+    return model && model->remainder.force_columns ? model : NULL;
 }
 
 static void try_scheme(const char *scheme, bool loads_left)

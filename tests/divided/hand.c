@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/cut.h without the generator: an oscillator that a second spring holds above 0, beside its closed form.
- * Compiled for doubles, and with REAL_IS_FLOAT for floats. */
+/* runtime/event_split.h without the generator: an oscillator that a second spring holds above 0, beside its closed
+ * form. Compiled for doubles, and with REAL_IS_FLOAT for floats. */
 #include "real.h"
 #include "tap.h"
 
@@ -29,7 +29,7 @@
 #define PL_SEGMENTS 1
 #define PL_CHOICES 0
 #define PL_CONTACTS 0
-#define PL_SWIFT 0
+#define PL_FAST_PATH 0
 #define PL_FASTEST 2
 #define PL_CERTAIN 1
 #define PL_IN_MODES 0
@@ -118,7 +118,7 @@ static void spring_pass_time(spring *s, const real u[])
     s->k++;
 }
 
-#include "cut.h"
+#include "event_split.h"
 
 static const double h = 0.0625, epsilon = (double)REAL_EPSILON;
 

@@ -86,7 +86,7 @@ static const real bent_stiffness[1][1] = {{0}};
 #define PL_FIRST_SWEEPS 6
 #define PL_FUNCTIONS 0
 #define PL_WAVES 0
-#define PL_BANKS 1
+#define PL_OPERATORS 1
 #define PL_SEGMENTS 1
 #define PL_SETTLES 0
 #define PL_AT 1
@@ -230,7 +230,7 @@ static const real plane_next[1][2][2] = {
 #define PL_FIRST_SWEEPS 2
 #define PL_FUNCTIONS 2
 #define PL_WAVES 2
-#define PL_BANKS 2
+#define PL_OPERATORS 2
 #define PL_SELECTOR 1
 #define PL_SEGMENTS 3
 #define PL_SETTLES 1

@@ -17,15 +17,15 @@ cat "$@" | grep -v '^#' >"$out.lines"
 echo '#include "variant.h"' >"$out.part"
 while read -r name model options; do
     selftest=--selftest
-    anchors='--anchors 1'
+    refresh='--anchors 1'
     case $options in untested*) selftest= options=${options#untested} ;; esac
-    case $options in anchored*) anchors= options=${options#anchored} ;; esac
+    case $options in anchored*) refresh= options=${options#anchored} ;; esac
     order=
     case $options in *order=*) order=${options#*order=} options=${options%order=*} ;; esac
     spec=$folder/$model.spec
     [ -f "$spec" ] || spec=${0%/*}/$model.spec
     # shellcheck disable=SC2086
-    "$plgen" $selftest $anchors --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} \
+    "$plgen" $selftest $refresh --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} \
         ${order:+--scheme "taylor $order"} "$spec" >>"$out.part"
 done <"$out.lines"
 {

@@ -144,7 +144,7 @@ static void want_loads_and_inputs(struct wanting *w, int i)
             const struct wave *wave = system->load[l].wave;
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
             const struct judged_number *number = &j->step[i * j->columns + j->states + column];
-            if (!changes && !is_anchored(w->step, l) && !is_forced(w->step, column))
+            if (!changes && !is_refreshed(w->step, l) && !is_forced(w->step, column))
                 want(w, number, constant, w->variant->compensated,
                      format("load column %d in %s", column, state_name(w, i)));
         }
@@ -449,7 +449,7 @@ static bool load_moves(const struct judge *j, int i, int first, int columns)
     return any;
 }
 
-/* In each step after an anchor: every column of every load in the states that it moves; then their second words */
+/* In each step after a refresh: every column of every load in the states that it moves; then their second words */
 static void want_turned(struct wanting *w, int l)
 {
     const struct judge *j = w->judge;
@@ -461,7 +461,7 @@ static void want_turned(struct wanting *w, int l)
                 const struct judged_number *number = &j->turned[(l * j->states + i) * j->loads + column + k];
                 const char *what = format("load column %d in %s, %d steps after", column + k, state_name(w, i), l);
                 double value, second;
-                if (!is_anchored(w->step, m) || is_forced(w->step, column) ||
+                if (!is_refreshed(w->step, m) || is_forced(w->step, column) ||
                     !load_moves(j, i, column, system->load[m].columns))
                     continue;
                 if (!judge_words(number, w->variant->single, &value, &second))
@@ -476,7 +476,7 @@ static void want_turned(struct wanting *w, int l)
 static void compare_turned(const char *code, struct wanting *w)
 {
     struct list found = { 0 }, expected = { 0 };
-    const int steps = w->step->anchors->steps;
+    const int steps = w->step->refresh->steps;
     if (steps > JUDGED_TURNS) {
         complain(format("%d steps between anchors, the judge knows %d", steps, JUDGED_TURNS));
         return;
@@ -506,7 +506,7 @@ static void compare_code(const char *code, const struct step *step, const struct
         drop_zeros(&expected);
         compare_lists("step", &found, &expected);
     }
-    if (step->anchors && step->anchors->terms)
+    if (step->refresh && step->refresh->terms)
         compare_turned(code, &w);
     if (kept)
         return;                             /* Phi and Gamma are of the states as written */

@@ -248,7 +248,7 @@ if command -v gnuplot >log; then
 	done
 	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
 	result $? 'svg, png and pdf'
-	for name in models/sdcsf models/quarter_car models/tuned_floor tests/anchors/growing; do
+	for name in models/sdcsf models/quarter_car models/tuned_floor tests/refresh/growing; do
 		"$plgen" --report "$root/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
 			grep -q '<svg ' page
 		result $? "the page of $name"

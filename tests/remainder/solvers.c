@@ -184,9 +184,10 @@ int main(void)
             .seconds = 10,
                                                .change = 0.605, .tolerance = knocks[i].tolerance});
     /* what the input's gate lets through is left over, so a step at the gate sees both sides of the jump: h/6 of it */
-    static const char *const gates[] = {"gated_etdrk4", "gated_bm3"};
+    static const char *const guard_rows[] = {"gated_etdrk4", "gated_bm3"};
     for (int i = 0; i < 2; i++)
-        judge(gates[i], (struct subject){.rhs_sampled = gated_etdrk4_0_rhs, .by_hand = gated, .solver = CVODE_ADAMS,
+        judge(guard_rows[i],
+              (struct subject){.rhs_sampled = gated_etdrk4_0_rhs, .by_hand = gated, .solver = CVODE_ADAMS,
             .seconds = 5,
                                          .tolerance = 5e-3});
     static const char *const mixtures[] = {"mixed_etdrk4", "mixed_bm3"};

@@ -130,7 +130,7 @@ static bool run(struct subject *a, double t0, int count, const double *from)
 }
 
 /* These go from crossing to crossing by exponential time differencing: tests/divided. */
-static bool is_cut(const struct system *s, const char *scheme)
+static bool is_event_split(const struct system *s, const char *scheme)
 {
     return strncmp(s->name, "functions", 9) == 0 && strncmp(scheme, "etd", 3) == 0;
 }
@@ -251,7 +251,7 @@ static void transfer(const struct system *s)
 int main(void)
 {
     for (int i = 0; i < systems_count; i++) {
-        if (!is_cut(&systems[i], "etd1"))
+        if (!is_event_split(&systems[i], "etd1"))
             between(&systems[i]);
         if (is_pl(&systems[i])) {
             judge(&systems[i], "etd1");
@@ -259,7 +259,7 @@ int main(void)
         }
         transfer(&systems[i]);
         for (size_t j = 0; j < sizeof schemes / sizeof *schemes; j++)
-            if (!is_cut(&systems[i], schemes[j]))
+            if (!is_event_split(&systems[i], schemes[j]))
                 judge(&systems[i], schemes[j]);
     }
     previous_sample();

@@ -80,8 +80,8 @@ static void stage_unwritten(struct step *s) { action_of(s, ACTION_REMAINDER, 1)-
 static void stage_range(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->from = s->program->stages + 1; }
 static void stage_negative(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->from = -1; }
 static void plain_unwritten(struct step *s) { action_of(s, ACTION_SUM, 2)->plain = s->program->stages; }
-static void left_unwritten(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].left = s->program->lefts - 1; }
-static void left_range(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].left = s->program->lefts; }
+static void left_unwritten(struct step *s) { action_of(s, ACTION_SUM, 1)->phi_weight[0].left = s->program->lefts - 1; }
+static void left_range(struct step *s) { action_of(s, ACTION_SUM, 1)->phi_weight[0].left = s->program->lefts; }
 static void plus_unwritten(struct step *s) { action_of(s, ACTION_COMBINE, 0)->plus = s->program->lefts - 1; }
 static void minus_unwritten(struct step *s) { action_of(s, ACTION_COMBINE, 0)->minus = s->program->lefts - 1; }
 static void left_twice(struct step *s) { action_of(s, ACTION_COMBINE, 0)->target = 0; }
@@ -93,10 +93,10 @@ static void state_never(struct step *s) { s->program->actions--; }
 static void node_range(struct step *s) { action_of(s, ACTION_REMAINDER, 1)->node = s->program->nodes; }
 static void table_range(struct step *s) { action_of(s, ACTION_SUM, 0)->flow = s->tables; }
 static void no_Phi(struct step *s) { s->branch->table[1]->Phi = NULL; }
-static void kernel_table(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].table = s->tables; }
-static void kernel_range(struct step *s) { action_of(s, ACTION_SUM, 1)->kernel[0].kernel = 4; }
-static void kernel_count(struct step *s) { action_of(s, ACTION_SUM, 1)->kernels = SUM_KERNELS + 1; }
-static void kernel_gone(struct step *s) { s->branch->table[0]->kernel[0] = NULL; }
+static void phi_weight_table(struct step *s) { action_of(s, ACTION_SUM, 1)->phi_weight[0].table = s->tables; }
+static void phi_weight_range(struct step *s) { action_of(s, ACTION_SUM, 1)->phi_weight[0].phi_weight = 4; }
+static void phi_weight_count(struct step *s) { action_of(s, ACTION_SUM, 1)->phi_weights = SUM_PHI_WEIGHTS + 1; }
+static void phi_weight_gone(struct step *s) { s->branch->table[0]->phi_weight[0] = NULL; }
 static void load_gone(struct step *s) { s->branch->table[0]->load = NULL; }
 static void table_gone(struct step *s) { s->branch->table[1] = NULL; }
 static void first_node(struct step *s) { mpq_set_ui(s->program->node[0], 1, 2); }
@@ -159,10 +159,10 @@ static const struct fault {
     { left_spec, "etdrk4", node_range, "its node is out of range" },
     { left_spec, "etdrk4", table_range, "its table is out of range" },
     { left_spec, "etdrk4", no_Phi, "a table without its Phi" },
-    { left_spec, "etdrk4", kernel_table, "the table of a kernel is out of range" },
-    { left_spec, "etdrk4", kernel_range, "a kernel is out of range" },
-    { left_spec, "etdrk4", kernel_count, "more kernels than the limit" },
-    { left_spec, "etdrk4", kernel_gone, "a table without one of its kernels" },
+    { left_spec, "etdrk4", phi_weight_table, "the table of a phi-function weight is out of range" },
+    { left_spec, "etdrk4", phi_weight_range, "a phi-function weight is out of range" },
+    { left_spec, "etdrk4", phi_weight_count, "more phi-function weights than the limit" },
+    { left_spec, "etdrk4", phi_weight_gone, "a table without one of its phi-function weights" },
     { left_spec, "etdrk4", load_gone, "a table without the columns of its loads" },
     { left_spec, "etdrk4", table_gone, "a table is not there" },
     { left_spec, "etdrk4", first_node, "nodes: the first is not 0" },
@@ -233,7 +233,7 @@ static void whole_programs_are_passed(void **state)
 
 /* ---- recipes ---- */
 
-static void five_kernels(void *context)
+static void five_phi_weights(void *context)
 {
     int table = add_table(context, "full", 1, 1, true);
     for (int k = 0; k < 5; k++)
@@ -242,9 +242,10 @@ static void five_kernels(void *context)
 
 static void three_parts(void *context)
 {
-    int table = add_table(context, "full", 1, 1, true), kernel = add_phi(context, table, "p", 1, 1, 1, (long[]){ 1 });
+    int table = add_table(context, "full", 1, 1, true),
+        phi_weight = add_phi(context, table, "p", 1, 1, 1, (long[]){ 1 });
     for (int k = 0; k < 2; k++)
-        add_phi_part(context, table, kernel, 1, 2, 1, (long[]){ 1 });
+        add_phi_part(context, table, phi_weight, 1, 2, 1, (long[]){ 1 });
 }
 
 static void four_powers(void *context)
@@ -274,12 +275,12 @@ static void all_that_fits(void *context)
     struct recipe *r = context;
     for (int t = 0; t < RECIPE_TABLES; t++)
         add_table(r, "t", 1, 1, true);
-    for (int k = 0; k < TABLE_KERNELS; k++)
+    for (int k = 0; k < TABLE_PHI_WEIGHTS; k++)
         add_phi_part(r, 0, add_phi(r, 0, names[k], 1, 1, 3, (long[]){ 1, 2, 3 }), 1, 2, 3, (long[]){ 1, 2, 3 });
     int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
     struct action *sum = add_sum(r, STAGE_STATE, 0, NONE, "");
-    for (int k = 0; k < SUM_KERNELS; k++)
-        times_left(r, sum, 0, k % TABLE_KERNELS, r0);
+    for (int k = 0; k < SUM_PHI_WEIGHTS; k++)
+        times_left(r, sum, 0, k % TABLE_PHI_WEIGHTS, r0);
 }
 
 static const char *said_of_recipe(void (*write)(void *))
@@ -293,11 +294,11 @@ static const char *said_of_recipe(void (*write)(void *))
 static void recipes_have_limits(void **state)
 {
     (void)state;
-    expect(said_of_recipe(five_kernels), "more kernels of a table than the limit of 4");
-    expect(said_of_recipe(three_parts), "more parts of a kernel than the limit of 2");
-    expect(said_of_recipe(four_powers), "more powers in a part of a kernel than the limit of 3");
+    expect(said_of_recipe(five_phi_weights), "more phi-function weights of a table than the limit of 4");
+    expect(said_of_recipe(three_parts), "more parts of a phi-function weight than the limit of 2");
+    expect(said_of_recipe(four_powers), "more powers in a part of a phi-function weight than the limit of 3");
     expect(said_of_recipe(nine_tables), "more tables than the limit of 8");
-    expect(said_of_recipe(five_terms), "more kernels in a sum than the limit of 4");
+    expect(said_of_recipe(five_terms), "more phi-function weights in a sum than the limit of 4");
     expect_nothing(said_of_recipe(all_that_fits));
 }
 

@@ -393,7 +393,7 @@ void paired_jump(paired *s, uint64_t n);
 #define PL_INSIDE 0
 #define PL_ROWS 4
 #define PL_OVER 0
-#define PL_ANCHORED 0
+#define PL_REFRESHED 0
 #define PL_RESTS 2
 #define PL_IN_STEP 0
 #define PL_KEPT 0
@@ -478,7 +478,7 @@ static void faded_block(faded *s, real *out)
 #define PL_INSIDE 0
 #define PL_ROWS 4
 #define PL_OVER 0
-#define PL_ANCHORED 0
+#define PL_REFRESHED 0
 #define PL_RESTS 3
 #define PL_IN_STEP 0
 #define PL_KEPT 0
@@ -498,7 +498,7 @@ void faded_run(faded *s, size_t n, real *out);
 #define PL_INSIDE 0
 #define PL_ROWS 4
 #define PL_OVER 0
-#define PL_ANCHORED 0
+#define PL_REFRESHED 0
 #define PL_RESTS 1
 #define PL_IN_STEP 0
 #define PL_KEPT 1

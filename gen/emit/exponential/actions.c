@@ -16,9 +16,10 @@ static void emit_combination(const struct emitter *e, const struct action *a)
 {
 	const bool loops = e->step->program->loops;
 	if (loops)
-		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->remainder.channels, a->target,
+		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->remainder.force_columns,
+		    a->target,
 		    combination_at(a, "i"));
-	for (int c = 0; c < e->model->remainder.channels && !loops; c++)
+	for (int c = 0; c < e->model->remainder.force_columns && !loops; c++)
 		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, whole_text(c)));
 }
 
@@ -46,16 +47,18 @@ static void add_products(struct summands *s, const struct coefficient *row, int 
 static void emit_sum(const struct emitter *e, const struct action *a)
 {
 	struct table *const *table = e->step->branch[0].table;
-	const int channels = e->model->remainder.channels;
+	const int force_columns = e->model->remainder.force_columns;
 	for (int i = 0; i < e->system->states; i++) {
 		struct summands s = { 0 };
 		if (a->flow != NONE)
 			add_flow(e, &s, table[a->flow], false, i);
 		if (a->plain != NONE)
 			add_summand(&s, format("stage%d[%d]", a->plain, i));
-		for (int k = 0; k < a->kernels; k++) {
-			const struct coefficient *kernel = table[a->kernel[k].table]->kernel[a->kernel[k].kernel];
-			add_products(&s, kernel + i * channels, channels, format("left%d", a->kernel[k].left));
+		for (int k = 0; k < a->phi_weights; k++) {
+			const struct coefficient *phi_weight =
+				table[a->phi_weight[k].table]->phi_weight[a->phi_weight[k].phi_weight];
+			add_products(&s, phi_weight + i * force_columns, force_columns,
+				     format("left%d", a->phi_weight[k].left));
 		}
 		const char *target = a->target == STAGE_STATE ? "s->y" : vector_name(a->target);
 		say(e, "    %s[%d] = %s;\n", target, i, sum_of(&s, 14));
@@ -83,16 +86,16 @@ static void emit_prediction(const struct emitter *e, const struct action *a)
 {
 	const char *tau = shortest(time_in_step(e->model, e->step->program->node[a->node]));
 	say(e, "    $n_predict(s, %s, %s, %d, %d, %s, %sfirst, %s, stage%d);\n",
-	    many_operators(e) ? "which" : e->step->cut && e->system->segments > 1 ? "s->segment" : "0",
-	    e->step->cut ? "start, slope" : samples_of_step(e), a->half, a->node, tau,
-	    e->step->cut ? "when, interval, " : "",
+	    many_operators(e) ? "which" : e->step->event_split && e->system->segments > 1 ? "s->segment" : "0",
+	    e->step->event_split ? "start, slope" : samples_of_step(e), a->half, a->node, tau,
+	    e->step->event_split ? "when, interval, " : "",
 	    adds_driven(e) ? format("driven%d, driven%d", a->half, a->node) : "NULL, NULL", a->target);
 }
 
 static void emit_evaluation(const struct emitter *e, const struct action *a)
 {
 	const char *state = a->from == STAGE_STATE ? "s->y" : vector_name(a->from);
-	if (e->step->cut) {
+	if (e->step->event_split) {
 		mpq_srcptr node = e->step->program->node[a->node];
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
 		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
@@ -145,7 +148,7 @@ static void declare_vectors(const struct emitter *e)
 		say(e, "    double %s;\n", list);
 	say(e, "    double ");
 	for (int i = 0; i < program->lefts; i++)
-		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->remainder.channels);
+		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->remainder.force_columns);
 	say(e, program->loops ? ";\n    int i;\n" : ";\n");
 }
 
@@ -221,12 +224,12 @@ static void emit_flows_apart(const struct emitter *e)
 
 static void emit_unrolled_slope(const struct emitter *e)
 {
-	int states = e->system->states, channels = e->model->remainder.channels;
+	int states = e->system->states, force_columns = e->model->remainder.force_columns;
 	const struct slopes slopes = state_slopes(e->step, 0);
 	for (int i = 0; i < states; i++) {
 		struct summands s = { 0 };
 		add_products(&s, slopes.A + i * states, states, "z");
-		add_products(&s, slopes.B + i * channels, channels, "left");
+		add_products(&s, slopes.B + i * force_columns, force_columns, "left");
 		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum_of(&s, 12), e->model->names.state[i]);
 	}
 }
@@ -235,17 +238,17 @@ void emit_predictor(const struct emitter *e)
 {
 	open_function(e, "dz = A z + B r, r what is left over",
 		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
-		      "double dz[$N_STATES])", e->model->remainder.channels);
+		      "double dz[$N_STATES])", e->model->remainder.force_columns);
 	if (e->step->program->loops)
 		say(e,
 		    "    pl_multiply($N_STATES, $N_STATES, %s, z, dz);\n"
 		    "    pl_multiply_add($N_STATES, %d, %s, left, dz);\n",
-		    matrix_text(e, "A"), e->model->remainder.channels, matrix_text(e, "B"));
+		    matrix_text(e, "A"), e->model->remainder.force_columns, matrix_text(e, "B"));
 	else
 		emit_unrolled_slope(e);
 	close_function(e, "which z");
-	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->remainder.channels },
-		   { "DRIVEN", adds_driven(e) }, { "CUT", e->step->cut != NULL });
+	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->remainder.force_columns },
+		   { "DRIVEN", adds_driven(e) }, { "EVENT_SPLIT", e->step->event_split != NULL });
 	say_include(e, "predict.h");
 }
 
@@ -283,7 +286,7 @@ static void emit_operands_of_step(const struct emitter *e)
 	if (!loops)
 		emit_locals(e, states_read(e));
 	emit_load_states(e, acting_loads(e), false);
-	if (!e->step->cut)
+	if (!e->step->event_split)
 		emit_samples(e);
 	if (many_operators(e))
 		say(e, "    const int which = %s;\n", selection_call(e));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of steps in normal modes: tables of a bank, between coordinates and modes, functions of time, forces on the modes. */
+/* Of steps in normal modes: tables of a schedule, between coordinates and modes, functions of time, forces on the
+ * modes. */
 #include "inner.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
@@ -20,9 +21,9 @@ int functions_of_time(const struct emitter *e)
 	return e->model->remainder.split->functions - 1;
 }
 
-bool has_bank(const struct emitter *e)
+bool has_schedule(const struct emitter *e)
 {
-	return normal_of_step(e)->banks > 1;
+	return normal_of_step(e)->operators > 1;
 }
 
 static bool has_changes(const struct emitter *e)
@@ -30,38 +31,38 @@ static bool has_changes(const struct emitter *e)
 	return e->system->segments > 1;
 }
 
-/* ---- tables: one of all banks where they are alike ---- */
+/* ---- tables: one of all operators where they are alike ---- */
 
-struct bank_table {
-	int size;                   /* of one bank's */
+struct schedule_table {
+	int size;                   /* of one schedule's */
 	const double *value;
 	bool alike;
 };
 
-static struct bank_table table_of_banks(const struct emitter *e, int size, const double *value)
+static struct schedule_table table_of_operators(const struct emitter *e, int size, const double *value)
 {
-	struct bank_table t = { size, value, true };
-	for (int b = 1; b < normal_of_step(e)->banks; b++)
+	struct schedule_table t = { size, value, true };
+	for (int b = 1; b < normal_of_step(e)->operators; b++)
 		for (int i = 0; i < size; i++)
 			t.alike = t.alike && value[b * size + i] == value[i];
 	return t;
 }
 
-/* static const double NAME_name[banks][outer][row]; its name with the bank's index */
-static const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
+/* static const double NAME_name[operators][outer][row]; its name with the schedule's index */
+static const char *emit_schedule_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
 				   const double *value)
 {
-	const struct bank_table t = table_of_banks(e, (outer ? outer : 1) * row, value);
-	const int banks = t.alike ? 1 : normal_of_step(e)->banks;
-	const int *size = outer ? (const int[]){ banks, outer, row } : (const int[]){ banks, row };
+	const struct schedule_table t = table_of_operators(e, (outer ? outer : 1) * row, value);
+	const int operators = t.alike ? 1 : normal_of_step(e)->operators;
+	const int *size = outer ? (const int[]){ operators, outer, row } : (const int[]){ operators, row };
 	emit_array(e, note, name, outer ? 3 : 2, size, value, NULL);
 	return spell(e, t.alike ? "$n_%s[0]" : "$n_%s[which]", name);
 }
 
 /* By which a table of so many numbers of each operator is read */
-static const char *bank_index(const struct emitter *e, const double *value, int size)
+static const char *schedule_index(const struct emitter *e, const double *value, int size)
 {
-	return table_of_banks(e, size, value).alike ? "0" : "which";
+	return table_of_operators(e, size, value).alike ? "0" : "which";
 }
 
 /* ---- sums over the rows of a block ---- */
@@ -78,13 +79,13 @@ void say_row_sum(const struct emitter *e, const char *target, int rows, const st
 	}
 }
 
-/* Rows place .. of a matrix of modes by blocks, as columns: [bank][column][row] */
+/* Rows place .. of a matrix of modes by blocks, as columns: [schedule][column][row] */
 static double *block_columns(const struct emitter *e, const double *matrix, const struct mode_block *rows, int row,
 			     const struct mode_block *columns, int column)
 {
 	int n = normal_of_step(e)->modes;
-	double *value = ARRAY(double, (size_t)(normal_of_step(e)->banks * columns->modes * rows->rows));
-	for (int b = 0; b < normal_of_step(e)->banks; b++)
+	double *value = ARRAY(double, (size_t)(normal_of_step(e)->operators * columns->modes * rows->rows));
+	for (int b = 0; b < normal_of_step(e)->operators; b++)
 		for (int j = 0; j < columns->modes; j++)
 			for (int i = 0; i < rows->modes; i++)
 				value[(b * columns->modes + j) * rows->rows + i] =
@@ -108,8 +109,8 @@ static double *sorted(const struct emitter *e, const double *matrix, int block, 
 	const struct normal *m = normal_of_step(e);
 	const struct mode_block *own = &m->block[block];
 	int n = m->modes, first = first_mode(e, block);
-	double *value = ARRAY(double, (size_t)(m->banks * own->modes * own->rows));
-	for (int b = 0; b < m->banks; b++)
+	double *value = ARRAY(double, (size_t)(m->operators * own->modes * own->rows));
+	for (int b = 0; b < m->operators; b++)
 		for (int j = 0; j < own->modes; j++)
 			for (int i = 0; i < own->modes; i++)
 				value[(b * own->modes + j) * own->rows + i] =
@@ -123,7 +124,7 @@ void emit_to_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const char **table = ARRAY(const char *, (size_t)m->blocks);
 	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_bank_table(e, format("to_modes%d", b + 1), "Modes from coordinates, by columns",
+		table[b] = emit_schedule_table(e, format("to_modes%d", b + 1), "Modes from coordinates, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->to, b, true));
 	open_function(e, "The modes of coordinates, or of their velocities",
 		      "static void $n_modes_of(int which, const double q[%d], double mode[%d])", m->modes, m->width);
@@ -143,7 +144,7 @@ void emit_from_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const char **table = ARRAY(const char *, (size_t)m->blocks);
 	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_bank_table(e, format("from_modes%d", b + 1), "Coordinates from modes, by columns",
+		table[b] = emit_schedule_table(e, format("from_modes%d", b + 1), "Coordinates from modes, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->from, b, false));
 	open_function(e, "Coordinates from their modes, or velocities",
 		      "static void $n_of_modes(int which, const double mode[%d], double q[%d])", m->width, m->modes);
@@ -204,7 +205,7 @@ static enum shape shape_of(const struct emitter *e, const double *matrix, int ro
 	const struct mode_block *rows = &m->block[row], *columns = &m->block[column];
 	int i0 = first_mode(e, row), j0 = first_mode(e, column);
 	enum shape shape = SHAPE_ZERO;
-	for (int b = 0; b < m->banks; b++)
+	for (int b = 0; b < m->operators; b++)
 		for (int i = 0; i < rows->modes; i++)
 			for (int j = 0; j < columns->modes; j++) {
 				bool zero = matrix[(b * m->modes + i0 + i) * m->modes + j0 + j] == 0;
@@ -220,8 +221,8 @@ static double *diagonal_of(const struct emitter *e, const double *matrix, int bl
 	const struct normal *m = normal_of_step(e);
 	const struct mode_block *own = &m->block[block];
 	int first = first_mode(e, block);
-	double *value = ARRAY(double, (size_t)(m->banks * own->rows));
-	for (int b = 0; b < m->banks; b++)
+	double *value = ARRAY(double, (size_t)(m->operators * own->rows));
+	for (int b = 0; b < m->operators; b++)
 		for (int i = 0; i < own->modes; i++)
 			value[b * own->rows + i] = matrix[(b * m->modes + first + i) * m->modes + first + i];
 	return value;
@@ -238,13 +239,13 @@ static void add_block(const struct emitter *e, struct summands *s, int matrix, i
 	case SHAPE_ZERO:
 		return;
 	case SHAPE_DIAGONAL:
-		name = emit_bank_table(e, name, "What is left over of a mode: a force on itself", 0, rows->rows,
+		name = emit_schedule_table(e, name, "What is left over of a mode: a force on itself", 0, rows->rows,
 				       diagonal_of(e, value, row));
 		add_summand(s, format("%s[i] * x%d[%d + i]", name, matrix + 1, rows->place));
 		return;
 	case SHAPE_DENSE:
 		value = block_columns(e, value, rows, first_mode(e, row), columns, first_mode(e, column));
-		name = emit_bank_table(e, name, "What is left over: forces on modes, by columns", columns->modes,
+		name = emit_schedule_table(e, name, "What is left over: forces on modes, by columns", columns->modes,
 				       rows->rows, value);
 		for (int j = 0; j < columns->modes; j++)
 			add_summand(s, format("%s[%d][i] * x%d[%d]", name, j, matrix + 1, columns->place + j));
@@ -256,15 +257,15 @@ static const char *function_text(int function)
 	return function ? format("f[%d]", function - 1) : "1.0";
 }
 
-/* factor[bank] times a function; a table is printed where it differs from bank to bank */
+/* factor[schedule] times a function; a table is printed where it differs from schedule to schedule */
 static const char *factor_text(const struct emitter *e, const char *name, int function, const double *factor)
 {
-	struct bank_table t = table_of_banks(e, 1, factor);
+	struct schedule_table t = table_of_operators(e, 1, factor);
 	const char *text;
 	if (t.alike) {
 		text = scaled(factor[0], function ? function_text(function) : NULL);
 	} else {
-		emit_array(e, "Of each operator", name, 1, &normal_of_step(e)->banks, factor, NULL);
+		emit_array(e, "Of each operator", name, 1, &normal_of_step(e)->operators, factor, NULL);
 		text = spell(e, function ? "$n_%s[which] * %s" : "$n_%s[which]", name, function_text(function));
 	}
 	return text;
@@ -333,11 +334,11 @@ static void add_force_on(const struct emitter *e, struct summands *sum, int k, i
 	const struct normal *m = normal_of_step(e);
 	int n = m->modes, place, block = block_of_coordinate(e, coord, &place), first = first_mode(e, block);
 	const struct mode_block *own = &m->block[block];
-	double *row = ARRAY(double, (size_t)(m->banks * own->rows));
-	for (int b = 0; b < m->banks; b++)
+	double *row = ARRAY(double, (size_t)(m->operators * own->rows));
+	for (int b = 0; b < m->operators; b++)
 		for (int j = 0; j < own->modes; j++)
 			row[b * own->rows + j] = m->from[(b * n + coord) * n + first + j];
-	const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
+	const char *name = emit_schedule_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
 					   own->rows, row);
 	add_summand(&sum[block], format("%s[i] * %s", name, force));
 }
@@ -364,7 +365,7 @@ static void emit_rest_values(const struct emitter *e)
 		if (!r.state[i])
 			continue;
 		const char *table = spell(e, "$n_from_modes%d[%s]", block + 1,
-					  bank_index(e, sorted(e, m->from, block, false), own->modes * own->rows));
+					  schedule_index(e, sorted(e, m->from, block, false), own->modes * own->rows));
 		for (int j = 0; j < own->modes; j++)
 			add_summand(&s, format("%s[%d][%d] * %s[%d]", table, j, place, i < m->modes ? "eta" : "rate",
 					       own->place + j));
@@ -409,7 +410,7 @@ void emit_forces(const struct emitter *e)
 		if (!m->force[f])
 			continue;
 		const char *name =
-			emit_bank_table(e, format("force%d", f), "Forces of time alone", 0, m->width, m->force[f]);
+			emit_schedule_table(e, format("force%d", f), "Forces of time alone", 0, m->width, m->force[f]);
 		for (int b = 0; b < m->blocks; b++)
 			add_summand(&sum[b], format("%s[%d + i]%s", name, m->block[b].place,
 						    f ? format(" * now%d", f) : ""));
@@ -439,11 +440,11 @@ void emit_forces_on_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const struct model *model = e->model;
 	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
-	for (int c = 0; c < model->remainder.channels; c++)
+	for (int c = 0; c < model->remainder.force_columns; c++)
 		add_force_on(e, sum, c, coordinate_of_row(model, model->remainder.row[c]), format("left[%d]", c));
 	open_function(e, "What is left over, on the modes",
 		      "static void $n_on_modes(int which, const double left[%d], double force[%d])",
-		      model->remainder.channels, m->width);
+		      model->remainder.force_columns, m->width);
 	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);

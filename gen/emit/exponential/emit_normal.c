@@ -61,18 +61,18 @@ static void add_waves_of_columns(const struct emitter *e, struct summands *s, in
 
 /* ---- a stage: modes at a node, or after a step ---- */
 
-/* [stage][bank][row][place] */
+/* [stage][schedule][row][place] */
 static void emit_stage_table(const struct emitter *e, const char *note, const char *name, int stages, int rows,
 			     const double *const *of_stage)
 {
 	const struct normal *m = normal_of_step(e);
-	const size_t each = (size_t)(m->banks * rows * m->width);
+	const size_t each = (size_t)(m->operators * rows * m->width);
 	double *value = ARRAY(double, each * (size_t)stages);
 	if (rows == 0)
 		return;
 	for (int i = 0; i < stages; i++)
 		memcpy(value + (size_t)i * each, of_stage[i], each * sizeof *value);
-	emit_array(e, note, name, 4, (const int[]){ stages, m->banks, rows, m->width }, value, NULL);
+	emit_array(e, note, name, 4, (const int[]){ stages, m->operators, rows, m->width }, value, NULL);
 }
 
 static void emit_node_tables(const struct emitter *e)
@@ -167,9 +167,9 @@ static void emit_predict(const struct emitter *e)
 	for (int k = 0; k < m->multistep.points; k++)
 		add_summand(&extrapolated, scaled(m->multistep.extrapolate[k], format("force%d[i]", k)));
 	emit_array(e, "Modes after a step, from past forces, the last first", "past_weight", 3,
-		   (const int[]){ m->banks, 2 * m->multistep.points, m->width }, m->multistep.step.weight, NULL);
+		   (const int[]){ m->operators, 2 * m->multistep.points, m->width }, m->multistep.step.weight, NULL);
 	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
-		   (const int[]){ m->banks, 2, m->width }, m->multistep.correct, NULL);
+		   (const int[]){ m->operators, 2, m->width }, m->multistep.correct, NULL);
 	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double wave[],\n"
 		      "    double eta[], double rate[], double expected[])");
 	emit_rows_of_node(e, format("%d", m->collocation.stages - 1), "past_weight");
@@ -179,14 +179,14 @@ static void emit_predict(const struct emitter *e)
 	emit_stage_sums(e, m->multistep.points, "force%d[i]", sum_of(&extrapolated, 22));
 }
 
-/* ---- a bank ---- */
+/* ---- a schedule ---- */
 
-static void emit_bank(const struct emitter *e)
+static void emit_schedule(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const int last = m->banks - 1;
-	double *bound = ARRAY(double, (size_t)m->banks);
-	if (!has_bank(e))
+	const int last = m->operators - 1;
+	double *bound = ARRAY(double, (size_t)m->operators);
+	if (!has_schedule(e))
 		return;
 	for (int b = 0; b < last; b++)
 		bound[b] = equation_number(e->model, e->model->schedule.operator[b].at).value;
@@ -252,7 +252,8 @@ static void emit_swing(const struct emitter *e)
 	struct summands sum = { 0 };
 	if (count == 0)
 		return;
-	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->banks, count, m->width }, m->wave,
+	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->operators, count, m->width },
+		   m->wave,
 		   NULL);
 	open_function(e, NULL, "static inline void $n_swing_on(int which, double by, double wave[], double swing[],\n"
 		      "    double force[])");
@@ -271,7 +272,7 @@ static void emit_within(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	const int nodes = m->collocation.stages * m->collocation.stages,
-		  past = m->multistep.points * m->multistep.points, size[] = { m->banks, m->width };
+		  past = m->multistep.points * m->multistep.points, size[] = { m->operators, m->width };
 	emit_array(e, "Of polynomials through forces at nodes: powers from what they exceed that at the start by",
 		   "of_nodes", 1, &nodes, m->within.nodes, NULL);
 	if (past)
@@ -302,7 +303,7 @@ void emit_mode_sizes(const struct emitter *e)
 				     { "FIRST_SWEEPS", m->collocation.first_sweeps },
 				     { "FUNCTIONS", 0 },
 				     { "WAVES", 0 },
-				     { "BANKS", 1 } };
+				     { "OPERATORS", 1 } };
 	for (size_t i = 0; i < sizeof size / sizeof *size; i++)
 		say_macro(e, size[i].name, whole_text(size[i].value));
 }
@@ -324,9 +325,9 @@ static void emit_algorithm(const struct emitter *e)
 	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->multistep.points },
 		   { "TWICE", m->multistep.twice }, { "STAGES", m->collocation.stages },
 		   { "SWEEPS", m->collocation.sweeps }, { "FIRST_SWEEPS", m->collocation.first_sweeps },
-		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "BANKS", m->banks },
+		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "OPERATORS", m->operators },
 		   { "SELECTOR", e->model->remainder.split->selector - 1 }, { "SEGMENTS", e->system->segments },
-		   { "SETTLES", m->steady.flow != NULL }, { "SETTLED_IN", m->steady.bank },
+		   { "SETTLES", m->steady.flow != NULL }, { "SETTLED_IN", m->steady.schedule },
 		   { "AT", e->step->series.emitted }, { "TERMS", m->within.terms }, { "TURNS", turns_within(e) },
 		   { "DAMPED", m->within.damping != NULL }, { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
 	say(e, "#include \"normal.h\"\n");
@@ -341,7 +342,7 @@ void emit_normal_tables(const struct emitter *e)
 		emit_function_values(e);
 	emit_forces(e);
 	emit_waves(e);
-	emit_bank(e);
+	emit_schedule(e);
 	emit_node_modes(e);
 	if (m->multistep.points)
 		emit_predict(e);
@@ -359,7 +360,7 @@ void emit_normal_members(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	const char *where = m->multistep.points ? "ends of the last steps" : "nodes of the last step";
-	bool past = m->multistep.points || has_bank(e), alone = keeps_modes(e);
+	bool past = m->multistep.points || has_schedule(e), alone = keeps_modes(e);
 	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
 	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
 	if (past)

@@ -10,7 +10,7 @@
 
 const struct normal *normal_of_step(const struct emitter *e);
 int  functions_of_time(const struct emitter *e);                  /* beside the constant one */
-bool has_bank(const struct emitter *e);                           /* of several operators */
+bool has_schedule(const struct emitter *e);                       /* of several operators */
 /* target[i] = sum for so many i, in as many loops as its terms ask for */
 void say_row_sum(const struct emitter *e, const char *target, int rows, const struct summands *s);
 void emit_to_modes(const struct emitter *e);                      /* NAME_modes_of */

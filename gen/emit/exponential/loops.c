@@ -17,8 +17,8 @@ static int acting_columns(const struct emitter *e, int **column)
 }
 
 struct picked {                     /* a matrix of a table, or of the slopes */
-	enum { PICK_PHI, PICK_LOAD, PICK_INPUT, PICK_KERNEL, PICK_SLOPE, PICK_FORCE } kind;
-	int table, index;           /* of a kernel: which */
+	enum { PICK_PHI, PICK_LOAD, PICK_INPUT, PICK_PHI_WEIGHT, PICK_SLOPE, PICK_FORCE } kind;
+	int table, index;           /* of a phi-function weight: which */
 	int columns;
 	const int *column;          /* of the loads: those that act */
 	const struct slopes *slopes; /* per operator */
@@ -31,7 +31,7 @@ static double picked_entry(const struct picked *p, const struct emitter *e, int 
 	case PICK_PHI:    return table->Phi[i * table->states + j].value;
 	case PICK_LOAD:   return table->load[(segment * table->states + i) * table->columns + p->column[j]].value;
 	case PICK_INPUT:  return table->input[i * table->inputs + j].value;
-	case PICK_KERNEL: return table->kernel[p->index][i * table->channels + j].value;
+	case PICK_PHI_WEIGHT: return table->phi_weight[p->index][i * table->force_columns + j].value;
 	case PICK_SLOPE:  return p->slopes[operator].A[i * p->columns + j].value;
 	default:          return p->slopes[operator].B[i * p->columns + j].value;
 	}
@@ -72,11 +72,11 @@ static void emit_tables_of(const struct emitter *e, int t)
 		emit_table(e, format("%s_load", wanted->name), "what the load states add", 0, load);
 	if (inputs)
 		emit_table(e, format("%s_input", wanted->name), "what the inputs add", 0, input);
-	for (int k = 0; k < wanted->kernels; k++) {
-		struct picked kernel = {
-			.kind = PICK_KERNEL, .table = t, .index = k, .columns = e->model->remainder.channels
+	for (int k = 0; k < wanted->phi_weights; k++) {
+		struct picked phi_weight = {
+			.kind = PICK_PHI_WEIGHT, .table = t, .index = k, .columns = e->model->remainder.force_columns
 		};
-		emit_table(e, wanted->kernel[k].name, "what remainders add", 0, kernel);
+		emit_table(e, wanted->phi_weight[k].name, "what remainders add", 0, phi_weight);
 	}
 }
 
@@ -90,7 +90,7 @@ void emit_loop_tables(const struct emitter *e)
 	for (int k = 0; k < e->model->schedule.operators; k++)
 		slopes[k] = state_slopes(e->step, k);
 	struct picked A = { .kind = PICK_SLOPE, .columns = e->system->states, .slopes = slopes };
-	struct picked B = { .kind = PICK_FORCE, .columns = e->model->remainder.channels, .slopes = slopes };
+	struct picked B = { .kind = PICK_FORCE, .columns = e->model->remainder.force_columns, .slopes = slopes };
 	emit_table(e, "A", "y' = A y + B r", 0, A);
 	emit_table(e, "B", "the force of each remainder", 0, B);
 }
@@ -170,10 +170,11 @@ void emit_sum_loop(const struct emitter *e, const struct action *a)
 	else
 		say(e, "    for (i = 0; i < $N_STATES; i++) { %s[i] = %s; }\n", target,
 		    a->flow != NONE ? format("flow%d[i]", a->flow) : format("stage%d[i]", a->plain));
-	for (int k = 0; k < a->kernels; k++) {
-		const struct kernel *kernel = &table[a->kernel[k].table]->wanted->kernel[a->kernel[k].kernel];
-		say(e, "    pl_multiply_add($N_STATES, %d, %s, left%d, %s);\n", e->model->remainder.channels,
-		    matrix_text(e, kernel->name), a->kernel[k].left, target);
+	for (int k = 0; k < a->phi_weights; k++) {
+		const struct phi_weight *phi_weight =
+			&table[a->phi_weight[k].table]->wanted->phi_weight[a->phi_weight[k].phi_weight];
+		say(e, "    pl_multiply_add($N_STATES, %d, %s, left%d, %s);\n", e->model->remainder.force_columns,
+		    matrix_text(e, phi_weight->name), a->phi_weight[k].left, target);
 	}
 	if (a->target == STAGE_STATE)
 		say(e, "    for (i = 0; i < $N_STATES; i++) { s->y[i] = next[i]; }\n");
@@ -186,5 +187,5 @@ const char *vector_name(int stage)
 
 bool flows_apart(const struct emitter *e)
 {
-	return e->system->segments > 1 && !e->step->cut;
+	return e->system->segments > 1 && !e->step->event_split;
 }

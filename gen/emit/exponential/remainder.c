@@ -32,37 +32,38 @@ static bool reads_ramp(const struct emitter *e, const struct reads *r)
 	return false;
 }
 
-static bool reads_channel(const struct model *model, int channel)
+static bool reads_force_column(const struct model *model, int force_column)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs + model->n; i++) {
 		const struct output *output =
 			i < model->outputs ? &model->output[i] : model->equations.highest[i - model->outputs];
-		any = any || (output && mpq_sgn(output->channel[channel]) != 0);
+		any = any || (output && mpq_sgn(output->force_column[force_column]) != 0);
 	}
 	return any;
 }
 
-bool reads_channels(const struct model *model)
+bool reads_force_columns(const struct model *model)
 {
 	bool any = false;
-	for (int c = 0; c < model->remainder.channels; c++)
-		any = any || reads_channel(model, c);
+	for (int c = 0; c < model->remainder.force_columns; c++)
+		any = any || reads_force_column(model, c);
 	return any;
 }
 
 /* Beside friction outputs alone ask what is left over, and of equations that have none: its force is no formula. */
-static bool is_asked(const struct emitter *e, int channel)
+static bool is_asked(const struct emitter *e, int force_column)
 {
-	return e->model->contacts.drags == 0 || reads_channel(e->model, channel);
+	return e->model->contacts.drags == 0 || reads_force_column(e->model, force_column);
 }
 
 static struct reads reads_of_remainder(const struct emitter *e)
 {
-	int channels = e->model->remainder.channels, all = channels * e->model->schedule.operators, asked = 0;
+	int force_columns = e->model->remainder.force_columns, all = force_columns * e->model->schedule.operators,
+		asked = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
 	for (int k = 0; k < e->model->schedule.operators; k++)
-		for (int c = 0; c < channels; c++)
+		for (int c = 0; c < force_columns; c++)
 			if (is_asked(e, c))
 				form[asked++] = e->model->schedule.operator[k].left[c];
 	return reads_of(e->model, asked, form);
@@ -92,27 +93,27 @@ const char *remainder_of_outputs(const struct emitter *e)
 		     e->ramps ? "s->slope" : "NULL", e->step->normal ? "now" : "s->y");
 }
 
-/* ---- a bank: linear terms that differ from operator to operator ---- */
+/* ---- a schedule: linear terms that differ from operator to operator ---- */
 
-static void emit_excess(const struct emitter *e, const struct bank *bank)
+static void emit_excess(const struct emitter *e, const struct schedule *schedule)
 {
-	const int size[] = { e->model->schedule.operators, bank->count };
+	const int size[] = { e->model->schedule.operators, schedule->count };
 	const char **note = ARRAY(const char *, (size_t)e->model->schedule.operators);
 	for (int k = 0; k < e->model->schedule.operators; k++)
 		note[k] = e->model->schedule.operator[k].text;
 	emit_array(e, "What the linear terms of the equations exceed those of each operator by", "excess", 2, size,
-		   bank->factor, note);
+		   schedule->factor, note);
 }
 
-/* A channel's form, and what the operator that serves does not have of its linear terms */
-static tape_ref with_excess(struct formulas *f, int channel, tape_ref form, const struct bank *bank)
+/* A force column's form, and what the operator that serves does not have of its linear terms */
+static tape_ref with_excess(struct formulas *f, int force_column, tape_ref form, const struct schedule *schedule)
 {
 	struct tape *t = formulas_tape(f);
-	tape_ref *term = ARRAY(tape_ref, (size_t)bank->count + 1);
+	tape_ref *term = ARRAY(tape_ref, (size_t)schedule->count + 1);
 	int terms = 0;
-	for (int i = 0; i < bank->count; i++) {
-		const struct excess *excess = &bank->excess[i];
-		if (excess->channel == channel)
+	for (int i = 0; i < schedule->count; i++) {
+		const struct excess *excess = &schedule->excess[i];
+		if (excess->force_column == force_column)
 			term[terms++] = tape_binary(t, TAPE_MUL, tape_operand(t, TAPE_TABLE, i, TABLE_EXCESS),
 						    tape_operand(t, TAPE_COORD, excess->coord, excess->order));
 	}
@@ -151,23 +152,24 @@ static void emit_remainder_locals(const struct emitter *e, const struct reads *r
 	emit_load_states(&here, r->load, true);
 }
 
-static const char *name_of_channel(const struct emitter *e, int channel)
+static const char *name_of_force_column(const struct emitter *e, int force_column)
 {
-	return e->model->names.coord[coordinate_of_row(e->model, e->model->remainder.row[channel])];
+	return e->model->names.coord[coordinate_of_row(e->model, e->model->remainder.row[force_column])];
 }
 
-static void emit_lefts(const struct emitter *e, const struct bank *bank)
+static void emit_lefts(const struct emitter *e, const struct schedule *schedule)
 {
-	struct formulas *f = formulas_new(e, (struct reading){ 0 }, e->model->remainder.channels, bank->common);
+	struct formulas *f =
+		formulas_new(e, (struct reading){ 0 }, e->model->remainder.force_columns, schedule->common);
 	struct tape *t = formulas_tape(f);
-	for (int c = 0; c < e->model->remainder.channels; c++) {
-		tape_ref form = is_asked(e, c) ? formula(f, bank->common[c]) : tape_number(t, 0);
-		tape_set(t, format("left[%d]", c), with_excess(f, c, form, bank), 15, name_of_channel(e, c));
+	for (int c = 0; c < e->model->remainder.force_columns; c++) {
+		tape_ref form = is_asked(e, c) ? formula(f, schedule->common[c]) : tape_number(t, 0);
+		tape_set(t, format("left[%d]", c), with_excess(f, c, form, schedule), 15, name_of_force_column(e, c));
 	}
 	emit_formulas(f, 4);
 }
 
-/* ---- a bank: which of its operators serves now ---- */
+/* ---- a schedule: which of its operators serves now ---- */
 
 static void emit_selection(const struct emitter *e)
 {
@@ -199,20 +201,20 @@ const char *selection_call(const struct emitter *e)
 void emit_remainder(const struct emitter *e)
 {
 	struct reads r = reads_of_remainder(e);
-	struct bank bank = bank_of(e->step);
+	struct schedule schedule = schedule_of(e->step);
 	bool node = needs_node(e, &r);
 	if (node)
 		emit_nodes(e, &r);
-	if (bank.count)
-		emit_excess(e, &bank);
+	if (schedule.count)
+		emit_excess(e, &schedule);
 	open_function(e, "What is left over at state y: a force on each equation that has some",
 		      "static void $n_remainder(const $n *s, int which, int node, const double u[],\n"
 		      "    const double slope[], const double y[$N_STATES], double left[%d])",
-		      e->model->remainder.channels);
+		      e->model->remainder.force_columns);
 	emit_remainder_locals(e, &r, "y", node);
-	if (bank.count)
+	if (schedule.count)
 		say(e, "    const double *const excess = $n_excess[which];\n");
-	emit_lefts(e, &bank);
+	emit_lefts(e, &schedule);
 	close_function(e, "s which node u slope y");
 	if (many_operators(e) && !e->step->normal)
 		emit_selection(e);

@@ -57,7 +57,7 @@ static void emit_forced_loads(const struct emitter *e)
 	int count = e->step->branch->whole->columns;
 	open_function(e, "Load states that the step leaves out, now; of the others 0",
 		      "static void $n_forced_loads(const $n *s, double load[%d])", count);
-	emit_turned_loads(e, e->step->forced->load, false);
+	emit_rotated_loads(e, e->step->forced->load, false);
 	for (int k = 0; k < count; k++)
 		say(e, "    load[%d] = %s;\n", k,
 		    !is_forced(e->step, k) ? "0.0" : column_operand(e, k) ? column_operand(e, k) : "1.0");
@@ -75,7 +75,7 @@ void emit_forced(const struct emitter *e)
 	tape_of_forced(formulas_tape(f), e->step, "now");
 	open_function(e, "What the loads that the step leaves out sustain now",
 		      "static void $n_forced(const $n *s, double now[$N_STATES])");
-	emit_turned_loads(e, e->step->forced->load, false);
+	emit_rotated_loads(e, e->step->forced->load, false);
 	emit_formulas(f, 4);
 	close_function(e, "s");
 }

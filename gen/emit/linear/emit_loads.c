@@ -172,7 +172,7 @@ void emit_load_tables(const struct emitter *e)
 
 void emit_load_members(const struct emitter *e)
 {
-	const char *when = e->step->anchors ? " at the anchor" : "";
+	const char *when = e->step->refresh ? " at the refresh" : "";
 	if (e->phases)
 		say(e, "    pl_turn phase[%d];    /* of the loads%s */\n", e->phases, when);
 	if (e->growths)
@@ -227,7 +227,7 @@ static const char *later(const struct emitter *e, const char *what, const char *
 		      strcmp(what, "phase") == 0 ? "" : falls, e->after);
 }
 
-/* s->phase[i] or s->growth[i], and what it has gained since: up to the node, or from the anchor up to now */
+/* s->phase[i] or s->growth[i], and what it has gained since: up to the node, or from the refresh up to now */
 static const char *now_of(const struct emitter *e, const char *what, const char *type, int i)
 {
 	const char *kept = format("s->%s[%d]", what, i);
@@ -235,7 +235,7 @@ static const char *now_of(const struct emitter *e, const char *what, const char 
 		return format("%s_add(%s, %s_node_%s[node][%d])", type, kept, e->name, what, i);
 	if (e->after)
 		return later(e, what, type, i);
-	if (!e->step->anchors || e->at_anchor)
+	if (!e->step->refresh || e->at_refresh)
 		return kept;
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
 }
@@ -245,10 +245,10 @@ static const char *growth_now(const struct emitter *e, int i)
 	return now_of(e, "growth", "pl_growth", i);
 }
 
-/* load1[0]; in the anchor s->anchor[0] */
+/* load1[0]; in the refresh s->phasor[0] */
 static const char *load_cell(const struct emitter *e, int load, int column)
 {
-	return e->at_anchor ? format("s->anchor[%d]", e->anchor[load] + column)
+	return e->at_refresh ? format("s->phasor[%d]", e->phasor[load] + column)
 			    : format("load%d[%d]", load + 1, column);
 }
 
@@ -273,7 +273,7 @@ void emit_load_functions(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
 	bool turns = oscillates(load->wave), grows = e->growth[l] >= 0;
-	const char *pair = e->at_anchor ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
+	const char *pair = e->at_refresh ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
 	if (turns)
 		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_turn", e->phase[l]), pair);
 	if (turns && grows)

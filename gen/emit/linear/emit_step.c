@@ -119,7 +119,7 @@ static void emit_rows_of_step(const struct emitter *e)
 	tape_mark(t, TAPE_STATE, 0, reads);
 	emit_raw_locals(e, reads);
 	if (!e->step->program->loops)
-		emit_anchored_loads(e, loads_of_step(e));
+		emit_refreshed_loads(e, loads_of_step(e));
 	if (tape_reads(t, TAPE_TABLE, -1, TABLE_FACTOR))
 		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
 		    e->step->branch->whole->columns);
@@ -152,12 +152,12 @@ static void emit_plain_step(const struct emitter *e)
 void emit_step_end(const struct emitter *e)
 {
 	emit_keep_inputs(e, 1);
-	if (!e->step->anchors)
+	if (!e->step->refresh)
 		emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");
-	if (e->step->anchors)
-		say(e, "    if (++s->since == %d) { $n_drop_anchor(s); }\n",
-		    e->step->anchors->steps);
+	if (e->step->refresh)
+		say(e, "    if (++s->since == %d) { $n_drop_refresh(s); }\n",
+		    e->step->refresh->steps);
 	if (e->step->linear.rest && e->step->linear.rest->in_step)
 		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
 	if (has_ranges(e))

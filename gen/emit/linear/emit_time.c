@@ -89,7 +89,7 @@ static void store_inputs(const struct emitter *e, const int *index)
 	}
 }
 
-/* Of a bank: one matrix for each operator */
+/* Of a schedule: one matrix for each operator */
 void emit_series_slopes(const struct emitter *e)
 {
 	const int size = e->step->layout.size, branches = e->step->branches, each = size * size;
@@ -126,8 +126,8 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	const struct layout *layout = &e->step->layout;
 	const bool whole = e->step->forced && e->system->segments == 1 && !e->model->relative;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
-	const int channels = layout->powers ? layout->powers * e->system->channels : 0;
-	if (looped || channels)
+	const int force_columns = layout->powers ? layout->powers * e->system->force_columns : 0;
+	if (looped || force_columns)
 		say(e, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_remainder_now(e);
@@ -135,8 +135,8 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
-	if (channels)
-		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", channels, layout->channel,
+	if (force_columns)
+		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", force_columns, layout->force_column,
 		    layout->powers > 1 ? "0.0" : e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
 }
 
@@ -236,7 +236,7 @@ void emit_held_remainder(const struct emitter *e)
 	emit_samples(e);
 	if (e->step->branches > 1)
 		say(e, "    const int which = %s;\n", selection_call(e));
-	say(e, "    double left[%d];\n", e->system->channels);
+	say(e, "    double left[%d];\n", e->system->force_columns);
 }
 
 /* Differences are kept, and what loads sustain is added to the states as written. */
@@ -343,7 +343,7 @@ static int point_at(const struct step *step, int p)
 static void emit_left_at(const struct emitter *e)
 {
 	open_function(e, NULL, "static void $n_left_at(const $n *s, int which, int point, const double *u, "
-		      "const double y[$N_STATES], double left[%d])", e->system->channels);
+		      "const double y[$N_STATES], double left[%d])", e->system->force_columns);
 	emit_samples(e);
 	say(e, "    $n_remainder(s, which, point, %s, y, left);\n", samples_of_step(e));
 	close_function(e, "u");
@@ -377,7 +377,7 @@ static void emit_parabola(const struct emitter *e, bool blocks)
 		emit_choice(e);
 	emit_go_on(e, blocks);
 	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", layout->size }, { "INPUTS", given_inputs(e) },
-		   { "CHANNEL", layout->channel }, { "FORCES", e->system->channels },
+		   { "FORCE_COLUMN", layout->force_column }, { "FORCES", e->system->force_columns },
 		   { "MIDDLE", point_at(e->step, 1) }, { "END", point_at(e->step, 2) });
 	say_macro(e, "BARE", spell(e, has_peaks(e) ? "$n_one_step" : "$n_step"));
 	say_macro(e, "CHOICE(s, u)", e->step->branches > 1 ? spell(e, "$n_choice(s, u)") : "0");
@@ -481,8 +481,8 @@ static void emit_pass_steps(const struct emitter *e)
 	open_function(e, NULL, "static void $n_pass_steps($n *s, uint64_t n)");
 	emit_load_advance(e, "n");
 	say(e, "    s->k += n;\n");
-	if (e->step->anchors)
-		say(e, "    $n_drop_anchor(s);\n");
+	if (e->step->refresh)
+		say(e, "    $n_drop_refresh(s);\n");
 	close_function(e, "");
 }
 

@@ -26,7 +26,7 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
 		const char *parent = rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]);
 		const char *from = scaled(finite_number(e, link->ratio), parent);
-		if (link->turned)
+		if (link->reversed)
 			return format("%s - %s", from, own);
 		return format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
 	}
@@ -46,7 +46,7 @@ static const char *gain_text(const struct emitter *e, const struct link *link, i
 		bool rate = link->rate && at[coord] >= r->written->n;
 		const char *parent = rate ? rate_text(e, link->rate, false) : format("y[%d]", at[link->from]);
 		const char *from = scaled(finite_number(e, link->ratio), parent);
-		return format("%s %c d[%d]", from, link->turned ? '-' : '+', kept[coord]);
+		return format("%s %c d[%d]", from, link->reversed ? '-' : '+', kept[coord]);
 	}
 	add_summand(&s, format("d[%d]", kept[coord]));
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)

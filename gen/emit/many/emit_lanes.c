@@ -82,8 +82,8 @@ static bool only_samples_act(const struct emitter *e)
 struct batch plan_batch(const struct emitter *e)
 {
 	struct batch b = { .e = e, .forced = -1, .step = tape_new(), .out = tape_new() };
-	struct step now = *e->step;             /* what instances share are load states of now, not an anchor's */
-	now.anchors = NULL;
+	struct step now = *e->step;             /* what instances share are load states of now, not a refresh's */
+	now.refresh = NULL;
 	tape_of_step(b.step, &now, NULL, "y");
 	for (int i = 0; i < e->model->outputs; i++) {
 		const struct output *output = &e->model->output[i];

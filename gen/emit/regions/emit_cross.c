@@ -78,7 +78,7 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	for (int i = 0; i < n; i++)
 		say(e, "    off[%d] = %s;\n", i,
 		    any_pieces(e) ? off_text(e, p, -1, i, magnitude, 13)
-				  : spell(e, "$o_sizes($o_sag[which][%d], x)", i));
+				  : spell(e, "$o_sizes($o_chord_error[which][%d], x)", i));
 	close_function(e, any_pieces(e) ? "which x" : "");
 }
 
@@ -130,7 +130,7 @@ static const char *turn_times(const struct region_tables *t, int i, int j, const
 
 /* Velocities are added last: positions and loads are there before them, so that a chain has one product and one sum an
  * order.  From the second derivative on what is constant is 0. */
-static const char *turned_row(const struct emitter *e, const struct region_tables *t, int row, const char *layout,
+static const char *rotated_row(const struct emitter *e, const struct region_tables *t, int row, const char *layout,
 			      bool first)
 {
 	struct summands early = { 0 }, late = { 0 };
@@ -149,7 +149,7 @@ static void emit_turn(const struct emitter *e, const struct region_tables *t)
 	open_function(e, NULL, "static void $o_turn_once(int which, const double x[%d], double d[%d])", size, size);
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
-		say(e, "    d[%d] = %s;\n", i, turned_row(e, t, i, "x[%d]", true));
+		say(e, "    d[%d] = %s;\n", i, rotated_row(e, t, i, "x[%d]", true));
 	close_function(e, "");
 }
 
@@ -175,11 +175,11 @@ static void emit_move(const struct emitter *e, const struct pieces *p, const str
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
 		if (moves(t, i))
-			say(e, "    double a%d = %s, sum%d = s * a%d;\n", i, turned_row(e, t, i, "x[%d]", true), i, i);
+			say(e, "    double a%d = %s, sum%d = s * a%d;\n", i, rotated_row(e, t, i, "x[%d]", true), i, i);
 	say(e, "    for (k = 2; k <= %d; k++) {\n", p->degree);
 	for (int i = 0; i < size; i++)
 		if (moves(t, i))
-			say(e, "        const double b%d = %s;\n", i, turned_row(e, t, i, "a%d", false));
+			say(e, "        const double b%d = %s;\n", i, rotated_row(e, t, i, "a%d", false));
 	say(e, "        double weight;\n"
 	       "        power *= s;\n"
 	       "        weight = power * $d_weight[k];\n");
@@ -204,14 +204,14 @@ static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 {
-	const char *whole = any_pieces(e) ? "whole_" : "";
-	say_macro(e, "FEW", whole_text(MOST_SWIFT));
-	say_macro(e, "LOOKS", whole_text(MOST_LOOKS));
+	const char *step = any_pieces(e) ? "step_" : "";
+	say_macro(e, "FEW", whole_text(MOST_FAST_PATH));
+	say_macro(e, "EVENT_CHECKS", whole_text(MOST_EVENT_CHECKS));
 	say_macro(e, "LARGE", shortest(p->large));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
-	say_macro(e, "MOVES", whole_text(e->step->regions.look.degree));
-	say_macro(e, "LEAN", format("PL(%slean)", whole));
-	say_macro(e, "SWAY", format("PL(%ssway)", whole));
+	say_macro(e, "MOVES", whole_text(e->step->regions.event_check.degree));
+	say_macro(e, "TANGENT", format("PL(%stangent)", step));
+	say_macro(e, "CUBIC_ERROR", format("PL(%scubic_error)", step));
 }
 
 void emit_crossing(const struct emitter *e, const struct pieces *p)

@@ -26,15 +26,15 @@ static void emit_limits(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
 	put_numbers(e, "limit", "of each guard", g->guards, limit);
-	put_numbers(e, "play",
+	put_numbers(e, "amplitude",
 		     regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
 				       : "factors of cos and sin in each expression",
-		     s->segments * s->expressions, g->play);
-	put_numbers(e, "gate_play", "in each row of guards", g->rows, g->row_play);
+		     s->segments * s->expressions, g->amplitude);
+	put_numbers(e, "guard_amplitude", "in each row of guards", g->rows, g->row_amplitude);
 }
 
 /* Of each row: an expression, or what it takes to hold one */
-static const char **gate_notes(const struct emitter *e, const struct guards *g)
+static const char **guard_notes(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
 	const char **note = ARRAY(const char *, (size_t)g->rows);
@@ -54,14 +54,14 @@ static const char **gate_notes(const struct emitter *e, const struct guards *g)
 	return note;
 }
 
-static void emit_gates(const struct emitter *e, const struct guards *g)
+static void emit_guard_rows(const struct emitter *e, const struct guards *g)
 {
-	const char **note = gate_notes(e, g);
+	const char **note = guard_notes(e, g);
 	const struct { const char *name, *note; const double *value; } all[] = {
-		{ "gate", "rows of guards", g->row },
-		{ "gate_lean", "d/3 times the slope of each", g->slope },
-		{ "gate_sag", "d^2/8 times its second derivative, at most", g->second },
-		{ "gate_sway", "d^4/384 times its fourth derivative, at most", g->fourth }
+		{ "guard_row", "rows of guards", g->row },
+		{ "guard_tangent", "d/3 times the slope of each", g->slope },
+		{ "guard_chord_error", "d^2/8 times its second derivative, at most", g->second },
+		{ "guard_cubic_error", "d^4/384 times its fourth derivative, at most", g->fourth }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		put_matrix(e, all[i].name, all[i].note, g->rows, e->step->layout.size, all[i].value, note);
@@ -103,12 +103,12 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	open_table(e, "pl_impact", "impact", format("[%d]", count),
-		   "expression, breakpoint, upward, rest, jump, still, restitution, play");
+		   "expression, breakpoint, upward, rest, jump, still, restitution, amplitude");
 	for (int i = 0; i < all; i++) {
 		const struct struck *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
 		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
-		    shortest(impact->play));
+		    shortest(impact->amplitude));
 		note[i] = impact->rest < 0 ? "none"
 					   : form_text(e->step->shown->model,
 						       s->impact[i % s->impacts].in[i / s->impacts].speed);
@@ -133,7 +133,7 @@ void emit_guards(const struct emitter *e, const struct guards *g)
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 {
 	emit_limits(e, g);
-	emit_gates(e, g);
+	emit_guard_rows(e, g);
 	emit_values(e, g);
 	emit_impacts(e, g);
 	if (e->model->params.retuned && e->model->switching->felts > 0)

@@ -34,7 +34,7 @@ void emit_ladder_places(const struct emitter *e, const struct guards *g)
 		return;
 	put_wholes(e, false, "first_rung", "of each matrix", e->step->branches, first);
 	if (g)
-		put_wholes(e, false, "gate_rung", "of each row of guards", g->rows, g->reach_at);
+		put_wholes(e, false, "guard_rung", "of each row of guards", g->rows, g->reach_at);
 }
 
 void emit_spacing(const struct emitter *e)
@@ -121,5 +121,5 @@ const char *ladder_text(const struct emitter *e, const struct guards *g)
 	if (!has_ladder(e->step))
 		return "{NULL, NULL, NULL, NULL, NULL}";        /* where no piece is halved it is not read */
 	return format("{PL(first_rung), PL_OF(spacing), PL_OF(rungs)[0][0], PL_OF%s, PL(%s)}",
-		      rows_of_reach(e, g) > 0 ? "(bend)[0]" : "(slopes)[0][0]", g ? "gate_rung" : "first_rung");
+		      rows_of_reach(e, g) > 0 ? "(bend)[0]" : "(slopes)[0][0]", g ? "guard_rung" : "first_rung");
 }

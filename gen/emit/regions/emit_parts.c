@@ -24,9 +24,10 @@ static bool is_linear_part(const struct emitter *part)
 
 static int first_of_degree(const struct emitter *e, int index)
 {
+	struct step **part = e->step->regions.part;
 	int first = 0;
-	while (is_linear_step(e->step->regions.part[first]) || !e->step->regions.part[first]->regions.look.swift ||
-	       e->step->regions.part[first]->regions.look.degree != e->step->regions.part[index]->regions.look.degree)
+	while (is_linear_step(part[first]) || !part[first]->regions.event_check.fast_path ||
+	       part[first]->regions.event_check.degree != part[index]->regions.event_check.degree)
 		if (first++ == index)
 			return index;
 	return first;
@@ -204,7 +205,7 @@ void emit_part_start(const struct emitter *e)
 {
 	for_parts(e, divided_parts(e), emit_place_of_part);
 	open_function(e, "The regions of a state", "static void $n_place($n *s)");
-	emit_turned_loads(e, needed_loads(e, false), false);
+	emit_rotated_loads(e, needed_loads(e, false), false);
 	for_parts(e, divided_parts(e), emit_place_call);
 	close_function(e, "");
 }
@@ -334,9 +335,9 @@ static void emit_linear_step(const struct emitter *part)
 static void emit_divided_step(const struct emitter *part)
 {
 	begin_step(part);
-	if (part->step->regions.look.swift) {
+	if (part->step->regions.event_check.fast_path) {
 		emit_raw_locals(part, NULL);
-		emit_clear_step(part);
+		emit_event_check(part);
 	} else {
 		declare_region_vector(part);
 		emit_region_vector(part, true);
@@ -360,7 +361,7 @@ void emit_parts_step(const struct emitter *e)
 	for_parts(e, e->step->regions.parts, emit_step_of_part);
 	open_function(e, NULL, "%s", head_of_step(e));
 	emit_set_aside(e);
-	emit_turned_loads(e, needed_loads(e, true), false);
+	emit_rotated_loads(e, needed_loads(e, true), false);
 	for_parts(e, e->step->regions.parts, emit_step_call);
 	emit_take_back(e);
 	emit_step_end(e);

@@ -85,7 +85,7 @@ static void emit_region_numbers(const struct emitter *e)
 }
 
 /* By which a step sees over the whole of h that it stays clear */
-static void emit_own_look(const struct emitter *e, const struct pieces *pieces, const char **expression)
+static void emit_own_check(const struct emitter *e, const struct pieces *pieces, const char **expression)
 {
 	int n = expressions_of(e);
 	double *large = ARRAY(double, (size_t)e->step->branches);
@@ -118,10 +118,12 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		  OF_PIECE(slopes) },
 		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
 		  rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
-		{ "lean", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
+		{ "tangent", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
 		  OF_PIECE(slope) },
-		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, OF_PIECE(second) },
-		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, OF_PIECE(fourth) }
+		{ "chord_error", "d^2/8 times its second derivative, at most", expressions, expression,
+		 OF_PIECE(second) },
+		{ "cubic_error", "d^4/384 times its fourth derivative, at most", expressions, expression,
+		 OF_PIECE(fourth) }
 	};
 	emit_halvings(e);
 	emit_spacing(e);
@@ -133,8 +135,8 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
 			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
-	if (e->model->params.retuned && e->step->regions.look.clears)
-		emit_own_look(e, pieces, expression);
+	if (e->model->params.retuned && e->step->regions.event_check.event_free)
+		emit_own_check(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
 }
@@ -166,14 +168,14 @@ void emit_regions(const struct emitter *e)
 		emit_numbers_of_regions(e, &pieces, g);
 	if (g && !e->model->params.retuned)
 		emit_guards(e, g);
-	if (e->step->regions.look.swift) {
-		emit_swift_tables(e, &pieces, expression_names(e));
+	if (e->step->regions.event_check.fast_path) {
+		emit_fast_path_tables(e, &pieces, expression_names(e));
 		emit_crossing(e, &pieces);
-	} else if (e->step->regions.look.clears && !g && is_cleared_by_tables(e->step)) {
+	} else if (e->step->regions.event_check.event_free && !g && is_checked_by_tables(e->step)) {
 		emit_spans(e);
 	}
 	emit_search(e, ladder_text(e, g));
-	if (e->step->regions.look.swift)
+	if (e->step->regions.event_check.fast_path)
 		emit_crossing_macros(e, &pieces);
 	say_include(e, "search.h");
 }
@@ -279,7 +281,7 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->regions.parts },
-		{ "BOUNCES", has_bounces(e->model) }, { "CLEARS", e->step->regions.look.clears },
+		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.event_free },
 		{ "CAPPED", capped_entries(e) }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -345,7 +347,7 @@ void emit_region_start(const struct emitter *e)
 {
 	open_function(e, "The region of a state", "static void $n_place($n *s)");
 	declare_region_room(e);
-	emit_turned_loads(e, needed_loads(e), false);
+	emit_rotated_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
 	close_function(e, "");
@@ -371,7 +373,7 @@ static void emit_searched_step(const struct emitter *e)
 {
 	declare_region_vector(e);
 	emit_set_aside(e);
-	emit_turned_loads(e, needed_loads(e), false);
+	emit_rotated_loads(e, needed_loads(e), false);
 	emit_region_vector(e, true);
 	say(e, "    $o_seek(s, x);\n");
 	emit_take_back(e);
@@ -383,8 +385,8 @@ static void emit_whole_step(const struct emitter *e)
 {
 	emit_set_aside(e);
 	emit_raw_locals(e, NULL);
-	emit_turned_loads(e, needed_loads(e), false);
-	emit_clear_step(e);
+	emit_rotated_loads(e, needed_loads(e), false);
+	emit_event_check(e);
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
@@ -393,7 +395,7 @@ static void emit_whole_step(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	open_function(e, NULL, "%s", head_of_step(e));
-	if (e->step->regions.look.clears && !has_guards(e))
+	if (e->step->regions.event_check.event_free && !has_guards(e))
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);

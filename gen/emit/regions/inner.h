@@ -43,9 +43,9 @@ const char *expression_text(const struct emitter *e, const struct pieces *p, int
 			    const char *const *operand, int indent);
 /* Sum of the sizes of those that are not bounded */
 const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
-/* Of a step that is swift; `expression`: names */
+/* Of a step with the fast path; `expression`: names */
 void emit_spans(const struct emitter *e);                         /* region by region: intervals of expressions */
-void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
+void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
 
 /* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */
 
@@ -74,7 +74,7 @@ void emit_spacing(const struct emitter *e);
 void emit_ladder(const struct emitter *e, const struct pieces *pieces, const struct guards *guards);
 const char *ladder_text(const struct emitter *e, const struct guards *guards);
 /* of a part as of the whole: x from the state, in a step or at its start; its declaration, and room to work in; from
- * x, into the state; the same apart, where a step is swift */
+ * x, into the state; the same apart, where a step has the fast path */
 void emit_region_vector(const struct emitter *e, bool step);
 void declare_region_room(const struct emitter *e);                /* x, work */
 void declare_region_vector(const struct emitter *e);              /* x, i */
@@ -89,10 +89,10 @@ int size_of_vector(const struct emitter *e);                      /* of x, with 
 /* A list behind itself: first and second words */
 const char **listed_twice(int count, const char *const *text);
 void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
-/* emit_cross.c: of a step that is swift; emit_clear.c: of one that clears */
+/* emit_cross.c: of a step with the fast path; emit_event_check.c: of one that is checked for events over h first */
 void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
 const char **operands_of_x(const struct emitter *e);               /* of a step: locals; "" where x is 1 */
-void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
+void emit_event_check(const struct emitter *e);                   /* states and loads are in locals */
 
 #endif

@@ -196,7 +196,7 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 	return row_text(&off, expression, size, further, indent);
 }
 
-/* ---- of a step that clears ---- */
+/* ---- of a step that is checked for events over h ---- */
 
 static void emit_of_each(const struct emitter *e, const struct region_tables *t, const char *name, const char *note,
 			 const char *const *row_name)
@@ -261,7 +261,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 	emit_spans(e);
 }
 
-void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
+void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
 {
 	int n = expressions_of(e);
 	struct region_tables off = tables_of_regions(e, p, "", n, OF_PIECE(off)),
@@ -272,10 +272,10 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 	if (any_pieces(e)) {
 		struct region_tables turn = tables_of_regions(e, p, "", n, OF_PIECE(turn)),
 			      bend = tables_of_regions(e, p, "", n, OF_PIECE(bend));
-		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
-		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
+		emit_of_each(e, &turn, "step_tangent", "tangent over h", expression);
+		emit_of_each(e, &bend, "step_cubic_error", "cubic_error over h", expression);
 	}
-	bool reads = any_pieces(e) || is_cleared_by_tables(e->step);    /* what they are off their chords */
+	bool reads = any_pieces(e) || is_checked_by_tables(e->step);    /* what they are off their chords */
 	if (reads && is_table(&off))
 		emit_of_each(e, &off, "chord_off",
 			     "times |x|: how far each expression is off its chord over h, at most", expression);

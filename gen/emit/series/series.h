@@ -58,11 +58,11 @@ void emit_frozen_function(const struct emitter *e);               /* NAME_forces
 void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
 
-/* ---- emit_cut.c: schemes with a remainder, from crossing to crossing ---- */
+/* ---- emit_event_split.c: schemes with a remainder, from crossing to crossing ---- */
 
-void emit_cut_members(const struct emitter *e);
-void emit_cut_place(const struct emitter *e);
-void emit_cut_step(const struct emitter *e);
+void emit_event_split_members(const struct emitter *e);
+void emit_event_split_place(const struct emitter *e);
+void emit_event_split_step(const struct emitter *e);
 
 /* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
 

@@ -89,13 +89,13 @@ static struct made operate(struct entries *x, const struct traced *n, int first)
 {
 	const struct made a = made_of(x, &n->a), b = made_of(x, &n->b);
 	const int number = x->tuning->params + x->constants + x->operations - first;
-	const bool sum = n->op == TRACED_SUM, differ = a.negative != b.negative, turned = sum && differ && a.negative;
+	const bool sum = n->op == TRACED_SUM, differ = a.negative != b.negative, rotated = sum && differ && a.negative;
 	const char *what = n->op == TRACED_PRODUCT ? "PL_PRODUCT"
 			   : !sum                  ? "PL_QUOTIENT"
 			   : differ                ? "PL_DIFFERENCE"
 						   : "PL_SUM";
 	*MORE(x->operation, x->operations) =
-		(struct operation){ what, turned ? b.number : a.number, turned ? a.number : b.number };
+		(struct operation){ what, rotated ? b.number : a.number, rotated ? a.number : b.number };
 	return (struct made){ number, sum ? a.negative && b.negative : differ };
 }
 

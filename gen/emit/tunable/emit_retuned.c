@@ -105,24 +105,24 @@ static int emit_checks(const struct emitter *e)
 	return check.count / 2;
 }
 
-static void from(const struct emitter *e, struct list *l, enum retuned_kind kind, int of, int index, bool turned)
+static void from(const struct emitter *e, struct list *l, enum retuned_kind kind, int of, int index, bool rotated)
 {
 	const int number = retuned_place(retuned_of(e), kind, of, index) + 1;
-	add(l, turned ? -number : number);
+	add(l, rotated ? -number : number);
 }
 
-static void list_gates(const struct emitter *e, struct list *l, const struct guards *g)
+static void list_guard_rows(const struct emitter *e, struct list *l, const struct guards *g)
 {
 	for (int i = 0; i < g->rows; i++) {
-		const struct gate_key *gate = &g->gate[i];
-		if (gate->expression >= 0)
-			from(e, l, RETUNED_EXPRESSION, gate->segment, gate->expression, !gate->upward);
+		const struct guard_key *guard_row = &g->guard_row[i];
+		if (guard_row->expression >= 0)
+			from(e, l, RETUNED_EXPRESSION, guard_row->segment, guard_row->expression, !guard_row->upward);
 		else
-			from(e, l, RETUNED_RELEASE, gate->region, gate->release, false);
+			from(e, l, RETUNED_RELEASE, guard_row->region, guard_row->release, false);
 	}
 	for (int i = 0; i < g->guards; i++) {
 		const struct guard *guard = &g->guard[i];
-		if (g->gate[guard->row].expression >= 0)
+		if (g->guard_row[guard->row].expression >= 0)
 			from(e, l, RETUNED_BREAK, guard->expression, guard->breakpoint, !guard->upward);
 		else
 			add(l, 0);
@@ -155,7 +155,7 @@ static int emit_from(const struct emitter *e, const struct guards *g)
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			from(e, &l, RETUNED_BREAK, i, k, false);
 	if (has_guards(e)) {
-		list_gates(e, &l, g);
+		list_guard_rows(e, &l, g);
 		list_jumps(e, &l, g);
 	}
 	bool any = false;
@@ -242,7 +242,7 @@ void emit_retuned(const struct emitter *e)
 	emit_numbers(e);
 	const int taken = emit_from(e, &g);
 	if (has_guards(e))
-		emit_integers(e, "short", "gate_branch", g.rows, g.branch);
+		emit_integers(e, "short", "guard_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e);
 	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
 	emit_sizes(e, { "PARAMS", e->model->params.held->params }, { "WRAPPED", wraps_retune(e) },
@@ -253,10 +253,10 @@ void emit_retuned(const struct emitter *e)
 		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
 		   { "HIGHEST", e->system->n }, { "WORK", most_work(e) },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
-		   { "GATES", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
+		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
-		   { "CLEARS", e->step->regions.look.clears });
-	if (e->step->regions.look.clears)
+		   { "EVENT_FREE", e->step->regions.event_check.event_free });
+	if (e->step->regions.event_check.event_free)
 		emit_gathering(e);
 	say_include(e, "retuned.h");
 }

@@ -47,7 +47,7 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 	const int width = table->states + table->columns + table->inputs, i = n->index;
 	const struct layout *x = e->model->params.tuning ? &e->model->params.tuning->x : NULL;
 	switch (n->part) {
-	case TABLE_TURNED: return format("turned[%d]", i);
+	case TABLE_ROTATED: return format("rotated[%d]", i);
 	case TABLE_FACTOR: return cell("factor", i, table->columns);
 	case TABLE_DIRECT: return cell(spell(e, "$n_direct[s->segment]"), i, load_columns(e->system));
 	case TABLE_FORCED: return cell(spell(e, "$n_forced_part[s->segment]"), i, table->columns);

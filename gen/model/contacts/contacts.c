@@ -104,8 +104,8 @@ static void check_output(void *context)
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
 		refuse_in_output(model, work->output, work->output->left, seen);
-	for (int c = 0; c < model->remainder.channels; c++)       /* an acceleration, by its equation */
-		if (mpq_sgn(work->output->channel[c]) != 0)
+	for (int c = 0; c < model->remainder.force_columns; c++)  /* an acceleration, by its equation */
+		if (mpq_sgn(work->output->force_column[c]) != 0)
 			refuse_in_output(model, work->output, model->schedule.operator[0].left[c], seen);
 }
 

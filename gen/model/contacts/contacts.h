@@ -75,7 +75,7 @@ struct release {                    /* of what sticks: the interval is left wher
 
 /* ---- impacts.c: state jumps, and what bounces ---- */
 
-void collect_impacts(struct building *b, struct snapshot *snapshot); /* in one interval of time */
+void collect_impacts(struct building *b, struct segment_equations *segment_equations); /* in one interval of time */
 void gather_impacts(struct building *b);                    /* of all of them */
 void build_impacts(struct building *b);                     /* once the masses are known */
 bool strikes_change(const struct building *b);              /* from interval to interval */

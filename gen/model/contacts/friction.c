@@ -25,7 +25,7 @@ static const struct atom *first_friction(const struct building *b)
 	const struct atom *found = NULL;
 	for (int s = 0; s < b->model->system.segments; s++)
 		for (int i = 0; i < b->model->n && !found; i++)
-			found = friction_in(b->snapshot[s].residual[i].form, seen);
+			found = friction_in(b->segment_equations[s].residual[i].form, seen);
 	return found;
 }
 
@@ -440,7 +440,7 @@ static void check_answer(struct building *b, const struct switching *s, const st
 	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
 	RATIONAL answer = ZERO, part = ZERO;
 	for (int i = 0; i < n; i++) {
-		mpq_srcptr acts = factor_of_friction(b->snapshot[f->segment].residual[i].form, f);
+		mpq_srcptr acts = factor_of_friction(b->segment_equations[f->segment].residual[i].form, f);
 		for (int k = 0; k < rate->terms && acts; k++) {
 			const struct basis *basis = &rate->term[k].basis;
 			if (basis->kind != BASIS_COORD || basis->order != model->frame.coord[basis->index]->highest)
@@ -527,10 +527,11 @@ static bool reads_remainder(const struct model *model)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs; i++)
-		any = any || !rationals_zero((size_t)model->remainder.channels, model->output[i].channel);
+		any = any || !rationals_zero((size_t)model->remainder.force_columns, model->output[i].force_column);
 	for (int k = 0; k < model->n; k++)
 		any = any || (model->equations.highest[k] &&
-			      !rationals_zero((size_t)model->remainder.channels, model->equations.highest[k]->channel));
+			      !rationals_zero((size_t)model->remainder.force_columns,
+					      model->equations.highest[k]->force_column));
 	return any;
 }
 
@@ -541,7 +542,7 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			feel(s, seen, model->output[i].left);
-	for (int c = 0; c < model->remainder.channels && reads_remainder(model); c++)
+	for (int c = 0; c < model->remainder.force_columns && reads_remainder(model); c++)
 		feel(s, seen, model->schedule.operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].grip = ARRAY(struct output *, s->felts);

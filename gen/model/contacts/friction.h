@@ -42,7 +42,8 @@ bool same_friction(const struct region *a, const struct region *b); /* what stic
 
 /* Whether friction stands in the form whose velocity is of a coordinate of first order: this one; -1: any */
 bool has_slider(const struct building *b, const struct form *form, int coord);
-void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
+/* its equation gives the force that it bears */
+void resolve_sliders(struct building *b, struct segment_equations *segment_equations);
 /* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
 bool is_released(const struct region *region, int expression, bool upward);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */

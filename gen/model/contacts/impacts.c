@@ -107,14 +107,14 @@ static void collect_impact(void *context)
 	collect_jumps(b, when, strike);
 }
 
-void collect_impacts(struct building *b, struct snapshot *snapshot)
+void collect_impacts(struct building *b, struct segment_equations *segment_equations)
 {
 	const struct spec *spec = b->spec;
-	snapshot->strike = ARRAY(struct strike *, spec->whens);
+	segment_equations->strike = ARRAY(struct strike *, spec->whens);
 	for (int i = 0; i < spec->whens; i++) {
 		struct strike *strike = NEW(struct strike);
 		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], strike }))
-			snapshot->strike[i] = strike;
+			segment_equations->strike[i] = strike;
 	}
 }
 
@@ -145,7 +145,7 @@ void gather_impacts(struct building *b)
 		struct impact *impact = &model->contacts.impact[i];
 		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, segments) };
 		for (int s = 0; s < segments; s++)
-			impact->in[s] = copied(b, impact->when, b->snapshot[s].strike[i]);
+			impact->in[s] = copied(b, impact->when, b->segment_equations[s].strike[i]);
 	}
 }
 
@@ -253,7 +253,7 @@ static bool find_bounce(struct building *b, struct strike *strike)
 	const struct linear *system = &b->model->system;
 	mpq_t *part = rationals(b->model->n);
 	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
-	RATIONAL turned = ZERO, product = ZERO, rest = ZERO;
+	RATIONAL reversed = ZERO, product = ZERO, rest = ZERO;
 	for (int i = 0; i < strike->jumps && bounce; i++) {
 		int state = strike->jump[i].state, coord = system->coord[state];
 		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
@@ -265,14 +265,14 @@ static bool find_bounce(struct building *b, struct strike *strike)
 		if (term)
 			mpq_mul(product, term->factor, part[coord]);
 		if (term)
-			mpq_add(turned, turned, product);
+			mpq_add(reversed, reversed, product);
 	}
 	mpq_set_ui(rest, 1, 1);
-	bounce = bounce && mpq_cmp(turned, rest) >= 0;
+	bounce = bounce && mpq_cmp(reversed, rest) >= 0;
 	for (int j = 0; j < b->model->n && bounce; j++)
-		mpq_div(part[j], part[j], turned);
+		mpq_div(part[j], part[j], reversed);
 	if (bounce)
-		mpq_sub(strike->restitution, turned, rest);
+		mpq_sub(strike->restitution, reversed, rest);
 	strike->direction = bounce ? part : NULL;
 	return bounce;
 }
@@ -317,7 +317,7 @@ static mpq_t *inverse_masses(const struct building *b)
 	int n = shape.n, column;
 	mpq_t *inverse = rationals((size_t)(n * n));
 	for (int i = 0; i < n; i++) {
-		const struct form *form = b->snapshot->residual[i].form;
+		const struct form *form = b->segment_equations->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
 			mpq_t *matrix[] = { shape.K, shape.C, shape.M };

@@ -59,7 +59,7 @@ static const struct form_term *only_slider(const struct building *b, const struc
 
 struct slider_row {
 	struct building *b;
-	struct snapshot *snapshot;
+	struct segment_equations *segment_equations;
 	const struct atom *atom;
 	const struct form *velocity, *force;
 	int row, coord;
@@ -88,8 +88,8 @@ static void put_in_others(const struct slider_row *r, const struct form *borne)
 	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
 	struct model *model = r->b->model;
 	*MORE(model->contacts.bearing, model->contacts.bearings) = (struct bearing){ r->atom, borne };
-	for (int i = 0; i < r->snapshot->residuals; i++) {
-		struct residual *residual = &r->snapshot->residual[i];
+	for (int i = 0; i < r->segment_equations->residuals; i++) {
+		struct residual *residual = &r->segment_equations->residual[i];
 		const struct form_term *term = form_find(residual->form, &basis);
 		if (i == r->row || !term)
 			continue;
@@ -120,7 +120,7 @@ static void slide_alone(const struct slider_row *r, const struct form *rest)
 	check_borne(r, borne);
 	operand[1] = form_alias(r->force);
 	struct form *slides = kept_call(&r->b->collector, r->atom->node, FN_SLIDE, 2, operand);
-	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
+	r->segment_equations->residual[r->row].form = form_difference(r->velocity, slides);
 	put_in_others(r, borne);
 }
 
@@ -170,17 +170,19 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 					     form_scale(rest, ratio));
 	struct form *slides, *borne;
 	divide_drive(r, drive, k, &slides, &borne);
-	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
+	r->segment_equations->residual[r->row].form = form_difference(r->velocity, slides);
 	put_in_others(r, scaled_form(borne, k, true, false));
 }
 
-static void slide(struct building *b, struct snapshot *snapshot, int row, const struct form_term *term)
+static void slide(struct building *b, struct segment_equations *segment_equations, int row,
+		  const struct form_term *term)
 {
-	struct slider_row r = { .b = b, .snapshot = snapshot, .row = row, .coord = coord_of_row(b, row),
+	struct slider_row r =
+		{ .b = b, .segment_equations = segment_equations, .row = row, .coord = coord_of_row(b, row),
 				.atom = term->basis.atom, .velocity = term->basis.atom->operand[0],
 				.force = term->basis.atom->operand[1] };
 	const struct node *node = r.atom->node;
-	const struct form *residual = snapshot->residual[row].form;
+	const struct form *residual = segment_equations->residual[row].form;
 	if (r.atom->operands > 2)
 		error(node->child[2]->start, "friction(v, F)",
 		      "what has no mass holds as much as it brakes: it would leave its place at once");
@@ -212,13 +214,13 @@ struct form *borne_form(const struct building *b, const struct form *form)
 	return sum;
 }
 
-struct sliding { struct building *b; struct snapshot *snapshot; };
+struct sliding { struct building *b; struct segment_equations *segment_equations; };
 
 static void resolve_all(void *context)
 {
 	struct sliding *w = context;
 	struct building *b = w->b;
-	struct snapshot *s = w->snapshot;
+	struct segment_equations *s = w->segment_equations;
 	bool any = true;
 	while (any) {
 		any = false;
@@ -239,11 +241,11 @@ static void resolve_all(void *context)
 		}
 }
 
-void resolve_sliders(struct building *b, struct snapshot *snapshot)
+void resolve_sliders(struct building *b, struct segment_equations *segment_equations)
 {
 	bool any = false;
-	for (int i = 0; i < snapshot->residuals; i++)
-		any = any || has_slider(b, snapshot->residual[i].form, -1);
+	for (int i = 0; i < segment_equations->residuals; i++)
+		any = any || has_slider(b, segment_equations->residual[i].form, -1);
 	if (any)
-		statement_guard(resolve_all, &(struct sliding){ b, snapshot });
+		statement_guard(resolve_all, &(struct sliding){ b, segment_equations });
 }

@@ -80,7 +80,7 @@ static int row_of_slider(const struct building *b, const struct switching *s, in
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = slider->atom->index, .atom = slider->atom };
 	for (int k = 0; k < s->rows; k++)
-		if (form_find(b->snapshot[segment].residual[s->row[k]].form, &basis))
+		if (form_find(b->segment_equations[segment].residual[s->row[k]].form, &basis))
 			return s->row[k];
 	return -1;
 }

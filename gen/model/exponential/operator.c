@@ -10,7 +10,7 @@
 
 struct point_work {
 	struct building *b;
-	int which;                  /* of a bank */
+	int which;                  /* of a schedule */
 	mpq_srcptr value;           /* of its name; NULL: as written */
 	int fixings;
 	struct fixing *fixing;
@@ -93,7 +93,7 @@ static void evaluate_point(void *context)
 		fix_relative(work);
 }
 
-/* ---- a bank: one name with several values ---- */
+/* ---- a schedule: one name with several values ---- */
 
 static const struct fixed *banked(const struct spec *spec)
 {
@@ -103,28 +103,29 @@ static const struct fixed *banked(const struct spec *spec)
 	return NULL;
 }
 
-static void check_bank(void *context)
+static void check_schedule(void *context)
 {
 	const struct building *b = context;
-	const struct fixed *bank = banked(b->spec);
+	const struct fixed *schedule = banked(b->spec);
 	for (int i = 0; i < b->spec->operators.fixeds; i++)
-		if (bank && b->spec->operators.fixed[i].values > 1 && &b->spec->operators.fixed[i] != bank)
+		if (schedule && b->spec->operators.fixed[i].values > 1 && &b->spec->operators.fixed[i] != schedule)
 			error(b->spec->operators.fixed[i].at, NULL,
-			      "a bank varies one name: %s has several values already",
-			      text_between(bank->at, bank->end));
-	if (bank && bank->symbol && bank->symbol->kind == SYMBOL_COORD && bank->symbol->length && !bank->component)
-		error(bank->at, NULL, "a bank is chosen by one number: name a component");
+			      "an operator schedule varies one name: %s has several values already",
+			      text_between(schedule->at, schedule->end));
+	if (schedule && schedule->symbol && schedule->symbol->kind == SYMBOL_COORD && schedule->symbol->length &&
+	    !schedule->component)
+		error(schedule->at, NULL, "an operator schedule is chosen by one number: name a component");
 }
 
 /* How many operators: as many as values, or the number asked for between two */
-static int size_of_bank(struct building *b, const struct fixed *bank)
+static int size_of_schedule(struct building *b, const struct fixed *schedule)
 {
 	enum { MOST_OPERATORS = 256 };
 	const struct node *count = b->spec->operators.count;
 	RATIONAL number = ZERO;
 	if (!count)
-		return bank ? bank->values : 1;
-	if (!bank || bank->values != 2)
+		return schedule ? schedule->values : 1;
+	if (!schedule || schedule->values != 2)
 		error(count->start, "operator 16 at w = 0, 15",
 		      "a number of operators goes with two values of one name");
 	collect_constant(&b->collector, b->spec->operators.count, number);
@@ -135,9 +136,9 @@ static int size_of_bank(struct building *b, const struct fixed *bank)
 	return (int)mpz_get_si(mpq_numref(number));
 }
 
-struct bank_work {
+struct schedule_work {
 	struct building *b;
-	const struct fixed *bank;
+	const struct fixed *schedule;
 	int operators;
 	mpq_t *value;               /* ends of the parts of the range that they serve; NULL: values are written */
 };
@@ -155,17 +156,17 @@ static void nearest_root(mpq_ptr value)
  * what is left over drive the motion. */
 static void divide_range(void *context)
 {
-	struct bank_work *w = context;
-	w->operators = size_of_bank(w->b, w->bank);
+	struct schedule_work *w = context;
+	w->operators = size_of_schedule(w->b, w->schedule);
 	if (!w->b->spec->operators.count)
 		return;
 	size_t count = (size_t)w->operators;
 	RATIONALS *limit = rationals(2);
 	RATIONAL length = ZERO, part = ZERO;
 	for (int k = 0; k < 2; k++)
-		collect_constant(&w->b->collector, w->bank->value[k], limit[k]);
+		collect_constant(&w->b->collector, w->schedule->value[k], limit[k]);
 	if (mpq_sgn(limit[0]) < 0 || mpq_cmp(limit[0], limit[1]) >= 0)
-		error(w->bank->value[0]->start, "they are divided into parts of equal length in the square",
+		error(w->schedule->value[0]->start, "they are divided into parts of equal length in the square",
 		      "operators between two values take the first from 0 up, and the second above it");
 	for (int k = 0; k < 2; k++)
 		mpq_mul(limit[k], limit[k], limit[k]);
@@ -180,31 +181,31 @@ static void divide_range(void *context)
 	}
 }
 
-static void check_rising(const struct building *b, const struct fixed *bank)
+static void check_rising(const struct building *b, const struct fixed *schedule)
 {
 	const struct operator *operator = b->model->schedule.operator;
 	for (int k = 1; k < b->model->schedule.operators; k++)
 		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
-			error(bank->value[b->spec->operators.count ? 1 : k]->start,
+			error(schedule->value[b->spec->operators.count ? 1 : k]->start,
 			      "the step uses the first whose value is not below the current one",
-			      "the values of a bank rise");
+			      "the values of an operator schedule rise");
 }
 
-/* What a step compares: the name that the bank varies, as it is now */
+/* What a step compares: the name that the schedule varies, as it is now */
 static void find_selector(void *context)
 {
 	struct building *b = context;
 	struct collector *c = &b->collector;
-	const struct fixed *bank = banked(b->spec);
-	struct symbol *symbol = bank->symbol;
+	const struct fixed *schedule = banked(b->spec);
+	struct symbol *symbol = schedule->symbol;
 	struct node name = { .kind = symbol ? NODE_NAME : NODE_TIME,
-			     .at = bank->at,
-			     .start = bank->at,
-			     .end = bank->end,
+			     .at = schedule->at,
+			     .start = schedule->at,
+			     .end = schedule->end,
 			     .symbol = symbol,
-			     .primes = bank->primes,
-			     .component = bank->component };
-	check_rising(b, bank);
+			     .primes = schedule->primes,
+			     .component = schedule->component };
+	check_rising(b, schedule);
 	c->whole_time = true;
 	forget_lets(b->spec);
 	struct node *kept = NEW(struct node);
@@ -212,7 +213,8 @@ static void find_selector(void *context)
 	const struct value *value = collect(c, kept);
 	c->whole_time = false;
 	if (value->rows * value->columns != 1)
-		error(bank->at, NULL, "a bank is chosen by one number, found a %d x %d matrix", value->rows,
+		error(schedule->at, NULL, "an operator schedule is chosen by one number, found a %d x %d matrix",
+		      value->rows,
 		      value->columns);
 	b->model->schedule.selector = value->cell[0];
 }
@@ -239,18 +241,18 @@ static bool fixes_lets(const struct point_work *point)
 }
 
 /* The equations with lets replaced by their fixed values */
-static const struct snapshot *fixed_equations(const struct point_work *point)
+static const struct segment_equations *fixed_equations(const struct point_work *point)
 {
 	struct building *b = point->b;
 	struct collector *c = &b->collector;
 	if (!fixes_lets(point))
 		return b->whole;
-	struct snapshot *kept = b->whole;
+	struct segment_equations *kept = b->whole;
 	c->fixings = point->fixings;
 	c->fixing = point->fixing;
 	collect_whole(b);
 	c->fixings = 0;
-	struct snapshot *fixed = b->whole;
+	struct segment_equations *fixed = b->whole;
 	b->whole = kept;
 	if (diagnostics_errors())
 		abandon();
@@ -273,7 +275,7 @@ static void find_jacobian(void *context)
 	struct collector *c = &b->collector;
 	const struct linear *system = &b->model->system;
 	int n = b->model->n;
-	const struct snapshot *equations = fixed_equations(work->point);
+	const struct segment_equations *equations = fixed_equations(work->point);
 	const struct form **residual = ARRAY(const struct form *, n);
 	struct point *point = point_new(c, work->point->fixings, work->point->fixing);
 	point_at_values(point);
@@ -340,14 +342,14 @@ static struct form *remainder_of(struct building *b, const struct operator *oper
 static bool is_pressed(const struct model *model, int row)
 {
 	bool any = false;
-	for (int i = 0; i < model->contacts.impacts && is_cut(model->scheme); i++)
+	for (int i = 0; i < model->contacts.impacts && is_event_split(model->scheme); i++)
 		for (int j = 0; j < model->n && model->contacts.impact[i].bounces; j++)
 			any = any || (mpq_sgn(model->contacts.impact[i].in->direction[j]) != 0 &&
 				      mpq_sgn(model->system.M[row * model->n + j]) != 0);
 	return any;
 }
 
-static void find_channels(struct building *b)
+static void find_force_columns(struct building *b)
 {
 	struct model *model = b->model;
 	int n = model->n;
@@ -360,12 +362,12 @@ static void find_channels(struct building *b)
 			any = any || all[k * n + i]->terms > 0;
 		}
 		if (any)
-			model->remainder.row[model->remainder.channels++] = i;
+			model->remainder.row[model->remainder.force_columns++] = i;
 	}
 	for (int k = 0; k < model->schedule.operators; k++) {
 		struct operator *operator = &model->schedule.operator[k];
-		operator->left = ARRAY(struct form *, model->remainder.channels);
-		for (int e = 0; e < model->remainder.channels; e++)
+		operator->left = ARRAY(struct form *, model->remainder.force_columns);
+		for (int e = 0; e < model->remainder.force_columns; e++)
 			operator->left[e] = all[k * n + model->remainder.row[e]];
 	}
 }
@@ -377,11 +379,12 @@ static void differentiate_left(void *context)
 	struct model *model = b->model;
 	const struct linear *system = &model->system;
 	const struct form *const *left = (const struct form *const *)model->schedule.operator[0].left;
-	model->remainder.slope = ARRAY(struct form *, (size_t)(model->remainder.channels * system->states));
+	model->remainder.slope = ARRAY(struct form *, (size_t)(model->remainder.force_columns * system->states));
 	for (int i = 0; i < system->states; i++) {
-		struct form **slope = form_derivatives(&b->collector, model->remainder.channels, left, system->coord[i],
+		struct form **slope =
+			form_derivatives(&b->collector, model->remainder.force_columns, left, system->coord[i],
 						       i >= system->n);
-		for (int e = 0; e < model->remainder.channels; e++)
+		for (int e = 0; e < model->remainder.force_columns; e++)
 			model->remainder.slope[e * system->states + i] = slope[e];
 	}
 }
@@ -413,9 +416,9 @@ void visit_remainders(const struct model *model, void (*visit)(void *, const str
 		return;
 	struct visit v = { ARRAY(bool, (size_t)atoms_count(model->equations.atoms)), visit, context };
 	for (int k = 0; k < model->schedule.operators; k++)
-		for (int e = 0; e < model->remainder.channels; e++)
+		for (int e = 0; e < model->remainder.force_columns; e++)
 			visit_form(&v, model->schedule.operator[k].left[e]);
-	for (int i = 0; model->remainder.slope && i < model->remainder.channels * model->system.states; i++)
+	for (int i = 0; model->remainder.slope && i < model->remainder.force_columns * model->system.states; i++)
 		visit_form(&v, model->remainder.slope[i]);
 	if (model->schedule.selector)
 		visit_form(&v, model->schedule.selector);
@@ -512,11 +515,11 @@ static void keep_modes(const struct building *b, struct operator *operator)
 		mpq_set_ui(C[i], 0, 1);
 }
 
-static bool add_operator(const struct bank_work *w, int which)
+static bool add_operator(const struct schedule_work *w, int which)
 {
 	struct building *b = w->b;
 	struct model *model = b->model;
-	const struct fixed *bank = w->bank;
+	const struct fixed *schedule = w->schedule;
 	struct operator *operator = &model->schedule.operator[which];
 	size_t cells = (size_t)model->n * (size_t)model->n;
 	struct point_work point = { b, which, w->value ? w->value[which] : NULL, 0, NULL };
@@ -537,8 +540,8 @@ static bool add_operator(const struct bank_work *w, int which)
 	diagnostics_context(NULL);
 	if (!found)
 		return false;
-	for (int i = 0; bank && i < point.fixings; i++)
-		if (fixes(&point.fixing[i], bank))
+	for (int i = 0; schedule && i < point.fixings; i++)
+		if (fixes(&point.fixing[i], schedule))
 			mpq_set(operator->at, point.fixing[i].value);
 	return true;
 }
@@ -546,10 +549,10 @@ static bool add_operator(const struct bank_work *w, int which)
 void build_operators(struct building *b)
 {
 	struct model *model = b->model;
-	const struct fixed *bank = chooses_operator(model->scheme) ? banked(b->spec) : NULL;
-	if (!b->whole || !statement_guard(check_bank, b))
+	const struct fixed *schedule = chooses_operator(model->scheme) ? banked(b->spec) : NULL;
+	if (!b->whole || !statement_guard(check_schedule, b))
 		return;
-	struct bank_work work = { .b = b, .bank = bank, .operators = 1 };
+	struct schedule_work work = { .b = b, .schedule = schedule, .operators = 1 };
 	bool good = true;
 	if (chooses_operator(model->scheme) && !statement_guard(divide_range, &work))
 		return;
@@ -562,8 +565,8 @@ void build_operators(struct building *b)
 	}
 	if (!good || (model->schedule.operators > 1 && !statement_guard(find_selector, b)))
 		return;
-	find_channels(b);
-	if (model->remainder.channels == 0) {             /* then every operator is the equations' own */
+	find_force_columns(b);
+	if (model->remainder.force_columns == 0) {        /* then every operator is the equations' own */
 		model->schedule.operators = 0;
 		model->schedule.selector = NULL;
 		return;
@@ -580,11 +583,11 @@ struct linear operator_system(const struct model *model, int k)
 	struct linear system = model->system;
 	system.C = model->schedule.operator[k].C;
 	system.K = model->schedule.operator[k].K;
-	system.channels = model->remainder.channels;
-	system.channel = ARRAY(mpq_t *, model->remainder.channels);
-	for (int e = 0; e < model->remainder.channels; e++) {
-		system.channel[e] = rationals(model->n);
-		mpq_set_ui(system.channel[e][model->remainder.row[e]], 1, 1);
+	system.force_columns = model->remainder.force_columns;
+	system.force_column = ARRAY(mpq_t *, model->remainder.force_columns);
+	for (int e = 0; e < model->remainder.force_columns; e++) {
+		system.force_column[e] = rationals(model->n);
+		mpq_set_ui(system.force_column[e][model->remainder.row[e]], 1, 1);
 	}
 	return system;
 }

@@ -265,7 +265,7 @@ void split_remainder(struct building *b)
 	struct split_work w = { .b = b, .split = s };
 	RATIONAL one = RATIO(1, 1);
 	number_of_function(s, form_unit((struct basis){ .kind = BASIS_ONE }), one);
-	for (int c = 0; c < model->remainder.channels; c++) {
+	for (int c = 0; c < model->remainder.force_columns; c++) {
 		const struct form *left = model->schedule.operator[0].left[c];
 		w.coord = coordinate_of_row(model, model->remainder.row[c]);
 		for (int i = 0; i < left->terms; i++)

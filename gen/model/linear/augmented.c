@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The augmented state x, of which x' = A x: states, what a scheme holds, load states, inputs, channels. */
+/* The augmented state x, of which x' = A x: states, what a scheme holds, load states, inputs, force columns. */
 #include "model/reads.h"
 
 static struct layout place(const struct linear *system, int powers, const bool *needed, int segments, bool held)
@@ -22,8 +22,8 @@ static struct layout place(const struct linear *system, int powers, const bool *
 		x.input[i] = x.size;
 		x.size += system->input[i].hold + 1;
 	}
-	x.channel = x.size;
-	x.size += system->channels * powers;
+	x.force_column = x.size;
+	x.size += system->force_columns * powers;
 	return x;
 }
 
@@ -82,8 +82,8 @@ const char **layout_names(const struct layout *x, const struct linear *system, c
 		for (int m = 1; m <= system->input[i].hold; m++)
 			name[x->input[i] + m] = format("%s'", name[x->input[i] + m - 1]);
 	}
-	for (int c = 0; c < system->channels * x->powers; c++)
-		name[x->channel + c] = format("remainder %d", c + 1);
+	for (int c = 0; c < system->force_columns * x->powers; c++)
+		name[x->force_column + c] = format("remainder %d", c + 1);
 	return name;
 }
 
@@ -146,9 +146,9 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 		for (int m = 0; m < system->input[i].hold; m++)
 			mpq_set_ui(A[(at + m) * size + at + m + 1], 1, 1);
 	}
-	for (int e = 0; e < system->channels && x->powers > 0; e++) {
-		int at = x->channel + e * x->powers;
-		fill_force(A, size, at, system, inverse, system->channel[e]);
+	for (int e = 0; e < system->force_columns && x->powers > 0; e++) {
+		int at = x->force_column + e * x->powers;
+		fill_force(A, size, at, system, inverse, system->force_column[e]);
 		for (int m = 1; m < x->powers; m++)
 			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
 	}

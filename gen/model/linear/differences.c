@@ -26,7 +26,7 @@ static void name_kept(struct relative *r)
 			   *from = link->kind == LINK_PARENT ? times(link->ratio, model->names.coord[link->from]) : "";
 		r->name[j] = link->kind == LINK_NONE     ? own
 			     : link->kind == LINK_CENTRE ? (centres > 1 ? format("centre%d", ++centre) : "centre")
-			     : link->turned              ? format("%s - %s", from, own)
+			     : link->reversed              ? format("%s - %s", from, own)
 							 : format("%s - %s", own, from);
 	}
 }
@@ -91,9 +91,10 @@ static struct form *written_form(const struct relative *r, int coord, int order)
 		return unit(link->velocity, order - 1);
 	if (link->rate && order > 0)
 		return form_sum(form_scale(order == 1 ? link->rate : derivative(link->rate), link->ratio),
-				unit(coord, order), link->turned);
+				unit(coord, order), link->reversed);
 	if (link->kind == LINK_PARENT)
-		return form_sum(form_scale(r->form[order][link->from], link->ratio), unit(coord, order), link->turned);
+		return form_sum(form_scale(r->form[order][link->from], link->ratio), unit(coord, order),
+				link->reversed);
 	struct form *form = unit(coord, order);
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->shift[k]) != 0)
@@ -106,7 +107,7 @@ static struct form *rate_equation(const struct relative *r, int coord)
 {
 	const struct link *link = &r->link[coord];
 	struct form *rate = form_sum(r->form[1][coord], form_scale(r->form[1][link->from], link->ratio), true);
-	return form_sum(unit(coord, 1), rate, !link->turned);
+	return form_sum(unit(coord, 1), rate, !link->reversed);
 }
 
 static void write_forms(struct relative *r)
@@ -180,7 +181,7 @@ void relative_value(const struct relative *r, int coord, mpq_t *const *value, mp
 		mpq_set(kept, *value[coord]);
 	} else if (link->kind == LINK_PARENT) {
 		mpq_mul(product, link->ratio, *value[link->from]);
-		if (link->turned)
+		if (link->reversed)
 			mpq_sub(kept, product, *value[coord]);
 		else
 			mpq_sub(kept, *value[coord], product);

@@ -13,7 +13,7 @@ struct linear linear_like(const struct linear *shape)
 	system.loads = 0;
 	system.inputs = 0;
 	system.load = NULL;
-	system.channels = 0;
+	system.force_columns = 0;
 	return system;
 }
 
@@ -134,10 +134,10 @@ void take_forces(struct linear *system, const struct linear *other, int rows, fo
 		for (int k = 0; k < 2; k++)
 			system->input[i].force[k] = mapped(&f, 1, other->input[i].force[k]);
 	}
-	system->channels = other->channels;
-	system->channel = ARRAY(mpq_t *, other->channels);
-	for (int e = 0; e < other->channels; e++)
-		system->channel[e] = mapped(&f, 1, other->channel[e]);
+	system->force_columns = other->force_columns;
+	system->force_column = ARRAY(mpq_t *, other->force_columns);
+	for (int e = 0; e < other->force_columns; e++)
+		system->force_column[e] = mapped(&f, 1, other->force_column[e]);
 }
 
 /* ---- states ---- */

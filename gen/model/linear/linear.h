@@ -10,7 +10,7 @@
 struct model;
 struct output;
 struct residual;
-struct snapshot;
+struct segment_equations;
 
 /* ---- linear.c: linear systems of coordinates ---- */
 
@@ -37,13 +37,14 @@ struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n
 	struct load *load;
 	int inputs;
 	struct input *input;
-	int channels;               /* of what is left over: one for each equation that has some */
-	mpq_t **channel;            /* its force on the equations */
+	int force_columns;          /* of what is left over: one for each equation that has some */
+	mpq_t **force_column;       /* its force on the equations */
 };
 struct equations {                  /* as they are written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
-	struct snapshot *snapshot;  /* per segment */
-	struct snapshot *whole;     /* for all time, conditions and products of time kept; NULL: nothing is left over */
+	struct segment_equations *segment_equations; /* per segment */
+	/* for all time, conditions and products of time kept; NULL: nothing is left over */
+	struct segment_equations *whole;
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
 	const struct atoms *atoms;
@@ -57,7 +58,7 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column);
 mpq_t *inverse_of_leading(const struct linear *system);     /* where it is known to be regular */
 int highest_state(const struct linear *system, int coord);  /* whose derivative is the highest of the coordinate */
 mpq_t *slopes_by_force(const struct linear *system, const mpq_t *inverse, const mpq_t *force); /* W^-1 force in y' */
-/* The loads, inputs and channels of another system, each force as `map` makes `rows` numbers of it */
+/* The loads, inputs and force columns of another system, each force as `map` makes `rows` numbers of it */
 typedef void force_map(const void *context, const mpq_t *force, mpq_t *mapped);
 void take_forces(struct linear *system, const struct linear *other, int rows, force_map *map, const void *context);
 /* Highest derivatives of the coordinates, -W^-1 (C v + K q), n x states; `held`: of the held terms alone */
@@ -91,8 +92,8 @@ bool is_seen_before(int n, int *parent, int coord);          /* an earlier coord
 
 /* ---- augmented.c: the augmented state ---- */
 
-/* x = [states, held terms, load states, inputs, channels]; every column of a table or of tuned equations has its place
- * here too */
+/* x = [states, held terms, load states, inputs, force columns]; every column of a table or of tuned equations has its
+ * place here too */
 struct layout {
 	int size, states;
 	int held;                   /* index of the first held term, one per coordinate; -1: none */
@@ -101,7 +102,7 @@ struct layout {
 	int *load;                  /* per load: index of its first state, in the first of them; -1: it has none */
 	int *input;                 /* index of each input (then of its slope, if of first order) */
 	/* index of the first remainder; each is a chain of so many integrators, its force the first */
-	int channel, powers;
+	int force_column, powers;
 };
 enum { PARABOLA = 3 };              /* powers of a remainder: its value and two derivatives */
 struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */

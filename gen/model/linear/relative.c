@@ -21,7 +21,7 @@
 
 /* ---- what the equations read ---- */
 
-struct look {
+struct dependences {
 	const struct model *model;
 	/* factors of coordinates in every form, sums inside functions too; and of velocities */
 	struct echelon place, rate;
@@ -36,14 +36,14 @@ static void join(bool *joined, int n, int a, int b)
 }
 
 /* A coordinate in the equation of `own` */
-static void join_equation(struct look *l, int own, int coord)
+static void join_equation(struct dependences *l, int own, int coord)
 {
 	join(l->weak, l->model->n, own, coord);
 	l->acts[coord * l->model->n + own] = true;
 }
 
 /* Coordinates of a sum, one after the other */
-static void join_terms(struct look *l, const struct form *form)
+static void join_terms(struct dependences *l, const struct form *form)
 {
 	int last = -1, count = 0;
 	for (int i = 0; i < form->terms; i++)
@@ -58,7 +58,7 @@ static void join_terms(struct look *l, const struct form *form)
 	}
 }
 
-static void look_at(struct look *l, const struct form *form, int own)
+static void look_at(struct dependences *l, const struct form *form, int own)
 {
 	int n = l->model->n;
 	mpq_t *place = rationals(n), *rate = rationals(n);
@@ -86,17 +86,17 @@ static void look_at(struct look *l, const struct form *form, int own)
 }
 
 /* An atom is looked at once, but joins all equations in which it stands. */
-static void join_atoms(struct look *l, const struct form *form, int own)
+static void join_atoms(struct dependences *l, const struct form *form, int own)
 {
 	for (const struct form_term **term = terms_within(form, l->seen); *term; term++)
 		if ((*term)->basis.kind == BASIS_COORD)
 			join_equation(l, own, (*term)->basis.index);
 }
 
-static struct look look_new(const struct model *model)
+static struct dependences look_new(const struct model *model)
 {
 	size_t n = (size_t)model->n;
-	return (struct look){ model,
+	return (struct dependences){ model,
 			      echelon_new(model->n),
 			      echelon_new(model->n),
 			      ARRAY(bool, n *n),
@@ -106,12 +106,12 @@ static struct look look_new(const struct model *model)
 }
 
 /* The equations; of tunable models also at values that are related by nothing */
-static struct look look_at_equations(const struct model *model)
+static struct dependences look_at_equations(const struct model *model)
 {
-	struct look l = look_new(model);
+	struct dependences l = look_new(model);
 	for (int i = 0; i < model->n; i++)
 		look_at(&l, model->equations.residual[i].form, coordinate_of_row(model, i));
-	for (int i = 0; i < model->n && model->remainder.channels + (model->switching != NULL) > 0; i++) {
+	for (int i = 0; i < model->n && model->remainder.force_columns + (model->switching != NULL) > 0; i++) {
 		memset(l.seen, 0, (size_t)atoms_count(model->equations.atoms));
 		join_atoms(&l, model->equations.residual[i].form, coordinate_of_row(model, i));
 	}
@@ -215,7 +215,7 @@ static void spread(const bool *joined, int n, int from, int number, int *compone
 			spread(joined, n, j, number, component);
 }
 
-static int *components_of(const struct look *l, int *count)
+static int *components_of(const struct dependences *l, int *count)
 {
 	int n = l->model->n, *component = ARRAY(int, n);
 	*count = 0;
@@ -228,7 +228,7 @@ static int *components_of(const struct look *l, int *count)
 }
 
 /* Whatever acts through others acts too. */
-static void close_acts(struct look *l)
+static void close_acts(struct dependences *l)
 {
 	int n = l->model->n, *reached = ARRAY(int, n);
 	bool *direct = ARRAY(bool, (size_t)(n * n));
@@ -327,13 +327,13 @@ static bool fixed_in_part(const struct model *model, const struct group *g)
 }
 
 /* Do both act on each other? */
-static bool go_together(const struct look *l, int a, int b)
+static bool go_together(const struct dependences *l, int a, int b)
 {
 	return l->acts[a * l->model->n + b] && l->acts[b * l->model->n + a];
 }
 
 /* Nothing of the group acts on it that it does not act on */
-static bool leads_group(const struct look *l, const mpq_t *motion, int coord)
+static bool leads_group(const struct dependences *l, const mpq_t *motion, int coord)
 {
 	int n = l->model->n;
 	for (int j = 0; j < n; j++)
@@ -343,7 +343,7 @@ static bool leads_group(const struct look *l, const mpq_t *motion, int coord)
 }
 
 /* Of those that lead the first; of these one of first order, where there is such */
-static int root_in(const struct look *l, const mpq_t *motion, bool split)
+static int root_in(const struct dependences *l, const mpq_t *motion, bool split)
 {
 	int n = l->model->n, root = first_entry(n, motion);
 	while (!leads_group(l, motion, root))
@@ -356,7 +356,7 @@ static int root_in(const struct look *l, const mpq_t *motion, bool split)
 }
 
 /* What a centre is made of moves with the root. */
-static bool centres(const struct look *l, const struct group *g, const mpq_t *weight)
+static bool centres(const struct dependences *l, const struct group *g, const mpq_t *weight)
 {
 	for (int j = 0; j < g->n; j++)
 		if (mpq_sgn(weight[j]) != 0 && !go_together(l, g->root, j))
@@ -365,7 +365,7 @@ static bool centres(const struct look *l, const struct group *g, const mpq_t *we
 }
 
 /* Whether it is one, and which */
-static bool make_group(const struct look *l, const mpq_t *motion, mpq_t *weight, struct group *g)
+static bool make_group(const struct dependences *l, const mpq_t *motion, mpq_t *weight, struct group *g)
 {
 	const struct model *model = l->model;
 	int n = model->n;
@@ -397,13 +397,13 @@ static void link_to(struct relative *r, const struct group *g, int coord, int pa
 	struct link *link = &r->link[coord];
 	link->kind = LINK_PARENT;
 	link->from = parent;
-	link->turned = coord > parent;
+	link->reversed = coord > parent;
 	mpq_div(link->ratio, g->motion[coord], g->motion[parent]);
 	r->sequence[r->links++] = coord;
 }
 
 /* Breadth first from the root: neighbours in a sum, then in an equation, then the rest; none that it does not act on */
-static void grow_tree(struct relative *r, const struct look *l, const struct group *g)
+static void grow_tree(struct relative *r, const struct dependences *l, const struct group *g)
 {
 	int n = g->n, *queue = ARRAY(int, n), done = 0, count = 1;
 	bool *in = ARRAY(bool, n);
@@ -441,7 +441,7 @@ static void place_root(struct relative *r, const struct group *g, int first)
 		int j = r->sequence[i], p = r->link[j].from;
 		for (int k = 0; k < n; k++)
 			mpq_mul(d[j * n + k], r->link[j].ratio, d[p * n + k]);
-		mpq_set_si(d[j * n + j], r->link[j].turned ? -1 : 1, 1);
+		mpq_set_si(d[j * n + j], r->link[j].reversed ? -1 : 1, 1);
 	}
 	for (int j = 0; j < n; j++)
 		for (int k = 0; k < n; k++) {
@@ -497,7 +497,7 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 	if (link->kind == LINK_PARENT) {
 		struct form *own = divided(r, coord, equation, one),
 			    *from = divided(r, link->from, equation, link->ratio);
-		form = link->turned ? form_difference(from, own) : form_difference(own, from);
+		form = link->reversed ? form_difference(from, own) : form_difference(own, from);
 	}
 	for (int j = 0; j < r->written->n && link->kind == LINK_CENTRE; j++)
 		if (mpq_sgn(link->weight[j]) != 0)
@@ -506,7 +506,7 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 }
 
 /* Whether it is one; moved[j]: coordinate j stands in this motion, or its centre, or in one that was tried before */
-static bool add_group(struct relative *r, const struct look *l, const mpq_t *motion, mpq_t *weight, bool *moved)
+static bool add_group(struct relative *r, const struct dependences *l, const mpq_t *motion, mpq_t *weight, bool *moved)
 {
 	struct group g;
 	bool made = make_group(l, motion, weight, &g);
@@ -540,7 +540,7 @@ struct relative *relative_of(const struct model *model)
 		      (model->switching && has_events(model->switching));
 	if (model->n < 2 || events)
 		return NULL;        /* what sticks is held, and what is struck jumps, in the coordinates as written */
-	struct look l = look_at_equations(model);
+	struct dependences l = look_at_equations(model);
 	struct echelon both = l.place;
 	mpq_t **place, **rate, **sum;
 	int n = model->n, count, groups = 0, places = echelon_null_space(&l.place, &place);

@@ -12,7 +12,7 @@ struct link {                       /* of a written coordinate x: what is kept i
 	enum { LINK_NONE, LINK_PARENT, LINK_CENTRE } kind;
 	int from;                   /* LINK_PARENT: the other, x_p */
 	mpq_t ratio;                /* x - ratio x_p is kept, */
-	bool turned;                /* or ratio x_p - x */
+	bool reversed;              /* or ratio x_p - x */
 	/* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
 	mpq_t *weight, *shift;
 	/* LINK_PARENT, x of second order, x_p of first: x_p' over written coordinates, so that x' - ratio x_p' is

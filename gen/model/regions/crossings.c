@@ -104,12 +104,12 @@ static void follow_form(struct following *f, const struct form *form)
 static bool has_small_tables(const struct model *model)
 {
 	struct linear system = operator_system(model, 0);
-	return layout_of(&system, CUT_POWERS).size <= LIMIT_TUNED_BLOCK;
+	return layout_of(&system, SPLIT_POWERS).size <= LIMIT_TUNED_BLOCK;
 }
 
-const char *why_not_cut(const struct model *model)
+const char *why_not_split(const struct model *model)
 {
-	if (!is_cut(model->scheme) || model->remainder.channels == 0)
+	if (!is_event_split(model->scheme) || model->remainder.force_columns == 0)
 		return "its steps are not cut";
 	if (model->schedule.operators > 1)
 		return "its operator changes";
@@ -128,14 +128,14 @@ const char *why_not_cut(const struct model *model)
 
 bool follows_crossings(const struct model *model)
 {
-	if (why_not_cut(model))
+	if (why_not_split(model))
 		return false;
 	if (has_contacts(model))
 		return true;
-	if (!scheme_row(model->scheme)->cuts || model->remainder.smooth.kind == SMOOTH_ALL)
+	if (!scheme_row(model->scheme)->event_split || model->remainder.smooth.kind == SMOOTH_ALL)
 		return false;
 	struct following f = { .seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms)) };
-	for (int c = 0; c < model->remainder.channels; c++)
+	for (int c = 0; c < model->remainder.force_columns; c++)
 		follow_form(&f, model->schedule.operator[0].left[c]);
 	return f.compares && !f.lost;
 }

@@ -24,7 +24,7 @@ static int *components_of_equations(const struct building *b)
 	for (int row = 0; row < n; row++) {
 		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 		for (int s = 0; s < b->model->system.segments; s++)
-			join_form(b, parent, seen, row, b->snapshot[s].residual[row].form);
+			join_form(b, parent, seen, row, b->segment_equations[s].residual[row].form);
 	}
 	return parent;
 }
@@ -299,7 +299,7 @@ static void take_model(struct building *b, struct region_part *part, const struc
 	model->n = block->system.n;
 	model->system = block->system;
 	model->system.inputs = 0;               /* find_inputs counts them */
-	model->outputs = model->remainder.channels = model->schedule.operators = 0;
+	model->outputs = model->remainder.force_columns = model->schedule.operators = 0;
 	model->names.coord = ARRAY(const char *, model->n);
 	model->names.state = ARRAY(const char *, model->system.states);
 	for (int i = 0; i < model->n; i++)

@@ -19,7 +19,7 @@ bool is_piecewise_linear(const struct building *b)
 	bool divided = segments == 1 || b->model->contacts.impacts > 0;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
-			const struct form *form = b->snapshot[s].residual[i].form;
+			const struct form *form = b->segment_equations[s].residual[i].form;
 			if (!is_piecewise_form(form))
 				return false;
 			divided = divided || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
@@ -134,15 +134,15 @@ static int expression_here(struct looking *l, const struct node *node, const str
  * of. What is compared with a constant is written as it is, on whichever side it stands. */
 static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
 {
-	bool turned = is_constant(a) && !is_constant(b);
-	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
+	bool reversed = is_constant(a) && !is_constant(b);
+	struct form *form = reversed ? form_difference(b, a) : form_difference(a, b);
 	RATIONAL factor = ZERO, at = ZERO;
 	refuse_force(node, form);
 	int e = expression_here(l, node, form, factor, at), sign = mpq_sgn(at);
 	if (e >= 0)
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	form_free(form);
-	return turned ? -sign : sign;
+	return reversed ? -sign : sign;
 }
 
 static struct form *form_here(struct looking *l, const struct form *form);
@@ -481,7 +481,8 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].slide = ARRAY(struct slide, atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
-			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
+			s->region[r].residual[l.row] =
+				form_here(&l, b->segment_equations[l.segment].residual[l.row].form);
 		}
 		meet_impacts(&l);
 		discard(l.known);
@@ -503,8 +504,8 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 	bool changes = false;
 	for (int s = 1; s < b->model->system.segments; s++)
 		for (int k = 0; k < rows; k++)
-			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
-							b->snapshot->residual[row[k]].form);
+			changes = changes || !same_form(b->segment_equations[s].residual[row[k]].form,
+							b->segment_equations->residual[row[k]].form);
 	return changes || strikes_change(b);
 }
 

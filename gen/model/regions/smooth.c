@@ -433,8 +433,8 @@ static void judge(void *context)
 {
 	struct building *b = context;
 	struct model *model = b->model;
-	bool left = model->remainder.channels > 0;
-	int count = left ? model->remainder.channels : model->n;
+	bool left = model->remainder.force_columns > 0;
+	int count = left ? model->remainder.force_columns : model->n;
 	struct spot spot = { 0 };
 	struct search s = { .b = b, .count = atoms_count(b->collector.atoms), .spot = &spot };
 	mpfr_inits2(PRECISION, spot.value, spot.t, NULL);
@@ -457,7 +457,7 @@ void judge_smoothness(struct building *b)
 {
 	struct collector *c = &b->collector;
 	const struct irrationals used = c->irrationals;
-	if (!b->whole || (b->model->remainder.channels == 0 && !b->model->switching))
+	if (!b->whole || (b->model->remainder.force_columns == 0 && !b->model->switching))
 		return;
 	c->whole_time = true;           /* conditions on t stay open */
 	statement_guard(judge, b);
@@ -473,7 +473,8 @@ int order_of_scheme(const struct model *model)
 
 int order_that_holds(const struct model *model)
 {
-	int order = model->remainder.channels > 0 || scheme_row(model->scheme)->holds_coupling ? order_of_scheme(model)
+	int order = model->remainder.force_columns > 0 || scheme_row(model->scheme)->holds_coupling
+		? order_of_scheme(model)
 											       : 0;
 	return loses_order(model) ? model->remainder.smooth.tenths / 10 : order;
 }
@@ -487,7 +488,7 @@ bool loses_order(const struct model *model)
 		return false;                   /* and where the state chooses others */
 	if (follows_crossings(model))
 		return false;
-	return model->remainder.channels > 0 && model->remainder.smooth.tenths > 0 &&
+	return model->remainder.force_columns > 0 && model->remainder.smooth.tenths > 0 &&
 	       model->remainder.smooth.tenths < 10 * order_of_scheme(model);
 }
 

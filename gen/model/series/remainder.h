@@ -20,18 +20,18 @@ struct output {
 	mpq_t *state;               /* factors of y, one per state, accelerations replaced */
 	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
 	mpq_t *input[2];            /* per input: factors of u and u' */
-	mpq_t *channel;             /* factors of what is left over, where an acceleration is read */
+	mpq_t *force_column;        /* factors of what is left over, where an acceleration is read */
 };
 struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
 	mpq_t *C, *K;
-	struct form **left;         /* per channel: the remainder, a force on its equation */
-	mpq_t at;                   /* of a bank: the value up to which it serves */
+	struct form **left;         /* per force column: the remainder, a force on its equation */
+	mpq_t at;                   /* of a schedule: the value up to which it serves */
 	const char *text;           /* x = 2, x' = 0 */
 };
 struct operator_schedule {          /* of operators */
 	int operators;              /* 0: exact, or nothing is left over */
 	struct operator *operator;
-	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
+	const struct form *selector; /* of a schedule: what is compared with `at`; NULL: one operator */
 };
 struct time_function {              /* what stands with it in the remainder of the first operator */
 	const struct form *form;    /* of time alone */
@@ -58,7 +58,7 @@ struct splitting {                  /* the remainder, sorted: see split.c */
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool settles;               /* there is a last segment of time, in which all functions are constant */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */
-	int selector;               /* function that a bank is chosen by; -1: there is no bank, or it is by states */
+	int selector; /* function that a schedule is chosen by; -1: there is no schedule, or it is by states */
 };
 struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
 	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
@@ -72,9 +72,9 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	const char *singular_where;
 };
 struct remainder {                  /* what is left over, of each operator */
-	int channels;               /* one for each equation that has some */
+	int force_columns;          /* one for each equation that has some */
 	int *row;                   /* its equation */
-	struct form **slope;        /* of a scheme that collocates: [channel][state], its derivative */
+	struct form **slope;        /* of a scheme that collocates: [force column][state], its derivative */
 	bool loads;                 /* known loads are left to the scheme */
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	struct smoothness smooth;
@@ -83,7 +83,7 @@ struct remainder {                  /* what is left over, of each operator */
 /* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
 
 void build_operators(struct building *b);
-/* the model's, with the operator's C and K and the channels */
+/* the model's, with the operator's C and K and the force columns */
 struct linear operator_system(const struct model *model, int k);
 /* Every form that the remainders and the selector are made of, once, operands before what they make. */
 void visit_remainders(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
@@ -105,7 +105,7 @@ int  order_that_holds(const struct model *model);           /* rounded down; 0: 
 /* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with
  * breakpoints. */
 bool follows_crossings(const struct model *model);
-const char *why_not_cut(const struct model *model);          /* its steps, into parts; NULL: they can be */
+const char *why_not_split(const struct model *model);        /* its steps, into parts; NULL: they can be */
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 

@@ -32,13 +32,13 @@ static bool same_but_loads(const struct linear *p, const struct linear *q, bool 
 /* Texts of remainders that are cut short say nothing. */
 static bool same_remainders(const struct model *a, const struct model *b)
 {
-	if (a->schedule.operators != b->schedule.operators || a->remainder.channels != b->remainder.channels)
+	if (a->schedule.operators != b->schedule.operators || a->remainder.force_columns != b->remainder.force_columns)
 		return false;
-	for (int k = 0; k < a->schedule.operators * a->remainder.channels; k++) {
+	for (int k = 0; k < a->schedule.operators * a->remainder.force_columns; k++) {
 		const char *left = form_text(
-			a, a->schedule.operator[k / a->remainder.channels].left[k % a->remainder.channels]);
+			a, a->schedule.operator[k / a->remainder.force_columns].left[k % a->remainder.force_columns]);
 		const char *other = form_text(
-			b, b->schedule.operator[k / a->remainder.channels].left[k % a->remainder.channels]);
+			b, b->schedule.operator[k / a->remainder.force_columns].left[k % a->remainder.force_columns]);
 		if (strstr(left, "...") || strcmp(left, other) != 0)
 			return false;
 	}

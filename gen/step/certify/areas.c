@@ -40,7 +40,7 @@ void through_state(const struct through *t, int state, mpfi_ptr value)
 	mpfi_set(value, t->x[state]);
 }
 
-/* ---- gates: what ends a region ---- */
+/* ---- guards: what ends a region ---- */
 
 static double *doubles(int n, const mpq_t *row)
 {
@@ -85,17 +85,17 @@ static double *fourth_of(const struct through *t, const double *row, const mpq_t
 	return now;
 }
 
-static void add_gate(const struct through *t, struct area *area, struct gate gate, mpq_t *row, mpq_srcptr limit)
+static void add_guard(const struct through *t, struct area *area, struct guard guard, mpq_t *row, mpq_srcptr limit)
 {
-	mpq_init(gate.limit);
-	mpq_set(gate.limit, limit);
-	gate.row = row;
-	gate.slope = through_times(t, row, area->A);
-	gate.near_limit = mpq_get_d(limit);
-	gate.near_row = doubles(t->n, row);
-	gate.near_slope = doubles(t->n, gate.slope);
-	gate.fourth = fourth_of(t, gate.near_row, area->A);
-	*MORE(area->gate, area->gates) = gate;
+	mpq_init(guard.limit);
+	mpq_set(guard.limit, limit);
+	guard.row = row;
+	guard.slope = through_times(t, row, area->A);
+	guard.near_limit = mpq_get_d(limit);
+	guard.near_row = doubles(t->n, row);
+	guard.near_slope = doubles(t->n, guard.slope);
+	guard.fourth = fourth_of(t, guard.near_row, area->A);
+	*MORE(area->guard, area->guards) = guard;
 }
 
 /* The ends of an interval of an expression */
@@ -120,8 +120,8 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 			mpq_neg(limit, limit);
 		for (int i = 0; i < t->n && !upward; i++)
 			mpq_neg(row[i], row[i]);
-		add_gate(t, area,
-			 (struct gate){ .expression = expression, .breakpoint = breakpoint, .upward = upward,
+		add_guard(t, area,
+			 (struct guard){ .expression = expression, .breakpoint = breakpoint, .upward = upward,
 					.impact = impact, .leads = leads },
 			 row, limit);
 	}
@@ -174,8 +174,8 @@ static void add_releases(const struct through *t, struct area *area, int region,
 			continue;
 		mpq_t *row = rationals(t->n);
 		through_row(t, release->row, row);
-		add_gate(t, area,
-			 (struct gate){ .expression = expression, .breakpoint = interval - !release->upward,
+		add_guard(t, area,
+			 (struct guard){ .expression = expression, .breakpoint = interval - !release->upward,
 					.upward = release->upward, .release = true, .impact = -1,
 					.leads = release->upward ? stride : -stride },
 			 row, zero);
@@ -247,7 +247,7 @@ void through_loads(struct through *t)
 			wave_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
 }
 
-bool through_meets(const struct through *t, const struct gate *one, const struct gate *other)
+bool through_meets(const struct through *t, const struct guard *one, const struct guard *other)
 {
 	RATIONAL ratio = ZERO;
 	return one->release && other->release && rationals_multiple((size_t)t->n, other->row, one->row, ratio) &&
@@ -261,10 +261,10 @@ const char *through_time(mpq_srcptr time)
 	return format("%.12g", mpq_get_d(time));
 }
 
-bool through_lost(struct through *t, const struct gate *gate, const char *what)
+bool through_lost(struct through *t, const struct guard *guard, const char *what)
 {
 	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", through_time(t->base),
-			      spoken_expression(t->model, gate->expression),
-			      readable_text(t->s->expression[gate->expression].at[gate->breakpoint]), what);
+			      spoken_expression(t->model, guard->expression),
+			      readable_text(t->s->expression[guard->expression].at[guard->breakpoint]), what);
 	return false;
 }

@@ -85,7 +85,7 @@ static void build_loss(void *context)
 	struct building_loss *b = context;
 	b->error->written = b->error;
 	b->error->asked.form = FORM_DIRECT;
-	b->error->asked.anchors = b->error->asked.rows = 1;
+	b->error->asked.refresh = b->error->asked.rows = 1;
 	b->error->asked.batch = b->error->asked.selftest = false;
 	b->step = step_build(b->error);
 	if (!b->step)

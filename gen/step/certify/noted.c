@@ -17,15 +17,15 @@ static struct passed *new_passed(struct through *t, int expression, int breakpoi
 	return p;
 }
 
-void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off)
+void through_note(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
-	struct passed *p = new_passed(t, gate->expression, gate->breakpoint, gate->upward, off);
+	struct passed *p = new_passed(t, guard->expression, guard->breakpoint, guard->upward, off);
 	INTERVAL slope = OVER_BITS(t->precision);
-	through_dot(t, gate->slope, t->x, slope);
+	through_dot(t, guard->slope, t->x, slope);
 	p->speed = t->noted.speed = fabs(mpfi_get_d(slope));
 	t->noted.size = 0;
 	for (int i = 0; i < t->n; i++)
-		t->noted.size += fabs(gate->near_row[i] * mpfi_get_d(t->x[i]));
+		t->noted.size += fabs(guard->near_row[i] * mpfi_get_d(t->x[i]));
 	p->size = t->noted.size;
 }
 

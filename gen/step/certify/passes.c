@@ -33,8 +33,8 @@ static double value_near(int n, const double *row, const struct near *x, double 
 	return sum;
 }
 
-/* A cubic lies within its Bezier points, and the gate is off it by its fourth derivative. */
-static bool is_clear(const struct through *t, const struct gate *g, const struct near *x, const struct near *y,
+/* A cubic lies within its Bezier points, and the guard is off it by its fourth derivative. */
+static bool is_event_free(const struct through *t, const struct guard *g, const struct near *x, const struct near *y,
 		     const double *most, double tau)
 {
 	int n = t->n;
@@ -49,7 +49,7 @@ static bool is_clear(const struct through *t, const struct gate *g, const struct
 	       to - arrives + off < g->near_limit;
 }
 
-bool through_clear(struct through *t, const mpfi_t *y, double tau)
+bool through_event_free(struct through *t, const mpfi_t *y, double tau)
 {
 	const struct near *from = &t->piece.near[0], *to = &t->piece.near[1];
 	near_of(t, (const mpfi_t *)t->x, &t->piece.near[0]);
@@ -59,9 +59,9 @@ bool through_clear(struct through *t, const mpfi_t *y, double tau)
 		for (int j = 0; j < t->n; j++)
 			t->piece.most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
 	}
-	for (int k = 0; k < t->at->gates; k++)
-		if (!t->resting[t->at->gate[k].expression] &&
-		    !is_clear(t, &t->at->gate[k], from, to, t->piece.most, tau))
+	for (int k = 0; k < t->at->guards; k++)
+		if (!t->resting[t->at->guard[k].expression] &&
+		    !is_event_free(t, &t->at->guard[k], from, to, t->piece.most, tau))
 			return false;
 	return true;
 }
@@ -80,29 +80,29 @@ static void add_room(struct through *t, int degree)
 	}
 }
 
-/* The gate's polynomial in s, less its limit, and that of its slope */
-static void expand_gate(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau)
+/* The guard's polynomial in s, less its limit, and that of its slope */
+static void expand_guard(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau)
 {
 	INTERVAL length = OVER_BITS(t->precision);
 	mpfi_set_q(length, tau);
 	add_room(t, degree);
 	for (int m = 0; m <= degree; m++) {
-		through_dot(t, (const mpq_t *)gate->row, (const mpfi_t *)t->piece.room.term[m], t->piece.value[m]);
-		through_dot(t, (const mpq_t *)gate->slope, (const mpfi_t *)t->piece.room.term[m], t->piece.slope[m]);
+		through_dot(t, (const mpq_t *)guard->row, (const mpfi_t *)t->piece.room.term[m], t->piece.value[m]);
+		through_dot(t, (const mpq_t *)guard->slope, (const mpfi_t *)t->piece.room.term[m], t->piece.slope[m]);
 		mpfi_mul(t->piece.slope[m], t->piece.slope[m], length);
 	}
-	mpfi_sub_q(t->piece.value[0], t->piece.value[0], gate->limit);
+	mpfi_sub_q(t->piece.value[0], t->piece.value[0], guard->limit);
 }
 
 /* For --solution, what so many bits do not tell apart from 0 is 0. */
-static void clear_none(struct through *t, const struct gate *gate, int degree)
+static void clear_none(struct through *t, const struct guard *guard, int degree)
 {
-	double size = fabs(gate->near_limit);
+	double size = fabs(guard->near_limit);
 	if (!t->whole->asked.solution || t->precision < BITS_OF_ONE)
 		return;
 	for (int m = 0; m <= degree; m++)
 		for (int i = 0; i < t->n; i++)
-			size += fabs(gate->near_row[i] * mpfi_get_d(t->piece.room.term[m][i]));
+			size += fabs(guard->near_row[i] * mpfi_get_d(t->piece.room.term[m][i]));
 	for (int m = 0; m <= degree; m++)
 		if (mpfi_has_zero(t->piece.value[m]) && through_is_none(t, t->piece.value[m], size)) {
 			mpfi_set_ui(t->piece.value[m], 0);
@@ -146,10 +146,10 @@ static int divide_by_power(struct through *t, int degree, int order, bool fresh,
 	return rest;
 }
 
-static bool is_fresh(const struct through *t, const struct gate *gate)
+static bool is_fresh(const struct through *t, const struct guard *guard)
 {
-	return t->fresh.order[gate->expression] > 0 && gate->upward == t->fresh.back[gate->expression] &&
-	       !gate->release;
+	return t->fresh.order[guard->expression] > 0 && guard->upward == t->fresh.back[guard->expression] &&
+	       !guard->release;
 }
 
 /* Whether nothing of a polynomial is told apart from 0, or all of it is 0 */
@@ -161,43 +161,43 @@ static bool is_none(const struct through *t, int degree, bool told)
 	return true;
 }
 
-static bool bounces(const struct through *t, const struct gate *gate)
+static bool bounces(const struct through *t, const struct guard *guard)
 {
-	return gate->impact >= 0 && t->s->impact[gate->impact].bounces;
+	return guard->impact >= 0 && t->s->impact[guard->impact].bounces;
 }
 
 /* 1: found; -1: not known; 0: none */
-int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at)
+int through_first(struct through *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at)
 {
 	REAL end = WITH_BITS(t->precision);
 	INTERVAL root = OVER_BITS(t->precision);
 	int result = 0;
 	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
-	for (int k = 0; k < t->at->gates && result >= 0; k++) {
-		const struct gate *gate = &t->at->gate[k];
-		if (t->resting[gate->expression] || (result > 0 && through_meets(t, *found, gate)))
+	for (int k = 0; k < t->at->guards && result >= 0; k++) {
+		const struct guard *guard = &t->at->guard[k];
+		if (t->resting[guard->expression] || (result > 0 && through_meets(t, *found, guard)))
 			continue;
 		int terms = degree;
-		expand_gate(t, gate, degree, tau);
-		clear_none(t, gate, degree);
-		bool fresh = is_fresh(t, gate);
-		int order = fresh ? t->fresh.order[gate->expression] : zeros_of(t, degree);
+		expand_guard(t, guard, degree, tau);
+		clear_none(t, guard, degree);
+		bool fresh = is_fresh(t, guard);
+		int order = fresh ? t->fresh.order[guard->expression] : zeros_of(t, degree);
 		if (order > 0 && degree > order)
 			terms = divide_by_power(t, degree, order, fresh, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
 					    root);
-		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, gate) &&
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, guard) &&
 		    bounces(t, *found)) /* struck with what was found, where it touches then */
 			continue;
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
-			t->resting[gate->expression] = true;    /* let go by no force */
+			t->resting[guard->expression] = true;   /* let go by no force */
 			continue;
 		}
 		if (rise == RISE_UNKNOWN) {
-			through_lost(t, gate, "it comes closer than is known");
+			through_lost(t, guard, "it comes closer than is known");
 			result = -1;
 		} else if (rise == RISE_AT && mpfr_cmp_ui(&root->left, 1) <= 0) {
-			*found = gate;
+			*found = guard;
 			mpfi_set(at, root);
 			result = 1;
 			mpfr_min(end, end, &root->right, MPFR_RNDU);
@@ -236,18 +236,18 @@ static bool shorten_base(struct through *t, const struct stream *flow, mpfr_ptr 
 }
 
 /* What sticks and slips behind it */
-static bool settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+static bool settle(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
 	through_hold(t);
-	if (!through_settle(t, gate, off))
+	if (!through_settle(t, guard, off))
 		return false;
-	through_let_go(t, gate);
-	t->noted.list[t->noted.count - 1].faint = t->fresh.order[gate->expression] == 3;
+	through_let_go(t, guard);
+	t->noted.list[t->noted.count - 1].faint = t->fresh.order[guard->expression] == 3;
 	mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	return true;
 }
 
-bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at)
+bool through_pass(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at)
 {
 	REAL s = WITH_BITS(t->precision), off = WITH_BITS(64);
 	RATIONAL part = ZERO;
@@ -264,21 +264,21 @@ bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_sr
 	mpq_add(t->base, t->base, part);
 	bool known = shorten_base(t, before, off);
 	t->piece.at_once = mpq_sgn(part) == 0 ? t->piece.at_once + 1 : 0;
-	through_note(t, gate, off);
-	if (gate->impact >= 0) {
+	through_note(t, guard, off);
+	if (guard->impact >= 0) {
 		mpfi_clear(t->noted.list[--t->noted.count].at);    /* as what is struck it is noted again */
-		known = known && through_strike(t, gate, off);
+		known = known && through_strike(t, guard, off);
 	} else {
-		through_enter(t, t->region + gate->leads);
+		through_enter(t, t->region + guard->leads);
 		known = known && stream_change(before, t->at->flow, off, t->x);
 		if (has_events(t->s))
-			known = known && settle(t, gate, off);
+			known = known && settle(t, guard, off);
 	}
 	through_hold(t);
 	through_loads(t);
 	if (!known)
-		return t->undecided ? false : through_lost(t, gate, "when is not known well enough");
+		return t->undecided ? false : through_lost(t, guard, "when is not known well enough");
 	if (t->noted.most > 0 && t->noted.count >= t->noted.most)
-		return through_lost(t, gate, "that many crossings are not followed");
-	return t->piece.at_once < AT_ONCE || through_lost(t, gate, "breakpoints are passed without end");
+		return through_lost(t, guard, "that many crossings are not followed");
+	return t->piece.at_once < AT_ONCE || through_lost(t, guard, "breakpoints are passed without end");
 }

@@ -46,7 +46,7 @@ static struct operand_bound bound_of_operand(const struct errors *e, const struc
 	}
 }
 
-/* Of a load with anchors the factor is turned: of cosine and sine together */
+/* Of a load with refreshes the factor is rotated: of cosine and sine together */
 static double size_of_factor(const struct errors *e, const struct assignment *a, const struct product *p)
 {
 	const struct table *table = e->step->branch->whole;

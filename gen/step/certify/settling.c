@@ -93,67 +93,67 @@ int through_heads(const struct through *t, const struct area *area, int expressi
 
 /* How often an expression that was let go has the value 0 where it is: with its slope, and for a contact, whose force
  * was 0, with its acceleration */
-static int order_of(struct through *t, const struct gate *gate)
+static int order_of(struct through *t, const struct guard *guard)
 {
 	bool known;
-	if (!gate->release)
+	if (!guard->release)
 		return 0;
-	if (impact_resting(t->s, t->when.segment, gate->expression,
-			   interval_of(t->s, t->region, gate->expression) - (gate->upward ? 1 : -1)) >= 0)
+	if (impact_resting(t->s, t->when.segment, guard->expression,
+			   interval_of(t->s, t->region, guard->expression) - (guard->upward ? 1 : -1)) >= 0)
 		return 3;
-	RATIONALS *row = through_row_of(t, t->s->expression[gate->expression].row);
+	RATIONALS *row = through_row_of(t, t->s->expression[guard->expression].row);
 	RATIONALS *slope = through_times(t, row, t->at->A);
 	int sign = through_sign(t, slope, NULL, &known);
 	return known && sign != 0 ? 0 : 2;
 }
 
-void through_let_go(struct through *t, const struct gate *gate)
+void through_let_go(struct through *t, const struct guard *guard)
 {
-	t->fresh.order[gate->expression] = order_of(t, gate);
-	t->fresh.back[gate->expression] = !gate->upward;
+	t->fresh.order[guard->expression] = order_of(t, guard);
+	t->fresh.back[guard->expression] = !guard->upward;
 }
 
 /* Of sliders without mass one that would slide back where it is; -1: none does, -2: not known. What is 0, as all that
  * slides with one velocity is where it is met as 0, counts by its slope. */
-static int slides_back(const struct through *t, const struct gate *met, const struct gate **release)
+static int slides_back(const struct through *t, const struct guard *met, const struct guard **release)
 {
-	for (int k = 0; k < t->at->gates; k++) {
-		const struct gate *gate = &t->at->gate[k];
+	for (int k = 0; k < t->at->guards; k++) {
+		const struct guard *guard = &t->at->guard[k];
 		bool known;
-		if (!gate->release || is_stick(&t->s->expression[gate->expression],
-					       interval_of(t->s, t->region, gate->expression)))
+		if (!guard->release || is_stick(&t->s->expression[guard->expression],
+					       interval_of(t->s, t->region, guard->expression)))
 			continue;
-		int sign = through_sign(t, gate->row, NULL, &known);
+		int sign = through_sign(t, guard->row, NULL, &known);
 		bool none = known && sign == 0;
 		if (!known && met)
-			none = through_meets(t, met, gate);
+			none = through_meets(t, met, guard);
 		if (none)
-			sign = through_sign(t, gate->slope, NULL, &known);
-		*release = gate;
+			sign = through_sign(t, guard->slope, NULL, &known);
+		*release = guard;
 		if (!known)
 			return -2;
 		if (sign > 0)
-			return gate->expression;
+			return guard->expression;
 	}
 	return -1;
 }
 
 /* A slider without mass whose velocity an event has turned round sticks from there on. */
-bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off)
+bool through_slide(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
-	const struct gate *release, **gone;
+	const struct guard *release, **gone;
 	if (t->s->sliders == 0)
 		return true;
 	through_hold(t);
-	gone = ARRAY(const struct gate *, t->s->expressions);
-	int count = 0, back = slides_back(t, gate, &release);
+	gone = ARRAY(const struct guard *, t->s->expressions);
+	int count = 0, back = slides_back(t, guard, &release);
 	for (; back >= 0 && count < t->s->expressions; count++) {
 		gone[count] = release;
 		if (off)
 			through_note_plain(t, back, release->breakpoint, release->upward, off);
 		through_enter(t, t->region + release->leads);
 		through_hold(t);
-		back = slides_back(t, gate, &release);
+		back = slides_back(t, guard, &release);
 	}
 	for (int k = 0; k < count && back == -1; k++)
 		through_let_go(t, gone[k]);

@@ -386,11 +386,11 @@ static void follow(const contacts *m, instant *t, int jumped)
 
 /* ---- what sticks, rests or slips ---- */
 
-/* The side to which the gate that was met has let an expression go; 0: it has not */
+/* The side to which the guard that was met has let an expression go; 0: it has not */
 static int side_let_go(const instant *t, int expression)
 {
-	const struct gate *gate = t->told->met;
-	return !gate || !gate->release || gate->expression != expression ? 0 : gate->upward ? 1 : -1;
+	const struct guard *guard = t->told->met;
+	return !guard || !guard->release || guard->expression != expression ? 0 : guard->upward ? 1 : -1;
 }
 
 /* Whether the speed of a contact is but rounding: what rests has none */
@@ -428,16 +428,16 @@ static int holds_in(const contacts *m, instant *t, int region, int expression)
 {
 	const struct area *area = through_area(t, region);
 	(void)m;
-	for (int k = 0; k < area->gates; k++) {
-		const struct gate *gate = &area->gate[k];
+	for (int k = 0; k < area->guards; k++) {
+		const struct guard *guard = &area->guard[k];
 		bool known;
-		if (gate->expression != expression || !gate->release)
+		if (guard->expression != expression || !guard->release)
 			continue;
-		if (side_let_go(t, expression) == (gate->upward ? 1 : -1))
+		if (side_let_go(t, expression) == (guard->upward ? 1 : -1))
 			return 0;
-		int sign = through_sign(t, gate->row, gate->limit, &known);
+		int sign = through_sign(t, guard->row, guard->limit, &known);
 		if (known && sign == 0)
-			sign = through_sign(t, gate->slope, NULL, &known);
+			sign = through_sign(t, guard->slope, NULL, &known);
 		if (!known || sign > 0)
 			return !known;
 	}
@@ -467,11 +467,11 @@ static int is_pressed(const contacts *m, const instant *t, int k)
 	t->told->doubtful = -1;
 	if (!m->solution)
 		t->told->together = true;
-	for (int g = 0; g < t->at->gates; g++) {
-		const struct gate *gate = &t->at->gate[g];
-		if (!gate->release || gate->expression != m->impact[k].expression)
+	for (int g = 0; g < t->at->guards; g++) {
+		const struct guard *guard = &t->at->guard[g];
+		if (!guard->release || guard->expression != m->impact[k].expression)
 			continue;
-		if (through_sign(t, gate->row, gate->limit, &known) >= 0)
+		if (through_sign(t, guard->row, guard->limit, &known) >= 0)
 			return 0;
 		any = true;
 	}
@@ -480,11 +480,11 @@ static int is_pressed(const contacts *m, const instant *t, int k)
 
 /* ---- events ---- */
 
-/* gate: what was met, NULL: nothing; off: how far from base it may be, NULL: what changes is not listed */
-static const struct law *begin(struct through *t, const struct gate *gate, mpfr_srcptr off)
+/* guard: what was met, NULL: nothing; off: how far from base it may be, NULL: what changes is not listed */
+static const struct law *begin(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct law *m = law_of(t);
-	t->told->met = gate;
+	t->told->met = guard;
 	t->told->off = off;
 	t->told->struck = 0;
 	t->told->swept = 0;
@@ -516,14 +516,14 @@ static void note_touching(const struct law *m, struct through *t)
 	}
 }
 
-bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off)
+bool through_settle(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
-	const struct law *m = begin(t, gate, off);
-	if (gate)
-		t->before -= gate->leads;
-	settle(m, t, gate != NULL);
+	const struct law *m = begin(t, guard, off);
+	if (guard)
+		t->before -= guard->leads;
+	settle(m, t, guard != NULL);
 	note_touching(m, t);
-	return !t->undecided && through_slide(t, gate, off);
+	return !t->undecided && through_slide(t, guard, off);
 }
 
 bool through_take_up(struct through *t, mpfr_srcptr off)
@@ -537,13 +537,13 @@ bool through_take_up(struct through *t, mpfr_srcptr off)
 	return !t->undecided && through_slide(t, NULL, off);
 }
 
-bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off)
+bool through_strike(struct through *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct law *m = begin(t, NULL, off);
 	bool known = stream_change(t->at->flow, NULL, off, t->x);
-	through_enter(t, t->region + (m->impact[gate->impact].rest >= 0 ? 0 : gate->leads));
-	t->told->begins = gate->impact;
-	const unsigned struck = collide(m, t, gate->impact);
+	through_enter(t, t->region + (m->impact[guard->impact].rest >= 0 ? 0 : guard->leads));
+	t->told->begins = guard->impact;
+	const unsigned struck = collide(m, t, guard->impact);
 	known = known && stream_change(t->at->flow, NULL, off, t->x);
 	if (!known || t->undecided)
 		return t->undecided ? false : through_unknown(t, "when an impact is");

@@ -6,7 +6,7 @@
 #include "through.h"
 
 struct telling {                    /* of what happens at one instant */
-	const struct gate *met;     /* NULL: none */
+	const struct guard *met;    /* NULL: none */
 	mpfr_srcptr off;            /* how far from base it may be; NULL: nothing is listed */
 	unsigned struck;            /* impacts that have acted, as bits */
 	int begins;                 /* the impact whose guard was met, before it acts; -1 */
@@ -32,15 +32,15 @@ void through_hold(struct through *t);                        /* states that the 
  * first one is but rounding */
 int  through_heads(const struct through *t, const struct area *area, int expression, bool still, bool *known);
 /* A slider without mass whose velocity an event has turned round sticks from there on. */
-bool through_slide(struct through *t, const struct gate *gate, mpfr_srcptr off);
-void through_let_go(struct through *t, const struct gate *gate);     /* its expression is 0 now: how often */
+bool through_slide(struct through *t, const struct guard *guard, mpfr_srcptr off);
+void through_let_go(struct through *t, const struct guard *guard);   /* its expression is 0 now: how often */
 
 /* ---- struck.c: impacts, what comes to rest by them, what sticks and what slips ---- */
 
-/* gate: what was met, NULL: nothing; off NULL: what changes is not listed */
-bool through_settle(struct through *t, const struct gate *gate, mpfr_srcptr off);
+/* guard: what was met, NULL: nothing; off NULL: what changes is not listed */
+bool through_settle(struct through *t, const struct guard *guard, mpfr_srcptr off);
 bool through_take_up(struct through *t, mpfr_srcptr off);   /* behind a change of the loads */
-bool through_strike(struct through *t, const struct gate *gate, mpfr_srcptr off);
+bool through_strike(struct through *t, const struct guard *guard, mpfr_srcptr off);
 
 /* ---- begun.c ---- */
 

@@ -67,24 +67,24 @@ static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *
 static bool move(struct through *t, mpq_srcptr target)
 {
 	bool whole;
-	const struct gate *gate = NULL;
+	const struct guard *guard = NULL;
 	RATIONAL tau = ZERO;
 	piece_at(t, target, tau, &whole);
 	if (whole) {
 		step_on_grid(t, t->y);
-		if (through_clear(t, t->y, mpq_get_d(tau))) {
+		if (through_event_free(t, t->y, mpq_get_d(tau))) {
 			arrive(t, tau, true, t->y);
 			return true;
 		}
 	}
 	INTERVAL at = OVER_BITS(t->precision);
 	int degree = stream_expand(t->at->flow, t->x, tau, &t->piece.room);
-	int found = through_first(t, degree, tau, &gate, at);
+	int found = through_first(t, degree, tau, &guard, at);
 	if (found == 0 && !whole)
 		stream_sum(t->at->flow, &t->piece.room, degree, t->piece.one, t->y);
 	if (found == 0)
 		arrive(t, tau, whole, t->y);
-	return found == 0 || (found > 0 && through_pass(t, gate, degree, tau, at));
+	return found == 0 || (found > 0 && through_pass(t, guard, degree, tau, at));
 }
 
 /* ---- changes of formula in time ---- */

@@ -13,7 +13,7 @@ enum { THROUGH_SLOTS = 64, BITS_OF_ONE = 768 };
 struct near {                       /* x in double, and how far off it may be */
 	double *x, *off;
 };
-struct gate {                       /* a row over x that must not become greater than its limit */
+struct guard {                      /* a row over x that must not become greater than its limit */
 	int expression, breakpoint, leads;
 	bool upward;
 	bool release;               /* its value is a force, which then lets go what it held */
@@ -28,8 +28,8 @@ struct area {                       /* a region as it is met */
 	mpq_t *A;                   /* x' = A x */
 	struct stream *flow;          /* NULL: it was not met yet */
 	double *growth;             /* e^{|A| piece} */
-	int gates;
-	struct gate *gate;
+	int guards;
+	struct guard *guard;
 };
 struct through_grid {               /* of pieces, from where it was met: x after so many, by the lowest one of them */
 	bool met;
@@ -96,24 +96,24 @@ void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpf
 mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A);        /* row A */
 struct area *through_area(struct through *t, int region);
 /* Whether both let go at the same time, always: what slides with one velocity */
-bool through_meets(const struct through *t, const struct gate *one, const struct gate *other);
+bool through_meets(const struct through *t, const struct guard *one, const struct guard *other);
 void through_enter(struct through *t, int region);
 void through_loads(struct through *t);                       /* load states at base */
 const char *through_time(mpq_srcptr time);
-bool through_lost(struct through *t, const struct gate *gate, const char *what);       /* false: it is not known */
+bool through_lost(struct through *t, const struct guard *guard, const char *what);     /* false: it is not known */
 
 /* ---- passes.c: the first event of a piece, and what is behind it ---- */
 
-bool through_clear(struct through *t, const mpfi_t *y, double tau);    /* nothing is met up to y, tau on */
+bool through_event_free(struct through *t, const mpfi_t *y, double tau); /* nothing is met up to y, tau on */
 /* In t->room, of that degree: 1: found; -1: not known; 0: none. at: s */
-int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct gate **found, mpfi_ptr at);
-bool through_pass(struct through *t, const struct gate *gate, int degree, mpq_srcptr tau, mpfi_srcptr at);
+int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at);
+bool through_pass(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at);
 
 /* ---- noted.c: the list of crossings, and where expressions stand ---- */
 
 /* of e - at: 1 above, -1 below; 0: not told apart */
 int  through_side(const struct through *t, int expression, mpq_srcptr at);
-void through_note(struct through *t, const struct gate *gate, mpfr_srcptr off);
+void through_note(struct through *t, const struct guard *guard, mpfr_srcptr off);
 void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
 
 #endif

@@ -18,9 +18,9 @@ static const struct form *force_of(const struct step *step, const struct layout 
 	for (int j = 0; j < system->states; j++)
 		if (mpq_sgn(row[j]) != 0)
 			form_add_basis(force, basis_of_state(system, j), row[j]);
-	for (int e = 0; e < system->channels; e++)
-		if (mpq_sgn(row[layout->channel + e]) != 0)
-			form_add_to(force, step->model->schedule.operator[0].left[e], row[layout->channel + e]);
+	for (int e = 0; e < system->force_columns; e++)
+		if (mpq_sgn(row[layout->force_column + e]) != 0)
+			form_add_to(force, step->model->schedule.operator[0].left[e], row[layout->force_column + e]);
 	return force;
 }
 
@@ -31,10 +31,10 @@ static const struct form *slope_of(const struct step *step, const struct layout 
 	struct form *slope = NEW(struct form);
 	if (mpq_sgn(row[state]) != 0)
 		form_add_basis(slope, (struct basis){ .kind = BASIS_ONE }, row[state]);
-	for (int e = 0; e < system->channels; e++)
-		if (mpq_sgn(row[layout->channel + e]) != 0)
+	for (int e = 0; e < system->force_columns; e++)
+		if (mpq_sgn(row[layout->force_column + e]) != 0)
 			form_add_to(slope, step->model->remainder.slope[e * system->states + state],
-				    row[layout->channel + e]);
+				    row[layout->force_column + e]);
 	return slope;
 }
 

@@ -40,7 +40,7 @@ struct holder {
 	const struct form *velocity, *rate;
 	const struct node *node;    /* of friction */
 	mpq_t *push;                /* per state: what its force, 1, adds to the slope; of a contact it presses off */
-	mpq_t *gives;               /* per channel: what its force, 1, adds */
+	mpq_t *gives;               /* per force column: what its force, 1, adds */
 	mpq_t *answer;              /* per holder: what the force of that adds to the rate of the velocity here */
 	int bare;                   /* sequences: that rate without any of these forces, */
 	int slips, force;           /* the force while it slips, NONE: there is none; now */
@@ -68,13 +68,13 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 {
 	const struct model *model = w->step->model;
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
-	for (int e = 0; e < w->system->channels; e++) {
+	for (int e = 0; e < w->system->force_columns; e++) {
 		const struct form_term *term = form_find(model->schedule.operator[0].left[e], &basis);
 		if (term)
 			mpq_set(h->gives[e], term->factor);
 		for (int i = 0; i < w->system->states && term; i++) {
 			rational_addmul(h->push[i], term->factor,
-					w->slopes[0][i * w->layout.size + w->layout.channel + e]);
+					w->slopes[0][i * w->layout.size + w->layout.force_column + e]);
 		}
 	}
 }
@@ -85,7 +85,7 @@ static void push_of_contact(const struct sequencing *w, struct holder *h, const 
 	for (int j = 0; j < n; j++)
 		if (mpq_sgn(impact->in->direction[j]) != 0)
 			mpq_neg(h->push[w->system->velocity[j]], impact->in->direction[j]);
-	for (int e = 0; e < w->system->channels; e++)
+	for (int e = 0; e < w->system->force_columns; e++)
 		for (int j = 0; j < n; j++) {
 			mpq_srcptr mass = w->system->M[w->step->model->remainder.row[e] * n + j];
 			if (w->system->velocity[j] >= 0)
@@ -98,7 +98,7 @@ static struct holder *add_holder(struct holders *all)
 	struct holder *h = MORE(all->holder, all->holders);
 	*h = (struct holder){ .impact = NONE, .drag = NONE, .slips = NONE,
 			      .push = rationals(all->w->system->states),
-			      .gives = rationals(all->w->system->channels) };
+			      .gives = rationals(all->w->system->force_columns) };
 	return h;
 }
 
@@ -545,18 +545,18 @@ struct sum held_slope(struct sequencing *w, int state)
 	return slope;
 }
 
-int held_force(struct sequencing *w, int channel)
+int held_force(struct sequencing *w, int force_column)
 {
 	const struct contacts *c = w->x->contacts;
 	struct sum force = { 0 };
 	if (!c)
-		return w->x->force[channel];
+		return w->x->force[force_column];
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
-	sum_add(&force, TERM_SEQUENCE, w->x->force[channel], 0, one);
+	sum_add(&force, TERM_SEQUENCE, w->x->force[force_column], 0, one);
 	for (int i = 0; i < c->holds; i++)
-		if (mpq_sgn(c->hold[i].gives[channel]) != 0)
-			sum_add(&force, TERM_SEQUENCE, c->hold[i].force, 0, c->hold[i].gives[channel]);
+		if (mpq_sgn(c->hold[i].gives[force_column]) != 0)
+			sum_add(&force, TERM_SEQUENCE, c->hold[i].force, 0, c->hold[i].gives[force_column]);
 	return sum_sequence(w, &force);
 }
 

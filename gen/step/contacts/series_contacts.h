@@ -19,7 +19,7 @@ struct series_hold {                /* a velocity that is kept at 0: by friction
 	double *back;               /* per state: what is taken from it for a velocity of 1 */
 	int force, only;            /* a sequence; the only state of the velocity, or NONE */
 	mpq_t *push;                /* per state: what that force, 1, adds to its slope */
-	mpq_t *gives;               /* per channel: likewise */
+	mpq_t *gives;               /* per force column: likewise */
 };
 struct series_strike {                     /* an impact */
 	int expression, breakpoint;
@@ -56,7 +56,7 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
-int  held_force(struct sequencing *w, int channel);         /* what is left over, with what holds: a sequence */
+int  held_force(struct sequencing *w, int force_column);    /* what is left over, with what holds: a sequence */
 
 /* divided.c: those whose way counts stand first */
 void sort_watches(struct contacts *c);

@@ -2,9 +2,9 @@
 /*
  * Stability of exponential multistep methods. With functions of time frozen, and without forces of time alone, a step
  * is a linear map of [eta, eta', past forces]; its spectral radius says by how much that grows at each step. It is
- * looked for at the times where each operator of a bank serves: the first, the last, and where functions are largest.
- * Undamped modes stand on the circle, and a little beyond it by what a step leaves out: what counts is by how much all
- * steps together may let them grow, operator by operator.
+ * looked for at the times where each operator of a schedule serves: the first, the last, and where functions are
+ * largest. Undamped modes stand on the circle, and a little beyond it by what a step leaves out: what counts is by how
+ * much all steps together may let them grow, operator by operator.
  */
 #include "inner.h"
 
@@ -20,7 +20,7 @@ struct frozen {
 	const struct normal *normal;
 	int functions;
 	const double *f;            /* of time: all, the first is 1 */
-	int bank;
+	int schedule;
 	double *matrix[2];          /* what is left over, of eta and of eta': modes x modes */
 	double h;
 };
@@ -35,8 +35,8 @@ static void freeze(struct frozen *z)
 		z->matrix[0][i] = z->matrix[1][i] = 0;
 	for (int k = 0; k < m->matrices; k++)
 		for (int t = 0; t < m->matrix[k].terms; t++) {
-			double by = m->matrix[k].term[t].factor[z->bank] * z->f[m->matrix[k].term[t].function];
-			const double *value = m->matrix[k].value + (size_t)z->bank * cells;
+			double by = m->matrix[k].term[t].factor[z->schedule] * z->f[m->matrix[k].term[t].function];
+			const double *value = m->matrix[k].value + (size_t)z->schedule * cells;
 			for (size_t i = 0; i < cells; i++)
 				z->matrix[m->matrix[k].term[t].velocity][i] += by * value[i];
 		}
@@ -61,9 +61,9 @@ static void step_of_frozen(const struct frozen *z, bool twice, const double *fro
 {
 	const struct normal *m = z->normal;
 	int n = m->modes, width = m->width, points = m->multistep.points;
-	const double *flow = m->multistep.step.flow + z->bank * 4 * width,
-		     *correct = m->multistep.correct + z->bank * 2 * width;
-	const double *weight = m->multistep.step.weight + z->bank * points * 2 * width;
+	const double *flow = m->multistep.step.flow + z->schedule * 4 * width,
+		     *correct = m->multistep.correct + z->schedule * 2 * width;
+	const double *weight = m->multistep.step.weight + z->schedule * points * 2 * width;
 	double *force = to + 2 * n;
 	for (int k = points - 1; k > 0; k--)
 		for (int i = 0; i < n; i++)
@@ -107,8 +107,8 @@ static void collocation_of_frozen(const struct frozen *z, const double *from, do
 		}
 	for (int sweep = 0; sweep < m->collocation.sweeps; sweep++)
 		for (int k = 1; k < nodes; k++) {
-			const double *flow = m->collocation.stage[k - 1].flow + z->bank * 4 * width;
-			const double *weight = m->collocation.stage[k - 1].weight + z->bank * nodes * 2 * width;
+			const double *flow = m->collocation.stage[k - 1].flow + z->schedule * 4 * width;
+			const double *weight = m->collocation.stage[k - 1].weight + z->schedule * nodes * 2 * width;
 			for (int i = 0; i < n; i++) {
 				int at = m->place[i];
 				double eta = flow[at] * from[i] + flow[width + at] * from[n + i];
@@ -152,7 +152,7 @@ static double size_of_state(const struct frozen *z, const double *x, double h)
 	const struct normal *m = z->normal;
 	double sum = 0;
 	for (int i = 0; i < (2 + m->kept) * m->modes; i++) {
-		double scale = i < m->modes ? m->frequency[z->bank * m->modes + i] : i < 2 * m->modes ? 1 : h;
+		double scale = i < m->modes ? m->frequency[z->schedule * m->modes + i] : i < 2 * m->modes ? 1 : h;
 		sum += scale * x[i] * scale * x[i];
 	}
 	return sqrt(sum);
@@ -234,16 +234,16 @@ static double *functions_at(const struct step *step, double span)
 	return f;
 }
 
-static int bank_at(const struct step *step, const double *f)
+static int schedule_at(const struct step *step, const double *f)
 {
 	const struct model *model = step->model;
-	int bank = 0;
+	int schedule = 0;
 	if (model->remainder.split->selector < 0)
 		return 0;
-	while (bank + 1 < model->schedule.operators &&
-	       f[model->remainder.split->selector] > nearest_double(model->schedule.operator[bank].at))
-		bank++;
-	return bank;
+	while (schedule + 1 < model->schedule.operators &&
+	       f[model->remainder.split->selector] > nearest_double(model->schedule.operator[schedule].at))
+		schedule++;
+	return schedule;
 }
 
 /* How large the functions are, each beside its largest value */
@@ -262,15 +262,15 @@ struct chosen {                     /* of an operator */
 
 static struct chosen *choose_times(const struct step *step, const double *f)
 {
-	int functions = step->model->remainder.split->functions, banks = step->normal->banks;
-	double *largest = ARRAY(double, (size_t)functions), *size = ARRAY(double, (size_t)banks);
-	struct chosen *chosen = ARRAY(struct chosen, (size_t)banks);
+	int functions = step->model->remainder.split->functions, operators = step->normal->operators;
+	double *largest = ARRAY(double, (size_t)functions), *size = ARRAY(double, (size_t)operators);
+	struct chosen *chosen = ARRAY(struct chosen, (size_t)operators);
 	for (int i = 0; i < TIMES * functions; i++)
 		if (fabs(f[i]) > largest[i % functions])
 			largest[i % functions] = fabs(f[i]);
 	for (int i = 0; i < TIMES; i++) {
 		const double *now = f + i * functions;
-		struct chosen *own = &chosen[bank_at(step, now)];
+		struct chosen *own = &chosen[schedule_at(step, now)];
 		double size_now = size_at(functions, now, largest), *most = &size[own - chosen];
 		if (own->times++ == 0)
 			own->time[0] = own->time[2] = i;
@@ -284,7 +284,7 @@ static struct chosen *choose_times(const struct step *step, const double *f)
 /* ---- the whole ---- */
 
 /* Of one operator: the largest radius, and what a step lets grow at most, as ln of the factor, in the mean */
-static double growth_of_bank(struct frozen *z, const struct chosen *own, const double *f, bool twice,
+static double growth_of_schedule(struct frozen *z, const struct chosen *own, const double *f, bool twice,
 			     struct stability *found)
 {
 	double growth = 0;
@@ -299,7 +299,7 @@ static double growth_of_bank(struct frozen *z, const struct chosen *own, const d
 		looked++;
 		if (!(radius <= found->radius)) {
 			found->radius = radius;
-			found->bank = z->bank;
+			found->schedule = z->schedule;
 			found->time = found->span * own->time[c] / (TIMES - 1);
 		}
 	}
@@ -317,10 +317,10 @@ struct stability stability_of(const struct step *step, bool twice)
 	const double *f = functions_at(step, found.span);
 	const struct chosen *chosen = choose_times(step, f);
 	double steps = found.span / z.h;
-	for (z.bank = 0; z.bank < m->banks; z.bank++)
-		if (chosen[z.bank].times)
-			found.growth += growth_of_bank(&z, &chosen[z.bank], f, twice, &found) * steps *
-					chosen[z.bank].times / TIMES;
+	for (z.schedule = 0; z.schedule < m->operators; z.schedule++)
+		if (chosen[z.schedule].times)
+			found.growth += growth_of_schedule(&z, &chosen[z.schedule], f, twice, &found) * steps *
+					chosen[z.schedule].times / TIMES;
 	found.growth_factor = exp(found.growth);
 	return found;
 }

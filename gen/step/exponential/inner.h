@@ -25,7 +25,7 @@ void find_within(struct normal_work *w);
 struct stability stability_of(const struct step *step, bool twice);
 
 /* added to that */
-void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c);
+void add_phi_part(struct recipe *r, int table, int phi_weight, long p, unsigned long q, int powers, const long *c);
 int  add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
 		 unsigned long over); /* e^{A h p/q} h weight/over */
 void need_loads_at(struct recipe *r, int node);
@@ -35,7 +35,8 @@ struct action *add_action(struct recipe *r, struct action action);
 int  add_remainder(struct recipe *r, int node, int stage);
 int  add_combination(struct recipe *r, int plus, int minus, bool added);
 struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);
-void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left); /* one term more of the sum */
+/* one term more of the sum */
+void times_left(struct recipe *r, struct action *sum, int table, int phi_weight, int left);
 
 /* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */
 
@@ -49,7 +50,7 @@ void mode_flow_free(struct mode_flow *flow);
 
 void check_turns(const struct step *step);
 void find_waves(struct normal_work *w);
-double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta);     /* of all banks; see struct normal_stage */
+double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta); /* of all operators; see struct normal_stage */
 
 /* ---- settled.c: a step once all functions of time are constant ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Normal modes of the operators of a bank: V^T M V = I, V^T K V = diag lambda, V^T C V = diag 2 delta, so that q =
+ * Normal modes of the operators of a schedule: V^T M V = I, V^T K V = diag lambda, V^T C V = diag 2 delta, so that q =
  * V eta makes of M q'' + C q' + K q = F as many equations eta'' + 2 delta eta' + lambda eta = V^T F.
  */
 #include "inner.h"
@@ -44,8 +44,8 @@ static void check_left(const struct step *step)
 {
 	const struct model *model = step->model;
 	if (model->schedule.operators > 1 && model->remainder.split->selector < 0)
-		error(model->spec->operators.at, "of one operator, or of a bank by time or a let of time",
-		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));
+		error(model->spec->operators.at, "of one operator, or of an operator schedule by time or a let of time",
+		      "scheme %s takes the modes of an operator schedule that is chosen by time alone", name_of(step));
 	const struct node *mixed = model->remainder.split->mixed;
 	if (mixed)
 		error(mixed->start, "etdrk4 and taylor take it",
@@ -73,11 +73,11 @@ static void quadratic(const struct eigenpairs *pairs, const mpq_t *X, int j, mpf
 }
 
 /* Modes of K, or with damping those of K + C h 7/5, which are those of both */
-static void find_modes(struct normal_work *w, int bank)
+static void find_modes(struct normal_work *w, int schedule)
 {
 	int n = w->model->n;
 	size_t cells = (size_t)n * (size_t)n;
-	const struct operator *operator = &w->model->schedule.operator[bank];
+	const struct operator *operator = &w->model->schedule.operator[schedule];
 	mpq_t *K = by_coordinates(w->model, operator->K);
 	mpq_t *C = by_coordinates(w->model, operator->C), *both = rationals(cells);
 	bool damped = !rationals_zero(cells, C);
@@ -86,24 +86,24 @@ static void find_modes(struct normal_work *w, int bank)
 		mpq_mul(both[i], both[i], C[i]);
 		mpq_add(both[i], both[i], K[i]);
 	}
-	if (!symmetric_eigenpairs(n, w->M, both, NORMAL_BITS, &w->pairs[bank]))
+	if (!symmetric_eigenpairs(n, w->M, both, NORMAL_BITS, &w->pairs[schedule]))
 		error(scheme_place(w->step), NULL, "scheme %s needs a mass matrix that is positive definite",
 		      name_of(w->step));
 	for (int j = 0; j < n; j++) {
-		struct normal_mode *mode = &w->mode[bank * n + j];
-		mpfr_inits2(mpfr_get_prec(w->pairs[bank].value[j]), mode->lambda, mode->delta, NULL);
+		struct normal_mode *mode = &w->mode[schedule * n + j];
+		mpfr_inits2(mpfr_get_prec(w->pairs[schedule].value[j]), mode->lambda, mode->delta, NULL);
 		if (!damped) {
-			mpfr_set(mode->lambda, w->pairs[bank].value[j], MPFR_RNDN);
+			mpfr_set(mode->lambda, w->pairs[schedule].value[j], MPFR_RNDN);
 			mpfr_set_zero(mode->delta, 1);
 			continue;
 		}
-		quadratic(&w->pairs[bank], K, j, mode->lambda);
-		quadratic(&w->pairs[bank], C, j, mode->delta);
+		quadratic(&w->pairs[schedule], K, j, mode->lambda);
+		quadratic(&w->pairs[schedule], C, j, mode->delta);
 		mpfr_div_2ui(mode->delta, mode->delta, 1, MPFR_RNDN);
 	}
 }
 
-/* Coordinates that a mode of the block moves, in any bank; else all */
+/* Coordinates that a mode of the block moves, in any schedule; else all */
 static int *coordinates_of(const struct normal_work *w, const struct mode_block *own, int first)
 {
 	int n = w->normal->modes, count = 0, *coord = ARRAY(int, n + 1);
@@ -117,13 +117,13 @@ static int *coordinates_of(const struct normal_work *w, const struct mode_block 
 	return coord;
 }
 
-/* Blocks are those of all banks alike, or there is one. */
+/* Blocks are those of all operators alike, or there is one. */
 static void find_blocks(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	const int n = normal->modes, *block = w->pairs[0].block;
 	bool alike = true;
-	for (int b = 1; b < normal->banks; b++)
+	for (int b = 1; b < normal->operators; b++)
 		for (int j = 0; j < n; j++)
 			alike = alike && w->pairs[b].block[j] == block[j];
 	normal->blocks = alike ? w->pairs[0].blocks : 1;
@@ -147,15 +147,15 @@ static void find_blocks(struct normal_work *w)
 
 /* ---- weights ---- */
 
-/* Of all banks at theta h; correct: NULL, or the weights of the first of the polynomials, which stage is without */
+/* Of all operators at theta h; correct: NULL, or the weights of the first of the polynomials, which stage is without */
 static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr theta, const struct lagrange *l)
 {
 	const struct normal *normal = w->normal;
 	int width = normal->width, n = normal->modes;
 	struct normal_stage stage = { .points = l->nodes, .wave = waves_of_stage(w, theta) };
-	stage.flow = ARRAY(double, (size_t)(normal->banks * 4 * width));
-	stage.weight = ARRAY(double, (size_t)(normal->banks * l->nodes * 2 * width));
-	for (int b = 0; b < normal->banks; b++)
+	stage.flow = ARRAY(double, (size_t)(normal->operators * 4 * width));
+	stage.weight = ARRAY(double, (size_t)(normal->operators * l->nodes * 2 * width));
+	for (int b = 0; b < normal->operators; b++)
 		for (int j = 0; j < n; j++) {
 			struct mode_flow flow = mode_flow_of(&w->mode[b * n + j], w->model->h, theta, l);
 			const mpfr_srcptr own[] = { flow.e, flow.s, flow.de, flow.ds };
@@ -189,8 +189,8 @@ static void find_multistep(struct normal_work *w)
 	mpq_set_ui(node[points], 1, 1);
 	struct lagrange all = lagrange_of(points + 1, node);
 	struct normal_stage corrector = stage_of(w, one, &all);
-	normal->multistep.correct = ARRAY(double, (size_t)(normal->banks * 2 * width));
-	for (int b = 0; b < normal->banks; b++)
+	normal->multistep.correct = ARRAY(double, (size_t)(normal->operators * 2 * width));
+	for (int b = 0; b < normal->operators; b++)
 		for (int i = 0; i < 2 * width; i++)
 			normal->multistep.correct[b * 2 * width + i] =
 				corrector.weight[(b * (points + 1) + points) * 2 * width + i];
@@ -218,14 +218,14 @@ static void find_stages(struct normal_work *w)
 
 /* ---- the end: all functions of time are constant ---- */
 
-static int last_bank(const struct model *model)
+static int last_schedule(const struct model *model)
 {
 	const struct splitting *split = model->remainder.split;
-	int bank = 0;
-	while (split->selector >= 0 && bank + 1 < model->schedule.operators &&
-	       mpq_cmp(split->function[split->selector].last, model->schedule.operator[bank].at) > 0)
-		bank++;
-	return bank;
+	int schedule = 0;
+	while (split->selector >= 0 && schedule + 1 < model->schedule.operators &&
+	       mpq_cmp(split->function[split->selector].last, model->schedule.operator[schedule].at) > 0)
+		schedule++;
+	return schedule;
 }
 
 static void find_settled(struct normal_work *w)
@@ -233,13 +233,13 @@ static void find_settled(struct normal_work *w)
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
 	int n = normal->modes, size = settled_size(model), width = normal->width;
-	int bank = normal->steady.bank = last_bank(model);
+	int schedule = normal->steady.schedule = last_schedule(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
 	normal->steady.omega = ARRAY(double, width);
 	normal->steady.period = ARRAY(double, width);
 	normal->steady.flow = ARRAY(double, (size_t)(size * 2 * width));
 	for (int j = 0; j < n; j++) {
-		mpfr_srcptr lambda = w->mode[bank * n + j].lambda;
+		mpfr_srcptr lambda = w->mode[schedule * n + j].lambda;
 		mpfr_set_ui(omega[j], 1, MPFR_RNDN);
 		if (mpfr_sgn(lambda) > 0)
 			mpfr_sqrt(omega[j], lambda, MPFR_RNDN);
@@ -250,7 +250,7 @@ static void find_settled(struct normal_work *w)
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
 	}
 	Phi = settled_matrix(model, w->M, by_coordinates(model, model->schedule.operator[0].C),
-			     by_coordinates(model, model->schedule.operator[0].K), &w->pairs[bank], omega);
+			     by_coordinates(model, model->schedule.operator[0].K), &w->pairs[schedule], omega);
 	for (int i = 0; i < 2 * n; i++)
 		for (int j = 0; j < size; j++)
 			normal->steady.flow[j * 2 * width + (i < n ? 0 : width) + normal->place[i % n]] =
@@ -337,11 +337,11 @@ struct normal *normal_of(struct step *step)
 	w.M = by_coordinates(model, model->system.M);
 	check_symmetry(&w);
 	normal->modes = model->n;
-	normal->banks = model->schedule.operators;
+	normal->operators = model->schedule.operators;
 	normal->multistep.points = row->points;
-	w.pairs = ARRAY(struct eigenpairs, normal->banks);
-	w.mode = ARRAY(struct normal_mode, (size_t)(normal->banks * model->n));
-	for (int b = 0; b < normal->banks; b++)
+	w.pairs = ARRAY(struct eigenpairs, normal->operators);
+	w.mode = ARRAY(struct normal_mode, (size_t)(normal->operators * model->n));
+	for (int b = 0; b < normal->operators; b++)
 		find_modes(&w, b);
 	find_blocks(&w);
 	find_transforms(&w);

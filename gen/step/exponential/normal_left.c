@@ -27,11 +27,11 @@ mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix)
 /* ---- matrices in modes ---- */
 
 /* value <- V^T X V */
-static void project(const struct normal_work *w, int bank, const mpq_t *X, double *value)
+static void project(const struct normal_work *w, int schedule, const mpq_t *X, double *value)
 {
 	int n = w->model->n;
 	size_t cells = (size_t)n * (size_t)n;
-	const struct eigenpairs *pairs = &w->pairs[bank];
+	const struct eigenpairs *pairs = &w->pairs[schedule];
 	int precision = (int)mpfr_get_prec(pairs->value[0]);
 	REALS *XV = reals(cells, precision), *made = reals(cells, precision);
 	REAL part = WITH_BITS(precision), largest = WITH_BITS(precision);
@@ -61,11 +61,11 @@ void find_transforms(struct normal_work *w)
 	struct normal *normal = w->normal;
 	int n = normal->modes;
 	size_t cells = (size_t)n * (size_t)n;
-	normal->to = ARRAY(double, (size_t)normal->banks * cells);
-	normal->from = ARRAY(double, (size_t)normal->banks * cells);
-	normal->frequency = ARRAY(double, (size_t)(normal->banks * n));
-	normal->ratio = ARRAY(double, (size_t)(normal->banks * n));
-	for (int b = 0; b < normal->banks; b++) {
+	normal->to = ARRAY(double, (size_t)normal->operators * cells);
+	normal->from = ARRAY(double, (size_t)normal->operators * cells);
+	normal->frequency = ARRAY(double, (size_t)(normal->operators * n));
+	normal->ratio = ARRAY(double, (size_t)(normal->operators * n));
+	for (int b = 0; b < normal->operators; b++) {
 		const struct eigenpairs *pairs = &w->pairs[b];
 		REAL sum = WITH_BITS(mpfr_get_prec(pairs->value[0])), part = WITH_BITS(mpfr_get_prec(pairs->value[0]));
 		for (int i = 0; i < n; i++)
@@ -96,8 +96,8 @@ void find_turns(struct normal_work *w)
 	int n = normal->modes, width = normal->width;
 	REALS *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
 	REAL sum = WITH_BITS(NORMAL_BITS), part = WITH_BITS(NORMAL_BITS);
-	normal->turn = ARRAY(double, (size_t)(normal->banks * width * width));
-	for (int b = 0; b + 1 < normal->banks; b++) {
+	normal->turn = ARRAY(double, (size_t)(normal->operators * width * width));
+	for (int b = 0; b + 1 < normal->operators; b++) {
 		for (int i = 0; i < n * n; i++) {
 			mpfr_set_zero(MV[i], 1);
 			for (int k = 0; k < n; k++) {
@@ -121,8 +121,8 @@ void find_turns(struct normal_work *w)
 /* ---- what is left over ---- */
 
 struct pattern {                    /* of a matrix, as rationals */
-	const mpq_t **exact;        /* per bank */
-	bool own;                   /* it differs from bank to bank */
+	const mpq_t **exact;        /* per schedule */
+	bool own;                   /* it differs from schedule to schedule */
 };
 struct pattern_list {
 	int count;
@@ -145,27 +145,27 @@ static int new_pattern(struct normal *normal, struct pattern_list *list, struct 
 	return list->count++;
 }
 
-/* Per bank the factor by which X[bank] is a multiple of this; NULL: of some it is none */
+/* Per schedule the factor by which X[schedule] is a multiple of this; NULL: of some it is none */
 static double *multiples_of(const struct normal_work *w, const struct pattern *pattern, const mpq_t **X)
 {
 	size_t cells = (size_t)w->model->n * (size_t)w->model->n;
-	double *factor = ARRAY(double, w->normal->banks);
+	double *factor = ARRAY(double, w->normal->operators);
 	RATIONAL ratio = ZERO;
 	bool all = !pattern->own;
-	for (int b = 0; b < w->normal->banks && all; b++) {
+	for (int b = 0; b < w->normal->operators && all; b++) {
 		all = rationals_multiple(cells, X[b], pattern->exact[b], ratio);
 		factor[b] = all ? round_rational(ratio) : 0;
 	}
 	return all ? factor : NULL;
 }
 
-/* The matrix of one function, on coordinates or velocities, in each bank */
+/* The matrix of one function, on coordinates or velocities, in each schedule */
 static void add_matrix(struct normal_work *w, struct pattern_list *list, int function, bool velocity, const mpq_t **X)
 {
 	size_t cells = (size_t)w->model->n * (size_t)w->model->n;
 	struct pattern made = { .exact = X };
 	bool any = false;
-	for (int b = 0; b < w->normal->banks; b++) {
+	for (int b = 0; b < w->normal->operators; b++) {
 		any = any || !rationals_zero(cells, X[b]);
 		for (size_t i = 0; i < cells && !made.own; i++)
 			made.own = !mpq_equal(X[b][i], X[0][i]);
@@ -179,27 +179,27 @@ static void add_matrix(struct normal_work *w, struct pattern_list *list, int fun
 	}
 	if (!any)
 		return;
-	double *factor = ARRAY(double, w->normal->banks);
-	for (int b = 0; b < w->normal->banks; b++)
+	double *factor = ARRAY(double, w->normal->operators);
+	for (int b = 0; b < w->normal->operators; b++)
 		factor[b] = 1;
 	add_matrix_term(w->normal, new_pattern(w->normal, list, made), function, velocity, factor);
 }
 
 static const mpq_t **same_in_all(const struct normal_work *w, const mpq_t *X)
 {
-	const mpq_t **all = ARRAY(const mpq_t *, w->normal->banks);
-	for (int b = 0; b < w->normal->banks; b++)
+	const mpq_t **all = ARRAY(const mpq_t *, w->normal->operators);
+	for (int b = 0; b < w->normal->operators; b++)
 		all[b] = X;
 	return all;
 }
 
-/* Of the constant function: what the operator of each bank has beyond that of the first is added */
+/* Of the constant function: what the operator of each schedule has beyond that of the first is added */
 static const mpq_t **constant_matrices(const struct normal_work *w, const mpq_t *first, bool velocity)
 {
-	const mpq_t **all = ARRAY(const mpq_t *, w->normal->banks);
+	const mpq_t **all = ARRAY(const mpq_t *, w->normal->operators);
 	const struct operator *operator = w->model->schedule.operator;
 	int n = w->model->n;
-	for (int b = 0; b < w->normal->banks; b++) {
+	for (int b = 0; b < w->normal->operators; b++) {
 		mpq_t *X = by_coordinates(w->model, (velocity ? operator[b].C : operator[b].K));
 		mpq_t *base = by_coordinates(w->model, (velocity ? operator[0].C : operator[0].K));
 		for (int i = 0; i < n * n; i++) {
@@ -229,8 +229,8 @@ void find_matrices(struct normal_work *w)
 	add_matrix(w, &list, 0, false, constant_matrices(w, one->position, false));
 	add_matrix(w, &list, 0, true, constant_matrices(w, one->velocity, true));
 	for (int k = 0; k < list.count; k++) {
-		normal->matrix[k].value = ARRAY(double, (size_t)normal->banks * cells);
-		for (int b = 0; b < normal->banks; b++)
+		normal->matrix[k].value = ARRAY(double, (size_t)normal->operators * cells);
+		for (int b = 0; b < normal->operators; b++)
 			project(w, b, list.pattern[k].exact[b], normal->matrix[k].value + (size_t)b * cells);
 	}
 }
@@ -244,8 +244,8 @@ void find_forces(struct normal_work *w)
 	for (int f = 0; f < split->functions; f++) {
 		if (!split->function[f].force)
 			continue;
-		normal->force[f] = ARRAY(double, (size_t)(normal->banks * normal->width));
-		for (int b = 0; b < normal->banks; b++)
+		normal->force[f] = ARRAY(double, (size_t)(normal->operators * normal->width));
+		for (int b = 0; b < normal->operators; b++)
 			for (int j = 0; j < n; j++) {
 				REAL sum = WITH_BITS(mpfr_get_prec(w->pairs[b].value[0])),
 				     part = WITH_BITS(mpfr_get_prec(w->pairs[b].value[0]));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, remainders. A recipe
- * that asks for more than there is room for is told so. */
+/* The words that recipes are written in: tables of the exact part, phi-function weights in them, nodes, stages,
+ * remainders. A recipe that asks for more than there is room for is told so. */
 #include "inner.h"
 
 _Noreturn void internal_error(const struct step *step, const char *what)
@@ -35,43 +35,45 @@ int add_table(struct recipe *r, const char *name, long p, unsigned long q, bool 
 	return table;
 }
 
-static struct kernel_part *add_part(const struct recipe *r, struct kernel *kernel, long p, unsigned long q)
+static struct phi_weight_part *add_part(const struct recipe *r, struct phi_weight *phi_weight, long p, unsigned long q)
 {
-	struct kernel_part *part = &kernel->part[next(r, &kernel->parts, KERNEL_PARTS, "parts of a kernel")];
+	struct phi_weight_part *part =
+		&phi_weight->part[next(r, &phi_weight->parts, PHI_WEIGHT_PARTS, "parts of a phi-function weight")];
 	mpq_inits(part->fraction, part->impulse, part->power[0], part->power[1], part->power[2], NULL);
 	set(part->fraction, p, q);
 	return part;
 }
 
-static int add_kernel(const struct recipe *r, struct wanted *table, const char *name)
+static int add_phi_weight(const struct recipe *r, struct wanted *table, const char *name)
 {
-	int kernel = next(r, &table->kernels, TABLE_KERNELS, "kernels of a table");
-	table->kernel[kernel] = (struct kernel){ .name = name };
-	return kernel;
+	int phi_weight = next(r, &table->phi_weights, TABLE_PHI_WEIGHTS, "phi-function weights of a table");
+	table->phi_weight[phi_weight] = (struct phi_weight){ .name = name };
+	return phi_weight;
 }
 
-void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c)
+void add_phi_part(struct recipe *r, int table, int phi_weight, long p, unsigned long q, int powers, const long *c)
 {
-	struct kernel_part *part = add_part(r, &r->table[table].kernel[kernel], p, q);
+	struct phi_weight_part *part = add_part(r, &r->table[table].phi_weight[phi_weight], p, q);
 	for (int m = 0; m < powers; m++)
-		set(part->power[next(r, &part->powers, PART_POWERS, "powers in a part of a kernel")], c[m], 1);
+		set(part->power[next(r, &part->powers, PART_POWERS, "powers in a part of a phi-function weight")], c[m],
+		    1);
 }
 
 int add_phi(struct recipe *r, int table, const char *name, long p, unsigned long q, int powers, const long *c)
 {
-	int kernel = add_kernel(r, &r->table[table], name);
-	add_phi_part(r, table, kernel, p, q, powers, c);
-	return kernel;
+	int phi_weight = add_phi_weight(r, &r->table[table], name);
+	add_phi_part(r, table, phi_weight, p, q, powers, c);
+	return phi_weight;
 }
 
 int add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
 		 unsigned long over)
 {
-	int kernel = add_kernel(r, &r->table[table], name);
-	struct kernel_part *part = add_part(r, &r->table[table].kernel[kernel], p, q);
+	int phi_weight = add_phi_weight(r, &r->table[table], name);
+	struct phi_weight_part *part = add_part(r, &r->table[table].phi_weight[phi_weight], p, q);
 	set(part->impulse, weight, over);
 	mpq_mul(part->impulse, part->impulse, r->step->model->h);
-	return kernel;
+	return phi_weight;
 }
 
 /* ---- times, stages, what is left over ---- */
@@ -138,10 +140,10 @@ struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const c
 	return add_action(r, action);
 }
 
-void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left)
+void times_left(struct recipe *r, struct action *sum, int table, int phi_weight, int left)
 {
-	int k = next(r, &sum->kernels, SUM_KERNELS, "kernels in a sum");
-	sum->kernel[k].table = table;
-	sum->kernel[k].kernel = kernel;
-	sum->kernel[k].left = left;
+	int k = next(r, &sum->phi_weights, SUM_PHI_WEIGHTS, "phi-function weights in a sum");
+	sum->phi_weight[k].table = table;
+	sum->phi_weight[k].phi_weight = phi_weight;
+	sum->phi_weight[k].left = left;
 }

@@ -78,18 +78,19 @@ static int add_predicted(struct recipe *r, long p, unsigned long q)
 static void add_quadrature(struct recipe *r, const struct quadrature *q)
 {
 	static const char *const names[] = { "w1", "w2", "w3", "w4" };
-	int full = add_table(r, "full", 1, 1, true), kernel[4], left[4];
+	int full = add_table(r, "full", 1, 1, true), phi_weight[4], left[4];
 	int r0 = add_remainder(r, add_node(r, 0, 1), STAGE_STATE);
 	r->program->predicts = true;
 	for (int i = 0; i < q->count; i++) {
 		long p = q->node[i].p;
 		unsigned long over = q->node[i].q;
-		kernel[i] = add_weighted(r, full, names[i], (long)over - p, over, q->node[i].weight, q->node[i].over);
+		phi_weight[i] =
+			add_weighted(r, full, names[i], (long)over - p, over, q->node[i].weight, q->node[i].over);
 		left[i] = p == 0 ? r0 : add_predicted(r, p, over);
 	}
 	struct action *sum = add_sum(r, STAGE_STATE, full, NONE, "y = E y + h sum of w_i e^{A (1 - c_i) h} r_i");
 	for (int i = 0; i < q->count; i++)
-		times_left(r, sum, full, kernel[i], left[i]);
+		times_left(r, sum, full, phi_weight[i], left[i]);
 }
 
 static void recipe_nc2(struct recipe *r)

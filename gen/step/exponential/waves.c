@@ -82,13 +82,13 @@ static void swing_of(const struct normal_mode *mode, const struct wave *wave, mp
 /* ---- all of a stage ---- */
 
 /* sum <- V^T F of mode j */
-static void project(const struct normal_work *w, int bank, const mpq_t *force, int j, mpfr_ptr sum)
+static void project(const struct normal_work *w, int schedule, const mpq_t *force, int j, mpfr_ptr sum)
 {
 	int n = w->normal->modes;
 	REAL part = WITH_BITS(mpfr_get_prec(sum));
 	mpfr_set_zero(sum, 1);
 	for (int i = 0; i < n; i++) {
-		mpfr_mul_q(part, w->pairs[bank].vector[i * n + j], force[i], MPFR_RNDN);
+		mpfr_mul_q(part, w->pairs[schedule].vector[i * n + j], force[i], MPFR_RNDN);
 		mpfr_add(sum, sum, part, MPFR_RNDN);
 	}
 }
@@ -115,8 +115,8 @@ void find_waves(struct normal_work *w)
 	const struct splitting *split = w->model->remainder.split;
 	int waves = split->waves, width = normal->width;
 	REAL force = WITH_BITS(WAVE_BITS);
-	normal->wave = ARRAY(double, (size_t)(normal->banks * waves * 2 * width));
-	for (int i = 0; i < normal->banks * waves * 2; i++)
+	normal->wave = ARRAY(double, (size_t)(normal->operators * waves * 2 * width));
+	for (int i = 0; i < normal->operators * waves * 2; i++)
 		for (int j = 0; j < normal->modes; j++) {
 			const mpq_t *own = split->wave[i / 2 % waves].force[i % 2];
 			project(w, i / 2 / waves, own, j, force);
@@ -125,15 +125,15 @@ void find_waves(struct normal_work *w)
 }
 
 /* Of mode j, to theta h: of cos at the start gc Rc + gs Rs, of sin gs Rc - gc Rs; eta and eta' of each */
-static void weigh_wave(const struct normal_work *w, int bank, int k, int j, mpq_srcptr theta, double *weight)
+static void weigh_wave(const struct normal_work *w, int schedule, int k, int j, mpq_srcptr theta, double *weight)
 {
 	const struct wave_force *own = &w->model->remainder.split->wave[k];
 	REALS *R = reals(4, WAVE_BITS);
 	REAL of_cos = WITH_BITS(WAVE_BITS), of_sin = WITH_BITS(WAVE_BITS), sum = WITH_BITS(WAVE_BITS),
 	     part = WITH_BITS(WAVE_BITS);
-	swing_of(&w->mode[bank * w->normal->modes + j], own->wave, w->model->h, theta, R);
-	project(w, bank, own->force[0], j, of_cos);
-	project(w, bank, own->force[1], j, of_sin);
+	swing_of(&w->mode[schedule * w->normal->modes + j], own->wave, w->model->h, theta, R);
+	project(w, schedule, own->force[0], j, of_cos);
+	project(w, schedule, own->force[1], j, of_sin);
 	for (int d = 0; d < 2; d++) {
 		mpfr_mul(sum, of_cos, R[d], MPFR_RNDN);
 		mpfr_mul(part, of_sin, R[2 + d], MPFR_RNDN);
@@ -150,8 +150,8 @@ double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta)
 {
 	const struct normal *normal = w->normal;
 	int waves = w->model->remainder.split->waves;
-	double *weight = ARRAY(double, (size_t)(normal->banks * waves * 4 * normal->width));
-	for (int i = 0; i < normal->banks * waves; i++)
+	double *weight = ARRAY(double, (size_t)(normal->operators * waves * 4 * normal->width));
+	for (int i = 0; i < normal->operators * waves; i++)
 		for (int j = 0; j < normal->modes; j++)
 			weigh_wave(w, i / waves, i % waves, j, theta,
 				   weight + i * 4 * normal->width + normal->place[j]);

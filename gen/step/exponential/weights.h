@@ -23,17 +23,17 @@ struct mode_flow {                  /* of one mode over theta h */
 
 int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
 
-/* ---- bank.c: what the remainders of a bank's operators have in common ---- */
+/* ---- bank.c: what the remainders of a schedule's operators have in common ---- */
 
-struct excess {                     /* a linear term in which they differ: a coordinate or its velocity, on a channel */
-	int channel, coord, order;
+struct excess { /* a linear term in which they differ: a coordinate or its velocity, on a force column */
+	int force_column, coord, order;
 };
-struct bank {                       /* the remainder of an operator = common + sum of factor times term */
+struct schedule {                   /* the remainder of an operator = common + sum of factor times term */
 	int count;                  /* 0: of one operator */
 	struct excess *excess;
 	double *factor;             /* [operator][excess] */
-	const struct form **common; /* per channel */
+	const struct form **common; /* per force column */
 };
-struct bank bank_of(const struct step *step);
+struct schedule schedule_of(const struct step *step);
 
 #endif

@@ -33,10 +33,10 @@ static void last_norms(const struct normal *m, const struct splitting *split, do
 	size_t cells = (size_t)m->modes * (size_t)m->modes;
 	norm[0] = norm[1] = 0;
 	for (int k = 0; k < m->matrices; k++) {
-		double size = norm_of_rows(m->modes, m->matrix[k].value + (size_t)m->steady.bank * cells);
+		double size = norm_of_rows(m->modes, m->matrix[k].value + (size_t)m->steady.schedule * cells);
 		for (int t = 0; t < m->matrix[k].terms; t++)
 			norm[m->matrix[k].term[t].velocity] +=
-				fabs(m->matrix[k].term[t].factor[m->steady.bank] *
+				fabs(m->matrix[k].term[t].factor[m->steady.schedule] *
 				     nearest_double(split->function[m->matrix[k].term[t].function].last)) * size;
 	}
 }
@@ -47,7 +47,7 @@ static double angle_of_step(const struct normal_work *w)
 {
 	const struct normal *m = w->normal;
 	double angle = 0, fastest = 0, norm[2], h = nearest_double(w->model->h);
-	for (int i = 0; i < m->banks * m->modes; i++) {
+	for (int i = 0; i < m->operators * m->modes; i++) {
 		double lambda = mpfr_get_d(w->mode[i].lambda, MPFR_RNDN);
 		double turn = sqrt(fabs(lambda)) + 2 * fabs(mpfr_get_d(w->mode[i].delta, MPFR_RNDN));
 		angle = turn > angle ? turn : angle;
@@ -76,9 +76,9 @@ void find_within(struct normal_work *w)
 	bool damped = false;
 	within->angle = angle_of_step(w);
 	within->terms = terms > most + FURTHER_TERMS ? terms : most + FURTHER_TERMS;
-	within->stiffness = ARRAY(double, (size_t)(m->banks * m->width));
-	within->damping = ARRAY(double, (size_t)(m->banks * m->width));
-	for (int i = 0; i < m->banks * m->modes; i++) {
+	within->stiffness = ARRAY(double, (size_t)(m->operators * m->width));
+	within->damping = ARRAY(double, (size_t)(m->operators * m->width));
+	for (int i = 0; i < m->operators * m->modes; i++) {
 		int at = i / m->modes * m->width + m->place[i % m->modes];
 		within->stiffness[at] = round_real(w->mode[i].lambda);
 		within->damping[at] = 2 * round_real(w->mode[i].delta);

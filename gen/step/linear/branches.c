@@ -51,14 +51,14 @@ struct linear modified_equation(const struct linear *written, const struct linea
 	return first_order_system(states, L);
 }
 
-/* The ramps of inputs as channels: u', held and as the slope of u */
+/* The ramps of inputs as force columns: u', held and as the slope of u */
 static struct linear driven_system(const struct linear *region)
 {
 	struct linear system = *region;
-	system.channels = 2 * region->inputs;
-	system.channel = ARRAY(mpq_t *, system.channels);
-	for (int i = 0; i < system.channels; i++)
-		system.channel[i] = region->input[i / 2].force[i % 2];
+	system.force_columns = 2 * region->inputs;
+	system.force_column = ARRAY(mpq_t *, system.force_columns);
+	for (int i = 0; i < system.force_columns; i++)
+		system.force_column[i] = region->input[i / 2].force[i % 2];
 	return system;
 }
 

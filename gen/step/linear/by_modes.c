@@ -85,8 +85,8 @@ static bool is_cheaper(const struct step *step)
 
 static void take_modal(struct step *step, struct modal *modal)
 {
-	if (step->anchors) {
-		drop_anchors(step, "modes take their loads as they are");
+	if (step->refresh) {
+		drop_refresh(step, "modes take their loads as they are");
 		step->program = linear_program(step);
 	}
 	step->modal = modal;

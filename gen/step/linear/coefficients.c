@@ -24,18 +24,18 @@ struct filling {
 	struct entry *entry;
 	int responses;
 	struct started *response;
-	mpq_t **impulse;            /* per channel, once asked for */
+	mpq_t **impulse;            /* per force column, once asked for */
 	mpq_srcptr scale, less;     /* of the number being rounded; NULL: 1 and 0 */
 	const int *coord;           /* of a block, per coordinate: of the whole; NULL: it is the whole */
 };
 
-static const mpq_t *impulse_of(struct filling *f, int channel)
+static const mpq_t *impulse_of(struct filling *f, int force_column)
 {
 	if (!f->impulse)
-		f->impulse = ARRAY(mpq_t *, f->system->channels);
-	if (!f->impulse[channel])
-		f->impulse[channel] = impulse_of_channel(f->system, channel);
-	return f->impulse[channel];
+		f->impulse = ARRAY(mpq_t *, f->system->force_columns);
+	if (!f->impulse[force_column])
+		f->impulse[force_column] = impulse_of_force_column(f->system, force_column);
+	return f->impulse[force_column];
 }
 
 static struct exponential *exponential_at(const struct filling *f, mpq_srcptr tau)
@@ -79,14 +79,14 @@ static void add_response(struct filling *f, struct response *response, mpq_srcpt
 }
 
 /* Two who answer what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
-enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_KERNEL, SOUGHT };
+enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_PHI_WEIGHT, SOUGHT };
 typedef void answer(struct filling *f, int a, int b);
 
-static answer state_by_taylor, input_by_taylor, load_by_taylor, kernel_by_taylor;
-static answer state_by_residues, input_by_residues, load_by_residues, kernel_by_residues;
-static answer *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, kernel_by_taylor };
+static answer state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor;
+static answer state_by_residues, input_by_residues, load_by_residues, phi_weight_by_residues;
+static answer *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor };
 static answer *const by_residues[SOUGHT] = { state_by_residues, input_by_residues, load_by_residues,
-					     kernel_by_residues };
+					     phi_weight_by_residues };
 
 static struct number ask(struct filling *f, answer *const *answerer, enum sought what, int a, int b)
 {
@@ -294,7 +294,7 @@ static void load_by_taylor(struct filling *f, int load, int column)
 }
 
 /* (s/h)^m from u_m of a chain u_0' = u_1, u_1' = u_2 ..., u_0 the force: s^m/m! */
-static void add_powers(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
+static void add_powers(struct filling *f, const struct phi_weight_part *part, mpq_srcptr tau, int force_column)
 {
 	RATIONAL weight = ZERO, scale = RATIO(1, 1);
 	for (int m = 0; m < part->powers; m++) {
@@ -305,15 +305,15 @@ static void add_powers(struct filling *f, const struct kernel_part *part, mpq_sr
 		}
 		mpq_mul(weight, part->power[m], scale);
 		if (mpq_sgn(weight) != 0)
-			add_entry(f, tau, f->layout.channel + channel * f->layout.powers + m, weight);
+			add_entry(f, tau, f->layout.force_column + force_column * f->layout.powers + m, weight);
 	}
 }
 
 /* impulse e^{A tau} B: B are the highest derivatives that the force gives */
-static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
+static void add_impulse(struct filling *f, const struct phi_weight_part *part, mpq_srcptr tau, int force_column)
 {
 	const struct linear *system = f->system;
-	const mpq_t *B = impulse_of(f, channel);
+	const mpq_t *B = impulse_of(f, force_column);
 	RATIONAL weight = ZERO;
 	for (int i = 0; i < system->states; i++) {
 		mpq_mul(weight, B[i], part->impulse);
@@ -322,41 +322,42 @@ static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_s
 	}
 }
 
-static void kernel_by_residues(struct filling *f, int index, int channel)
+static void phi_weight_by_residues(struct filling *f, int index, int force_column)
 {
-	const struct kernel *kernel = &f->wanted->kernel[index];
+	const struct phi_weight *phi_weight = &f->wanted->phi_weight[index];
 	RATIONAL start = ZERO;
-	for (int k = 0; k < kernel->parts; k++) {
-		const struct kernel_part *part = &kernel->part[k];
+	for (int k = 0; k < phi_weight->parts; k++) {
+		const struct phi_weight_part *part = &phi_weight->part[k];
 		mpq_mul(start, part->fraction, f->model->h);
 		mpq_sub(start, f->tau, start);
-		add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
+		add_response(f, response_of_phi_weight(f->resolvent, f->system, f->row, force_column, part,
+						       f->model->h), start);
 	}
 }
 
-static void kernel_by_taylor(struct filling *f, int index, int channel)
+static void phi_weight_by_taylor(struct filling *f, int index, int force_column)
 {
-	const struct kernel *kernel = &f->wanted->kernel[index];
+	const struct phi_weight *phi_weight = &f->wanted->phi_weight[index];
 	RATIONAL tau = ZERO;
-	for (int k = 0; k < kernel->parts; k++) {
-		const struct kernel_part *part = &kernel->part[k];
+	for (int k = 0; k < phi_weight->parts; k++) {
+		const struct phi_weight_part *part = &phi_weight->part[k];
 		mpq_mul(tau, part->fraction, f->model->h);
-		add_powers(f, part, tau, channel);
+		add_powers(f, part, tau, force_column);
 		if (mpq_sgn(part->impulse) != 0)
-			add_impulse(f, part, tau, channel);
+			add_impulse(f, part, tau, force_column);
 	}
 }
 
 /* At tau = 0 an impulse is what it is. */
-static bool is_immediate(const struct kernel *kernel)
+static bool is_immediate(const struct phi_weight *phi_weight)
 {
-	return kernel->parts == 1 && mpq_sgn(kernel->part[0].fraction) == 0;
+	return phi_weight->parts == 1 && mpq_sgn(phi_weight->part[0].fraction) == 0;
 }
 
-static struct coefficient immediate(struct filling *f, const struct kernel *kernel, int channel)
+static struct coefficient immediate(struct filling *f, const struct phi_weight *phi_weight, int force_column)
 {
 	RATIONAL value = ZERO;
-	mpq_mul(value, impulse_of(f, channel)[f->row], kernel->part[0].impulse);
+	mpq_mul(value, impulse_of(f, force_column)[f->row], phi_weight->part[0].impulse);
 	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
 	check_range(f->model, &c, 0, NULL, "a factor of the remainder");
 	return c;
@@ -389,12 +390,12 @@ static void fill_row(struct filling *f, struct table *table)
 		for (int k = 0; k <= system->input[j].hold; k++, column++)
 			table->input[i * table->inputs + column] =
 				number_of(f, wanted->two_words, SOUGHT_INPUT, j, k, system->input[j].name);
-	for (int j = 0; j < wanted->kernels; j++)
-		for (int e = 0; e < system->channels; e++)
-			table->kernel[j][i * system->channels + e] =
-				is_immediate(&wanted->kernel[j])
-					? immediate(f, &wanted->kernel[j], e)
-					: number_of(f, wanted->two_words, SOUGHT_KERNEL, j, e,
+	for (int j = 0; j < wanted->phi_weights; j++)
+		for (int e = 0; e < system->force_columns; e++)
+			table->phi_weight[j][i * system->force_columns + e] =
+				is_immediate(&wanted->phi_weight[j])
+					? immediate(f, &wanted->phi_weight[j], e)
+					: number_of(f, wanted->two_words, SOUGHT_PHI_WEIGHT, j, e,
 						    format("remainder %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
@@ -415,7 +416,7 @@ static struct table *table_new(const struct linear *system, const struct wanted 
 	table->states = system->states;
 	table->columns = load_columns(system);
 	table->inputs = input_columns(system);
-	table->channels = system->channels;
+	table->force_columns = system->force_columns;
 	table->wanted = wanted;
 	size_t coordinates = (size_t)system->n;
 	table->Phi = wanted->Phi ? ARRAY(struct coefficient, n * n) : NULL;
@@ -424,9 +425,9 @@ static struct table *table_new(const struct linear *system, const struct wanted 
 	table->kick = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
-	table->kernel = ARRAY(struct coefficient *, wanted->kernels);
-	for (int k = 0; k < wanted->kernels; k++)
-		table->kernel[k] = ARRAY(struct coefficient, n * (size_t)system->channels);
+	table->phi_weight = ARRAY(struct coefficient *, wanted->phi_weights);
+	for (int k = 0; k < wanted->phi_weights; k++)
+		table->phi_weight[k] = ARRAY(struct coefficient, n * (size_t)system->force_columns);
 	return table;
 }
 
@@ -445,9 +446,9 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 {
 	for (int t = 0; t < count; t++) {
 		add_exponential(f, wanted[t].fraction);
-		for (int k = 0; k < wanted[t].kernels; k++)
-			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
-				add_exponential(f, wanted[t].kernel[k].part[j].fraction);
+		for (int k = 0; k < wanted[t].phi_weights; k++)
+			for (int j = 0; j < wanted[t].phi_weight[k].parts; j++)
+				add_exponential(f, wanted[t].phi_weight[k].part[j].fraction);
 	}
 }
 
@@ -468,10 +469,10 @@ static int longest_chain(int count, const struct wanted *wanted)
 {
 	int powers = 0;
 	for (int t = 0; t < count; t++)
-		for (int k = 0; k < wanted[t].kernels; k++)
-			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
-				powers = wanted[t].kernel[k].part[j].powers > powers
-						 ? wanted[t].kernel[k].part[j].powers
+		for (int k = 0; k < wanted[t].phi_weights; k++)
+			for (int j = 0; j < wanted[t].phi_weight[k].parts; j++)
+				powers = wanted[t].phi_weight[k].part[j].powers > powers
+						 ? wanted[t].phi_weight[k].part[j].powers
 						 : powers;
 	return powers;
 }
@@ -537,9 +538,10 @@ static void scatter(const struct block *block, const struct table *part, int seg
 					part->load[(s * part->states + i) * part->columns + k];
 		for (int k = 0; k < table->inputs; k++)
 			table->input[row * table->inputs + k] = part->input[i * part->inputs + k];
-		for (int k = 0; k < table->wanted->kernels; k++)
-			for (int e = 0; e < table->channels; e++)
-				table->kernel[k][row * table->channels + e] = part->kernel[k][i * part->channels + e];
+		for (int k = 0; k < table->wanted->phi_weights; k++)
+			for (int e = 0; e < table->force_columns; e++)
+				table->phi_weight[k][row * table->force_columns + e] =
+					part->phi_weight[k][i * part->force_columns + e];
 	}
 }
 

@@ -21,7 +21,7 @@
 
 enum {
 	LIMIT_SOLVED = 48,
-	TURNING = 3,                /* roundings where a load state is turned from its anchor */
+	TURNING = 3,                /* roundings where a load state is turned from its refresh */
 	FEW_LOADS = 8
 };
 
@@ -145,12 +145,12 @@ static double load_roundings(const struct reckoning *r, int column)
 	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
 }
 
-/* A load with an anchor comes from cos and sin there together: what counts is how large they are together, in `value`,
+/* A load with a refresh comes from cos and sin there together: what counts is how large they are together, in `value`,
  * a vector over the columns */
 static double size_of(const struct reckoning *r, int column, double value, double partner)
 {
 	const struct load *load = &r->step->branch->system.load[r->load_of[column]];
-	bool pair = is_anchored(r->step, r->load_of[column]) && oscillates(load->wave);
+	bool pair = is_refreshed(r->step, r->load_of[column]) && oscillates(load->wave);
 	return pair ? hypot(value, partner) : fabs(value);
 }
 
@@ -229,7 +229,7 @@ static double part_of(const struct reckoning *r, int row, bool sizes)
 		/* of a factor, perhaps to 0 */
 		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step);
 		int roundings = 2 + (r->forced->written ? table->columns : levels(table->columns)) +
-				(is_anchored(r->step, r->load_of[column]) ? TURNING : 0);
+				(is_refreshed(r->step, r->load_of[column]) ? TURNING : 0);
 		double most = fabs(c->value) * load_size(r, column);
 		sum += sizes ? most * (roundings + load_roundings(r, column)) + lost : term;
 	}
@@ -349,7 +349,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 		program.additions += tape_out(t, i)->ref != tape_number(t, 0);
 	if (forced->written)                            /* by a table */
 		program.multiplications = program.additions = system->states * columns;
-	(step->anchors ? count_turned_loads : count_loads)(&program, step);
+	(step->refresh ? count_rotated_loads : count_loads)(&program, step);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;
 	for (int i = 0; i < (system->segments - 1) * system->states * columns; i++)

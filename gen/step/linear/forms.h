@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A linear step in its forms: direct, delta, kick-drift-kick, modal, by blocks, with anchors. */
+/* A linear step in its forms: direct, delta, kick-drift-kick, modal, by blocks, with refreshes. */
 #ifndef PLGEN_STEP_FORMS_H
 #define PLGEN_STEP_FORMS_H
 
@@ -23,24 +23,24 @@ struct forced {
 void plan_forced(struct step *step);
 const char *rounding_text(const struct step *step);
 
-enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
-struct anchored_term { int state, column; };
-struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
+enum { MOST_REFRESHED = 256 };      /* steps from one refresh to the next */
+struct refreshed_term { int state, column; };
+struct refresh {                    /* load states at a refresh, and tables for the steps to the next */
 	int steps;                  /* from one to the next */
-	bool *load;                 /* per load: an anchor keeps its states */
-	bool turned;                /* the step turns them into those of now, and has no terms */
+	bool *load;                 /* per load: a refresh keeps its states */
+	bool rotated;               /* the step turns them into those of now, and has no terms */
 	int terms;                  /* of a step: by state, then by column of a load */
-	struct anchored_term *term;
-	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
+	struct refreshed_term *term;
+	struct coefficient *factor; /* [steps since the refresh][term]: of the load state there */
 	double *turn;               /* [load][steps since][2]: e^{a l h} cos(w l h) and sin */
 };
 
-/* ---- anchors.c: functions of loads every so many steps, tables between ---- */
+/* ---- refresh.c: functions of loads every so many steps, tables between ---- */
 
-void check_anchors(struct step *step);                      /* says where they are asked for in vain */
-void plan_anchors(struct step *step);                       /* after its table */
-void fill_anchors(struct step *step);                       /* after its forced part is chosen */
-int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
+void check_refresh(struct step *step);                      /* says where they are asked for in vain */
+void plan_refresh(struct step *step);                       /* after its table */
+void fill_refresh(struct step *step);                       /* after its forced part is chosen */
+int refreshed_term(const struct step *step, int state, int column);  /* its index; -1: it is none */
 
 /* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
 

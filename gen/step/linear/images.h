@@ -35,7 +35,7 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 /* of one load: z_to(t+tau) from z_from(t) */
 struct response *response_of_load_state(const struct load *load, int to, int from);
 /* what its unit force gives the states' derivatives */
-mpq_t *impulse_of_channel(const struct linear *system, int channel);
+mpq_t *impulse_of_force_column(const struct linear *system, int force_column);
 struct started {                    /* a response that starts at a time of its own */
 	struct response *response;
 	mpq_t start;

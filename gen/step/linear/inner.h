@@ -6,9 +6,9 @@
 #include "forms.h"
 #include "images.h"
 
-/* ---- anchors.c: functions of loads every so many steps, tables between ---- */
+/* ---- refresh.c: functions of loads every so many steps, tables between ---- */
 
-void drop_anchors(struct step *step, const char *why);
+void drop_refresh(struct step *step, const char *why);
 
 /* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
 
@@ -34,8 +34,8 @@ struct spectrum *resolvent_spectrum(const struct resolvent *r);                /
 struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j);
 struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load,
 				  int column);
-struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
-				    const struct kernel_part *part, mpq_srcptr h);
+struct response *response_of_phi_weight(struct resolvent *r, const struct linear *system, int i, int force_column,
+				    const struct phi_weight_part *part, mpq_srcptr h);
 /* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
  * segment of time; of an input u = value + slope tau, from rest */
 struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);

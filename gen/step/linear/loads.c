@@ -122,26 +122,26 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
-mpq_t *impulse_of_channel(const struct linear *system, int channel)
+mpq_t *impulse_of_force_column(const struct linear *system, int force_column)
 {
 	RATIONALS *inverse = inverse_of_leading(system);
-	return slopes_by_force(system, inverse, system->channel[channel]);
+	return slopes_by_force(system, inverse, system->force_column[force_column]);
 }
 
 /* sum power[m] (s/h)^m as a force, and an impulse at the start */
-struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
-				    const struct kernel_part *part, mpq_srcptr h)
+struct response *response_of_phi_weight(struct resolvent *r, const struct linear *system, int i, int force_column,
+				    const struct phi_weight_part *part, mpq_srcptr h)
 {
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, part->powers);
-	mpq_t *start = impulse_of_channel(system, channel);
+	mpq_t *start = impulse_of_force_column(system, force_column);
 	RATIONAL scale = ZERO;
 	for (int m = 0; m < part->powers; m++) {
 		mpq_set(scale, part->power[m]);
 		for (int k = 0; k < m; k++)
 			mpq_div(scale, scale, h);
 		for (int k = 0; k < n; k++)
-			mpq_mul(e.force[2 * m * n + k], system->channel[channel][k], scale);
+			mpq_mul(e.force[2 * m * n + k], system->force_column[force_column][k], scale);
 	}
 	for (int k = 0; k < system->states; k++)
 		mpq_mul(start[k], start[k], part->impulse);

@@ -226,7 +226,7 @@ static struct step *block_of(const struct step *step, int count)
 	*system = step->branch->system;
 	system->inputs = 0;
 	*block = *step;
-	block->anchors = NULL;          /* an anchor stands where a block starts */
+	block->refresh = NULL;          /* a refresh stands where a block starts */
 	block->branch = NEW(struct branch);
 	*block->branch = *step->branch;
 	block->branch->whole = tables_of(step->model, step->branch->resolvent, system, 1, wanted)[0];

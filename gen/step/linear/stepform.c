@@ -240,7 +240,7 @@ static bool *read_elsewhere(const struct step *step)
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, n);
 	for (int k = 0; k < model->schedule.operators; k++) {
-		struct reads left = reads_of(model, model->remainder.channels,
+		struct reads left = reads_of(model, model->remainder.force_columns,
 					     (const struct form *const *)model->schedule.operator[k].left);
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || left.state[i];
@@ -310,14 +310,14 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 	a->term[a->terms++] = (struct product){ factor, { kind, index } };
 }
 
-/* A load that acts in some segment of time; of one with anchors, all columns where one acts */
+/* A load that acts in some segment of time; of one with refreshes, all columns where one acts */
 static void add_load_term(struct assignment *a, const struct step *step, int row, int column)
 {
 	const struct linear *system = &step->branch->system;
 	const struct table *table = step->branch->whole;
 	int first, load = load_of_column(system, column, &first), last = first + system->load[load].columns - 1;
 	bool any = false;
-	if (!is_anchored(step, load))
+	if (!is_refreshed(step, load))
 		first = last = column;
 	for (int s = 0; s < system->segments; s++)
 		for (int k = first; k <= last; k++)

@@ -16,18 +16,18 @@ struct coefficient {
 	double value, low;
 	bool zero;                  /* exactly: no trace in the code */
 };
-/* What multiplies a remainder, as a sum of parts: at tau = fraction h, B the force of its channel,
+/* What multiplies a remainder, as a sum of parts: at tau = fraction h, B the force of its force column,
  *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
  * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
-enum { PART_POWERS = 3, KERNEL_PARTS = 2, TABLE_KERNELS = 4 };
-struct kernel_part {
+enum { PART_POWERS = 3, PHI_WEIGHT_PARTS = 2, TABLE_PHI_WEIGHTS = 4 };
+struct phi_weight_part {
 	mpq_t fraction, impulse, power[PART_POWERS];
 	int powers;
 };
-struct kernel {
+struct phi_weight {
 	const char *name;           /* b1 */
 	int parts;
-	struct kernel_part part[KERNEL_PARTS];
+	struct phi_weight_part part[PHI_WEIGHT_PARTS];
 };
 struct wanted {                     /* of one table */
 	mpq_t fraction;             /* its time, as a part of h */
@@ -35,19 +35,19 @@ struct wanted {                     /* of one table */
 	bool increments;            /* Phi - I */
 	const mpq_t *mass;          /* kicks and drifts; one per coordinate, in units of the first; NULL: not wanted */
 	const char *name;           /* full, half */
-	int kernels;
-	struct kernel kernel[TABLE_KERNELS];
+	int phi_weights;
+	struct phi_weight phi_weight[TABLE_PHI_WEIGHTS];
 };
 struct table {                      /* of one time: y(tau) = Phi y + sum of columns */
 	const struct wanted *wanted;
-	int states, columns, inputs, channels;
+	int states, columns, inputs, force_columns;
 	struct coefficient *Phi;    /* states x states, or NULL */
 	struct coefficient *increment; /* Phi - I, each entry rounded as it is; or NULL */
 	/* coordinates x coordinates, symmetric: S = Phi_12 M^-1 and X = S^-1 (Phi_11 - I); or NULL */
 	struct coefficient *drift, *kick;
 	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
 	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
-	struct coefficient **kernel; /* per kernel: states x channels */
+	struct coefficient **phi_weight; /* per phi-function weight: states x force columns */
 };
 /* leaves the statement where |p| h is hopeless */
 void check_pole_size(const struct model *model, const struct resolvent *resolvent);
@@ -66,8 +66,8 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 /* An error at the step where it is beyond the range */
 struct coefficient equation_number(const struct model *model, mpq_srcptr q);
 double time_in_step(const struct model *model, mpq_srcptr fraction);      /* a part of h [s] */
-struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the channels */
-	struct coefficient *A, *B;  /* states x states; states x channels */
+struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the force columns */
+	struct coefficient *A, *B;  /* states x states; states x force columns */
 };
 struct slopes state_slopes(const struct step *step, int operator);
 

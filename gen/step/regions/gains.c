@@ -79,8 +79,8 @@ static void fill_gain_by_inputs(const struct step *step, const struct table *tab
 {
 	const struct layout *layout = &step->layout;
 	for (int i = 0; i < step->branch->system.inputs; i++) {
-		const struct coefficient *held = &table->kernel[0][row * table->channels];
-		const struct coefficient *ramp = &table->kernel[1][row * table->channels];
+		const struct coefficient *held = &table->phi_weight[0][row * table->force_columns];
+		const struct coefficient *ramp = &table->phi_weight[1][row * table->force_columns];
 		int cell = row * layout->size + layout->input[i], ramps = step->branch->system.input[i].hold > 0;
 		set_coefficient(&held[2 * i], first + cell, second + cell);
 		if (ramps)

@@ -8,37 +8,37 @@
 #include <math.h>
 #include <string.h>
 
-static bool same_gate(const struct gate_key *a, const struct gate_key *b)
+static bool same_guard(const struct guard_key *a, const struct guard_key *b)
 {
 	return a->expression == b->expression && a->region == b->region && a->release == b->release &&
 	       a->upward == b->upward && a->segment == b->segment;
 }
 
 /* The index of a row of a branch; equal ones are one, of tunable params those that are the same */
-static int add_row(struct guards *g, int size, int branch, const double *row, struct gate_key gate)
+static int add_row(struct guards *g, int size, int branch, const double *row, struct guard_key guard_row)
 {
 	size_t bytes = (size_t)size * sizeof *row;
 	for (int i = 0; i < g->rows; i++)
 		if (g->branch[i] == branch && memcmp(g->row + i * size, row, bytes) == 0 &&
-		    (!g->apart || same_gate(&g->gate[i], &gate)))
+		    (!g->apart || same_guard(&g->guard_row[i], &guard_row)))
 			return i;
 	ENLARGE(g->branch, (size_t)g->rows + 1);
-	ENLARGE(g->gate, (size_t)g->rows + 1);
-	g->gate[g->rows] = gate;
+	ENLARGE(g->guard_row, (size_t)g->rows + 1);
+	g->guard_row[g->rows] = guard_row;
 	ENLARGE(g->row, (size_t)(g->rows + 1) * (size_t)size);
 	memcpy(g->row + g->rows * size, row, bytes);
 	g->branch[g->rows] = branch;
 	return g->rows++;
 }
 
-static void add_guard(struct guards *g, int size, int branch, const double *row, struct gate_key gate,
+static void add_guard(struct guards *g, int size, int branch, const double *row, struct guard_key guard_row,
 		      struct guard guard)
 {
-	guard.row = add_row(g, size, branch, row, gate);
+	guard.row = add_row(g, size, branch, row, guard_row);
 	*MORE(g->guard, g->guards) = guard;
 }
 
-static double *turned(int size, const double *row, bool upward)
+static double *reversed(int size, const double *row, bool upward)
 {
 	double *result = ARRAY(double, size);
 	for (int j = 0; j < size; j++)
@@ -68,8 +68,8 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 		if (guard.impact < 0 && impact_resting(s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
-			  turned(size, pieces->rows[segment] + expression * size, upward),
-			  (struct gate_key){ .expression = expression, .upward = upward, .segment = segment }, guard);
+			  reversed(size, pieces->rows[segment] + expression * size, upward),
+			  (struct guard_key){ .expression = expression, .upward = upward, .segment = segment }, guard);
 	}
 }
 
@@ -85,7 +85,7 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 			continue;
 		row_over_x(step, release->row, 0, row);
 		add_guard(g, step->layout.size, s->region[region].system, row,
-			  (struct gate_key){ .expression = -1, .region = region, .release = k },
+			  (struct guard_key){ .expression = -1, .region = region, .release = k },
 			  (struct guard){ .expression = expression,
 					  .breakpoint = interval - !release->upward,
 					  .upward = release->upward,
@@ -156,7 +156,7 @@ static struct struck struck_in(const struct step *step, struct guards *g, int nu
 			new.back[j] = round_rational(part);
 		}
 	}
-	new.play = size_of_bounded(step, new.speed);
+	new.amplitude = size_of_bounded(step, new.speed);
 	return new;
 }
 
@@ -236,15 +236,15 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		for (int i = 0; i < s->impacts; i++)
 			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
-	g.play = ARRAY(double, (size_t)(s->segments * s->expressions));
-	g.row_play = ARRAY(double, g.rows);
+	g.amplitude = ARRAY(double, (size_t)(s->segments * s->expressions));
+	g.row_amplitude = ARRAY(double, g.rows);
 	for (int k = 0; k < s->segments; k++)
 		for (int e = 0; e < s->expressions; e++)
-			g.play[k * s->expressions + e] =
+			g.amplitude[k * s->expressions + e] =
 				size_of_bounded(step, pieces->rows[k] + e * step->layout.size);
 	for (int i = 0; i < g.rows; i++)
-		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
-	if (step->regions.look.clears)
+		g.row_amplitude[i] = size_of_bounded(step, g.row + i * step->layout.size);
+	if (step->regions.event_check.event_free)
 		add_rounding(step, &g);
 	return g;
 }

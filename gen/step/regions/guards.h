@@ -24,7 +24,7 @@ struct struck {                     /* an impact */
 	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
 	double *speed;              /* of its guard, as a row over x */
 	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
-	double restitution, play;   /* play: the sizes of its speed's factors of cos and sin */
+	double restitution, amplitude; /* amplitude: the sizes of its speed's factors of cos and sin */
 };
 struct held_state {                 /* x[state] = value . x */
 	int state;
@@ -32,20 +32,21 @@ struct held_state {                 /* x[state] = value . x */
 	enum retuned_kind kind;     /* where it comes from: a row of the regions */
 	int of, index;
 };
-struct gate_key { int expression, region, release, segment; bool upward; };  /* up or down; expression -1: a release */
+struct guard_key { int expression, region, release, segment; bool upward; }; /* up or down; expression -1: a release */
 struct guards {
 	bool apart;                 /* rows that are equal may become others: params are tunable */
 	int *first;                 /* per region, and one more: its guards, of those of all */
 	int guards;
 	struct guard *guard;
 	int rows, *branch;          /* of each row: whose it is, */
-	struct gate_key *gate;          /* and what */
-	/* rows x size; of a step that clears `second` has what rounding may hide where it begins, too */
+	struct guard_key *guard_row;    /* and what */
+	/* rows x size; of a step that is checked for events over h `second` has what rounding may hide where it begins,
+	 * too */
 	double *row, *slope, *second, *fourth;
 	int reaches, *reach_at;     /* of each row: where it begins in reach, reaches x size, as in pl_ladder */
 	double *reach;
 	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */
-	double *play, *row_play;
+	double *amplitude, *row_amplitude;
 	int sets, *set;             /* per set, and one more: the first of its assignments */
 	int *hold;                  /* per region: the set that holds its states; -1: none */
 	int assignments;

@@ -29,7 +29,7 @@ void row_in_words(const struct step *step, const struct output *output, int segm
 
 /* ---- gathered.c: what stays of x, in the tables of an instance ---- */
 
-/* Of a step that clears and is not swift: `added` and `still` of each piece, `edge` */
+/* Of a step that is checked for events over h and has no fast path: `added` and `still` of each piece, `edge` */
 void gather(const struct step *step, struct pieces *pieces);
 
 #endif

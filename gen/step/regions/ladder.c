@@ -30,8 +30,8 @@ static void fill_inputs(const struct step *step, const struct table *table, doub
 	const struct layout *layout = &step->layout;
 	for (int row = 0; row < table->states; row++)
 		for (int i = 0; i < step->branch->system.inputs; i++) {
-			const struct coefficient *held = &table->kernel[0][row * table->channels];
-			const struct coefficient *ramp = &table->kernel[1][row * table->channels];
+			const struct coefficient *held = &table->phi_weight[0][row * table->force_columns];
+			const struct coefficient *ramp = &table->phi_weight[1][row * table->force_columns];
 			double *cell = Phi + row * layout->size + layout->input[i];
 			cell[0] = held[2 * i].value;
 			if (step->branch->system.input[i].hold)

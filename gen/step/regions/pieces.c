@@ -390,9 +390,9 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 /* 1/k!, k = 0 .. degree */
 static double *weights_of(const struct step *step)
 {
-	double *weight = ARRAY(double, step->regions.look.degree + 1);
+	double *weight = ARRAY(double, step->regions.event_check.degree + 1);
 	RATIONAL factorial = ZERO;
-	for (int k = 0; k <= step->regions.look.degree; k++) {
+	for (int k = 0; k <= step->regions.event_check.degree; k++) {
 		mpz_fac_ui(mpq_denref(factorial), (unsigned long)k);
 		mpz_set_ui(mpq_numref(factorial), 1);
 		weight[k] = round_rational(factorial);
@@ -400,7 +400,7 @@ static double *weights_of(const struct step *step)
 	return weight;
 }
 
-static void fill_look(const struct step *step, struct pieces *pieces)
+static void fill_check(const struct step *step, struct pieces *pieces)
 {
 	pieces->bounded = bounded_entries(step);
 	for (int k = 0; k < step->branches; k++)
@@ -408,9 +408,9 @@ static void fill_look(const struct step *step, struct pieces *pieces)
 	pieces->large = largest_of(step, pieces);
 }
 
-static void fill_swift(const struct step *step, struct pieces *pieces)
+static void fill_fast_path(const struct step *step, struct pieces *pieces)
 {
-	pieces->degree = step->regions.look.degree;
+	pieces->degree = step->regions.event_check.degree;
 	pieces->weight = weights_of(step);
 	fill_intervals(step, pieces);
 	for (int k = 0; k < step->branches; k++)
@@ -433,11 +433,11 @@ struct pieces pieces_of(const struct step *step)
 	}
 	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);
-	if (step->regions.look.clears)
-		fill_look(step, &pieces);
-	if (step->regions.look.swift)
-		fill_swift(step, &pieces);
-	else if (step->regions.look.clears && step->model->params.retuned)
+	if (step->regions.event_check.event_free)
+		fill_check(step, &pieces);
+	if (step->regions.event_check.fast_path)
+		fill_fast_path(step, &pieces);
+	else if (step->regions.event_check.event_free && step->model->params.retuned)
 		gather(step, &pieces);
 	return pieces;
 }

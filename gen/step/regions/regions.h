@@ -6,15 +6,15 @@
 #include "step/step.h"
 
 /* Of a step that is not left to the search: crossings, and parts looked at */
-enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
+enum { MOST_FAST_PATH = 4, MOST_EVENT_CHECKS = 10 };
 
 /* ---- switched.c: steps of piecewise-linear models ---- */
 
 void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
 int products_of_piece(const struct step *step);             /* and of the bound that shows it clear */
-bool is_cleared_by_tables(const struct step *step);         /* a step that clears does by tables, not case by case */
-long products_of_unmet(const struct step *step);            /* of one with friction or impacts that clears, at most */
+bool is_checked_by_tables(const struct step *step);         /* over h for events: by tables, not case by case */
+long products_of_unmet(const struct step *step); /* of the check for events over h, with friction or impacts, at most */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
@@ -28,8 +28,8 @@ struct region_piece {               /* of a branch, d = h 2^-halvings is its sho
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
-	/* Where a step clears: over h, each expression is off its chord by at most off . |x(0)| + still.
-	 * Where it is swift: rounding and what its Taylor polynomial leaves out make its value and h times its slope
+	/* Where a step is checked for events over h: each expression is off its chord by at most off . |x(0)| + still.
+	 * With the fast path: rounding and what its Taylor polynomial leaves out make its value and h times its slope
 	 * wrong by at most slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *off, *still, *slack, *turn, *bend;
@@ -42,11 +42,11 @@ struct pieces {
 	double *row;                /* in the first */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
-	/* Where a step clears: */
-	bool *bounded;              /* per entry of x: never above 1, and where a step is swift part of `still` */
+	/* Where a step is checked for events over h: */
+	bool *bounded;              /* per entry of x: never above 1, and with the fast path part of `still` */
 	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
 	double *edge;               /* of a retuned model: see gathered.c */
-	/* Where it is swift: */
+	/* With the fast path: */
 	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */

@@ -17,12 +17,12 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	r->table[piece].increments = step->is.two_words || halvings > 0;
 	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
 	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
-	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
+	mpq_set(r->table[piece].phi_weight[ramp].part[0].power[1], step->model->h);
 	return r->table;
 }
 
 /* Why a step of regions does not look over the whole of h first; NULL: it does */
-static const char *no_look(const struct step *step)
+static const char *no_check(const struct step *step)
 {
 	enum { TERMS = 400, BOUNDS = 1024 };
 	const struct switching *s = step->model->switching;
@@ -43,7 +43,7 @@ static const char *no_look(const struct step *step)
 		       : NULL;
 }
 
-bool is_cleared_by_tables(const struct step *step)
+bool is_checked_by_tables(const struct step *step)
 {
 	enum { TERMS = 200 };
 	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
@@ -88,17 +88,17 @@ long products_of_unmet(const struct step *step)
 	return (long)(step->layout.size + most) * step->layout.size;
 }
 
-static void plan_look(struct step *step)
+static void plan_check(struct step *step)
 {
 	bool any = false;
-	step->regions.look.searches = no_look(step);
-	step->regions.look.clears = !step->regions.look.searches;
+	step->regions.event_check.searches = no_check(step);
+	step->regions.event_check.event_free = !step->regions.event_check.searches;
 	/* crossings go by tables of fixed numbers */
-	step->regions.look.swift = step->regions.look.clears && !step->model->params.retuned &&
+	step->regions.event_check.fast_path = step->regions.event_check.event_free && !step->model->params.retuned &&
 				   !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (!step->regions.look.clears)
+	if (!step->regions.event_check.event_free)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =
@@ -106,7 +106,7 @@ static void plan_look(struct step *step)
 			? (int)products_of_unmet(step)
 			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
 	step->program->additions = step->program->multiplications + 2 * expressions;
-	step->regions.look.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
+	step->regions.event_check.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
 static void halve_region(struct step *step, int k)
@@ -126,7 +126,7 @@ static void plan_region(struct step *step, int k)
 	b->table[0] = b->whole = k == 0 ? b->whole : table_over(step, b, 0);
 	for (int r = 0; r < b->rungs; r++)
 		b->table[1 + r] = table_over(step, b, rung_halvings(b, r));
-	b->system.channels = 0;
+	b->system.force_columns = 0;
 	int degree = series_degree(step, k, k + 1, b->halvings);
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
 }
@@ -144,17 +144,17 @@ static void plan_retuned(struct step *step)
 static void build_divided(struct step *step)
 {
 	struct branch *first = step->branch;
-	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
+	int force_columns = first->system.force_columns; /* ramps of inputs, while tables are made */
 	choose_form_of_regions(step);
 	step->tables = 1;
 	first->whole = table_over(step, first, 0);
-	first->system.channels = 0;
+	first->system.force_columns = 0;
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
-	plan_anchors(step);
-	fill_anchors(step);
+	plan_refresh(step);
+	fill_refresh(step);
 	step->program = linear_program(step);
-	first->system.channels = channels;
+	first->system.force_columns = force_columns;
 	step->series.degree = 3;
 	step->series.emitted = true;
 	for (int k = 0; k < step->branches; k++)
@@ -164,7 +164,7 @@ static void build_divided(struct step *step)
 	if (step->model->params.retuned)
 		plan_retuned(step);
 	step->program->additions = step->program->multiplications = products_of_piece(step);
-	plan_look(step);
+	plan_check(step);
 }
 
 void build_regions_step(struct step *step)
@@ -183,7 +183,7 @@ static struct step *step_of_part(const struct step *whole, const struct region_p
 	step->shown = whole;
 	step->is = whole->is;
 	step->is.apart = false;
-	step->no.anchors = "a part is given its load states";
+	step->no.refresh = "a part is given its load states";
 	take_operators(step);
 	step->written = step->branch->resolvent;
 	build_divided(step);
@@ -228,14 +228,14 @@ void build_parts_step(struct step *step)
 	step->tables = 1;
 	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
 	first->whole = first->table[0];
-	first->system.channels = 0;
+	first->system.force_columns = 0;
 	step->regions.parts = s->parts;
 	step->regions.part = ARRAY(struct step *, s->parts);
 	for (int p = 0; p < s->parts; p++)
 		step->regions.part[p] = step_of_part(step, &s->part[p]);
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	carry_of_parts(step);
-	plan_anchors(step);
-	fill_anchors(step);
+	plan_refresh(step);
+	fill_refresh(step);
 	count_parts(step);
 }

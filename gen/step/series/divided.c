@@ -88,10 +88,10 @@ static void to_breakpoint(mpq_ptr value, mpq_srcptr factor)
 }
 
 /* a - b, or what stands beside a constant as it was written: b - a */
-static const struct form *difference_of(const struct form *a, const struct form *b, bool *turned)
+static const struct form *difference_of(const struct form *a, const struct form *b, bool *reversed)
 {
-	*turned = is_constant(a) && !is_constant(b);
-	return *turned ? form_difference(b, a) : form_difference(a, b);
+	*reversed = is_constant(a) && !is_constant(b);
+	return *reversed ? form_difference(b, a) : form_difference(a, b);
 }
 
 struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
@@ -115,19 +115,19 @@ static struct division decided(const struct form *d)
 
 struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b)
 {
-	bool turned;
+	bool reversed;
 	RATIONAL factor = ZERO;
-	const struct form *d = difference_of(a, b, &turned);
+	const struct form *d = difference_of(a, b, &reversed);
 	struct division division = is_constant(d) ? decided(d) : divide_form(w, d, factor);
-	division.above = division.above != turned;
+	division.above = division.above != reversed;
 	return division;
 }
 
 bool find_division(const struct expansion *x, const struct form *a, const struct form *b, struct division *division)
 {
-	bool turned, known = true;
+	bool reversed, known = true;
 	RATIONAL value = ZERO, factor = ZERO;
-	const struct form *d = difference_of(a, b, &turned);
+	const struct form *d = difference_of(a, b, &reversed);
 	*division = decided(d);
 	if (!is_constant(d)) {
 		division->expression = known_expression(x, beside_constants(d, value), factor);
@@ -139,7 +139,7 @@ bool find_division(const struct expansion *x, const struct form *a, const struct
 		division->above = mpq_sgn(factor) > 0;
 		known = division->breakpoint != NONE;
 	}
-	division->above = division->above != turned;
+	division->above = division->above != reversed;
 	return known;
 }
 

@@ -35,19 +35,19 @@ int  regions_of_series(const struct expansion *x);
 /* Leaves the statement where what is chosen by the state is not treated */
 void check_divided(const struct step *step);
 
-/* ---- cut.c: a scheme with a remainder, from crossing to crossing ---- */
+/* ---- event_split.c: a scheme with a remainder, from crossing to crossing ---- */
 
-struct cut {
-	struct expansion *look;     /* of the solution, as far as where it is heading */
+struct event_split {
+	struct expansion *event_check; /* of the solution, as far as where it is heading */
 	struct expansion *ends;     /* of it the expressions' values and slopes, */
 	struct expansion *forces;   /* and what is left over, with the formulas of given intervals */
-	struct layout layout;       /* of x, each force with its derivatives: see pl_cut */
+	struct layout layout;       /* of x, each force with its derivatives: see pl_event_split */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of the looks in a step */
 	double fastest;             /* above the poles of the sizes |A| [1/s] */
 	double certain;             /* so much of a step that no pole turns by more than 1; 1: cubics hold over it */
 	int kilobytes;              /* of stack for tables */
 };
-void plan_cut(struct step *step);                           /* step->cut */
+void plan_event_split(struct step *step);                   /* step->cut */
 
 #endif

@@ -115,7 +115,7 @@ static struct layout place_all(struct sequencing *w)
 {
 	struct reads reads = { 0 };
 	const struct model *model = w->step->model;
-	reads = reads_of(model, model->remainder.channels,
+	reads = reads_of(model, model->remainder.force_columns,
 			 (const struct form *const *)model->schedule.operator[0].left);
 	bool *needed = ARRAY(bool, w->system->loads);
 	for (int l = 0; l < w->system->loads; l++)
@@ -132,11 +132,11 @@ static void start_states(struct sequencing *w)
 static void make_forces(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
-	int *force = ARRAY(int, model->remainder.channels), *held = ARRAY(int, model->remainder.channels);
-	for (int e = 0; e < model->remainder.channels; e++)
+	int *force = ARRAY(int, model->remainder.force_columns), *held = ARRAY(int, model->remainder.force_columns);
+	for (int e = 0; e < model->remainder.force_columns; e++)
 		force[e] = sequence_of_form(w, model->schedule.operator[0].left[e]);
 	w->x->force = force;
-	for (int e = 0; e < model->remainder.channels; e++)
+	for (int e = 0; e < model->remainder.force_columns; e++)
 		held[e] = held_force(w, e);
 	w->x->held = held;
 }
@@ -172,7 +172,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	w->slopes = ARRAY(mpq_t *, system->segments);
 	for (int k = 0; k < system->segments; k++)
 		w->slopes[k] = augmented_matrix(&w->layout, system, k);
-	for (int e = 0; e < model->remainder.channels; e++)
+	for (int e = 0; e < model->remainder.force_columns; e++)
 		count_uses(w, model->schedule.operator[0].left[e]);
 	start_states(w);
 	hold_contacts(w);

@@ -30,7 +30,7 @@ struct expansion {
 	bool looks;                 /* at slopes further on */
 	double crowded;             /* 1/s, of loads that may cancel the highest frequency */
 	struct contacts *contacts;  /* NULL: there are none */
-	/* per channel: what is left over, as a sequence; NULL: it stands in the states' sums */
+	/* per force column: what is left over, as a sequence; NULL: it stands in the states' sums */
 	int *force, *held;          /* held: with what holds beside it */
 	bool alone;                 /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */

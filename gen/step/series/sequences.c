@@ -289,7 +289,7 @@ static int root_sequence(struct sequencing *w, int a)
 static int pair_sequence(struct sequencing *w, int a, enum function first, enum function second, long sign,
 			 bool want_second)
 {
-	RATIONAL scale = ZERO, turned = ZERO;
+	RATIONAL scale = ZERO, reversed = ZERO;
 	for (int i = 0; i < w->x->count; i++) {
 		const struct sequence *s = &w->x->sequence[i];
 		if (s->kind == SEQUENCE_INTEGRAL && s->state == NONE && s->function == first && s->a == a)
@@ -298,8 +298,8 @@ static int pair_sequence(struct sequencing *w, int a, enum function first, enum 
 	int rate = derivative_of(w, a, scale);
 	int s = new_integral(w, first, a, NONE), c = new_integral(w, second, a, NONE);
 	set_product_integrand(w, s, rate, c, scale);
-	mpq_set_si(turned, sign, 1);
-	mpq_mul(scale, scale, turned);
+	mpq_set_si(reversed, sign, 1);
+	mpq_mul(scale, scale, reversed);
 	set_product_integrand(w, c, rate, s, scale);
 	return want_second ? c : s;
 }
@@ -317,12 +317,12 @@ static int self_sequence(struct sequencing *w, enum function function, int a, lo
 /* c' = sign a' / below */
 static int arc_sequence(struct sequencing *w, enum function function, int a, int below, long sign)
 {
-	RATIONAL scale = ZERO, turned = ZERO;
+	RATIONAL scale = ZERO, reversed = ZERO;
 	int rate = derivative_of(w, a, scale), quotient = quotient_sequence(w, rate, below);
 	int c = new_integral(w, function, a, NONE);
 	struct sum sum = { 0 };
-	mpq_set_si(turned, sign, 1);
-	mpq_mul(scale, scale, turned);
+	mpq_set_si(reversed, sign, 1);
+	mpq_mul(scale, scale, reversed);
 	sum_add(&sum, TERM_SEQUENCE, quotient, 0, scale);
 	set_integrand(w, c, &sum);
 	return c;
@@ -579,10 +579,10 @@ struct sum slope_of_state(struct sequencing *w, int state)
 			bool power = is_polynomial(w->system->load[l].wave);
 			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
 		}
-	for (int e = 0; e < w->system->channels; e++)
-		if (mpq_sgn(row[layout->channel + e]) != 0 && w->x->force)
-			sum_add(&sum, TERM_SEQUENCE, w->x->force[e], 0, row[layout->channel + e]);
-		else if (mpq_sgn(row[layout->channel + e]) != 0)
-			sum_add_form(w, &sum, model->schedule.operator[0].left[e], row[layout->channel + e]);
+	for (int e = 0; e < w->system->force_columns; e++)
+		if (mpq_sgn(row[layout->force_column + e]) != 0 && w->x->force)
+			sum_add(&sum, TERM_SEQUENCE, w->x->force[e], 0, row[layout->force_column + e]);
+		else if (mpq_sgn(row[layout->force_column + e]) != 0)
+			sum_add_form(w, &sum, model->schedule.operator[0].left[e], row[layout->force_column + e]);
 	return sum;
 }

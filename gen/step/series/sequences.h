@@ -68,7 +68,7 @@ struct sequencing {                 /* what the makers of sequences share */
 	const struct step *step;
 	const struct linear *system;
 	struct expansion *x;
-	struct layout layout;       /* states, loads, inputs, channels */
+	struct layout layout;       /* states, loads, inputs, force columns */
 	mpq_t **slopes;             /* per segment: x' = slopes x */
 	mpq_t pi;
 	mpq_t unit;                 /* of time: D, h or several of them */

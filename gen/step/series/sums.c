@@ -112,13 +112,13 @@ static void add_loads(struct sequencing *w, struct sequence *s, const struct sum
 static void add_input(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	bool ramps = w->system->input[key->a].hold > 0;
-	RATIONAL turned = ZERO;
+	RATIONAL reversed = ZERO;
 	if (key->kind == TERM_SLOPE && !ramps)
 		return;
 	add_numbers(w, s, (struct sequence_term){ .kind = key->kind, .a = key->a }, 0, 0, key->factor, scale);
-	mpq_mul(turned, key->factor, w->unit);
+	mpq_mul(reversed, key->factor, w->unit);
 	if (key->kind == TERM_INPUT && ramps)
-		add_numbers(w, s, (struct sequence_term){ .kind = TERM_SLOPE, .a = key->a }, 1, 1, turned, scale);
+		add_numbers(w, s, (struct sequence_term){ .kind = TERM_SLOPE, .a = key->a }, 1, 1, reversed, scale);
 }
 
 /* Its keys as terms, scaled by scale[k] at k */

@@ -168,7 +168,7 @@ static void find_in_form(struct finding *f, const struct form *form)
 struct unseen *unseen_of(const struct model *model, int *count, bool *looks)
 {
 	struct finding f = { .model = model, .seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms)) };
-	for (int e = 0; e < model->remainder.channels && model->truncation.adaptive; e++)
+	for (int e = 0; e < model->remainder.force_columns && model->truncation.adaptive; e++)
 		find_in_form(&f, model->schedule.operator[0].left[e]);
 	*count = f.count;
 	*looks = f.looks;

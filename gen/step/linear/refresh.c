@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its
+/* Loads by refreshes. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its
  * phase and growth in fixed point. In the steps between, what the load adds to a state is
  *
  *   L z(t_a + l h) = (L E_l) z(t_a)
@@ -12,10 +12,10 @@
 #include <math.h>
 
 enum {
-	ANCHOR_STEPS = 32,          /* from anchor to anchor, where the table is small */
+	REFRESH_STEPS = 32,         /* from refresh to refresh, where the table is small */
 	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
 	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
-	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range an anchor leaves it before its load does */
+	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range a refresh leaves it before its load does */
 	TAYLOR_PRECISION = 2048     /* beyond, residues */
 };
 
@@ -31,122 +31,122 @@ static bool moves(const struct step *step, int state, int first, int columns)
 }
 
 /* Of the states that a load moves in a step, every column of it */
-static void add_terms(struct anchors *anchors, int state, int first, int columns)
+static void add_terms(struct refresh *refresh, int state, int first, int columns)
 {
-	ENLARGE(anchors->term, (size_t)(anchors->terms + columns));
+	ENLARGE(refresh->term, (size_t)(refresh->terms + columns));
 	for (int k = 0; k < columns; k++)
-		anchors->term[anchors->terms++] = (struct anchored_term){ state, first + k };
+		refresh->term[refresh->terms++] = (struct refreshed_term){ state, first + k };
 }
 
-static void list_terms(struct anchors *anchors, const struct step *step, bool forced_too)
+static void list_terms(struct refresh *refresh, const struct step *step, bool forced_too)
 {
 	const struct linear *system = &step->branch->system;
-	anchors->terms = 0;
-	for (int i = 0; i < system->states && !anchors->turned; i++)
+	refresh->terms = 0;
+	for (int i = 0; i < system->states && !refresh->rotated; i++)
 		for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
-			if (anchors->load[l] && (forced_too || !is_forced(step, first)) &&
+			if (refresh->load[l] && (forced_too || !is_forced(step, first)) &&
 			    moves(step, i, first, system->load[l].columns))
-				add_terms(anchors, i, first, system->load[l].columns);
+				add_terms(refresh, i, first, system->load[l].columns);
 }
 
 /* The fastest growth or decay of a load in a step */
-static double growth_in_step(const struct step *step, const struct anchors *anchors)
+static double growth_in_step(const struct step *step, const struct refresh *refresh)
 {
 	const struct linear *system = &step->branch->system;
 	double most = 0;
 	for (int l = 0; l < system->loads; l++)
-		if (anchors->load[l])
+		if (refresh->load[l])
 			most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
 	return most * mpq_get_d(step->model->h);
 }
 
-static bool is_steady(const struct step *step, const struct anchors *anchors, int steps)
+static bool is_steady(const struct step *step, const struct refresh *refresh, int steps)
 {
-	return (steps - 1) * growth_in_step(step, anchors) <= MOST_GROWTH;
+	return (steps - 1) * growth_in_step(step, refresh) <= MOST_GROWTH;
 }
 
-static bool fits(const struct step *step, const struct anchors *anchors, int steps)
+static bool fits(const struct step *step, const struct refresh *refresh, int steps)
 {
-	return steps * anchors->terms * (step->is.two_words ? 2 : 1) <= TABLE_NUMBERS;
+	return steps * refresh->terms * (step->is.two_words ? 2 : 1) <= TABLE_NUMBERS;
 }
 
 /* Where more than 1 was asked for */
 static void note_aside(const struct step *step, const char *why)
 {
-	const char *steps = format("%d", step->model->asked.anchors);
-	if (step->model->asked.anchors > 1 && !step->model->asked.again.trial)
+	const char *steps = format("%d", step->model->asked.refresh);
+	if (step->model->asked.refresh > 1 && !step->model->asked.again.trial)
 		stand_aside((struct place){ source_argument(steps), 0 }, format("--anchors %s", steps), why);
 }
 
 /* As many as were asked for, or as are good; 1: what stands against more is said */
-static int chosen_steps(struct step *step, const struct anchors *anchors)
+static int chosen_steps(struct step *step, const struct refresh *refresh)
 {
-	int asked = step->model->asked.anchors;
-	if (asked && !is_steady(step, anchors, asked)) {
-		note_aside(step, format("a load changes by more than e^%d between anchors", MOST_GROWTH));
+	int asked = step->model->asked.refresh;
+	if (asked && !is_steady(step, refresh, asked)) {
+		note_aside(step, format("a load changes by more than e^%d between refresh", MOST_GROWTH));
 		asked = 0;
 	}
-	int steps = asked ? asked : ANCHOR_STEPS;
-	while (!asked && steps >= FEWEST_STEPS && !(fits(step, anchors, steps) && is_steady(step, anchors, steps)))
+	int steps = asked ? asked : REFRESH_STEPS;
+	while (!asked && steps >= FEWEST_STEPS && !(fits(step, refresh, steps) && is_steady(step, refresh, steps)))
 		steps /= 2;
 	if (steps >= FEWEST_STEPS || asked)
 		return steps;
-	step->no.anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
+	step->no.refresh = fits(step, refresh, FEWEST_STEPS) ? "a load changes too much from step to step"
 							     : "tables would be large";
 	return 1;
 }
 
-static struct anchors *anchors_of(const struct step *step)
+static struct refresh *refresh_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	struct anchors *anchors = NEW(struct anchors);
-	anchors->turned = step->model->switching != NULL;
-	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, system->loads);
+	struct refresh *refresh = NEW(struct refresh);
+	refresh->rotated = step->model->switching != NULL;
+	refresh->load = refresh->rotated ? loads_of_regions(step) : ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		anchors->load[l] = !is_polynomial(system->load[l].wave) &&
-				   (anchors->turned ? anchors->load[l] : load_acts(system, &system->load[l]));
-	return anchors;
+		refresh->load[l] = !is_polynomial(system->load[l].wave) &&
+				   (refresh->rotated ? refresh->load[l] : load_acts(system, &system->load[l]));
+	return refresh;
 }
 
-static bool any_load(const struct step *step, const struct anchors *anchors)
+static bool any_load(const struct step *step, const struct refresh *refresh)
 {
 	bool any = false;
 	for (int l = 0; l < step->branch->system.loads; l++)
-		any = any || anchors->load[l];
+		any = any || refresh->load[l];
 	return any;
 }
 
-void check_anchors(struct step *step)
+void check_refresh(struct step *step)
 {
-	const char *against = step_objection(step, CAN_ANCHORS);
+	const char *against = step_objection(step, CAN_REFRESH);
 	if (against)
 		note_aside(step, against);
-	if (any_load(step, anchors_of(step)))
-		step->no.anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
+	if (any_load(step, refresh_of(step)))
+		step->no.refresh = step->model->asked.refresh == 1 ? "--anchors 1" : against;
 }
 
-void drop_anchors(struct step *step, const char *why)
+void drop_refresh(struct step *step, const char *why)
 {
 	note_aside(step, why);
-	step->no.anchors = why;
-	step->anchors = NULL;
+	step->no.refresh = why;
+	step->refresh = NULL;
 }
 
-void plan_anchors(struct step *step)
+void plan_refresh(struct step *step)
 {
-	struct anchors *anchors = anchors_of(step);
-	if (step->no.anchors || step->model->asked.anchors == 1 || step_objection(step, CAN_ANCHORS) ||
-	    !any_load(step, anchors))
+	struct refresh *refresh = refresh_of(step);
+	if (step->no.refresh || step->model->asked.refresh == 1 || step_objection(step, CAN_REFRESH) ||
+	    !any_load(step, refresh))
 		return;
-	list_terms(anchors, step, true);
-	anchors->steps = chosen_steps(step, anchors);
-	step->anchors = anchors->steps > 1 ? anchors : NULL;
+	list_terms(refresh, step, true);
+	refresh->steps = chosen_steps(step, refresh);
+	step->refresh = refresh->steps > 1 ? refresh : NULL;
 }
 
-int anchored_term(const struct step *step, int state, int column)
+int refreshed_term(const struct step *step, int state, int column)
 {
-	for (int k = 0; step->anchors && k < step->anchors->terms; k++)
-		if (step->anchors->term[k].state == state && step->anchors->term[k].column == column)
+	for (int k = 0; step->refresh && k < step->refresh->terms; k++)
+		if (step->refresh->term[k].state == state && step->refresh->term[k].column == column)
 			return k;
 	return -1;
 }
@@ -183,7 +183,7 @@ static void enclose_turn(const struct wave *wave, struct turn *turn, int precisi
 /* Over 0, 1, ... steps */
 static struct turn *turns_of(const struct step *step)
 {
-	int steps = step->anchors->steps;
+	int steps = step->refresh->steps;
 	struct turn *turn = ARRAY(struct turn, steps);
 	for (int l = 0; l < steps; l++) {
 		mpq_init(turn[l].tau);
@@ -273,7 +273,7 @@ static bool enclose_column(struct row *row, int k, int precision)
 /* ---- L E_l, rounded ---- */
 
 /* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
-static bool enclose_turned(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
+static bool enclose_rotated(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
 {
 	const struct wave *wave = row->source->system->load[row->load].wave;
 	int trig = oscillates(wave) ? 2 : 1;
@@ -295,10 +295,10 @@ static bool enclose_turned(struct row *row, struct turn *turn, int from, int pre
 }
 
 /* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
-static bool round_turned(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
+static bool round_rotated(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
 {
 	INTERVAL x = OVER_BITS(precision);
-	bool decided = enclose_turned(row, turn, from, precision, x) && round_enclosure(x, &c->value);
+	bool decided = enclose_rotated(row, turn, from, precision, x) && round_enclosure(x, &c->value);
 	if (decided && isfinite(c->value)) {
 		mpfi_sub_d(x, x, c->value);
 		decided = round_enclosure(x, &c->low);
@@ -309,12 +309,12 @@ static bool round_turned(struct row *row, struct turn *turn, int from, int preci
 static void fill_term(const struct step *step, struct row *row, struct turn *turn, int from, struct coefficient *c)
 {
 	int precision = FIRST_PRECISION;
-	while (precision <= LIMIT_PRECISION && !round_turned(row, turn, from, precision, c))
+	while (precision <= LIMIT_PRECISION && !round_rotated(row, turn, from, precision, c))
 		precision *= 2;
 	bool decided = precision <= LIMIT_PRECISION;
 	if (!decided || !isfinite(c->value))
 		error(step->model->asked.step_at, "--anchors 1 may do",
-		      "what a load adds so many steps after an anchor is %s",
+		      "what a load adds so many steps after a refresh is %s",
 		      decided ? format("beyond the range of %s", target_name())
 			      : format("not decided with %d bits", LIMIT_PRECISION));
 }
@@ -323,14 +323,14 @@ static void fill_term(const struct step *step, struct row *row, struct turn *tur
 static void fill_row(const struct step *step, struct block_source *source, int state, int load, struct turn *turn,
 		     int term)
 {
-	struct anchors *anchors = step->anchors;
+	struct refresh *refresh = step->refresh;
 	int columns = source->system->load[load].columns;
 	struct row row = { source, state, load, columns, ARRAY(struct column, columns), step->model->h };
 	for (int k = 0; k < columns; k++)
 		mpfi_init(row.column[k].value);
-	for (int l = 0; l < anchors->steps; l++)
+	for (int l = 0; l < refresh->steps; l++)
 		for (int k = 0; k < columns; k++)
-			fill_term(step, &row, &turn[l], k, &anchors->factor[l * anchors->terms + term + k]);
+			fill_term(step, &row, &turn[l], k, &refresh->factor[l * refresh->terms + term + k]);
 	for (int k = 0; k < columns; k++)
 		mpfi_clear(row.column[k].value);
 }
@@ -341,15 +341,15 @@ static void fill_block(const struct step *step, const struct block *block, struc
 	struct block_source source = source_of_block(step, &block->system);
 	int first;
 	for (int i = 0; i < block->system.states; i++)
-		for (int k = 0; k < step->anchors->terms; k++) {
-			const struct anchored_term *term = &step->anchors->term[k];
+		for (int k = 0; k < step->refresh->terms; k++) {
+			const struct refreshed_term *term = &step->refresh->term[k];
 			int load = load_of_column(system, term->column, &first);
 			if (term->state == block->state[i] && term->column == first)
 				fill_row(step, &source, i, load, turn[load], k);
 		}
 }
 
-/* What turns the load states of an anchor into those of now */
+/* What turns the load states of a refresh into those of now */
 static void fill_turn(const struct wave *wave, struct turn *turn, double value[2])
 {
 	bool decided = false;
@@ -359,21 +359,21 @@ static void fill_turn(const struct wave *wave, struct turn *turn, double value[2
 	}
 }
 
-void fill_anchors(struct step *step)
+void fill_refresh(struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	struct anchors *anchors = step->anchors;
+	struct refresh *refresh = step->refresh;
 	struct block *block;
 	struct turn **turn = ARRAY(struct turn *, system->loads);
-	if (!anchors)
+	if (!refresh)
 		return;
-	list_terms(anchors, step, false);
-	anchors->factor = ARRAY(struct coefficient, (size_t)(anchors->steps * anchors->terms));
-	anchors->turn = ARRAY(double, 2 * (size_t)(anchors->steps * system->loads));
+	list_terms(refresh, step, false);
+	refresh->factor = ARRAY(struct coefficient, (size_t)(refresh->steps * refresh->terms));
+	refresh->turn = ARRAY(double, 2 * (size_t)(refresh->steps * system->loads));
 	for (int l = 0; l < system->loads; l++) {
-		turn[l] = is_anchored(step, l) ? turns_of(step) : NULL;
-		for (int k = 0; turn[l] && k < anchors->steps; k++)
-			fill_turn(system->load[l].wave, &turn[l][k], &anchors->turn[2 * (l * anchors->steps + k)]);
+		turn[l] = is_refreshed(step, l) ? turns_of(step) : NULL;
+		for (int k = 0; turn[l] && k < refresh->steps; k++)
+			fill_turn(system->load[l].wave, &turn[l][k], &refresh->turn[2 * (l * refresh->steps + k)]);
 	}
 	int blocks = blocks_of(system, &block);
 	for (int b = 0; b < blocks; b++)

@@ -77,17 +77,17 @@ static int *watched_sequences(const struct expansion *x, int *count)
 	return sequence;
 }
 
-static void count_looks(const struct step *step, struct cut *cut)
+static void count_checks(const struct step *step, struct event_split *event_split)
 {
 	const struct linear *system = &step->branch->system;
 	struct program program = { .uses = ARRAY(bool, step->branch->whole->columns) };
 	struct step view = *step;
-	view.taylor.expansion = cut->ends;
+	view.taylor.expansion = event_split->ends;
 	count_expansion(&view, &program);
 	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
-	cut->multiplications = looks * program.multiplications;
-	cut->additions = looks * program.additions;
-	cut->calls = looks * program.calls;
+	event_split->multiplications = looks * program.multiplications;
+	event_split->additions = looks * program.additions;
+	event_split->calls = looks * program.calls;
 }
 
 /* The step of a scheme that holds coupling, and does not in a part */
@@ -101,29 +101,32 @@ static struct step *coupled(const struct step *step)
 	return made;
 }
 
-void plan_cut(struct step *held)
+void plan_event_split(struct step *held)
 {
 	struct step *step = scheme_row(held->model->scheme)->holds_coupling ? coupled(held) : held;
 	const struct linear *system = &step->branch->system;
-	struct cut *cut = NEW(struct cut);
+	struct event_split *event_split = NEW(struct event_split);
 	int watched;
-	cut->look = expansion_with_forces(step, has_contacts(step->model) ? AT_EVENTS : LOOKED);
-	int *sequence = watched_sequences(cut->look, &watched);
-	cut->ends = part_of_expansion(step, cut->look, 1, watched, sequence);
-	cut->forces = part_of_expansion(step, cut->look, 0, system->channels, cut->look->held);
-	cut->layout = layout_with(system, CUT_POWERS, acting_loads(system));
-	cut->slopes = ARRAY(double *, system->segments);
+	event_split->event_check = expansion_with_forces(step, has_contacts(step->model) ? AT_EVENTS : LOOKED);
+	int *sequence = watched_sequences(event_split->event_check, &watched);
+	event_split->ends = part_of_expansion(step, event_split->event_check, 1, watched, sequence);
+	event_split->forces = part_of_expansion(step, event_split->event_check, 0, system->force_columns,
+						event_split->event_check->held);
+	event_split->layout = layout_with(system, SPLIT_POWERS, acting_loads(system));
+	event_split->slopes = ARRAY(double *, system->segments);
 	for (int s = 0; s < system->segments; s++) {
-		cut->slopes[s] = slopes_in(step, &cut->layout, s);
-		cut->fastest = fmax(cut->fastest, fastest_of(cut->layout.size, cut->slopes[s]));
+		event_split->slopes[s] = slopes_in(step, &event_split->layout, s);
+		event_split->fastest =
+			fmax(event_split->fastest, fastest_of(event_split->layout.size, event_split->slopes[s]));
 	}
-	double turn = cut->fastest * mpq_get_d(step->model->h);
-	cut->certain = turn > TURN ? 1 / turn : 1;
+	double turn = event_split->fastest * mpq_get_d(step->model->h);
+	event_split->certain = turn > TURN ? 1 / turn : 1;
 	if (step->model->asked.single)
-		cut->fastest = (double)(float)cut->fastest;
-	count_looks(step, cut);
-	cut->kilobytes = 1 + PL_CUT_ROOM(cut->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
-	held->cut = cut;
-	held->taylor.divided = cut->look;
+		event_split->fastest = (double)(float)event_split->fastest;
+	count_checks(step, event_split);
+	event_split->kilobytes =
+		1 + PL_EVENT_SPLIT_ROOM(event_split->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
+	held->event_split = event_split;
+	held->taylor.divided = event_split->event_check;
 	held->series.emitted = true;
 }

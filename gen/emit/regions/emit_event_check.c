@@ -31,7 +31,7 @@ const char **operands_of_x(const struct emitter *e)
 
 /* ---- what a step looks with: numbers, or where params are tunable tables of an instance ---- */
 
-struct look {
+struct check {
 	bool own;                   /* tables of an instance; what stays of x is gathered */
 	int branch;                 /* of one region; -1: `which` */
 	struct region_tables whole, row, off;
@@ -79,7 +79,7 @@ static bool changes(const struct emitter *e, int branch)
 
 /* What may be other than 0 for some values of the params is read from the tables; what none of them changes is a
  * number. */
-static void mark_own(const struct emitter *e, const struct pieces *p, struct look *l)
+static void mark_own(const struct emitter *e, const struct pieces *p, struct check *l)
 {
 	const struct tuning *r = e->model->params.retuned;
 	int size = e->step->layout.size, n = expressions_of(e);
@@ -104,10 +104,10 @@ static void mark_own(const struct emitter *e, const struct pieces *p, struct loo
 		l->size[j] = *l->size[j] && !p->bounded[j] ? l->size[j] : NULL;
 }
 
-static struct look look_of(const struct emitter *e, const struct pieces *p, const char *const *x, int branch)
+static struct check check_of(const struct emitter *e, const struct pieces *p, const char *const *x, int branch)
 {
 	const bool own = e->model->params.retuned;
-	struct look l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
+	struct check l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
 			  .end = moving(e, entries(e, "end%d")) };
 	l.size = magnitudes(e, l.x);
 	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
@@ -122,7 +122,7 @@ static struct look look_of(const struct emitter *e, const struct pieces *p, cons
 	return l;
 }
 
-static const char *end_text(const struct emitter *e, const struct look *l, int i)
+static const char *end_text(const struct emitter *e, const struct check *l, int i)
 {
 	const char *added = NULL;
 	if (l->own && any_stays(e->step) && i < e->system->states)
@@ -130,7 +130,7 @@ static const char *end_text(const struct emitter *e, const struct look *l, int i
 	return row_text(&l->whole, i, l->x, added, 22);
 }
 
-static const char *bound_text(const struct emitter *e, const struct pieces *p, const struct look *l, int i, int indent)
+static const char *bound_text(const struct emitter *e, const struct pieces *p, const struct check *l, int i, int indent)
 {
 	const char *still = NULL;
 	if (!l->own)
@@ -141,7 +141,7 @@ static const char *bound_text(const struct emitter *e, const struct pieces *p, c
 }
 
 /* Of an instance, gathered, expressions may be one and the same: the first of them */
-static int leader(const struct look *l, int expression)
+static int leader(const struct check *l, int expression)
 {
 	const struct region_tables *t = &l->row;
 	int i = 0;
@@ -157,7 +157,7 @@ static int leader(const struct look *l, int expression)
 	return expression;
 }
 
-static bool is_read_at_end(const struct emitter *e, const struct look *l, int entry)
+static bool is_read_at_end(const struct emitter *e, const struct check *l, int entry)
 {
 	bool read = false;
 	for (int i = 0; i < expressions_of(e); i++)
@@ -180,7 +180,7 @@ static const char *small_text(const struct emitter *e, const struct region_table
 	return row_text(whole, e->step->layout.size + row, x, further, indent);
 }
 
-static void emit_end(const struct emitter *e, const struct look *l, int row, const char *before, const char *name)
+static void emit_end(const struct emitter *e, const struct check *l, int row, const char *before, const char *name)
 {
 	int indent = 24 + (int)strlen(before);
 	const struct region_tables *whole = &l->whole;
@@ -197,7 +197,7 @@ static void emit_end(const struct emitter *e, const struct look *l, int row, con
 		    row_text(whole, row, x, NULL, indent), indent, "", small_text(e, whole, row, x, indent), row);
 }
 
-static void emit_ends(const struct emitter *e, const struct look *l, const char *before)
+static void emit_ends(const struct emitter *e, const struct check *l, const char *before)
 {
 	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	for (int i = 0; i < e->step->layout.size; i++)
@@ -206,7 +206,7 @@ static void emit_ends(const struct emitter *e, const struct look *l, const char 
 }
 
 /* Whether it is between two bounds, with how far it may be off the chord between */
-static void emit_within(const struct emitter *e, const struct look *l)
+static void emit_within(const struct emitter *e, const struct check *l)
 {
 	const struct switching *s = e->model->switching;
 	say(e, "    if (");
@@ -224,7 +224,7 @@ static void emit_within(const struct emitter *e, const struct look *l)
 
 static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
-	const struct look l = look_of(e, p, x, -1);
+	const struct check l = check_of(e, p, x, -1);
 	say(e, "    const int which = s->contact$p.matrix;\n");
 	if (l.own)
 		say(e, "    const int *const span = $o_span[s->contact$p.region];\n");
@@ -256,7 +256,7 @@ static void emit_side(const struct emitter *e, bool first, const char *from, con
 }
 
 /* Whether all expressions keep inside their intervals */
-static void emit_inside(const struct emitter *e, const struct pieces *p, const struct look *l, int region)
+static void emit_inside(const struct emitter *e, const struct pieces *p, const struct check *l, int region)
 {
 	const struct switching *s = e->model->switching;
 	bool first = true;
@@ -282,7 +282,7 @@ static void emit_inside(const struct emitter *e, const struct pieces *p, const s
 
 static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
 {
-	const struct look l = look_of(e, p, x, e->model->switching->region[region].system);
+	const struct check l = check_of(e, p, x, e->model->switching->region[region].system);
 	say(e, "    case %d:\n", region);
 	emit_ends(e, &l, "    ");
 	for (int i = 0; i < expressions_of(e); i++) {
@@ -317,7 +317,7 @@ static void emit_case_end(const struct emitter *e)
 static void emit_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
 	const struct switching *s = e->model->switching;
-	const struct look l = look_of(e, p, x, -1);
+	const struct check l = check_of(e, p, x, -1);
 	const char *list = "";
 	for (int i = 0; i < e->step->layout.size; i++)
 		if (i < e->system->states || is_read_at_end(e, &l, i))
@@ -338,7 +338,7 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	emit_case_end(e);
 }
 
-void emit_clear_step(const struct emitter *e)
+void emit_event_check(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
@@ -353,13 +353,13 @@ void emit_clear_step(const struct emitter *e)
 		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
 	if (e->model->params.retuned)
 		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
-	if (is_cleared_by_tables(e->step))
+	if (is_checked_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);
 	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, moving(e, x)), 12),
 	    !e->model->params.retuned              ? shortest(pieces.large)
-	    : is_cleared_by_tables(e->step) ? "c->large[which]"
+	    : is_checked_by_tables(e->step) ? "c->large[which]"
 					    : "c->large[s->contact.matrix]");
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
@@ -373,7 +373,7 @@ void emit_clear_step(const struct emitter *e)
 	for (int j = 0; j < layout->size && keeps_rest(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
-	say(e, e->step->regions.look.swift ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
+	say(e, e->step->regions.event_check.fast_path ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
 				"    }\n"
 			      : "        $o_seek(s, now);\n"
 				"    }\n");

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* anchors: models with loads in pairs, one with anchors, one with its functions in every step. In states and outputs
- * they agree within some units of rounding of their largest values: over a long run; where a state is set, or jumped
- * to, any number of steps after an anchor; after NAME_at. What an anchor keeps is all in the struct: a copy goes on
- * with the same bits. Against closed forms: forms/history, forms/loads. */
+/* refreshes: models with loads in pairs, one with refreshes, one with its functions in every step. In states and
+ * outputs they agree within some units of rounding of their largest values: over a long run; where a state is set, or
+ * jumped to, any number of steps after a refresh; after NAME_at. What a refresh keeps is all in the struct: a copy goes
+ * on with the same bits. Against closed forms: forms/history, forms/loads. */
 #include "plrt.h"
 #include "tap.h"
 
@@ -18,7 +18,7 @@
 enum { MOST = 16, BEHIND = 70 };
 
 struct pair {
-    const pl_model *a, *b;          /* with anchors; without */
+    const pl_model *a, *b;          /* with refreshes; without */
     void *s, *r, *copy;
 };
 
@@ -80,7 +80,7 @@ static void long_run(const struct pair *p, const char *name, int steps, double b
         bound);
 }
 
-/* Set k steps after an anchor of the other one, and again k steps after that */
+/* Set k steps after a refresh of the other one, and again k steps after that */
 static void any_start(const struct pair *p, const char *name, double bound)
 {
     struct off o = {{0}, {0}};
@@ -122,7 +122,7 @@ static void set_is_read(const struct pair *p, const char *name)
     ok(same, "%s: what is set is read again, bit for bit", name);
 }
 
-/* From every number of steps since an anchor, over few and many steps */
+/* From every number of steps since a refresh, over few and many steps */
 static void jumps(const struct pair *p, const char *name, double bound)
 {
     struct off o = {{0}, {0}};

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* cut.h: steps of a scheme with a remainder whose formulas the state chooses.  A whole step goes by the scheme's own
- * tables with the formulas of given intervals, and is looked at from both ends; one that crosses a breakpoint is made
- * again in parts, from crossing to crossing, each with e^{A tau} of its own length.  Included by the file of each
- * model, which defines before it what chosen.h asks, and
+/* event_split.h: steps of a scheme with a remainder whose formulas the state chooses.  A whole step goes by the
+ * scheme's own tables with the formulas of given intervals, and is looked at from both ends; one that crosses a
+ * breakpoint is made again in parts, from crossing to crossing, each with e^{A tau} of its own length.  Included by the
+ * file of each model, which defines before it what chosen.h asks, and
  *
  *     PL_STATES, PL_ACTING, PL_FORCES   of x, which is the states, what acts on them (load states, inputs, slopes of
  *                                inputs), and each force that is left over with two derivatives
  *     PL_FASTEST                 the sizes |A| have no larger pole [1/s]
- *     PL_SWIFT, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
+ * PL_FAST_PATH, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
  *     PL_CARRIES                 entries of the member carry, which a step changes
  *     PL_MAX_SPLITS              halvings in the search of a crossing
  *     PL_TERMS                   what is watched: expressions, and behind them what the search of events looks at
@@ -30,7 +30,7 @@
 #include "chosen.h"
 
 #define PL_SIZE (PL_STATES + PL_ACTING + 3 * PL_FORCES)
-#define PL_KEEPS_LOOK (PL_INPUTS == 0 && PL_SEGMENTS == 1) /* what a step ends with the next begins with */
+#define PL_KEEPS_CHECK (PL_INPUTS == 0 && PL_SEGMENTS == 1) /* what a step ends with the next begins with */
 #define PL_SHORTER (-1)                                    /* a part is to be tried again over a shorter time */
 
 #if PL_SINGLE
@@ -121,17 +121,17 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
 {
     const real at = p->done * PL_H, tau = size * PL_H;
     real acting[PL_ROOM(PL_ACTING)], x[PL_SIZE], a[PL_SIZE], b[PL_SIZE];
-    real r[PL_FORCES], ra[PL_FORCES], rb[PL_FORCES], rc[PL_FORCES], work[PL_CUT_WORK(PL_SIZE)];
-    pl_two room[PL_CUT_ROOM(PL_SIZE)];
-    pl_cut cut;
-    int i, status = pl_cut_begin(&cut, PL_SIZE, PL(slope_matrix)[p->segment][0], PL_FASTEST, tau, work, room);
+    real r[PL_FORCES], ra[PL_FORCES], rb[PL_FORCES], rc[PL_FORCES], work[PL_EVENT_SPLIT_WORK(PL_SIZE)];
+    pl_two room[PL_EVENT_SPLIT_ROOM(PL_SIZE)];
+    pl_event_split cut;
+    int i, status = pl_event_split_begin(&cut, PL_SIZE, PL(slope_matrix)[p->segment][0], PL_FASTEST, tau, work, room);
     if (status != 0) {
         return status;
     }
     PL(acting)(p->s, p->start, p->slope, at, acting);
     PL(forces)(p, at, y, r);
     PL(gather)(y, acting, r, x);
-    pl_cut_flow(&cut, 1, x, a); /* a = F y + q1 r */
+    pl_event_split_flow(&cut, 1, x, a); /* a = F y + q1 r */
     PL(forces)(p, at + tau / 2, a, ra);
     for (i = 0; i < PL_FORCES; i++) {
         rc[i] = ra[i] - r[i];
@@ -140,7 +140,7 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
     for (i = 0; i < PL_STATES + PL_ACTING; i++) {
         x[i] = 0;
     }
-    pl_cut_flow(&cut, 1, x, b); /* b = F y + q1 r(a) */
+    pl_event_split_flow(&cut, 1, x, b); /* b = F y + q1 r(a) */
     for (i = 0; i < PL_STATES; i++) {
         b[i] += a[i];
     }
@@ -149,11 +149,11 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
         rc[i] = 2 * rb[i] - r[i];
     }
     PL(gather)(a, a + PL_STATES, rc, x);
-    pl_cut_flow(&cut, 1, x, b); /* c = F a + q1 (2 r(b) - r) */
+    pl_event_split_flow(&cut, 1, x, b); /* c = F a + q1 (2 r(b) - r) */
     PL(forces)(p, at + tau, b, rc);
     PL(gather)(y, acting, r, x);
     PL(bend)(r, ra, rb, rc, tau, x);
-    pl_cut_flow(&cut, 0, x, b);
+    pl_event_split_flow(&cut, 0, x, b);
     for (i = 0; i < PL_STATES; i++) {
         next[i] = b[i];
     }
@@ -172,7 +172,7 @@ static PL_APART void PL(look)(const PL(piece) *p, real at, const real y[PL_STATE
 /* How far off its breakpoint an expression still is on it */
 static inline real PL(slack)(real noise, real terms)
 {
-#if PL_SWIFT
+#if PL_FAST_PATH
     return noise * terms;
 #else
     (void)noise;
@@ -183,7 +183,7 @@ static inline real PL(slack)(real noise, real terms)
 
 static inline int PL(is_above)(real value, real bound)
 {
-    return PL_SWIFT ? value >= bound : value > bound;
+    return PL_FAST_PATH ? value >= bound : value > bound;
 }
 
 #if PL_CONTACTS
@@ -329,7 +329,7 @@ static int PL(search_step)(PL(piece) *p, real to, real c[PL_WAY + 1][PL_TERMS], 
     if (p->splits < 0) {
         return PL_TOO_MANY_EVENTS;
     }
-#if PL_SWIFT
+#if PL_FAST_PATH
     if (size > PL_CERTAIN &&
         (found->time >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
                                         p->contact->interval, size, terms, PL_NOISE))) {
@@ -375,7 +375,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
         found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, PL(column)[found.expression],
                                PL(breakpoint_of)(&found), found.upward, next);
     }
-    p->longest = PL_SWIFT && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
+    p->longest = PL_FAST_PATH && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
     for (i = 0; i < PL_STATES && found.time != 0; i++) {
         y[i] = next[i];
     }
@@ -419,7 +419,7 @@ static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
 
 /* Where a step comes near a breakpoint: whether it meets none; else *crossing, and its time below 0 where that is not
  * known.  c, d: of both ends of all of h */
-static PL_APART int PL(is_clear)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+static PL_APART int PL(is_event_free)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
                                  const real terms[PL_TERMS], pl_crossing *crossing)
 {
     *crossing = p->contact->last;
@@ -428,7 +428,7 @@ static PL_APART int PL(is_clear)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], con
         return 0;
     }
     crossing->time = PL(meets)(p, c, d, terms, 1, crossing);
-#if PL_SWIFT
+#if PL_FAST_PATH
     if (!PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
         return 0;
     }
@@ -438,7 +438,7 @@ static PL_APART int PL(is_clear)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], con
 
 #endif
 
-/* Whether the step that was made stands, as is_clear: the loads have had one formula in it, too */
+/* Whether the step that was made stands, as is_event_free: the loads have had one formula in it, too */
 static inline int PL(stands)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
                              real terms[PL_TERMS], pl_crossing *crossing)
 {
@@ -452,16 +452,16 @@ static inline int PL(stands)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const r
         return 1;
     }
 #if PL_CONTACTS
-    return PL(is_clear)(p, c, d, terms);
+    return PL(is_event_free)(p, c, d, terms);
 #else
-    return PL(is_clear)(p, c, d, terms, crossing);
+    return PL(is_event_free)(p, c, d, terms, crossing);
 #endif
 }
 
 /* The expressions at the start of the step */
 static inline void PL(look_first)(const PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
 {
-#if PL_KEEPS_LOOK
+#if PL_KEEPS_CHECK
     if (p->s->ended) {
         int i;
         for (i = 0; i < PL_TERMS; i++) {
@@ -478,7 +478,7 @@ static inline void PL(look_first)(const PL(piece) *p, real c[PL_WAY + 1][PL_TERM
 /* They are kept for the step that follows; NULL: they are not. */
 static inline void PL(keep_look)(PL_TYPE *s, const real d[2][PL_TERMS], const real terms[PL_TERMS])
 {
-#if PL_KEEPS_LOOK
+#if PL_KEEPS_CHECK
     int i;
     s->ended = d != NULL;
     for (i = 0; i < PL_TERMS && d != NULL; i++) {
@@ -551,7 +551,7 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
         }
 #endif
         PL(keep_look)(s, NULL, NULL);
-        p.first = !PL_SWIFT && crossing.time >= 0 ? &crossing : NULL;
+        p.first = !PL_FAST_PATH && crossing.time >= 0 ? &crossing : NULL;
         s->status |= p.splits < 0 ? PL_TOO_MANY_EVENTS : PL(between)(&p, 1, s->y);
         PL(begin_anew)(s);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Schemes with a remainder from crossing to crossing: what the runtime's cut.h, which the model's file includes, is
- * of the model, and a whole step by the scheme's own tables. */
+/* Schemes with a remainder from crossing to crossing: what the runtime's event_split.h, which the model's file
+ * includes, is of the model, and a whole step by the scheme's own tables. */
 #include "inner.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
@@ -8,14 +8,14 @@
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 
-static const struct cut *cut_of(const struct emitter *e)
+static const struct event_split *event_split_of(const struct emitter *e)
 {
-	return e->step->cut;
+	return e->step->event_split;
 }
 
 /* ---- the header ---- */
 
-void emit_cut_members(const struct emitter *e)
+void emit_event_split_members(const struct emitter *e)
 {
 	int count = terms_of_events(e);
 	if (e->step->normal)
@@ -26,7 +26,7 @@ void emit_cut_members(const struct emitter *e)
 		       "    int ended;            /* they are there */\n", count, count);
 }
 
-void emit_cut_place(const struct emitter *e)
+void emit_event_split_place(const struct emitter *e)
 {
 	say(e, "\nstatic void $n_place($n *s);  /* what follows from a state that was set */\n");
 }
@@ -35,26 +35,26 @@ void emit_cut_place(const struct emitter *e)
 
 static int acting_entries(const struct emitter *e)
 {
-	return cut_of(e)->layout.size - e->system->states - CUT_POWERS * e->model->remainder.channels;
+	return event_split_of(e)->layout.size - e->system->states - SPLIT_POWERS * e->model->remainder.force_columns;
 }
 
 static void emit_flow_tables(const struct emitter *e)
 {
-	const struct layout *layout = &cut_of(e)->layout;
+	const struct layout *layout = &event_split_of(e)->layout;
 	int size = layout->size, segments = e->system->segments;
 	const char **name = layout_names(layout, e->system, e->model);
 	double *value = ARRAY(double, (size_t)(segments * size * size));
 	for (int i = 0; i < e->system->states; i++)
 		name[i] = format("%s'", name[i]);
 	for (int i = 0; i < segments * size * size; i++)
-		value[i] = cut_of(e)->slopes[i / (size * size)][i % (size * size)];
+		value[i] = event_split_of(e)->slopes[i / (size * size)][i % (size * size)];
 	emit_array(e, "x' = A x in each segment of time; x: y, what acts on it, each force with two derivatives",
 		   "slope_matrix", 3, (const int[]){ segments, size, size }, value, name);
 }
 
 static void emit_acting_inputs(const struct emitter *e)
 {
-	const struct layout *layout = &cut_of(e)->layout;
+	const struct layout *layout = &event_split_of(e)->layout;
 	for (int i = 0; i < e->system->inputs; i++) {
 		int at = layout->input[i] - layout->states;
 		bool ramp = e->system->input[i].hold;
@@ -67,7 +67,7 @@ static void emit_acting_inputs(const struct emitter *e)
 /* The load states and inputs at a time of the step */
 static void emit_acting(const struct emitter *e)
 {
-	const struct layout *layout = &cut_of(e)->layout;
+	const struct layout *layout = &event_split_of(e)->layout;
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads), time = false;
 	for (int l = 0; l < e->system->loads; l++) {
 		wanted[l] = layout->load[l] >= 0;
@@ -111,30 +111,32 @@ static void emit_whole(const struct emitter *e)
 
 static void emit_algorithm(const struct emitter *e)
 {
-	const struct expansion *x = cut_of(e)->look;
+	const struct expansion *x = event_split_of(e)->event_check;
 	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
-		   { "FORCES", e->model->remainder.channels }, { "CARRIES", e->step->carried.count },
+		   { "FORCES", e->model->remainder.force_columns }, { "CARRIES", e->step->carried.count },
 		   { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
 		   { "EXPRESSIONS", x->expressions }, { "TERMS", terms_of_events(e) },
 		   { "CONTACTS", meets_contacts(e) }, { "INPUTS", e->system->inputs },
-		   { "SEGMENTS", e->system->segments }, { "CHOICES", has_choices(by_series(e, e->step->cut->look)) },
+		   { "SEGMENTS", e->system->segments },
+		   { "CHOICES", has_choices(by_series(e, e->step->event_split->event_check)) },
 		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
-		   { "SWIFT", cut_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });
+		   { "FAST_PATH", event_split_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });
 	if (e->step->normal)
 		emit_mode_sizes(e);
-	emit_divided_macros(by_series(e, e->step->cut->look));
+	emit_divided_macros(by_series(e, e->step->event_split->event_check));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
-	       "#include \"cut.h\"\n", shortest(cut_of(e)->fastest), shortest(cut_of(e)->certain));
+	       "#include \"event_split.h\"\n", shortest(event_split_of(e)->fastest),
+		       shortest(event_split_of(e)->certain));
 }
 
-void emit_cut_step(const struct emitter *e)
+void emit_event_split_step(const struct emitter *e)
 {
 	enum { CUBIC = 3 };
-	const struct emitter *l = by_series(e, e->step->cut->look);
+	const struct emitter *l = by_series(e, e->step->event_split->event_check);
 	emit_force_table(l);
-	emit_frozen_function(by_series(e, e->step->cut->forces));
-	emit_ends_function(by_series(e, e->step->cut->ends));
+	emit_frozen_function(by_series(e, e->step->event_split->forces));
+	emit_ends_function(by_series(e, e->step->event_split->ends));
 	emit_expand_from(l);
 	emit_divided_tables(l);
 	emit_passing_table(e, CUBIC + meets_contacts(e));

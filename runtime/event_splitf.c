@@ -1,4 +1,4 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* cut.c over float. */
+/* event_split.c over float. */
 #define REAL_IS_FLOAT
-#include "cut.c"
+#include "event_split.c"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* How a part of a step goes on, of any length, where linear terms are exact: by e^{A tau}.  The stages of a scheme that
- * takes such parts are in cut.h. */
+ * takes such parts are in event_split.h. */
 #include "two.h"
 
 /* ---- x <- e^{A tau} x ---- */
@@ -36,7 +36,7 @@ static void by_series(int size, const real *A, real tau, int terms, const real *
     }
 }
 
-/* D <- e^{A tau} - I for half of tau and, behind it, for all of it.  work: PL_CUT_ROOM */
+/* D <- e^{A tau} - I for half of tau and, behind it, for all of it.  work: PL_EVENT_SPLIT_ROOM */
 static int make_tables(int size, const real *A, real tau, real *D, pl_two *work)
 {
     const int cells = size * size;
@@ -64,7 +64,7 @@ static int make_tables(int size, const real *A, real tau, real *D, pl_two *work)
 
 /* ---- the part ---- */
 
-int pl_cut_begin(pl_cut *m, int size, const real *A, real fastest, real tau, real *work, pl_two *room)
+int pl_event_split_begin(pl_event_split *m, int size, const real *A, real fastest, real tau, real *work, pl_two *room)
 {
     m->size = size;
     m->terms = fastest * tau <= (real)TURN ? terms_of(fastest * tau) : 0;
@@ -75,7 +75,7 @@ int pl_cut_begin(pl_cut *m, int size, const real *A, real fastest, real tau, rea
     return m->terms != 0 ? 0 : make_tables(size, A, tau, work, room);
 }
 
-void pl_cut_flow(const pl_cut *m, int half, const real *x, real *out)
+void pl_event_split_flow(const pl_event_split *m, int half, const real *x, real *out)
 {
     int i;
     if (m->terms) {
