@@ -83,7 +83,7 @@ static int chosen_steps(struct step *step, const struct refresh *refresh)
 {
 	int asked = step->model->asked.refresh;
 	if (asked && !is_steady(step, refresh, asked)) {
-		note_aside(step, format("a load changes by more than e^%d between refresh", MOST_GROWTH));
+		note_aside(step, format("a load changes by more than e^%d between refreshes", MOST_GROWTH));
 		asked = 0;
 	}
 	int steps = asked ? asked : REFRESH_STEPS;
