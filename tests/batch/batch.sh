@@ -75,7 +75,7 @@ tests/peaks/tuned.spec
 tests/batch/free.spec
 tests/batch/loaded.spec --anchors 1
 tests/batch/record.spec
-tests/anchors/fast.spec --anchors 1
+tests/refresh/fast.spec --anchors 1
 ${LONG:+tests/relative/drive.spec
 models/oscillator.spec --real float
 models/sdcsf.spec --form delta --accuracy compensated --anchors 1
