@@ -11,12 +11,11 @@
  */
 #include "judge.h"
 #include "cases.h"
-#include "drawn.h"
+#include "constants.h"
 #include "random_spec.h"
 #include "emit/printed.h"
 #include "model/linear/inner.h"
 
-#include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -32,7 +31,7 @@ static struct {
     bool verbose;
 } trial = { .variant = "" };
 
-static void complain(const char *what)
+void complain(const char *what)
 {
     if (trial.failed++ < MISMATCHES_SHOWN)
         printf("# %s: %s\n", trial.variant, what);
@@ -73,23 +72,6 @@ static struct model *model_of(const char *text, const struct variant *v)
 }
 
 /* ---- what should stand there ---- */
-
-struct list {
-    int count, room;
-    double *value;
-    const char **what;
-};
-
-static void append(struct list *list, double value, const char *what)
-{
-    if (list->count == list->room) {
-        list->room = 2 * list->room + 64;
-        ENLARGE(list->value, (size_t)list->room);
-        ENLARGE(list->what, (size_t)list->room);
-    }
-    list->value[list->count] = value;
-    list->what[list->count++] = what;
-}
 
 struct wanting {
     const struct judge *judge;
@@ -225,122 +207,6 @@ static void want_kick_drift_kick(struct wanting *w)
         want_kick(w, i);
         want_loads_and_inputs(w, system->velocity[i]);
     }
-}
-
-/* ---- what stands there ---- */
-
-static bool starts_with(const char *text, const char *start)
-{
-    return strncmp(text, start, strlen(start)) == 0;
-}
-
-/* A sum that stands apart, by its number: its numbers are read wherever another one has it as a term */
-static struct list shared[LIMIT_STATES];
-
-static unsigned long part_number(const char *name)
-{
-    const unsigned long part = starts_with(name, "part") ? strtoul(name + strlen("part"), NULL, 10) : 0;
-    return part < LIMIT_STATES ? part : 0;
-}
-
-static void use_part(const char *name, struct list *list)
-{
-    const struct list *part = &shared[part_number(name)];
-    for (int i = 0; i < part->count; i++)
-        append(list, part->value[i], "");
-}
-
-/* Numbers with a point or an exponent from `text` to `end`, in their order; not those in comments.  A minus before one
- * is its sign, whether it subtracts or not: no sum here is subtracted as a whole. */
-static void read_numbers(const char *text, const char *end, bool single, struct list *list)
-{
-    for (bool minus = false; text < end;) {
-        if (strncmp(text, "/*", 2) == 0) {
-            text = strstr(text, "*/") + 2;
-        } else if (isalpha((unsigned char)*text) || *text == '_') {
-            use_part(text, list);
-            while (isalnum((unsigned char)*text) || *text == '_')
-                text++;
-            minus = false;
-        } else if (isdigit((unsigned char)*text)) {
-            char *after;
-            const double value = single ? (double)strtof(text, &after) : strtod(text, &after);
-            const bool real = strcspn(text, ".e") < (size_t)(after - text);
-            if (real && single != (*after == 'f'))
-                complain(format("%.*s %s suffix f", (int)(after - text), text, single ? "lacks a" : "has a"));
-            if (real)
-                append(list, minus && value != 0 ? -value : value, "");
-            text = after + (*after == 'f');
-            minus = false;
-        } else {
-            if (!isspace((unsigned char)*text))
-                minus = *text == '-';
-            text++;
-        }
-    }
-}
-
-/* Is this statement one of the step's sums?  The others compute loads and time, or store. */
-static bool is_sum(const char *text, const char *end)
-{
-    static const char *const sums[] = { "part", "kicked", "drifted" };
-    for (int i = 0; i < 3; i++)
-        if (starts_with(text, format("const double %s", sums[i])) ||
-            starts_with(text, format("const float %s", sums[i])))
-            return true;
-    if (starts_with(text, "s->y["))
-        return true;
-    while (isalnum((unsigned char)*text) || *text == '_')
-        text++;
-    return text < end && (starts_with(text, " += ") || starts_with(text, " = pl_accumulate"));
-}
-
-static void read_sum(const char *text, const char *end, bool single, struct list *list)
-{
-    const char *type = single ? "const float " : "const double ";
-    const unsigned long part = starts_with(text, type) ? part_number(text + strlen(type)) : 0;
-    read_numbers(part ? strchr(text, '=') : text, end, single, part ? &shared[part] : list);
-}
-
-static void read_step(const char *code, const char *name, bool single, struct list *list)
-{
-    const char *body = strstr(code, format("\nstatic void %s_plain_step(%s *s", name, name));
-    for (const char *next = code; !body && (next = strstr(next, format("\nvoid %s_step(%s *s", name, name))); next++)
-        if (strchr(next, '{') < strchr(next, ';'))
-            body = next;
-    if (!body) {
-        complain("no step function");
-        return;
-    }
-    const char *end = strstr(body, "\n}");
-    memset(shared, 0, sizeof shared);
-    for (const char *at = strchr(body, '{') + 1; at < end;) {
-        while (isspace((unsigned char)*at))
-            at++;
-        if (strncmp(at, "/*", 2) == 0) {
-            at = strstr(at, "*/") + 2;
-            continue;
-        }
-        const char *stop = strchr(at, ';');
-        if (!stop || stop > end)
-            break;
-        if (is_sum(at, stop))
-            read_sum(at, stop, single, list);
-        at = stop + 1;
-    }
-}
-
-/* NAME_table[...]... = { ... }; */
-static void read_table(const char *code, const char *name, const char *table, bool single, struct list *list)
-{
-    const char *at = strstr(code, format(" %s_%s[", name, table));
-    while (at && strchr(at, ';') < strchr(at, '='))
-        at = strstr(at + 1, format(" %s_%s[", name, table));
-    if (!at) {
-        complain(format("no table %s", table));
-        return;
-    }
-    read_numbers(strchr(at, '='), strstr(at, "\n};"), single, list);
 }
 
 /* ---- both ---- */
@@ -681,110 +547,6 @@ static bool try_spec(const char *text)
     if (!compared)
         printf("# nothing was compared\n");
     return good && compared;
-}
-
-/* ---- undamped systems ---- */
-
-/* A decimal with few or many digits and its value */
-static double decimal(int least, int most, const char **text)
-{
-    const int exponent = least + (int)below((unsigned)(most - least + 1));
-    *text = below(2) ? format("%.*fe%d", (int)below(3), 1 + (double)below(9000) / 1000, exponent)
-                     : format("%.15ge%d", 1 + (double)below(1u << 30) / (double)(1u << 27), exponent);
-    return strtod(*text, NULL);
-}
-
-/* Masses in a row, further springs between any two of them, some rows without a ground; masses equal or not; in some,
- * loads and inputs where masses are equal.  |pole| h is between 1e-6 and 2.4 by Gershgorin's bound. */
-static char *undamped_spec(uint64_t seed)
-{
-    random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
-    below(2);
-    const int n = seed % 15 == 0 ? 7 + (int)below(2) : 1 + (int)below(4);
-    const bool equal = below(2), grounded = below(3) > 0, loaded = equal && below(3) == 0,
-               sampled = equal && below(4) == 0;
-    double *mass = ARRAY(double, (size_t)n), *row = ARRAY(double, (size_t)n), bound = 1e-6;
-    const char *text = "model any\ncoord x1", *value;
-    for (int i = 1; i < n; i++)
-        text = format("%s, x%d", text, i + 1);
-    text = format("%s\n%s", text, sampled ? "input u\ninput v hold first\n" : "");
-    for (int i = 0; i < n; i++) {
-        if (i == 0 || !equal)
-            mass[i] = decimal(-1, 1, &value);
-        else
-            mass[i] = mass[0];
-        text = format("%smass %s at x%d\n", text, value, i + 1);
-    }
-    for (int i = 0; i < n; i++)
-        for (int k = i; k < n; k++)
-            if (k == i ? grounded && (i == 0 || below(3) == 0) : k == i + 1 ? below(12) > 0 : below(5) == 0) {
-                const double stiffness = decimal(0, 3, &value);
-                row[i] += 2 * stiffness;
-                row[k] += 2 * stiffness;
-                text = format("%sspring %s between x%d, %s\n", text, value, i + 1,
-                              k == i ? "ground" : format("x%d", k + 1));
-            }
-    for (int i = 0; i < n; i++) {
-        bound = fmax(bound, row[i] / mass[i]);
-        if (row[i] == 0)
-            text = format("%sforce 0*x%d on x%d\n", text, i + 1, i + 1);
-    }
-    if (loaded)
-        text = format("%sforce 3*cos(2.5*t) + 0.7*t on x1\nforce 1.25 on x%d\n", text, n);
-    if (loaded && below(2))
-        text = format("%sforce t < 0.4 ? 1 : exp(-t) on x1\n", text);
-    if (sampled)
-        text = format("%sforce 2*u - v on x1\nforce 0.5*v' on x%d\n", text, n);
-    const double largest = 2.4 / sqrt(bound);
-    return format("%sstep %.6g\n", text, largest * pow(10, -(double)below(7)) * (1 - 0.6 * (double)below(1000) / 1000));
-}
-
-/* ---- where rounding to double first would give another float ---- */
-
-/* h such that an entry is just beyond the middle of two floats, closer to it than doubles are: T = (1/2 + 2^-25)(1 +
- * 2^-60) */
-struct twice {
-    const char *name, *equation;
-    int (*angle)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);    /* h from T */
-    int times;
-};
-static int identity(mpfr_ptr y, mpfr_srcptr x, mpfr_rnd_t round)
-{
-    return mpfr_set(y, x, round);
-}
-static int cosine_increment(mpfr_ptr h, mpfr_srcptr T, mpfr_rnd_t round)        /* 1 - cos h = T */
-{
-    mpfr_ui_sub(h, 1, T, round);
-    return mpfr_acos(h, h, round);
-}
-static const struct twice twice[] = {
-    { "h as an entry of Phi, a drift", "x'' = 0", identity, 1 },
-    { "sin h", "x'' + x = 0", mpfr_asin, 1 },
-    { "cos h - 1", "x'' + x = 0", cosine_increment, 1 },
-    { "cos h", "x'' + x = 0", mpfr_acos, 1 },
-    { "-tan(h/2), a kick", "x'' + x = 0", mpfr_atan, 2 },
-    { "1 - cos h, a load", "x'' + x = 1", cosine_increment, 1 },
-    { "1 - cos h, an input", "x'' + x = u", cosine_increment, 1 }
-};
-enum { TWICE = sizeof twice / sizeof *twice };
-
-static char *twice_spec(const struct twice *t)
-{
-    mpfr_t T, h, shown;
-    mpfr_inits2(400, T, h, shown, NULL);
-    mpfr_set_ui_2exp(T, 1, -60, MPFR_RNDN);
-    mpfr_add_ui(T, T, 1, MPFR_RNDN);
-    mpfr_set_d(shown, 0.5 + 0x1p-25, MPFR_RNDN);
-    mpfr_mul(T, T, shown, MPFR_RNDN);
-    if ((float)mpfr_get_d(T, MPFR_RNDN) == mpfr_get_flt(T, MPFR_RNDN))
-        complain("this number does not tell one rounding from two");
-    t->angle(h, T, MPFR_RNDN);
-    mpfr_mul_ui(h, h, (unsigned long)t->times, MPFR_RNDN);
-    char *digits = NULL;
-    if (mpfr_asprintf(&digits, "%.80Rf", h) < 0)
-        exit(1);
-    return format("model any\ncoord x\n%s%s\nstep %s\n", strchr(t->equation, 'u') ? "input u\n" : "", t->equation,
-                  digits);
 }
 
 /* ---- the whole ---- */
