@@ -6,7 +6,7 @@
  *     constants [-n RANDOM] [-u UNDAMPED] [-s SEED] [-v] MODEL.spec ...
  *
  * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there,
- * and the tables Phi, Gamma, increment, load_factor and turned.  What they ought to be says the judge (judge.h).  Each
+ * and the tables Phi, Gamma, increment, load_factor and rotated.  What they ought to be says the judge (judge.h).  Each
  * variant runs in a process of its own.
  */
 #include "judge.h"
@@ -257,7 +257,7 @@ static void compare_table(const char *code, struct wanting *w, const char *table
             for (int k = from; k < to; k++)
                 want_table_entry(w, &numbers[(s * w->judge->states + i) * width + k],
                                  format("entry %d, %d of segment %d", i, k - from, s));
-    read_table(code, w->model->name, table, w->variant->single, &found);
+    numbers_of_table(code, w->model->name, table, w->variant->single, &found);
     compare_lists(table, &found, &expected);
 }
 
@@ -295,14 +295,14 @@ static void compare_columns(const char *code, const struct wanting *of, const st
     if (apart && g->inputs)
         return;                             /* not among these models: inputs behind loads that stand apart */
     want_columns(w, g, 0, apart ? g->states : all, 0);
-    read_table(code, w->model->name, format("columns%d", index), w->variant->single, &found);
+    numbers_of_table(code, w->model->name, format("columns%d", index), w->variant->single, &found);
     compare_lists("columns", &found, &expected);
     found.count = expected.count = 0;
     if (!apart)
         return;
     for (int s = 0; s < segments; s++)
         want_columns(w, g, g->states, loads, s);
-    read_table(code, w->model->name, format("loads%d", index), w->variant->single, &found);
+    numbers_of_table(code, w->model->name, format("loads%d", index), w->variant->single, &found);
     compare_lists("columns of loads", &found, &expected);
 }
 
@@ -350,8 +350,8 @@ static void compare_turned(const char *code, struct wanting *w)
     w->list = &expected;
     for (int l = 0; l < steps; l++)
         want_turned(w, l);
-    read_table(code, w->model->name, "turned", w->variant->single, &found);
-    compare_lists("turned", &found, &expected);
+    numbers_of_table(code, w->model->name, "rotated", w->variant->single, &found);
+    compare_lists("rotated", &found, &expected);
 }
 
 static void compare_code(const char *code, const struct step *step, const struct judge *j, const struct variant *v)
@@ -367,7 +367,7 @@ static void compare_code(const char *code, const struct step *step, const struct
             want_kick_drift_kick(&w);
         else
             want_rows(&w);
-        read_step(code, step->model->name, v->single, &found);
+        numbers_of_step(code, step->model->name, v->single, &found);
         drop_zeros(&found);
         drop_zeros(&expected);
         compare_lists("step", &found, &expected);

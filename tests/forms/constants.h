@@ -18,9 +18,9 @@ struct list {
 };
 
 void append(struct list *list, double value, const char *what);
-void read_step(const char *code, const char *name, bool single, struct list *list);
+void numbers_of_step(const char *code, const char *name, bool single, struct list *list);
 /* NAME_table[...]... = { ... }; */
-void read_table(const char *code, const char *name, const char *table, bool single, struct list *list);
+void numbers_of_table(const char *code, const char *name, const char *table, bool single, struct list *list);
 
 /* ---- constants_specs.c ---- */
 

@@ -91,7 +91,7 @@ static void read_sum(const char *text, const char *end, bool single, struct list
     read_numbers(part ? strchr(text, '=') : text, end, single, part ? &shared[part] : list);
 }
 
-void read_step(const char *code, const char *name, bool single, struct list *list)
+void numbers_of_step(const char *code, const char *name, bool single, struct list *list)
 {
     const char *body = strstr(code, format("\nstatic void %s_plain_step(%s *s", name, name));
     for (const char *next = code; !body && (next = strstr(next, format("\nvoid %s_step(%s *s", name, name))); next++)
@@ -119,7 +119,7 @@ void read_step(const char *code, const char *name, bool single, struct list *lis
     }
 }
 
-void read_table(const char *code, const char *name, const char *table, bool single, struct list *list)
+void numbers_of_table(const char *code, const char *name, const char *table, bool single, struct list *list)
 {
     const char *at = strstr(code, format(" %s_%s[", name, table));
     while (at && strchr(at, ';') < strchr(at, '='))
