@@ -17,6 +17,7 @@ enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PR
 struct options {
 	const char *spec, *output, *depfile, *solution;
 	const char *value;              /* of --response, --plot */
+	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;

@@ -74,12 +74,9 @@ static void leave_step_open(struct work *w)
 
 /* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and it is told
  * why. What stands in the way of any is said by the last. */
-static bool make(struct work *w)
+static bool make_of(struct work *w, const struct source *source)
 {
 	struct request *request = &w->options.request;
-	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
-	if (!source)
-		return false;
 	w->spec = parse_spec(source);
 	leave_step_open(w);
 	if (!diagnostics_errors() && !request->scheme && !w->spec->asked.scheme && !request->solution) {
@@ -89,6 +86,41 @@ static bool make(struct work *w)
 		w->spec = parse_spec(source);
 	}
 	return make_model(w) && make_step(w);
+}
+
+/* What a linear model has; of a nonlinear one its linear equations at a point are asked, by default at rest. */
+static const char *place_of_views(const struct options *o)
+{
+	const bool views = o->print == PRINT_RESPONSE || (o->print == PRINT_PLOT && !strstr(o->value, "response"));
+	return o->at ? o->at : views && !o->amplitude ? "rest" : NULL;
+}
+
+/* The spec, or that of its linear equations; NULL: it was said why not */
+static const struct source *source_of(struct work *w)
+{
+	struct request *request = &w->options.request;
+	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
+	request->linearise = place_of_views(&w->options);
+	if (!source || !request->linearise)
+		return source;
+	w->spec = parse_spec(source);
+	struct model *model = diagnostics_errors() ? NULL : model_build(w->spec, request);
+	request->linearise = NULL;
+	if (!model)
+		return diagnostics_errors() ? NULL : source;
+	if (!model->linearised && w->options.at)
+		stand_aside(w->spec->name_at, "--at", "the model is linear");
+	if (!model->linearised)
+		return source;
+	request->definitions = 0;
+	request->scheme = request->tolerance = NULL;
+	return source_text(format("%s, linearised", source->name), model->linearised);
+}
+
+static bool make(struct work *w)
+{
+	const struct source *source = source_of(w);
+	return source && make_of(w, source);
 }
 
 /* ---- where the spec says how exact it has to be ---- */

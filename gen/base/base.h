@@ -199,6 +199,7 @@ struct place {
 };
 /* "-" is standard input, unless `at` names the file; says what went wrong, there or at its start, and returns NULL */
 struct source *source_read(const char *path, struct place at);
+struct source *source_text(const char *name, const char *text);
 struct source *source_argument(const char *text);          /* a value from the command line */
 struct place place_end(const struct source *source);       /* just after the last character of the last line */
 

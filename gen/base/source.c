@@ -317,6 +317,11 @@ static struct source *source_new(const char *name, const char *base, char *text,
 	return source;
 }
 
+struct source *source_text(const char *name, const char *text)
+{
+	return source_new(name, name, format("%s", text), strlen(text));
+}
+
 struct source *source_argument(const char *text)
 {
 	return source_new("<command line>", "command line", format("%s", text), strlen(text));

@@ -6,7 +6,8 @@
 
 struct differentiation {
 	struct collector *c;
-	int coord, order;           /* of the state */
+	enum basis_kind kind;       /* BASIS_COORD, or BASIS_INPUT: */
+	int index, order;           /* what it is by */
 	struct form **known;        /* per atom: its derivative, once found */
 	int count;
 };
@@ -161,7 +162,7 @@ static struct form *derive_reciprocal(struct differentiation *d, const struct at
 static struct form *derive_atom(struct differentiation *d, const struct atom *a)
 {
 	const struct form *itself = form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
-	if (!a->state)
+	if (d->kind == BASIS_INPUT ? !a->input : !a->state)
 		return NEW(struct form);
 	switch (a->kind) {
 	case ATOM_PRODUCT:    return derive_product(d, a);
@@ -191,17 +192,19 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
 			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
-		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord &&
+		else if (term->basis.kind == d->kind && term->basis.index == d->index &&
 			 term->basis.order == d->order)
 			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
 	}
 	return total;
 }
 
-struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order)
+struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, bool by_input, int index,
+			       int order)
 {
 	int atoms = atoms_count(c->atoms);
-	struct differentiation d = { c, coord, order, ARRAY(struct form *, atoms), atoms };
+	struct differentiation d = { c, by_input ? BASIS_INPUT : BASIS_COORD, index, order, ARRAY(struct form *, atoms),
+				     atoms };
 	struct form **slope = ARRAY(struct form *, count);
 	for (int i = 0; i < count; i++)
 		slope[i] = derive(&d, form[i]);
@@ -222,11 +225,12 @@ struct point {
 
 static struct form *place_form(struct point *p, const struct form *form);
 
-static mpq_srcptr fixed_coordinate(const struct point *p, const struct basis *basis)
+static mpq_srcptr fixed_value(const struct point *p, const struct basis *basis)
 {
+	const enum symbol_kind kind = basis->kind == BASIS_INPUT ? SYMBOL_INPUT : SYMBOL_COORD;
 	for (int i = 0; i < p->fixings; i++) {
 		const struct fixing *f = &p->fixing[i];
-		if (f->symbol && f->symbol->kind == SYMBOL_COORD && f->coord == basis->index &&
+		if (f->symbol && f->symbol->kind == kind && f->coord == basis->index &&
 		    f->order == basis->order)
 			return f->value;
 	}
@@ -313,7 +317,8 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 static struct form *place_basis(struct point *p, const struct basis *basis)
 {
 	const struct fixing *time = fixed_time(p);
-	mpq_srcptr value = basis->kind == BASIS_COORD ? fixed_coordinate(p, basis) : NULL;
+	const bool is_named = basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT;
+	mpq_srcptr value = is_named ? fixed_value(p, basis) : NULL;
 	if (value)
 		return form_constant(value);
 	if (basis->kind == BASIS_WAVE && time)

@@ -203,13 +203,14 @@ struct form *time_part(const struct form *form, bool atoms); /* its terms of tim
 
 struct fixing {                     /* a name that `operator at` fixes */
 	struct place at;
-	const struct symbol *symbol; /* a let or a coordinate; NULL: t */
-	int coord, order;           /* of a coordinate, one component */
+	const struct symbol *symbol; /* a let, a coordinate or an input; NULL: t */
+	int coord, order;           /* of a coordinate, one component; of an input */
 	const struct form *form;    /* constant: pi stays pi */
 	mpq_t value;
 };
 /* With respect to one state: a coordinate, or its velocity */
-struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order);
+struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, bool by_input, int index,
+			       int order);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
 void point_at_values(struct point *point);                  /* tunable params have the spec's values there */

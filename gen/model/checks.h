@@ -46,6 +46,10 @@ bool squared_frequencies(const struct linear *system, double *value);
 double fastest_pole(const struct linear *system);           /* its size [1/s]; 0: not found */
 double fastest_decay(const struct linear *system);          /* the largest -Re of a pole [1/s], at least 0 */
 
+/* ---- linearise.c: the linear equations at a point, as a spec ---- */
+
+void linearise(void *building);                             /* fills in model->linearised */
+
 /* ---- lint.c: what is no mistake of language, and yet seldom meant ---- */
 
 void lint(struct building *b);

@@ -12,7 +12,7 @@ static struct form **columns(struct building *b, int coord, int order)
 	const struct form **row = ARRAY(const struct form *, b->model->n);
 	for (int i = 0; i < b->model->n; i++)
 		row[i] = b->whole->residual[i].form;
-	return form_derivatives(&b->collector, b->model->n, row, coord, order);
+	return form_derivatives(&b->collector, b->model->n, row, false, coord, order);
 }
 
 void jacobian_forms(void *context)

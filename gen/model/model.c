@@ -535,10 +535,19 @@ static void build_parts(struct building *b)
 		build_regions(b);
 }
 
+static void forget_tunables(struct spec *spec)
+{
+	for (int k = 0; k < spec->tunables; k++)
+		spec->tunable[k].symbol->tuning = (struct symbol_tuning){ 0 };
+	spec->tunables = 0;
+}
+
 struct model *model_build(struct spec *spec, const struct request *request)
 {
 	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
 	struct model *model = b.model;
+	if (request->linearise)                 /* params are those of the spec */
+		forget_tunables(spec);
 	begin_model(&b);
 	for (int i = 0; i < request->definitions; i++)
 		define_override(&b, request->definition[i]);
@@ -550,7 +559,13 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	collect_model(&b);
 	build_parts(&b);
 	model->equations.irrationals = b.collector.irrationals;
-	bool told = request->solution || request->again.tunable || request->again.relative || request->again.undivided;
+	if (!diagnostics_errors() && request->linearise) {
+		silent_guard(find_nonlinear, &b);
+		if (model->nonlinear.terms > 0)
+			statement_guard(linearise, &b);
+	}
+	bool told = request->linearise || request->solution || request->again.tunable || request->again.relative ||
+		    request->again.undivided;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !told && warnings_are_heard())

@@ -37,6 +37,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
+	const char *linearise;      /* where: rest, or states and their values; NULL: nowhere */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	int definitions;

@@ -25,6 +25,7 @@ void person_nonlinear(FILE *to, const struct step *step)
 {
 	fprintf(to, "The model is not linear, so it has no poles, mode shapes, frequency responses and static gains. "
 		    "They would leave out:\n    %s\n", nonlinear_text(step));
+	fputs("--at rest has those of the linear equations at an equilibrium.\n", to);
 	if (can_be_swept(step))
 		fputs("--response F0:F1 --amplitude A sweeps through all regions.\n", to);
 }
@@ -46,7 +47,7 @@ void need_linear(const struct step *step, const char *what)
 		return;
 	error(model->nonlinear.term[0].at,
 	      can_be_swept(step) ? "--response and --plot frf with --amplitude A sweep through all regions"
-				 : "plrun runs any model, also with a record that sweeps",
+				 : "--at rest takes the linear equations at an equilibrium",
 	      "the model is not linear, so there are no %s: they would leave out '%s'%s", what,
 	      model->nonlinear.term[0].text,
 	      model->nonlinear.terms > 1 ? format(" and %d more", model->nonlinear.terms - 1) : "");

@@ -285,7 +285,7 @@ static void find_jacobian(void *context)
 	for (int state = 0; state < system->states; state++) {
 		int coord = system->coord[state], order = state >= n;
 		mpq_t *matrix = order ? work->operator->C : work->operator->K;
-		struct form **slope = form_derivatives(c, n, residual, coord, order);
+		struct form **slope = form_derivatives(c, n, residual, false, coord, order);
 		for (int i = 0; i < n; i++)
 			constant_part(c, form_at(point, slope[i]), matrix[i * n + coord]);
 	}
@@ -381,8 +381,8 @@ static void differentiate_left(void *context)
 	const struct form *const *left = (const struct form *const *)model->schedule.operator[0].left;
 	model->remainder.slope = ARRAY(struct form *, (size_t)(model->remainder.force_columns * system->states));
 	for (int i = 0; i < system->states; i++) {
-		struct form **slope =
-			form_derivatives(&b->collector, model->remainder.force_columns, left, system->coord[i],
+		struct form **slope = form_derivatives(&b->collector, model->remainder.force_columns, left, false,
+						       system->coord[i],
 						       i >= system->n);
 		for (int e = 0; e < model->remainder.force_columns; e++)
 			model->remainder.slope[e * system->states + i] = slope[e];

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model at a point, where it is linearised. */
+#ifndef PLGEN_MODEL_LINEARISE_H
+#define PLGEN_MODEL_LINEARISE_H
+
+#include "building.h"
+
+struct linearising {
+	struct building *b;
+	int n, states, inputs;
+	const struct symbol **input;
+	int fixings;
+	struct fixing *fixing;      /* states, highest derivatives, inputs and their slopes, t */
+	mpq_t *state;               /* the point */
+	const struct form **residual; /* per row: F without what depends on time alone */
+	mpq_t *F;
+	bool looks, varies;         /* slopes are looked at for what depends on time; some does */
+	double fall;                /* how far it moves where nothing holds it, doubled each time */
+};
+
+/* ---- equilibrium.c: the point, the equations and their derivatives there ---- */
+
+void list_fixings(struct linearising *l);
+/* d form / d what `fixing` fixes, of `count` forms at the point */
+void slopes_at(struct linearising *l, int count, const struct form *const *form, int fixing, mpq_t *slope);
+void find_residuals(struct linearising *l);                 /* F, where the highest derivatives are 0 */
+bool is_equilibrium(const struct linearising *l);           /* F is 0 */
+/* From the point on, without velocities; leaves the statement where none is found */
+void find_equilibrium(struct linearising *l);
+/* Highest derivatives at the point, of which outputs may be functions: W^-1 (-F) */
+void find_highest(struct linearising *l);
+/* Slopes a hair beside the point, on both sides of it in each state, have to be those of the point. */
+void check_kinks(struct linearising *l);
+
+#endif
