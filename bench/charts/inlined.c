@@ -68,15 +68,199 @@ struct inlined {
 	int inside;
 };
 
-#define STEPPER "inlined_step.h"
-#include "instances.h"
+/* ---- steps for one right-hand side, which an instance below compiles into them ----
+ *
+ * state: n coordinates, velocities, and the accelerations that some methods keep from one step to the next. n is a
+ * constant wherever these functions are inlined, and loops over a state's entries are then unrolled. */
 
-#define SLOPES_OF(NAME, N) \
+enum { MOST_SIZE = 2 * MOST_COORDINATES };
+typedef void slopes_function(double t, const double *y, double *f);
+typedef void step_function(const int n, slopes_function *slopes, double t, double h, double *state);
+#define EACH(count) _Pragma("GCC unroll 4") for (int m = 0; m < (count); m++)
+
+/* k1: the slope at the start */
+INLINE void rk4_from(const int n, slopes_function *slopes, double t, double h, double *state, const double *k1)
+{
+	const double half = 0.5 * h, sixth = h / 6.0;
+	double k2[MOST_SIZE], k3[MOST_SIZE], k4[MOST_SIZE], x[MOST_SIZE];
+	EACH(2 * n)
+		x[m] = state[m] + half * k1[m];
+	slopes(t + half, x, k2);
+	EACH(2 * n)
+		x[m] = state[m] + half * k2[m];
+	slopes(t + half, x, k3);
+	EACH(2 * n)
+		x[m] = state[m] + h * k3[m];
+	slopes(t + h, x, k4);
+	EACH(2 * n)
+		state[m] += sixth * (k1[m] + 2.0 * (k2[m] + k3[m]) + k4[m]);
+}
+
+INLINE void rk4_step(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	double k1[MOST_SIZE];
+	slopes(t, state, k1);
+	rk4_from(n, slopes, t, h, state, k1);
+}
+
+/* Over several units, with the slope that the next one begins with */
+INLINE void rk4_long(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	double k1[MOST_SIZE];
+	EACH(2 * n)
+		k1[m] = state[n + m];
+	rk4_from(n, slopes, t, h, state, k1);
+	slopes(t + h, state, k1);
+	EACH(n)
+		state[2 * n + m] = k1[n + m];
+}
+
+INLINE void heun_step(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	double k1[MOST_SIZE], k2[MOST_SIZE], x[MOST_SIZE];
+	slopes(t, state, k1);
+	EACH(2 * n)
+		x[m] = state[m] + h * k1[m];
+	slopes(t + h, x, k2);
+	EACH(2 * n)
+		state[m] += 0.5 * h * (k1[m] + k2[m]);
+}
+
+/* Velocity Verlet; forces of velocity see v + h a, as in fixed.c */
+INLINE void verlet_step(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	double *q = state, *v = state + n, *a = state + 2 * n, x[MOST_SIZE], f[MOST_SIZE];
+	EACH(n) {
+		x[m] = q[m] + h * (v[m] + 0.5 * h * a[m]);
+		x[n + m] = v[m] + h * a[m];
+	}
+	slopes(t + h, x, f);
+	EACH(n) {
+		q[m] = x[m];
+		v[m] += 0.5 * h * (a[m] + f[n + m]);
+		a[m] = f[n + m];
+	}
+}
+
+/* Kicks b h and drifts a h in turns, symmetric: a kick first and last, so that its force is kept */
+INLINE void turns(const int n, slopes_function *slopes, double t, double h, double *state, const int drifts,
+                  const double *drift, const double *kick)
+{
+	double *q = state, *v = state + n, *a = state + 2 * n, f[MOST_SIZE];
+	_Pragma("GCC unroll 20") for (int i = 0; i < drifts; i++) {
+		const double kick_now = kick[i <= drifts / 2 ? i : drifts - i];
+		const double drift_now = drift[i <= drifts / 2 ? i : drifts - 1 - i];
+		EACH(n) {
+			v[m] += kick_now * h * a[m];
+			q[m] += drift_now * h * v[m];
+		}
+		slopes(t, state, f);
+		EACH(n)
+			a[m] = f[n + m];
+	}
+	EACH(n)
+		v[m] += kick[0] * h * a[m];
+}
+
+INLINE void blanes_moan_step(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	turns(n, slopes, t, h, state, BLANES_MOAN, blanes_moan_drift, blanes_moan_kick);
+}
+
+INLINE void kahan_li_step(const int n, slopes_function *slopes, double t, double h, double *state)
+{
+	turns(n, slopes, t, h, state, KAHAN_LI, kahan_li_drift, kahan_li_kick);
+}
+
+/* The coordinates' polynomial of degree 5 through both ends of a step, their velocities and accelerations, in the part
+ * of the step */
+INLINE void join(const int n, double h, const double *from, const double *to, double bend[][4])
+{
+	EACH(n) {
+		const double v = h * from[n + m], a = 0.5 * h * h * from[2 * n + m];
+		const double end = to[m] - from[m] - v - a, end_v = h * to[n + m] - v - 2.0 * a,
+			end_a = h * h * to[2 * n + m] - 2.0 * a;
+		bend[m][0] = a;
+		bend[m][1] = 10.0 * end - 4.0 * end_v + 0.5 * end_a;
+		bend[m][2] = -15.0 * end + 7.0 * end_v - end_a;
+		bend[m][3] = 6.0 * end - 3.0 * end_v + 0.5 * end_a;
+	}
+}
+
+INLINE void join_at(const int n, const struct inlined *r, double s, double *y)
+{
+	const double over = 1.0 / r->h;
+	EACH(n) {
+		const double *b = r->bend[m], v = r->h * r->from[n + m];
+		y[m] = r->from[m] + s * (v + s * (b[0] + s * (b[1] + s * (b[2] + s * b[3]))));
+		y[n + m] = over * (v + s * (2.0 * b[0] + s * (3.0 * b[1] + s * (4.0 * b[2] + s * 5.0 * b[3]))));
+	}
+}
+
+INLINE void march(const int n, slopes_function *slopes, step_function *step, double t0, double unit, int units,
+                  int steps, double h, double *state, double *rows)
+{
+	double s[3 * MOST_COORDINATES];
+	_Pragma("GCC unroll 8") for (int m = 0; m < 3 * n; m++)
+		s[m] = state[m];
+	for (int u = 0; u < units; u++) {
+		const double t = t0 + u * unit;
+		for (int k = 0; k < steps; k++)
+			step(n, slopes, t + k * h, h, s);
+		for (int m = 0; m < 2 * n && rows; m++)
+			rows[(ptrdiff_t)u * 2 * n + m] = s[m];
+	}
+	_Pragma("GCC unroll 8") for (int m = 0; m < 3 * n; m++)
+		state[m] = s[m];
+}
+
+/* A step of `span` units; rows inside it from its polynomial, at its end the state. `fraction` of the next unit if
+ * units is 0 */
+INLINE void stride(const int n, slopes_function *slopes, step_function *step, struct inlined *r, int units,
+                   double fraction, double *rows)
+{
+	const double over = 1.0 / r->span;
+	for (int u = 0; u < units || (units == 0 && u == 0); u++) {
+		if (r->inside == 0) {
+			memcpy(r->from, r->state, sizeof r->from);
+			step(n, slopes, (double)r->units * r->run.problem->unit, r->h, r->state);
+			join(n, r->h, r->from, r->state, r->bend);
+		}
+		if (units > 0) {
+			r->inside = r->inside + 1 == r->span ? 0 : r->inside + 1;
+			r->units++;
+		}
+		double *row = rows ? rows + (ptrdiff_t)u * 2 * n : r->now;
+		if (units > 0 && r->inside == 0)
+			memcpy(row, r->state, 2 * (size_t)n * sizeof *row);
+		else
+			join_at(n, r, (r->inside + fraction) * over, row);
+		if (rows && u == units - 1)
+			memcpy(r->now, row, 2 * (size_t)n * sizeof *row);
+	}
+}
+
+/* ---- the instances ---- */
+
+#define MARCH(NAME, N, METHOD) \
+static void NAME##_##METHOD(double t0, double unit, int units, int steps, double h, double *state, double *rows) \
+{ \
+	march(N, NAME##_slopes, METHOD##_step, t0, unit, units, steps, h, state, rows); \
+}
+#define STRIDE(NAME, N, METHOD, STEP) \
+static void NAME##_##METHOD##_stride(struct inlined *r, int units, double fraction, double *rows) \
+{ \
+	stride(N, NAME##_slopes, STEP, r, units, fraction, rows); \
+}
+#define INSTANCE(NAME, N) \
+MARCH(NAME, N, rk4) MARCH(NAME, N, heun) MARCH(NAME, N, verlet) MARCH(NAME, N, blanes_moan) MARCH(NAME, N, kahan_li) \
+STRIDE(NAME, N, rk4, rk4_long) STRIDE(NAME, N, verlet, verlet_step) \
+STRIDE(NAME, N, blanes_moan, blanes_moan_step) STRIDE(NAME, N, kahan_li, kahan_li_step) \
 static void NAME##_at(double t, const double *y, double *f) \
 { \
 	NAME##_slopes(t, y, f); \
 }
-EQUATIONS(SLOPES_OF)
+EQUATIONS(INSTANCE)
 #define ROW(NAME, N) { #NAME, { NAME##_rk4, NAME##_heun, NAME##_verlet, NAME##_blanes_moan, NAME##_kahan_li }, \
 	               { NAME##_rk4_stride, NULL, NAME##_verlet_stride, NAME##_blanes_moan_stride, \
 	                 NAME##_kahan_li_stride }, NAME##_at },
