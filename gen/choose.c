@@ -245,9 +245,9 @@ static void drop_modes(struct choosing *c, struct dropping *d)
 	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
 	target_double();
 	d->lost = ARRAY(double *, requirements);
-	for (int i = 0; i < requirements && c->stepped->system.segments == 1; i++)
+	for (int i = 0; i < requirements && !loads_change(&c->stepped->system); i++)
 		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->needs.requirement[i]);
-	if (c->stepped->system.segments > 1)
+	if (loads_change(&c->stepped->system))
 		walk_losses(c, d);
 	int fewest = all;
 	while (fewest > 1 && loses_less(c, d, fewest - 1))

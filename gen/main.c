@@ -108,13 +108,13 @@ static const struct source *source_of(struct work *w)
 	request->linearise = NULL;
 	if (!model)
 		return diagnostics_errors() ? NULL : source;
-	if (!model->linearised && w->options.at)
+	if (!model->equations.linearised && w->options.at)
 		stand_aside(w->spec->name_at, "--at", "the model is linear");
-	if (!model->linearised)
+	if (!model->equations.linearised)
 		return source;
 	request->definitions = 0;
 	request->scheme = request->tolerance = NULL;
-	return source_text(format("%s, linearised", source->name), model->linearised);
+	return source_text(format("%s, linearised", source->name), model->equations.linearised);
 }
 
 static bool make(struct work *w)

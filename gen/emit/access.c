@@ -104,7 +104,7 @@ void emit_access(const struct emitter *e)
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (step->forced && step->forced->written) {
 		say_macro(e, "COLUMNS", whole_text(step->branch->whole->columns));
-		say_macro(e, "SUSTAINED", spell(e, e->system->segments > 1 ? "$n_forced_part[s->segment]"
+		say_macro(e, "SUSTAINED", spell(e, loads_change(e->system) ? "$n_forced_part[s->segment]"
 									   : "$n_forced_part[0]"));
 	}
 	if (e->phases)

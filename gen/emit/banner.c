@@ -302,7 +302,7 @@ void banner_normal(const struct emitter *e)
 	banner_sentence(e, "Stability: %s.", stability_of_modes(e->step));
 	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
 			numbers_of_modes(e->step));
-	if (e->system->segments > 1 && keeps_modes(e))
+	if (loads_change(e->system) && keeps_modes(e))
 		banner_sentence(e, "Where functions of time change their formula, the method starts anew%s.",
 				m->steady.flow ? "; after the last change steps are exact" : "");
 }

@@ -52,7 +52,7 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    double slope[$N_INPUTS];  /* of the inputs over the last step [1/s] */\n");
 	emit_load_members(e);
 	emit_refresh_members(e);
-	if (e->system->segments > 1)
+	if (loads_change(e->system))
 		say(e, "    int segment;          /* of time: how many changes of the loads are past */\n");
 	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"
 	       "    uint64_t k;           /* steps since then */\n");

@@ -159,7 +159,7 @@ static void emit_all_tables(const struct emitter *e)
 	emit_refresh_tables(e);
 	if (!e->model->params.retuned)
 		emit_nominal(e);                /* else with the tables of regions */
-	if (e->system->segments > 1)
+	if (loads_change(e->system))
 		emit_changes(e);
 	emit_if_any(e->prints->tables, e);
 	emit_peak_tables(e);

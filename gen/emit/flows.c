@@ -12,7 +12,7 @@
 
 static void emit_pass_of_changes(const struct emitter *e)
 {
-	if (e->system->segments > 1 && !e->step->is.tuned)
+	if (loads_change(e->system) && !e->step->is.tuned)
 		emit_passing(e);
 }
 

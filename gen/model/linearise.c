@@ -285,7 +285,7 @@ static void say_point(const struct linearising *l, bool rest)
 	for (int i = 0; i < (rest ? l->n : l->states); i++)
 		list = format("%s%s%s = %s", list, i ? ", " : "", model->names.state[i],
 			      format("%.6g", mpq_get_d(l->state[i])));
-	const bool varies = l->varies || model->system.segments > 1;
+	const bool varies = l->varies || loads_change(&model->system);
 	say_note(l->b->spec->name_at, "linearised at %s%s%s%s%s", rest ? "rest: " : "", list,
 		 rest || is_equilibrium(l) ? "" : "; the motion does not stay there, and its constant acceleration is "
 						  "left out",
@@ -335,7 +335,7 @@ void linearise(void *building)
 	print_outputs(to, &l);
 	fprintf(to, "step %s\n", number_text(model->h));
 	fclose(to);
-	model->linearised = format("%s", text);
+	model->equations.linearised = format("%s", text);
 	free(text);
 	say_point(&l, rest);
 }

@@ -66,7 +66,6 @@ struct model {
 	bool declared_outputs;
 	struct needs needs;
 	const struct delays *delays;
-	const char *linearised;     /* the spec of its linear equations where that was asked for, of a nonlinear one */
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
 	struct wanted_modes modes;

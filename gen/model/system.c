@@ -155,7 +155,7 @@ const struct form *nominal_form(struct building *b, const struct form *form)
 
 bool parts_params(const struct building *b)
 {
-	return b->collector.params == PARAMS_ATOMS && b->model->system.segments == 1 &&
+	return b->collector.params == PARAMS_ATOMS && !loads_change(&b->model->system) &&
 	       !scheme_row(b->model->scheme)->expands;
 }
 

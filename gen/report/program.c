@@ -264,7 +264,7 @@ static void print_list(FILE *to, const struct step *step)
 	if (program->tuned)
 		fprintf(to, "Factors%s are read from the instance; these are of the spec's values.\n",
 			!step->blocks->solved ? " of blocks that tunable params touch" : "");
-	if (step->branch->system.segments > 1)
+	if (loads_change(&step->branch->system))
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
 	if (step->refresh && step->refresh->terms)

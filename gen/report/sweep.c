@@ -280,7 +280,7 @@ bool can_be_swept(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	return model->switching && model->contacts.impacts == 0 && !has_friction(model) &&
-	       model->system.segments == 1 && model->system.states <= LIMIT_SWEPT;
+	       !loads_change(&model->system) && model->system.states <= LIMIT_SWEPT;
 }
 
 static void need_sweeps(const struct step *step)
@@ -294,7 +294,7 @@ static void need_sweeps(const struct step *step)
 	if (model->contacts.impacts > 0 || has_friction(model))
 		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
-	if (model->system.segments > 1)
+	if (loads_change(&model->system))
 		error(model->asked.step_at, NULL, "--amplitude is of equations that are the same at all times");
 	if (model->system.states > LIMIT_SWEPT)
 		error(model->asked.step_at, NULL, "the model has %d states: sweeps are limited to %d",

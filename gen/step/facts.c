@@ -9,7 +9,7 @@ static bool is_one_flow(const struct step *step)
 	bool rows = true;
 	for (int i = 0; i < step->model->outputs; i++)
 		rows = rows && !(step->model->output[i].peak && step->model->output[i].left);
-	return rows && step->model->system.segments <= 1 &&
+	return rows && !loads_change(&step->model->system) &&
 	       is_linear_alone(step) && (!step->is.tuned || (step->blocks && step->blocks->solved));
 }
 

@@ -27,7 +27,7 @@ static bool is_page(const struct step *step)
 			terms += step->branch->system.states * ((a->flow != NONE ? step->branch->system.states : 0) +
 								a->phi_weights * step->branch->system.force_columns);
 	}
-	return step->branches == 1 && step->branch->system.segments == 1 &&
+	return step->branches == 1 && !loads_change(&step->branch->system) &&
 	       step->branch->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
 }
 
@@ -135,7 +135,7 @@ static void build_linear_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, false);
 	build_exact(step);
-	if (!step->model->asked.again.trial || step->branch->system.segments > 1 || peak_outputs(step->model) > 0)
+	if (!step->model->asked.again.trial || loads_change(&step->branch->system) || peak_outputs(step->model) > 0)
 		series_plan(step);
 }
 
@@ -233,7 +233,7 @@ static void need_all_known(struct step *step)
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
 	const char *why = system->inputs > 0 ? format("the samples of %s to come are not known", system->input[0].name)
-			  : system->segments > 1 ? "a load or a condition on t changes its formula inside"
+			  : loads_change(system) ? "a load or a condition on t changes its formula inside"
 			  : step->taylor.divided ? format("it ends where %s passes a breakpoint",
 						   form_text(model, step->taylor.divided->expression[0].form))
 					  : NULL;

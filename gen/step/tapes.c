@@ -83,7 +83,7 @@ static bool is_rotated(const struct product *p, const struct step *step)
 bool has_second_word(const struct product *p, const struct step *step)
 {
 	return is_rotated(p, step) ||
-	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
+	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || !loads_change(&step->branch->system)));
 }
 
 static int place_of_operand(const struct table *table, const struct operand *o)
@@ -114,7 +114,7 @@ static tape_ref term_ref(const struct sums *s, const struct assignment *a, const
 		int width = table->states + table->columns + table->inputs;
 		return entry(s->t, TABLE_OWN, a->target * width + place_of_operand(table, &p->operand), x);
 	}
-	if (load && step->branch->system.segments > 1)
+	if (load && loads_change(&step->branch->system))
 		return entry(s->t, TABLE_FACTOR, a->target * table->columns + p->operand.index, x);
 	return number_times(s->t, second ? p->factor->low : p->factor->value, x);
 }
@@ -177,7 +177,7 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 
 const struct linear *system_of_outputs(const struct step *step)
 {
-	bool several = step->model->switching && step->model->system.segments > 1;
+	bool several = step->model->switching && loads_change(&step->model->system);
 	return several ? &step->model->system : &step->branch->system;
 }
 
@@ -349,7 +349,7 @@ void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 			if (!sustains(step, i, k))
 				continue;
 			tape_ref x = tape_of_column(t, system, k);
-			term[terms++] = system->segments > 1 ? entry(t, TABLE_FORCED, at + k, x)
+			term[terms++] = loads_change(system) ? entry(t, TABLE_FORCED, at + k, x)
 						: number_times(t, step->forced->part[at + k].value, x);
 		}
 		tape_set(t, format("%s[%d]", vector, i), tape_sum(t, terms, term), 13, step->model->names.state[i]);

@@ -52,7 +52,7 @@ void emit_collocation_members(const struct emitter *e)
 	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
 	       "extrapolated */\n",
 	    rows(e), is_divided(e) ? ", 3: a crossing" : "");
-	if (e->system->segments > 1)
+	if (loads_change(e->system))
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
 	if (switches(e))
 		say(e, "    int series, stiff;    /* the polynomial is a series; the next one is of the collocation "

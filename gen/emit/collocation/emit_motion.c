@@ -232,7 +232,7 @@ int known_values(const struct emitter *e)
 
 static bool changes(const struct emitter *e)
 {
-	return e->system->segments > 1;
+	return loads_change(e->system);
 }
 
 static void emit_drive_table(const struct emitter *e)

@@ -86,7 +86,7 @@ static void emit_prediction(const struct emitter *e, const struct action *a)
 {
 	const char *tau = shortest(time_in_step(e->model, e->step->program->node[a->node]));
 	say(e, "    $n_predict(s, %s, %s, %d, %d, %s, %sfirst, %s, stage%d);\n",
-	    many_operators(e) ? "which" : e->step->event_split && e->system->segments > 1 ? "s->segment" : "0",
+	    many_operators(e) ? "which" : e->step->event_split && loads_change(e->system) ? "s->segment" : "0",
 	    e->step->event_split ? "start, slope" : samples_of_step(e), a->half, a->node, tau,
 	    e->step->event_split ? "when, interval, " : "",
 	    adds_driven(e) ? format("driven%d, driven%d", a->half, a->node) : "NULL, NULL", a->target);
@@ -99,7 +99,7 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 		mpq_srcptr node = e->step->program->node[a->node];
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
 		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
-		    e->system->segments > 1 ? "s->segment" : "0", state, a->target);
+		    loads_change(e->system) ? "s->segment" : "0", state, a->target);
 	} else {
 		say(e, "    %s\n", remainder_of_step(e, a->node, state, format("left%d", a->target)));
 	}
@@ -321,7 +321,7 @@ void emit_remainder_step(const struct emitter *e)
 	emit_actions_of_step(e);
 	emit_step_end(e);
 	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
-	if (e->system->segments > 1)
+	if (loads_change(e->system))
 		say(e, "    $n_pass_segments(s);\n");
 	say(e, "}\n");
 }

@@ -21,7 +21,7 @@ void emit_event_split_members(const struct emitter *e)
 	if (e->step->normal)
 		emit_normal_members(e);
 	emit_divided_members(e);
-	if (e->system->inputs == 0 && e->system->segments <= 1)
+	if (e->system->inputs == 0 && !loads_change(e->system))
 		say(e, "    double end[2][%d], terms[%d];  /* of what is watched at the end of the last step */\n"
 		       "    int ended;            /* they are there */\n", count, count);
 }

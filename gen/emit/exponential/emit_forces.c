@@ -28,7 +28,7 @@ bool has_schedule(const struct emitter *e)
 
 static bool has_changes(const struct emitter *e)
 {
-	return e->system->segments > 1;
+	return loads_change(e->system);
 }
 
 /* ---- tables: one of all operators where they are alike ---- */

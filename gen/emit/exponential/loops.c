@@ -118,7 +118,7 @@ static const char *phi_text(const struct emitter *e, int t)
 static const char *load_text(const struct emitter *e, int t)
 {
 	const char *name = format("%s_%s_load", e->name, e->step->branch->whole->wanted[t].name);
-	if (e->system->segments == 1)
+	if (!loads_change(e->system))
 		return format("%s[%s][0]", name, operator_index(e));
 	if (many_operators(e))
 		return format("%s[%d * s->segment + which][0]", name, e->model->schedule.operators);
@@ -187,5 +187,5 @@ const char *vector_name(int stage)
 
 bool flows_apart(const struct emitter *e)
 {
-	return e->system->segments > 1 && !e->step->event_split;
+	return loads_change(e->system) && !e->step->event_split;
 }

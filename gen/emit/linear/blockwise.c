@@ -31,7 +31,7 @@ void emit_block_list(const struct emitter *e)
 	const struct program *program = e->step->program;
 	const int blocks = count_blocks(e), states = e->system->states;
 	int *first = ARRAY(int, (size_t)blocks + 1), *state = ARRAY(int, (size_t)states), count = 0, block = 0;
-	const bool at = !e->model->switching && e->step->series.emitted && e->system->segments == 1;
+	const bool at = !e->model->switching && e->step->series.emitted && !loads_change(e->system);
 	if (!is_blockwise(e) || e->step->blocks || !(at || has_jump(e)))
 		return;
 	for (int k = 0; k < program->groups; k++)

@@ -16,7 +16,7 @@ static int padded(int count, int multiple)
 
 static bool changes(const struct emitter *e, const struct group *g)
 {
-	return e->system->segments > 1 && g->loads > 0;
+	return loads_change(e->system) && g->loads > 0;
 }
 
 /* Loads and inputs: those of a group are handed to its function in one vector. */

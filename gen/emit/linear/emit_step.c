@@ -239,7 +239,7 @@ void emit_step(const struct emitter *e)
 	emit_groups(e);
 	if (e->step->linear.rest && e->step->linear.rest->in_step)
 		say(e, "\nstatic void $n_rest($n *s);\n");
-	if (e->system->segments > 1) {
+	if (loads_change(e->system)) {
 		emit_changing_step(e);
 		return;
 	}

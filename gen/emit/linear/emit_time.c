@@ -124,12 +124,12 @@ static void emit_remainder_now(const struct emitter *e)
 void emit_series_vector(const struct emitter *e, bool looped)
 {
 	const struct layout *layout = &e->step->layout;
-	const bool whole = e->step->forced && e->system->segments == 1 && !e->model->relative;
+	const bool whole = e->step->forced && !loads_change(e->system) && !e->model->relative;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
 	const int force_columns = layout->powers ? layout->powers * e->system->force_columns : 0;
 	if (looped || force_columns)
 		say(e, "    int i;\n");
-	if (e->system->segments == 1)
+	if (!loads_change(e->system))
 		emit_remainder_now(e);
 	say(e, "    $n_%s(s, x);\n", whole ? "kept" : "kept_state");
 	emit_held(e);
@@ -137,7 +137,7 @@ void emit_series_vector(const struct emitter *e, bool looped)
 	store_inputs(e, layout->input);
 	if (force_columns)
 		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", force_columns, layout->force_column,
-		    layout->powers > 1 ? "0.0" : e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
+		    layout->powers > 1 ? "0.0" : loads_change(e->system) ? "left ? left[i] : 0.0" : "left[i]");
 }
 
 void emit_vector_now(const struct emitter *e)
@@ -180,7 +180,7 @@ static void emit_passing_algorithm(const struct emitter *e)
 {
 	const struct forced *forced = e->step->forced;
 	const int acting = e->step->layout.size - e->system->states;
-	const bool changes = e->system->segments > 1;
+	const bool changes = loads_change(e->system);
 	const int blocks = !changes && is_blockwise(e) ? count_blocks(e) : 0;
 	const struct load_slopes slopes = changes ? load_slopes_of(e->step) : (struct load_slopes){ .first = -1 };
 	if (slopes.first >= 0)
@@ -256,7 +256,7 @@ static void emit_sustained_then(const struct emitter *e)
 								  : "0.0";
 	say_vector(e, "load", column, text);
 	say(e, "    $n_add_sustained(s, $n_forced_part[%s] + $N_STATES, load, y);\n",
-	    e->system->segments > 1 ? "segment" : "0");
+	    loads_change(e->system) ? "segment" : "0");
 }
 
 /* y, for the user, from the head of x; behind it the load states */
@@ -311,7 +311,7 @@ static void emit_series_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	const bool changes = e->system->segments > 1, blocks = !changes && is_blockwise(e);
+	const bool changes = loads_change(e->system), blocks = !changes && is_blockwise(e);
 	if (adds_sustained(e))
 		emit_at_start(e);
 	if (!blocks && !changes)
@@ -387,7 +387,7 @@ static void emit_parabola(const struct emitter *e, bool blocks)
 
 void emit_at(const struct emitter *e)
 {
-	bool changes = e->system->segments > 1;
+	bool changes = loads_change(e->system);
 	if (e->step->layout.powers == PARABOLA) {
 		if (!changes)
 			emit_series_slopes(e);
@@ -425,7 +425,7 @@ static void emit_second_words(const struct emitter *e)
 /* What the load states add to the one-step matrix, in two words: the columns beyond Phi, in each segment of time */
 static void emit_power_entries(const struct emitter *e, int entries, const struct leap_entry *entry)
 {
-	bool segments = e->system->segments > 1;
+	bool segments = loads_change(e->system);
 	if (entries == 0)
 		return;
 	say(e, "\n"

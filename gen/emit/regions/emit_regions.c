@@ -365,7 +365,7 @@ void emit_segment_end(const struct emitter *e)
 {
 	if (!e->step->regions.parts && has_guards(e) && regions_change(e))
 		say(e, "    s->segment = s->contact.region / %d;\n", regions_at_once(regions_of(e)));
-	else if (e->system->segments > 1)
+	else if (loads_change(e->system))
 		say(e, "    $n_pass_segments(s);\n");
 }
 

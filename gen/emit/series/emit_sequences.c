@@ -35,7 +35,7 @@ bool is_divided(const struct emitter *e)
 
 bool has_offset(const struct emitter *e)
 {
-	return e->model->truncation.adaptive || e->system->segments > 1 || is_divided(e);
+	return e->model->truncation.adaptive || loads_change(e->system) || is_divided(e);
 }
 
 bool spans_steps(const struct emitter *e)

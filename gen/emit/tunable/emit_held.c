@@ -33,7 +33,7 @@ void emit_held_types(const struct emitter *e)
 		return;
 	const char *what = e->model->params.held ? "what the equations and outputs read"
 			   : format("what a step multiplies with: z is the states, load states%s, inputs%s",
-				    e->system->segments > 1 ? " in each segment of time" : "",
+				    loads_change(e->system) ? " in each segment of time" : "",
 				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
 	       "typedef struct $n_coeffs $n_coeffs;  /* %s */\n"

@@ -89,7 +89,7 @@ static void emit_group(const struct emitter *e, const struct tuned_block *first)
 void emit_tuned_members(const struct emitter *e)
 {
 	number_member(e, "h", spell(e, "$N_H"), "[s]");
-	if (e->system->segments > 1)
+	if (loads_change(e->system))
 		number_member(e, "h_low", low_text(e->model->h), "of the spec's step: what h leaves out; else 0");
 	emit_nominal_params(e);
 	each_tuned_group(e, emit_group);

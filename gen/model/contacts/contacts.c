@@ -23,7 +23,7 @@ static void add_drag(struct building *b, const struct atom *a)
 		return;
 	for (int i = 0; i < v->terms; i++) {
 		const struct basis *basis = &v->term[i].basis;
-		if (basis->kind == BASIS_ATOM && model->system.segments > 1)
+		if (basis->kind == BASIS_ATOM && loads_change(&model->system))
 			error(a->node->child[0]->start, "scheme exact takes others beside what is piecewise linear",
 			      "beside a series the velocity of friction has one formula for all time");
 		if (basis->kind == BASIS_ATOM || is_highest(&b->model->frame, basis))

@@ -234,7 +234,7 @@ static void find_last_values(void *context)
 	struct collector *c = &w->b->collector;
 	struct splitting *s = w->split;
 	struct point *point = point_new(c, 0, NULL);
-	s->settles = w->b->model->system.segments > 1;
+	s->settles = loads_change(&w->b->model->system);
 	for (int i = 0; i < s->functions; i++) {
 		const struct form *here = form_at(point, s->function[i].form);
 		mpq_init(s->function[i].last);

@@ -50,7 +50,7 @@ static struct form *rate_in(const struct relative *r, const struct model *model,
 		else
 			return NULL;
 	}
-	if (!lead || model->system.segments > 1)
+	if (!lead || loads_change(&model->system))
 		return NULL;
 	RATIONAL factor = ZERO;
 	mpq_inv(factor, lead);

@@ -2,6 +2,11 @@
 /* Linear systems of coordinates of first and second order. */
 #include "linear.h"
 
+bool loads_change(const struct linear *system)
+{
+	return system->segments > 1;
+}
+
 struct linear linear_like(const struct linear *shape)
 {
 	struct linear system = *shape;

@@ -48,9 +48,11 @@ struct equations {                  /* as they are written */
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
 	const struct atoms *atoms;
+	const char *linearised;     /* the spec of the linear ones, where that was asked for of nonlinear ones */
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;
 };
+bool loads_change(const struct linear *system);               /* their formula, at some time */
 struct linear linear_like(const struct linear *shape);      /* the same coordinates and states, matrices 0, no loads */
 struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */
 /* W^-1, n x n; W has the columns of M, and those of C where a coordinate is of first order. False: singular. */

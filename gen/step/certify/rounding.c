@@ -252,7 +252,7 @@ const char *certificate_objection(const struct errors *e)
 	const struct linear *system = &e->step->branch->system;
 	if (system->states > LIMIT_NEED_STATES)
 		return format("it is built for up to %d states", LIMIT_NEED_STATES);
-	if (system->segments > 1)
+	if (loads_change(system))
 		return "loads change their formula in time, and until then the run is too long to be walked through";
 	const double powers = 2 * sqrt((double)e->steps) * pow(system->states, 3);
 	if (e->steps < 0 || powers > WORK)

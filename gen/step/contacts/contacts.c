@@ -180,7 +180,7 @@ static int bare_slope(struct sequencing *w, int state)
 	if (*made == NONE) {
 		struct sum slope = slope_of_state(w, state);
 		int sequence = sum_sequence(w, &slope);
-		if (w->system->segments > 1) {
+		if (loads_change(w->system)) {
 			RATIONALS *scale = plain_scale(w);
 			add_changing_loads(w, &w->x->sequence[sequence], state, scale);
 		}

@@ -84,7 +84,7 @@ static void count_checks(const struct step *step, struct event_split *event_spli
 	struct step view = *step;
 	view.taylor.expansion = event_split->ends;
 	count_expansion(&view, &program);
-	int looks = system->inputs > 0 || system->segments > 1 ? 2 : 1; /* else the one at the end is kept */
+	int looks = system->inputs > 0 || loads_change(system) ? 2 : 1; /* else the one at the end is kept */
 	event_split->multiplications = looks * program.multiplications;
 	event_split->additions = looks * program.additions;
 	event_split->calls = looks * program.calls;

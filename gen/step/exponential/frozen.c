@@ -196,7 +196,7 @@ static double span_of(const struct step *step)
 {
 	const struct linear *system = &step->model->system;
 	double h = nearest_double(step->model->h), slowest = 0;
-	double span = system->segments > 1 ? nearest_double(system->change[system->segments - 2]) : 0;
+	double span = loads_change(system) ? nearest_double(system->change[system->segments - 2]) : 0;
 	for (int l = 0; l < system->loads; l++) {
 		double w = nearest_double(system->load[l].wave->w);
 		if (w > 0 && (slowest == 0 || w < slowest))

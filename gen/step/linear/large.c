@@ -170,7 +170,7 @@ static void add_group(struct program *program, const struct step *step, struct g
 static bool is_one(const struct step *step, const struct group *g, int row, const struct operand *operand)
 {
 	const struct coefficient *factor = group_factor(step, g, row, 0, operand, 0);
-	const bool changes = operand->kind == OPERAND_LOAD && step->branch->system.segments > 1;
+	const bool changes = operand->kind == OPERAND_LOAD && loads_change(&step->branch->system);
 	return g->kind == GROUP_ROWS && !changes && !g->tuned &&
 	       (factor->value == 1 || factor->value == -1 ||
 		(operand->kind == OPERAND_LOAD && is_constant_column(&step->branch->system, operand->index)));

@@ -154,7 +154,7 @@ void series_plan(struct step *step)
 	/* what is left over is a polynomial in the step, or there is none */
 	bool known = !has_remainder(step) || step->layout.powers > 0;
 	series->emitted = known && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
-	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
+	if (series->emitted || (loads_change(&step->branch->system) && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
 		series->degree = series_degree(step, 0, step->branches, series->halvings);

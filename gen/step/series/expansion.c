@@ -15,7 +15,7 @@ static void expand_state(struct sequencing *w, int state)
 	RATIONALS *scale = integral_scale(w, true);
 	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
 	sum_numbers(w, &w->x->sequence[state], &sum, scale);
-	if (w->system->segments > 1 && !is_bare(w, state))
+	if (loads_change(w->system) && !is_bare(w, state))
 		add_changing_loads(w, &w->x->sequence[state], state, scale);
 }
 

@@ -574,7 +574,7 @@ struct sum slope_of_state(struct sequencing *w, int state)
 	for (int l = 0, column = 0; l < w->system->loads; column += w->system->load[l++].columns)
 		for (int j = 0; j < w->system->load[l].columns && layout->load[l] >= 0; j++) {
 			mpq_srcptr factor = row[layout->load[l] + j];
-			if (mpq_sgn(factor) == 0 || w->system->segments > 1)
+			if (mpq_sgn(factor) == 0 || loads_change(w->system))
 				continue;
 			bool power = is_polynomial(w->system->load[l].wave);
 			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);

@@ -321,7 +321,7 @@ static void measure_block(struct tuned_blocks *p, const struct step *step, const
 static void check_size(const struct step *step, const struct tuned_block *b)
 {
 	const struct tuning *t = step->model->params.tuning;
-	const bool changes = step->branch->system.segments > 1;
+	const bool changes = loads_change(&step->branch->system);
 	int k = 0;
 	while (b->group->tuned && k < t->given - 1 && !(b->part.params >> k & 1))
 		k++;
