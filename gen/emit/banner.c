@@ -204,14 +204,12 @@ static void banner_divided(const struct emitter *e)
 	const struct expansion *x = e->step->taylor.divided;
 	if (!x)
 		return;
-	banner_sentence(e,
-			"The state chooses formulas: %s is of those between two crossings. Where an expression "
+	banner_sentence(e, "The state chooses formulas: %s is of those between two crossings. Where an expression "
 			"passes a breakpoint is the first root of its %s, found before it is stepped over; costs "
 			"below are without the search.",
 			e->step->collocation ? "an internal step" : "a series",
 			!e->step->collocation	    ? "own series"
-			: e->step->taylor.expansion ? "own series, or of its polynomial "
-						      "through the nodes"
+			: e->step->taylor.expansion ? "own series, or of its polynomial through the nodes"
 						    : "polynomial through the start and the nodes");
 	banner_breakpoints(e, x);
 	banner_contacts(e);
