@@ -17,11 +17,6 @@ enum flow flow_of(const struct model *model)
 	return row->modes ? FLOW_NORMAL : row->collocates ? FLOW_COLLOCATION : row->expands ? FLOW_SERIES : FLOW_RECIPE;
 }
 
-bool has_contacts(const struct model *model)
-{
-	return model->contacts.drags > 0 || (model->contacts.impacts > 0 && !model->switching);
-}
-
 bool steps_exactly(const struct model *model)
 {
 	return model->scheme == SCHEME_EXACT ||
@@ -100,6 +95,15 @@ static const char *first_order_coordinate(const struct model *model)
 		if (model->system.velocity[i] < 0)
 			return model->names.coord[i];
 	return NULL;
+}
+
+/* Of e^{A tau}, with the forces' polynomials, beyond what a target makes */
+static bool has_large_tables(const struct model *model)
+{
+	if (!is_event_split(model->scheme) || model->remainder.force_columns == 0 || model->schedule.operators == 0)
+		return false;
+	const struct linear system = operator_system(model, 0);
+	return layout_of(&system, SPLIT_POWERS).size > LIMIT_TUNED_BLOCK;
 }
 
 struct facts facts_of_model(const struct model *model)

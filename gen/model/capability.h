@@ -50,7 +50,6 @@ const char *words_before(enum capability asked);                 /* before a rea
 
 bool steps_exactly(const struct model *model);               /* by scheme exact, or by one that nothing is left to */
 bool is_measured(const struct model *model);                 /* no bound is known: it is not linear, or in pieces */
-bool has_contacts(const struct model *model);                /* impacts, friction without regions */
 bool has_peak(const struct model *model);                    /* some output is one */
 int  output_named(const struct model *model, const char *name); /* its index; -1: there is none */
 

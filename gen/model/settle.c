@@ -3,6 +3,7 @@
 #include "building.h"
 #include "capability.h"
 #include "checks.h"
+#include "model/contacts/contacts.h"
 #include "model/contacts/friction.h"
 
 struct change {                     /* of formula in time */

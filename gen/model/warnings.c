@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better told about. */
 #include "building.h"
+#include "model/contacts/contacts.h"
 #include "capability.h"
 #include "checks.h"
 #include "reads.h"

@@ -344,10 +344,8 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 /* Friction and impacts are events inside steps. */
 static void check_event_splits(const struct model *model)
 {
-	if (has_contacts(model) && !scheme_row(model->scheme)->expands && why_not_split(model))
-		error(model->asked.scheme_at, "taylor, radau and auto have no part of a step to make",
-		      "scheme %s does not stop at events of friction and impacts here: %s", scheme_name(model->scheme),
-		      why_not_split(model));
+	if (has_contacts(model) && !scheme_row(model->scheme)->expands)
+		refuse(CAN_SPLIT, model, model->asked.scheme_at);
 }
 
 static void build(void *context)

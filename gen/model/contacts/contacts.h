@@ -94,6 +94,7 @@ int  impact_at(const struct switching *s, int segment, int expression, mpq_srcpt
 int  impact_resting(const struct switching *s, int segment, int expression, int interval); /* there; -1: none does */
 /* the interval in which it rests; -1: it is no bounce */
 int  rest_of(const struct switching *s, int segment, const struct impact *impact);
+bool has_contacts(const struct model *model);                /* impacts, friction without regions */
 bool has_bounces(const struct model *model);
 const char *restitution_text(const struct model *model, const struct impact *impact); /* of a bounce, at all times */
 bool rubs(const struct switching *s);                       /* there is friction, with mass or without */

@@ -31,6 +31,11 @@ int rest_of(const struct switching *s, int segment, const struct impact *impact)
 	return -1;
 }
 
+bool has_contacts(const struct model *model)
+{
+	return model->contacts.drags > 0 || (model->contacts.impacts > 0 && !model->switching);
+}
+
 bool has_bounces(const struct model *model)
 {
 	bool any = false;

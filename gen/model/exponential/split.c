@@ -3,7 +3,7 @@
  * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
  */
 #include "model/building.h"
-#include "model/capability.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
 
 struct split_work {

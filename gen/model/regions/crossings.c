@@ -4,6 +4,7 @@
  * the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else it steps
  * across, and is of the order that is left there. */
 #include "model/capability.h"
+#include "model/contacts/contacts.h"
 
 struct following {
 	bool *seen;                 /* per atom */
@@ -100,35 +101,16 @@ static void follow_form(struct following *f, const struct form *form)
 			follow_atom(f, form->term[i].basis.atom);
 }
 
-/* Of e^{A tau}, with the forces' polynomials */
-static bool has_small_tables(const struct model *model)
+/* What stands against parts of a step, made by the target */
+static bool is_whole(const struct model *model)
 {
-	struct linear system = operator_system(model, 0);
-	return layout_of(&system, SPLIT_POWERS).size <= LIMIT_TUNED_BLOCK;
-}
-
-const char *why_not_split(const struct model *model)
-{
-	if (!is_event_split(model->scheme) || model->remainder.force_columns == 0)
-		return "its steps are not cut";
-	if (model->schedule.operators > 1)
-		return "its operator changes";
-	if (model->remainder.smooth.singular)
-		return format(
-			"'%s' has no derivatives where %s",
-			text_between(model->remainder.smooth.singular->start, model->remainder.smooth.singular->end),
-			model->remainder.smooth.singular_where);
-	if (further_samples(&model->system))
-		return "inputs go through their samples in curves";
-	if (!has_small_tables(model))
-		return format("states, loads, inputs and what is left over are more than %d, whose tables a target "
-			      "would have to make", LIMIT_TUNED_BLOCK);
-	return NULL;
+	const struct facts facts = facts_of_model(model);
+	return objection_to(CAN_SPLIT, &facts, model).why != NULL;
 }
 
 bool follows_crossings(const struct model *model)
 {
-	if (why_not_split(model))
+	if (is_whole(model))
 		return false;
 	if (has_contacts(model))
 		return true;

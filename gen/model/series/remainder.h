@@ -105,7 +105,6 @@ int  order_that_holds(const struct model *model);           /* rounded down; 0: 
 /* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with
  * breakpoints. */
 bool follows_crossings(const struct model *model);
-const char *why_not_split(const struct model *model);        /* its steps, into parts; NULL: they can be */
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 

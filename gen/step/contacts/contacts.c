@@ -4,6 +4,7 @@
  * that holds it is a sequence like others: what makes the rate of its velocity 0, of the accelerations without it,
  * which are sequences too. Where several act on each other, each combination of those that hold has its own. */
 #include "model/contacts/friction.h"
+#include "model/contacts/contacts.h"
 #include "step/series/divided.h"
 #include "step/series/expansion.h"
 #include "series_contacts.h"

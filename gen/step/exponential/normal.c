@@ -4,6 +4,7 @@
  * V eta makes of M q'' + C q' + K q = F as many equations eta'' + 2 delta eta' + lambda eta = V^T F.
  */
 #include "inner.h"
+#include "model/contacts/contacts.h"
 #include "step/collocation/collocation.h"
 
 #include <math.h>
