@@ -93,7 +93,7 @@ cat >still.spec <<-END
 	coord x, y, z
 	init x = 0.05, y = 0.1
 	x'' + 100*x + 300*x^3 + friction(x', 12) = 5*cos(7*t) + 0.4*z
-	y'' + 20*sin(y) = -9.81 + cos(3*t)*x + 2*z^2
+	y'' + 20*sin(y) + 2*(y - z) = -9.81 + cos(3*t)*x + 2*z^2
 	z'' + 4*z + 3*z^3 = 2*cos(t)
 	stop between ground, y at 0 restitution 0.5
 	output v = x'
