@@ -343,7 +343,7 @@ static void make_form(void *context)
 static void make_slope(void *context)
 {
     struct attempt *a = context;
-    a->slope = form_derivatives(&collector, 1, (const struct form *const *)&a->form, a->coord, a->order);
+    a->slope = form_derivatives(&collector, 1, (const struct form *const *)&a->form, false, a->coord, a->order);
 }
 
 static void make_placed(void *context)
