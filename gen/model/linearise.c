@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BITS = 256, SHORT = 24 };
+enum { BITS = 256, SHORT = 24, NAMED = 8 };
 
 /* ---- given values ---- */
 
@@ -211,35 +211,53 @@ static void print_equations(FILE *to, struct linearising *l)
 	}
 }
 
-/* Outputs that are called as a coordinate or a derivative of one are that; peaks are of no linear model. */
-static void print_output(FILE *to, struct linearising *l, const struct symbol *s, const struct value *value)
+/* x, q[1]', x'': what needs no expression */
+static bool names_itself(const struct model *model, const char *name)
 {
-	const struct node *node = s->value;
-	if (s->peak || !value)
+	const size_t length = strlen(name);
+	if (state_called(model, name, length) >= 0)
+		return true;
+	for (int i = 0; i < model->n; i++) {
+		const size_t own = strlen(model->names.coord[i]);
+		if (strncmp(model->names.coord[i], name, own) == 0 && name[own] == '\'' &&
+		    strspn(name + own, "'") == length - own)
+			return true;
+	}
+	return false;
+}
+
+/* v[1], of a vector that is no coordinate: v_1_ */
+static const char *output_name(const char *name)
+{
+	char *text = format("%s", plain_name(name));
+	for (char *c = text; *c; c++)
+		*c = *c == '[' || *c == ']' ? '_' : *c;
+	return text;
+}
+
+/* A peak over time is of no linear model. */
+static void print_output(FILE *to, struct linearising *l, const struct output *output)
+{
+	const struct form *form = output->form ? output->form : output->left;
+	bool begun = false;
+	if (output->peak || !form)
 		return;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD &&
-	    (strcmp(s->name, node->symbol->name) == 0 || strpbrk(s->name, "'["))) {
-		fprintf(to, "output %s\n", plain_name(s->name));
+	if (names_itself(l->b->model, output->name)) {
+		fprintf(to, "output %s\n", plain_name(output->name));
 		return;
 	}
-	for (int cell = 0; cell < value->rows * value->columns; cell++) {
-		const struct form *form = value->cell[cell];
-		mpq_t **slope = all_slopes(l, 1, &form);
-		bool begun = false;
-		fprintf(to, "output %s%s = ", plain_name(s->name),
-			value->rows * value->columns > 1 ? format("_%d", cell + 1) : "");
-		print_terms(to, l, slope, 0, states_in_order(l), false, &begun);
-		print_terms(to, l, slope, 0, inputs_in_order(l), false, &begun);
-		fputs(begun ? "\n" : "0\n", to);
-	}
+	mpq_t **slope = all_slopes(l, 1, &form);
+	fprintf(to, "output %s = ", output_name(output->name));
+	print_terms(to, l, slope, 0, states_in_order(l), false, &begun);
+	print_terms(to, l, slope, 0, inputs_in_order(l), false, &begun);
+	fputs(begun ? "\n" : "0\n", to);
 }
 
 static void print_outputs(FILE *to, struct linearising *l)
 {
-	int index = 0;
-	for (const struct symbol *s = l->b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_OUTPUT)
-			print_output(to, l, s, l->b->whole->output[index++]);
+	const struct model *model = l->b->model;
+	for (int i = 0; i < model->outputs && model->declared_outputs; i++)
+		print_output(to, l, &model->output[i]);
 }
 
 /* ---- the whole ---- */
@@ -263,28 +281,16 @@ static void list_inputs(struct linearising *l)
 			l->input[s->index] = s;
 }
 
-static void collect_all(struct building *b)
-{
-	if (!b->whole)
-		collect_whole(b);
-	const unsigned keep = b->collector.keep;
-	b->collector.keep = KEEP_ALL;
-	b->collector.whole_time = true;
-	forget_lets(b->spec);
-	collect_outputs(b, b->whole);
-	b->collector.whole_time = false;
-	b->collector.keep = keep;
-	if (diagnostics_errors())
-		abandon();
-}
-
 static void say_point(const struct linearising *l, bool rest)
 {
 	const char *list = "";
 	const struct model *model = l->b->model;
-	for (int i = 0; i < (rest ? l->n : l->states); i++)
+	const int states = rest ? l->n : l->states;
+	for (int i = 0; i < states && i < NAMED; i++)
 		list = format("%s%s%s = %s", list, i ? ", " : "", model->names.state[i],
 			      format("%.6g", mpq_get_d(l->state[i])));
+	if (states > NAMED)
+		list = format("%s and %d more", list, states - NAMED);
 	const bool varies = l->varies || loads_change(&model->system);
 	say_note(l->b->spec->name_at, "linearised at %s%s%s%s%s", rest ? "rest: " : "", list,
 		 rest || is_equilibrium(l) ? "" : "; the motion does not stay there, and its constant acceleration is "
@@ -313,7 +319,10 @@ void linearise(void *building)
 	char *text;
 	check_contacts(b);
 	list_inputs(&l);
-	collect_all(b);
+	if (!b->whole)
+		collect_whole(b);
+	if (diagnostics_errors())
+		abandon();
 	list_fixings(&l);
 	l.state = rationals((size_t)l.states);
 	l.F = rationals((size_t)l.n);

@@ -223,7 +223,8 @@ at() {
 	"$plgen" --response 0.1:5:7 --at "$1" bent.spec >bent.csv 2>log &&
 		"$plgen" --response 0.1:5:7 hand.spec >hand.csv 2>>log &&
 		grep -qF "note: linearised at $2" log && awk -F, '
-		NR == FNR { for (i = 1; i <= NF; i++) one[FNR, i] = $i; rows = FNR; next }
+		NR == FNR { for (i = 1; i <= NF; i++) one[FNR, i] = $i; rows = FNR; columns = NF; next }
+		FNR == 1 && NF != columns { print NF, "columns"; bad = 1 }
 		{ for (i = 1; i <= NF; i++) { d = FNR > 1 ? $i - one[FNR, i] : $i != one[FNR, i]
 			v = FNR > 1 && $i != 0 ? $i : 1
 			if (d * d > 1e-20 * v * v) { print FNR, i, $i, one[FNR, i]; bad = 1 } } }
