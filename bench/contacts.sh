@@ -19,8 +19,9 @@ for case in stick_slip:friction: impact_oscillator:impacts: stick_slip:friction:
 	sed -e 's/ + friction(x. - vb, F, S) = / = /' -e '/^output rub/d' -e '/^stop /d' "$work/model.spec" \
 		>"$work/plain.spec"
 	for h in 0.001 0.01 0.05; do
-		"$build/plgen" --step $h --prefix plain -o "$work/plain_pl.c" "$work/plain.spec" 2>/dev/null
-		"$build/plgen" --step $h --prefix contacts -o "$work/contacts_pl.c" "$work/model.spec" 2>/dev/null
+		"$build/plgen" --fast --step $h --prefix plain -o "$work/plain_pl.c" "$work/plain.spec" 2>/dev/null
+		"$build/plgen" --fast --step $h --prefix contacts -o "$work/contacts_pl.c" "$work/model.spec" \
+			2>/dev/null
 		gcc -std=gnu11 -O2 ${changes:+-D$changes} -Iruntime -I"$work" bench/contacts.c "$work/plain_pl.c" \
 			"$work/contacts_pl.c" runtime/*.c -o "$work/contacts" -lm
 		"$work/contacts" "$name${changes:+, load changes}, h = $h" "$kind"

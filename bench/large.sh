@@ -26,7 +26,7 @@ spec() {
 		}
 		print last "\nstep 0.01"
 	}' >"$work/$1.spec"
-	"$build/plgen" "$work/$1.spec" -o "$work/$1_pl.c"
+	"$build/plgen" --fast "$work/$1.spec" -o "$work/$1_pl.c"
 }
 spec masses ''
 spec outputs 'output x1, x20, x40'

@@ -8,9 +8,9 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/loads.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 sed 's/= F\*cos(w\*t)$/= 0/' models/sdcsf.spec >"$work/none.spec"
-"$plgen" --prefix none -o "$work/none.c" "$work/none.spec"
-"$plgen" --prefix anchored -o "$work/anchored.c" models/sdcsf.spec
-"$plgen" --prefix direct --anchors 1 -o "$work/direct.c" models/sdcsf.spec
+"$plgen" --fast --prefix none -o "$work/none.c" "$work/none.spec"
+"$plgen" --fast --prefix anchored -o "$work/anchored.c" models/sdcsf.spec
+"$plgen" --fast --prefix direct --refresh 1 -o "$work/direct.c" models/sdcsf.spec
 for compiler in gcc clang; do
 	command -v "$compiler" >"$work/found" || continue
 	for options in -O2 '-O2 -march=native'; do

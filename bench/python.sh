@@ -21,7 +21,7 @@ printf '%-16s%s\n' 'ns per step' '  C: step, out       run  Python: out=   new  
 for name in sdcsf driven pendulum; do
 	driven=
 	[ $name != driven ] || driven=-DDRIVEN
-	"$build/plgen" -o "$work/model_pl.c" "$work/$name.spec" 2>"$work/said"
+	"$build/plgen" --fast -o "$work/model_pl.c" "$work/$name.spec" 2>"$work/said"
 	gcc -O2 $driven -DMODEL=$name -Ibench -Iruntime -I"$work" bench/python.c "$work/model_pl.c" runtime/*.c -lm \
 		-o "$work/program"
 	for run in 1 2 3; do

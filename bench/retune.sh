@@ -13,8 +13,8 @@ for real in double float; do
 		name=${case%%:*} tunable=${case##*:} damping=${case#*:}
 		{ cat "models/$name.spec"; echo; echo "tunable $tunable"; } >"$work/$name.spec"
 		# the form in which a retuned step is taken
-		"$build/plgen" --real $real --form delta --prefix plain -o "$work/plain_pl.c" "models/$name.spec"
-		"$build/plgen" --real $real --form delta --prefix tuned -o "$work/tuned_pl.c" "$work/$name.spec"
+		"$build/plgen" --fast --real $real --form delta --prefix plain -o "$work/plain_pl.c" "models/$name.spec"
+		"$build/plgen" --fast --real $real --form delta --prefix tuned -o "$work/tuned_pl.c" "$work/$name.spec"
 		# shellcheck disable=SC2046
 		gcc -std=gnu11 -O2 $option -Iruntime -I"$work" bench/retune.c "$work/plain_pl.c" "$work/tuned_pl.c" \
 			runtime/*.c $(pkg-config --cflags --libs gsl) \

@@ -21,8 +21,8 @@ for case in models/stop:0.001:m,k,ks models/stop:0.01:m,k,ks models/bilinear:0.0
 	fi
 	{ cat "$work/written.spec"; echo; sed -n '/^tunable/p' "$file.spec"; } >"$work/retuned.spec"
 	[ "$tunable" ] && echo "tunable $tunable" >>"$work/retuned.spec"
-	"$build/plgen" --step "$h" --prefix written -o "$work/written_pl.c" "$work/written.spec" 2>/dev/null
-	"$build/plgen" --step "$h" --prefix retuned -o "$work/retuned_pl.c" "$work/retuned.spec" 2>/dev/null
+	"$build/plgen" --fast --step "$h" --prefix written -o "$work/written_pl.c" "$work/written.spec" 2>/dev/null
+	"$build/plgen" --fast --step "$h" --prefix retuned -o "$work/retuned_pl.c" "$work/retuned.spec" 2>/dev/null
 	gcc -std=gnu11 -O2 -Iruntime -Ibench -I"$work" bench/retuned.c "$work/written_pl.c" "$work/retuned_pl.c" \
 		runtime/*.c -o "$work/retuned"
 	"$work/retuned" "$name, h = $h"

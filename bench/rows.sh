@@ -6,10 +6,10 @@ set -e
 build=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$build/plgen" -o "$work/sdcsf_pl.c" models/sdcsf.spec
+"$build/plgen" --fast -o "$work/sdcsf_pl.c" models/sdcsf.spec
 gcc -O2 -Iruntime runtime/host/plmain.c "$work/sdcsf_pl.c" runtime/*.c -DMODEL=sdcsf -o "$work/sdcsf"
 printf "model driven\ncoord x\ninput u hold first\nx'' + 0.2*x' + 40*x = u\nstep 0.001\noutput x\n" >"$work/driven.spec"
-"$build/plgen" -o "$work/driven_pl.c" "$work/driven.spec"
+"$build/plgen" --fast -o "$work/driven_pl.c" "$work/driven.spec"
 gcc -O2 -Iruntime runtime/host/plmain.c "$work/driven_pl.c" runtime/*.c -DMODEL=driven -o "$work/driven"
 awk 'BEGIN { srand(1); for (k = 0; k <= 1000000; k++) printf "%.17g\n", rand() - 0.5 }' >"$work/record.csv"
 

@@ -24,7 +24,7 @@ while read -r spec base native wide; do
 		[ "$target" = none ] && target=0 || eval "target=\$$target"
 		command -v $compiler >/dev/null 2>&1 || continue
 		[ "$rows" = - ] && option= || option="--rows $rows"
-		"$build/plgen" $option --prefix "$name" "$file" >"$work/$name.c"
+		"$build/plgen" --fast $option --prefix "$name" "$file" >"$work/$name.c"
 		$compiler $flags -Iruntime -c "$work/$name.c" -o "$work/$name.o"
 		objects="$objects $work/$name.o"
 		label="$compiler $flags"

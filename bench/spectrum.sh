@@ -14,7 +14,7 @@ for hold in first fifth seventh; do
 	peak=s/x/x/
 	[ $hold = first ] || peak='s/^output x$/output sd = peak(x)/'
 	sed -e '/^output absolute/d' -e "s/hold first/hold $hold/" -e "$peak" models/oscillator.spec >"$work/$name.spec"
-	"$build/plgen" --batch --prefix $name -o "$work/${name}_pl.c" "$work/$name.spec"
+	"$build/plgen" --fast --batch --prefix $name -o "$work/${name}_pl.c" "$work/$name.spec"
 done
 for compiler in gcc clang; do
 	command -v $compiler >/dev/null || continue

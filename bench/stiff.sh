@@ -11,7 +11,7 @@ for name in pressed flipping braked; do
 		scheme=${case%:*}
 		digits=${case#*:}
 		prefix=${name}_$scheme$digits
-		"$build/plgen" --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" \
+		"$build/plgen" --fast --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" \
 			-o "$work/${prefix}_pl.c" \
 			"tests/divided/$name.spec" 2>/dev/null
 		echo "extern const pl_model ${prefix}_model;" >>"$work/declared"

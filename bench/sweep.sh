@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 models='' etas='' count=0
 for eta in $(awk 'BEGIN { for (k = 25; k <= 110; k++) print k / 100 }'); do
 	name=gear_$count
-	"$build/plgen" --prefix "$name" --step 0.05 -D eta="$eta" -D zeta=0.02 -D fa=0.06 models/gear1.spec \
+	"$build/plgen" --fast --prefix "$name" --step 0.05 -D eta="$eta" -D zeta=0.02 -D fa=0.06 models/gear1.spec \
 		>>"$work/all.c"
 	models="$models&${name}_model, " etas="$etas$eta, " count=$((count + 1))
 done

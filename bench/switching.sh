@@ -12,8 +12,8 @@ for case in stop:0.001 stop:0.01 bilinear:0.01 gear1:0.01 gear1:0.1 gear2:0.1 ge
 	# the same without stops: every piecewise-linear function is its argument
 	sed -e 's/deadzone(\([a-z0-9]*\(\[1\]\)*\), -b[0-9]*, b[0-9]*)/\1/' -e 's/max(x, 0)/x/' \
 		-e 's/(x > 0 ? k2\*x : k1\*x)/k1*x/' "models/$name.spec" >"$work/plain.spec"
-	"$build/plgen" --step "$h" --prefix plain -o "$work/plain_pl.c" "$work/plain.spec" 2>/dev/null
-	"$build/plgen" --step "$h" --prefix stops -o "$work/stops_pl.c" "models/$name.spec" 2>/dev/null
+	"$build/plgen" --fast --step "$h" --prefix plain -o "$work/plain_pl.c" "$work/plain.spec" 2>/dev/null
+	"$build/plgen" --fast --step "$h" --prefix stops -o "$work/stops_pl.c" "models/$name.spec" 2>/dev/null
 	cat >"$work/crossed.c" <<'EOT'
 #include "stops_pl.h"
 uint64_t crossed(const void *s);

@@ -118,7 +118,7 @@ static void take_refresh(struct options *options, const char *value)
 {
 	options->request.refresh = count_of(value, MOST_REFRESHED);
 	if (!options->request.refresh)
-		wrong_usage(format("--anchors takes a number of steps, 1 to %d, found '%s'", MOST_REFRESHED, value));
+		wrong_usage(format("--refresh takes a number of steps, 1 to %d, found '%s'", MOST_REFRESHED, value));
 }
 
 static void take_definition(struct options *options, const char *value)
@@ -211,7 +211,8 @@ static void print_version(struct options *options, const char *value)
 static const struct row {
 	const char *name;               /* of one letter: -o; else --name */
 	const char *argument;           /* in brackets: optional; NULL: none */
-	const char *help;               /* NULL: of the last line, which lists those that need no words */
+	/* NULL: of the last line, which lists those that need no words; older names, with arguments, are not listed */
+	const char *help;
 	void (*take)(struct options *options, const char *value);
 	const char *(*values)(const char *separator); /* closes the help */
 	/* without `take`: what is set to the value, to true; what is printed. All 0: it is a line of usage only */
@@ -242,12 +243,17 @@ static const struct row {
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  .take = take_accuracy },
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
-	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", .take = take_refresh },
+	{ "fast", NULL, "with tables for long runs: NAME_run by blocks of rows, and --refresh",
+	  .flag = AT(request.fast) },
+	{ "refresh", "N", "cos, sin, exp of loads every N steps, rotated between by a table; 1: every step (default)",
+	  .take = take_refresh },
+	{ "anchors", "N", .take = take_refresh },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", .take = take_definition },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
 	{ "reduce", NULL, "leave out what the outputs cannot see", .take = take_reduce },
 	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", .text = AT(request.modes) },
-	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", .take = take_rows },
+	{ "rows", "K", "in a block of NAME_run; 1: step by step (default; with --fast: by the model's size)",
+	  .take = take_rows },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", .text = AT(depfile) },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", .flag = AT(request.selftest) },
 	{ "batch", NULL, "also emit NAME_batch: many instances in one call",
@@ -295,7 +301,7 @@ static _Noreturn void print_usage(struct options *options, const char *value)
 	for (int i = 0; i < ROWS; i++)
 		if (rows[i].help)
 			print_row(&rows[i]);
-		else
+		else if (!rows[i].argument)
 			rest = format("%s%s%s%s", rest, *rest ? ", " : "", is_short(&rows[i]) ? "-" : "--",
 				      rows[i].name);
 	printf("  %s\n\n"
@@ -427,7 +433,8 @@ static void note_all(struct options *options)
 	note_flag(options, "--real float", request->single);
 	note_value(options, "--form", request->form != FORM_AUTO ? step_form_name(request->form) : NULL);
 	note_flag(options, "--accuracy compensated", request->compensated);
-	note_value(options, "--anchors", request->refresh ? format("%d", request->refresh) : NULL);
+	note_flag(options, "--fast", request->fast);
+	note_value(options, "--refresh", request->refresh ? format("%d", request->refresh) : NULL);
 	note_value(options, "--rows", request->rows ? format("%d", request->rows) : NULL);
 	note_flag(options, "--selftest", request->selftest);
 	note_flag(options, "--rhs", options->rhs);
@@ -510,6 +517,7 @@ void read_options(int argc, char **argv, struct options *options)
 	if (options->amplitude && options->print != PRINT_RESPONSE &&
 	    !(options->print == PRINT_PLOT && has_frf(options->value)))
 		wrong_usage("--amplitude goes with --response and --plot frf");
+	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
 	note_all(options);
 	check_fmu(options);
 	find_header(options);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* changes.h: a linear model over part of a step: x' = A x, x being the states and what acts on them, by Taylor's
- * series; from change to change where loads change their formula, or of independent blocks one after the other.
+/* changes.h: a linear model over part of a step: x' = A x by Taylor's series, x being the states and what acts on
+ * them; from change to change where loads change their formula, or of independent blocks one after the other.
  * Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with member segment

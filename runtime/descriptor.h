@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* descriptor.h: a model for programs that drive any: the same functions as every other, in a pl_model.  Included by the
+/* descriptor.h: NAME_model, the table by which programs drive any model: names, sizes and functions.  Included by the
  * file of the model, which defines before it
  *
  *     PL_TYPE, PL_NAME           the model; its name in quotes

@@ -10,6 +10,171 @@
  *     PL_STATES, PL_INPUTS, PL_OUTPUTS, PL_PARAMS    how many, where there are any or they are read */
 #include "plrt.h"
 
+#ifdef PL /* What the file of a model does not define: it has none of it, and one segment of time */
+#ifndef PL_REFRESHED
+#define PL_REFRESHED 0
+#endif
+#ifndef PL_BLOCKS
+#define PL_BLOCKS 0
+#endif
+#ifndef PL_BOUNCES
+#define PL_BOUNCES 0
+#endif
+#ifndef PL_BY_VALUES
+#define PL_BY_VALUES 0
+#endif
+#ifndef PL_CARRIES
+#define PL_CARRIES 0
+#endif
+#ifndef PL_CHANGING
+#define PL_CHANGING 0
+#endif
+#ifndef PL_CHOICES
+#define PL_CHOICES 0
+#endif
+#ifndef PL_EVENT_FREE
+#define PL_EVENT_FREE 0
+#endif
+#ifndef PL_CONTACTS
+#define PL_CONTACTS 0
+#endif
+#ifndef PL_CONVERTED
+#define PL_CONVERTED 0
+#endif
+#ifndef PL_DERIVED
+#define PL_DERIVED 0
+#endif
+#ifndef PL_EXPRESSIONS
+#define PL_EXPRESSIONS 0
+#endif
+#ifndef PL_FEW
+#define PL_FEW 0
+#endif
+#ifndef PL_FLOORS
+#define PL_FLOORS 0
+#endif
+#ifndef PL_FORCED
+#define PL_FORCED 0
+#endif
+#ifndef PL_GROWTHS
+#define PL_GROWTHS 0
+#endif
+#ifndef PL_GUARDS
+#define PL_GUARDS 0
+#endif
+#ifndef PL_HALVINGS
+#define PL_HALVINGS 0
+#endif
+#ifndef PL_IMPACTS
+#define PL_IMPACTS 0
+#endif
+#ifndef PL_INPUTS
+#define PL_INPUTS 0
+#endif
+#ifndef PL_INSIDE
+#define PL_INSIDE 0
+#endif
+#ifndef PL_IN_STEP
+#define PL_IN_STEP 0
+#endif
+#ifndef PL_JUMPS
+#define PL_JUMPS 0
+#endif
+#ifndef PL_KEPT
+#define PL_KEPT 0
+#endif
+#ifndef PL_LARGEST
+#define PL_LARGEST 0
+#endif
+#ifndef PL_LEADS
+#define PL_LEADS 0
+#endif
+#ifndef PL_LOAD_STATES
+#define PL_LOAD_STATES 0
+#endif
+#ifndef PL_LOSES
+#define PL_LOSES 0
+#endif
+#ifndef PL_MEASURED
+#define PL_MEASURED 0
+#endif
+#ifndef PL_MODAL
+#define PL_MODAL 0
+#endif
+#ifndef PL_MODES
+#define PL_MODES 0
+#endif
+#ifndef PL_MOMENTA
+#define PL_MOMENTA 0
+#endif
+#ifndef PL_NORMAL
+#define PL_NORMAL 0
+#endif
+#ifndef PL_OVER
+#define PL_OVER 0
+#endif
+#ifndef PL_OWN
+#define PL_OWN 0
+#endif
+#ifndef PL_PARAMS
+#define PL_PARAMS 0
+#endif
+#ifndef PL_PEAKS
+#define PL_PEAKS 0
+#endif
+#ifndef PL_PHASES
+#define PL_PHASES 0
+#endif
+#ifndef PL_PLACES
+#define PL_PLACES 0
+#endif
+#ifndef PL_RAMPS
+#define PL_RAMPS 0
+#endif
+#ifndef PL_RANGES
+#define PL_RANGES 0
+#endif
+#ifndef PL_RELATIVE
+#define PL_RELATIVE 0
+#endif
+#ifndef PL_RESTS
+#define PL_RESTS 0
+#endif
+#ifndef PL_ROWS
+#define PL_ROWS 0
+#endif
+#ifndef PL_SEGMENTS
+#define PL_SEGMENTS 1
+#endif
+#ifndef PL_SINGLE
+#define PL_SINGLE 0
+#endif
+#ifndef PL_SLOPES
+#define PL_SLOPES 0
+#endif
+#ifndef PL_STATUS
+#define PL_STATUS 0
+#endif
+#ifndef PL_STRAIGHT
+#define PL_STRAIGHT 0
+#endif
+#ifndef PL_TAPS
+#define PL_TAPS 0
+#endif
+#ifndef PL_TERMS
+#define PL_TERMS 0
+#endif
+#ifndef PL_UNSEEN
+#define PL_UNSEEN 0
+#endif
+#ifndef PL_WATCHED
+#define PL_WATCHED 0
+#endif
+#ifndef PL_WHOLE
+#define PL_WHOLE 0
+#endif
+#endif
+
 #if PL_SINGLE
 #define real float
 #include "floats.h"

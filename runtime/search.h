@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* search.h: a piecewise-linear model by the search of the runtime (crossings.c; guards.c, where something sticks, slips
- * or bounces): what it goes by, the region of a state, x on from event to event, and within a step from change to
- * change of loads that change their formula in time.  There the number of a region in pl_contact has its segment of
+/* search.h: events of a piecewise-linear model: the region of a state, and a step from event to event, by crossings.c,
+ * where something sticks, slips or bounces by guards.c; within a step also from change to change of loads that change
+ * their formula in time.  There the number of a region in pl_contact has its segment of
  * time as the last interval, so that a change goes to the region with the same intervals in the next segment; what has
  * left its interval by that, the search finds at the start of the stretch.
  *

@@ -29,7 +29,7 @@ fi
 
 rm -f "$out" "$out.refused"
 # shellcheck disable=SC2086
-if ! "$plgen" --prefix subject ${CHARTS_RHS---rhs} "$@" "$spec" >"$work/subject_pl.c" 2>"$work/messages"; then
+if ! "$plgen" --fast --prefix subject ${CHARTS_RHS---rhs} "$@" "$spec" >"$work/subject_pl.c" 2>"$work/messages"; then
 	sed -n '/error:/{p;q;}' "$work/messages" >"$out.refused"
 	[ -s "$out.refused" ] || sed -n '1p' "$work/messages" >"$out.refused"
 	exit 0

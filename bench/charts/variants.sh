@@ -140,7 +140,7 @@ less() {
 	"$program" --specs "$folder"
 	cut -f 1,6 "$folder/less.list" | while read -r name options; do
 		# shellcheck disable=SC2086
-		"$plgen" $options "$folder/$name.spec" 2>/dev/null |
+		"$plgen" --fast $options "$folder/$name.spec" 2>/dev/null |
 			sed -n '/^ \* One step of/{s/.* \([0-9]*\) multiplications.*/\1/p;q;}' >"$folder/$name.cost"
 		echo "$name.so $folder/$name.spec $options"
 	done

@@ -104,7 +104,7 @@ done
 for model in $models; do
 	mkdir "$work/$model"
 	spec "$model" >"$work/$model/model.spec"
-	"$build/plgen" -o "$work/$model/model_pl.c" "$work/$model/model.spec" 2>/dev/null
+	"$build/plgen" --fast -o "$work/$model/model_pl.c" "$work/$model/model.spec" 2>/dev/null
 	g++ -x c++ -w -O1 -include $here/counted.h -Iruntime -DMODEL="$model" $here/count.cpp \
 		"$work/$model/model_pl.c" -x none "$work"/counted/*.o -o "$work/$model/operations"
 done

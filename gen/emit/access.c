@@ -13,7 +13,7 @@ static void emit_initial(const struct emitter *e, const char *name, const struct
 	double *value = ARRAY(double, (size_t)e->system->states);
 	for (int i = 0; i < e->system->states; i++)
 		value[i] = round_rational(model->initial[i]);
-	emit_array(e, state_list(model), name, 1, &e->system->states, value, NULL);
+	emit_array(e, format("Initial state: %s", state_list(model)), name, 1, &e->system->states, value, NULL);
 }
 
 static void emit_masses(const struct emitter *e)
@@ -88,7 +88,8 @@ void emit_access(const struct emitter *e)
 {
 	const struct step *step = e->step;
 	emit_tables(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "MODAL", step->modal != NULL },
+	emit_sizes(e, "access.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "MODAL", step->modal != NULL },
 		   { "NORMAL", keeps_modes(e) ? step->normal->modes : 0 }, { "MOMENTA", step->linear.kicks.momenta },
 		   { "FORCED", step->forced != NULL },
 		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },

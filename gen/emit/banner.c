@@ -64,26 +64,7 @@ static void banner_poles(const struct emitter *e)
 		say(e, " *     %s\n", pole_row(&pole[i], 34));
 }
 
-/* One sentence, its lines broken between words */
-static void banner_words(const struct emitter *e, const char *text)
-{
-	enum { WIDTH = 110 };
-	size_t column = 2;
-	say(e, " *");
-	while (*text) {
-		size_t word = strcspn(text, " ");
-		if (column + 1 + word > WIDTH) {
-			say(e, "\n *");
-			column = 2;
-		}
-		say(e, " %.*s", (int)word, text);
-		column += 1 + word;
-		text += word + strspn(text + word, " ");
-	}
-	say(e, "\n");
-}
-
-#define banner_sentence(e, ...) banner_words(e, format(__VA_ARGS__))
+#define banner_sentence(e, ...) say_words(e, format(__VA_ARGS__))
 
 #define region_number \
 	"A region's number is the sum of its intervals, each times the product of the numbers of intervals before it."

@@ -147,8 +147,22 @@ static void declare_tables(const struct emitter *e)
 			"by how much a step may miss each state; 0: it has an absolute tolerance");
 }
 
+/* In which order they are called, and what fails how */
+static void explain_functions(const struct emitter *e)
+{
+	const bool jumps = has_jump(e), between = e->step->series.emitted;
+	const char *text = "First $n_init, or $n_set after it for another state; then $n_step for each h, or $n_run "
+			   "for many. $n_get, $n_out%s read the state and change nothing%s. No function allocates, "
+			   "waits or ends the program; what goes wrong is in $n_status, which is 0 while all is "
+			   "well%s.";
+	say_comment(e, "", spell(e, text, between ? spell(e, ", $n_at") : "",
+				 jumps ? spell(e, "; $n_jump is many steps at once, without outputs between") : "",
+				 keeps_status(e) ? " and keeps its bits until the next init or set" : ""));
+}
+
 static void emit_functions(const struct emitter *e, bool rhs)
 {
+	explain_functions(e);
 	declare_state_functions(e);
 	if (given_inputs(e))
 		declare_driven_step(e, most_taps_before(e) ? "one step of h; u: the next sample"

@@ -37,9 +37,9 @@ void emit_access(const struct emitter *e);
 
 /* ---- descriptor.c: tables for all to read, and the descriptor ---- */
 
-void emit_phi(const struct emitter *e);
-void emit_mode_matrices(const struct emitter *e);               /* of a model of some modes: from and to all states */
-void emit_gamma(const struct emitter *e);
+void emit_kept_phi(const struct emitter *e);
+/* Those of the header: transfer matrix, input matrix; of a model of some modes from and to all states */
+void emit_declared_tables(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
 /* names, NAME_any_init and the like, NAME_model; `core`: with what only a whole model has */
 void emit_model(const struct emitter *e, int inputs, bool core);

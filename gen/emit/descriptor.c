@@ -28,12 +28,11 @@ static bool flows_in_full(const struct step *step)
 	return whole && program->loops;
 }
 
-/* Of the states as written; of those that are kept where a function reads it */
-void emit_phi(const struct emitter *e)
+/* Of the states that are kept, where a function reads it */
+void emit_kept_phi(const struct emitter *e)
 {
 	if (e->step->shown->no.phi)
 		return;
-	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
 	const bool leaps = has_jump(e) && !e->step->is.tuned;
 	if (e->model->relative && (leaps || flows_in_full(e->step)))
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
@@ -49,7 +48,7 @@ static void emit_rounded(const struct emitter *e, int rows, int columns, const m
 }
 
 /* Between the states of all modes and those of the kept ones */
-void emit_mode_matrices(const struct emitter *e)
+static void emit_mode_matrices(const struct emitter *e)
 {
 	const struct shortening *s = e->model->shortened;
 	const struct model *whole = e->model->written;
@@ -64,6 +63,13 @@ void emit_mode_matrices(const struct emitter *e)
 	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->names.state);
 }
 
+/* Of the states as written */
+static void emit_phi(const struct emitter *e)
+{
+	if (!e->step->shown->no.phi)
+		emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
+}
+
 static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
 	const struct table *table = step->branch->whole;
@@ -75,10 +81,17 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 	say(e, "};\n");
 }
 
-void emit_gamma(const struct emitter *e)
+static void emit_gamma(const struct emitter *e)
 {
-	if (!e->step->shown->no.phi)
+	if (given_inputs(e) && !e->step->shown->no.phi)
 		emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
+}
+
+void emit_declared_tables(const struct emitter *e)
+{
+	emit_phi(e);
+	emit_gamma(e);
+	emit_mode_matrices(e);
 }
 
 static void emit_start_samples(const struct emitter *e, int inputs)
@@ -120,7 +133,8 @@ void emit_model(const struct emitter *e, int inputs, bool core)
 {
 	const struct tuning *tunable = tunables_of(e->model);
 	emit_names(e, inputs, tunable);
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "descriptor.h", { "STATES", e->system->states }, { "INPUTS", inputs },
+		   { "OUTPUTS", e->model->outputs },
 		   { "PARAMS", tunable ? tunable->given : 0 }, { "AT", e->step->series.emitted },
 		   { "JUMPS", core && has_jump(e) }, { "RAMPS", e->ramps });
 	say(e, "#define PL_NAME \"$n\"\n"

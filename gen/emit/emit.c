@@ -151,10 +151,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 
 static void emit_all_tables(const struct emitter *e)
 {
-	emit_phi(e);
-	if (given_inputs(e))
-		emit_gamma(e);
-	emit_mode_matrices(e);
+	emit_kept_phi(e);
 	emit_load_tables(e);
 	emit_refresh_tables(e);
 	if (!e->model->params.retuned)
@@ -194,6 +191,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 {
 	struct emitter made = emitter_new(to, step, options), *e = &made;
 	emit_banner(e);
+	emit_if_any(e->prints->events, e);
 	if (header_name)
 		say(e, "#include \"%s\"\n", header_name);
 	else
@@ -212,6 +210,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_out(e);
 	emit_peak_step(e);
 	emit_run(e);
+	emit_declared_tables(e);
 	emit_further_functions(e, rhs);
 	(e->model->delays ? emit_delays : emit_descriptor)(e);
 }

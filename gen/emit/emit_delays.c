@@ -121,7 +121,8 @@ static void emit_samples_of_core(const struct emitter *e)
 	emit_int_list(e, "parts_ago", d->inputs + d->count, list_of(e, parts_ago));
 	if (e->ramps)
 		emit_int_list(e, "is_ramp", d->inputs + d->count, list_of(e, is_ramp));
-	emit_sizes(e, { "STATES", e->system->states }, { "OUTPUTS", e->model->outputs }, { "INPUTS", d->inputs },
+	emit_sizes(e, "delays.h", { "STATES", e->system->states }, { "OUTPUTS", e->model->outputs },
+		   { "INPUTS", d->inputs },
 		   { "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
 		   { "RAMPS", e->ramps }, { "AT", e->step->series.emitted },
 		   { "PARAMS", tunables_of(e->model) ? tunables_of(e->model)->given : 0 });

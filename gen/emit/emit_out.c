@@ -47,7 +47,8 @@ static void emit_direct_factors(const struct emitter *e)
 				for (int k = 0; k < system->load[l].columns; k++)
 					*to++ = round_rational(direct_factors(e->step, output, l, k)[s]);
 		}
-	emit_array(e, "Factors of the load states in each segment of time", "direct", 3, size, value, note);
+	emit_array(e, "Input columns of the outputs: factors of the load states in each segment of time", "direct",
+		   3, size, value, note);
 }
 
 /* Rows read states as they are kept, forms the written ones. */

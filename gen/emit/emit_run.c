@@ -327,7 +327,8 @@ void emit_run(const struct emitter *e)
 		emit_block(e);
 	}
 	emit_over_block(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "run.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs },
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
 		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL }, { "RESTS", rests },

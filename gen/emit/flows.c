@@ -5,8 +5,10 @@
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
+#include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
 #include "step/regions/guards.h"
+#include "step/regions/regions.h"
 
 /* ---- linear ---- */
 
@@ -47,10 +49,29 @@ static void emit_event_limit(const struct emitter *e)
 	    parts ? parts * MAX_EVENTS : max_events(e->model), parts ? format(", %d of each part", MAX_EVENTS) : "");
 }
 
+/* Whether the step stands before the tables: it does not read them by itself */
+static bool starts_with_step(const struct emitter *e)
+{
+	const bool reads = e->step->regions.event_check.event_free && !has_events(e->model->switching) &&
+			   is_checked_by_tables(e->step);
+	return !reads && !e->model->params.retuned && !has_peaks(e) && !has_ranges(e) && e->system->segments == 1 &&
+	       !e->step->carried.count;
+}
+
 static void emit_region_tables(const struct emitter *e)
 {
+	if (starts_with_step(e)) {
+		declare_region_search(e);
+		emit_region_step(e);
+	}
 	emit_regions(e);
 	emit_region_start(e);
+}
+
+static void emit_later_region_step(const struct emitter *e)
+{
+	if (!starts_with_step(e))
+		emit_region_step(e);
 }
 
 /* What both kinds of regions have */
@@ -63,9 +84,10 @@ static void emit_region_tables(const struct emitter *e)
 static const struct printers regions = {
 	.banner = banner_regions,
 	OF_REGIONS,
+	.events = emit_event_note,
 	.members = emit_region_members,
 	.tables = emit_region_tables,
-	.step = emit_region_step,
+	.step = emit_later_region_step,
 	.at = emit_region_at
 };
 
@@ -80,6 +102,7 @@ static void emit_tables_of_parts(const struct emitter *e)
 static const struct printers parts = {
 	.banner = banner_parts,
 	OF_REGIONS,
+	.events = emit_event_note_of_parts,
 	.members = emit_part_members,
 	.tables = emit_tables_of_parts,
 	.step = emit_parts_step,

@@ -382,6 +382,17 @@ static const char *included_by(const char *line)
 	return begins(name, "pl") || !runtime_text(name) ? NULL : name;
 }
 
+/* What numbers.h says of what the file did not */
+static void define_defaults(struct including *in)
+{
+	static const char before[] = "#ifndef ";
+	for (const char *text = runtime_text("numbers.h"); *text; text = next_line(text))
+		if (begins(text, before) && !macro_at(in, text + strlen(before), name_length(text + strlen(before)))) {
+			const char *line = next_line(text) + strlen("#define ");
+			define(in, slice(line, strcspn(line, "\n")));
+		}
+}
+
 void print_included(FILE *to, const char *text, const char *model)
 {
 	struct including in = { .to = to };
@@ -394,6 +405,7 @@ void print_included(FILE *to, const char *text, const char *model)
 			define(&in, slice(text + strlen("#define "), strcspn(text, "\n") - strlen("#define ")));
 		} else if (name) {
 			define(&in, "real double");     /* what is of float is made of it */
+			define_defaults(&in);
 			include(&in, name);
 		} else {
 			put(to, text, (size_t)(end - text));

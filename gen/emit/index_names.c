@@ -106,7 +106,7 @@ const char **names_of_inputs(const struct emitter *e)
 void emit_index_names(const struct emitter *e)
 {
 	const struct tuning *tuning = tunables_of(e->model);
-	say(e, "/* places in y, u and out%s */\n", tuning ? ", in params" : "");
+	say(e, "/* indices into y, u and out%s */\n", tuning ? ", into params" : "");
 	emit_names_of(e, "X", e->step->shown->model->names.state, e->system->states);
 	emit_names_of(e, "IN", names_of_inputs(e), given_inputs(e));
 	emit_names_of(e, "OUT", names_of_outputs(e), e->model->outputs);

@@ -79,7 +79,7 @@ void emit_selftest(const struct emitter *e, bool jumps)
 	if (given_inputs(e))
 		emit_sample(e);
 	emit_begin(e);
-	emit_sizes(e, { "STATES", r.states }, { "INPUTS", given_inputs(e) }, { "ROWS", r.rows },
+	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", given_inputs(e) }, { "ROWS", r.rows },
 		   { "CROSSED", r.crossings },
 		   { "JUMPS", jumps }, { "AT", e->step->series.emitted });
 	if (r.crossings)

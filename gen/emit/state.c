@@ -287,13 +287,13 @@ bool crowds(const struct emitter *e)
 	return has_unseen(e) && e->step->taylor.unseen->crowded > 0;
 }
 
-void open_algorithm(const struct emitter *e, const struct size *size)
+void open_algorithm(const struct emitter *e, const char *algorithm, const struct size *size)
 {
-	say(e, "\n/* ---- what is the same for every model ---- */\n\n"
-	       "#define PL(name) $n_##name\n"
+	say_purpose(e, algorithm);
+	say(e, "#define PL(name) $n_##name\n"
 	       "#define PL_TYPE $n\n"
-	       "#define PL_H %s\n"
-	       "#define PL_SINGLE %d\n", step_length(e), e->model->asked.single);
+	       "#define PL_H %s\n", step_length(e));
+	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
 	for (; size->name; size++)
 		say_macro(e, size->name, whole_text(size->value));
 }

@@ -14,6 +14,8 @@ struct printers {                       /* NULL: none of its own */
 	/* The comment at the top: what is approximated; before what a step costs */
 	void (*banner)(const struct emitter *e);
 	const char *step_note;
+	/* Behind that, in the C alone: how an event is found */
+	void (*events)(const struct emitter *e);
 	/* The header: constants; types before that of the state; at its end; functions */
 	void (*constants)(const struct emitter *e);
 	void (*types)(const struct emitter *e);
@@ -74,10 +76,10 @@ bool has_place(const struct emitter *e);                           /* NAME_place
 const char *of_step(const struct emitter *e, const char *table);
 
 struct size { const char *name; int value; };
-/* Before an algorithm of the runtime is included: PL(name), PL_TYPE, PL_H, PL_SINGLE, and PL_... of each size, up to
- * one without a name; emit_sizes: of those listed */
-void open_algorithm(const struct emitter *e, const struct size *size);
-#define emit_sizes(e, ...) open_algorithm(e, (const struct size[]){ __VA_ARGS__, { NULL, 0 } })
+/* Before an algorithm of the runtime is included: its name and what it is for, PL(name), PL_TYPE, PL_H, PL_SINGLE, and
+ * PL_... of each size, up to one without a name; emit_sizes: of those listed */
+void open_algorithm(const struct emitter *e, const char *algorithm, const struct size *size);
+#define emit_sizes(e, algorithm, ...) open_algorithm(e, algorithm, (const struct size[]){ __VA_ARGS__, { NULL, 0 } })
 
 bool has_param_ranges(const struct emitter *e);
 bool wraps_retune(const struct emitter *e);      /* NAME_retune is the model's own, and calls NAME_retune_all */

@@ -241,8 +241,16 @@ const char *whole_text(int number)
 	return format("%d", number);
 }
 
+/* What numbers.h defines itself where the file does not */
+static bool is_default(const char *name, const char *text)
+{
+	return strstr(runtime_text("numbers.h"), format("\n#define PL_%s %s\n", name, text)) != NULL;
+}
+
 void say_macro(const struct emitter *e, const char *name, const char *text)
 {
+	if (is_default(name, text))
+		return;
 	say(e, "#define PL_%s%s%s\n", name, *text ? " " : "", text);
 }
 
@@ -272,6 +280,54 @@ void emit_int_list(const struct emitter *e, const char *name, int count, const i
 	emit_integers(e, "int", name, count, value);
 }
 
+/* The first sentence behind "/\* NAME: ", on one line */
+static const char *purpose_of(const char *algorithm)
+{
+	const char *text = strstr(runtime_text(algorithm), format("/* %s: ", algorithm)), *purpose = "";
+	for (text += strlen("/* : ") + strlen(algorithm); *text && !(*text == '.' && strchr(" \n", text[1])) &&
+	     strncmp(text, " */", 3) != 0; text += strncmp(text, "\n *", 3) == 0 ? 3 : 1)
+		purpose = format("%s%.1s", purpose, *text == '\n' ? "" : text);
+	return purpose;
+}
+
+void say_words(const struct emitter *e, const char *text)
+{
+	enum { WIDTH = 110 };
+	size_t column = 2;
+	say(e, " *");
+	while (*text) {
+		size_t word = strcspn(text, " ");
+		if (column + 1 + word > WIDTH) {
+			say(e, "\n *");
+			column = 2;
+		}
+		say(e, " %.*s", (int)word, text);
+		column += 1 + word;
+		text += word + strspn(text + word, " ");
+	}
+	say(e, "\n");
+}
+
+void say_comment(const struct emitter *e, const char *indent, const char *text)
+{
+	enum { WIDTH = 112 };
+	say(e, "%s/* ", indent);
+	while (strlen(text) > WIDTH) {
+		size_t length = WIDTH;
+		while (text[length] != ' ')
+			length--;
+		say(e, "%.*s\n%s * ", (int)length, text, indent);
+		text += length + 1;
+	}
+	say(e, "%s */\n", text);
+}
+
+void say_purpose(const struct emitter *e, const char *algorithm)
+{
+	say(e, "\n");
+	say_comment(e, "", format("From the runtime, %s: %s", algorithm, purpose_of(algorithm)));
+}
+
 void say_include(const struct emitter *e, const char *algorithm)
 {
 	say(e, "#include \"%s\"\n", algorithm);
@@ -281,10 +337,14 @@ void say_include(const struct emitter *e, const char *algorithm)
 
 void open_member(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note)
 {
-	if (e->members)
+	if (e->members && strlen(note) > 64) {
+		say_comment(e->members, "    ", note);
+		say(e->members, "    %s %s%s;\n", type, name, shape);
+	} else if (e->members) {
 		say(e->members, "    %-46s /* %s */\n", format("%s %s%s;", type, name, shape), note);
-	else
-		say(e, "    {  /* %s: %s */\n", name, note);
+	} else {
+		say(e, "    {  /* %s */\n", name);
+	}
 }
 
 void close_member(const struct emitter *e)

@@ -72,8 +72,14 @@ void say_wrapped(const struct emitter *e, const char *text);      /* a statement
 /* const double name[count] = {...}; NULL: 1 */
 void say_vector(const struct emitter *e, const char *name, int count, const char *const *text);
 const char *whole_text(int number);
+/* Lines of a comment that stands open, broken between words */
+void say_words(const struct emitter *e, const char *text);
+/* A comment, broken where it is long; no word of it is longer than a line */
+void say_comment(const struct emitter *e, const char *indent, const char *text);
+/* Behind a blank line a comment: an algorithm of the runtime and what it is for, the first sentence of its text */
+void say_purpose(const struct emitter *e, const char *algorithm);
 void say_include(const struct emitter *e, const char *algorithm);
-/* For an algorithm that the file includes: PL_NAME, as it is called there */
+/* For an algorithm that the file includes: PL_NAME, as it is called there; nothing, where numbers.h says the same */
 void say_macro(const struct emitter *e, const char *name, const char *text);
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 /* rounded; an error at the step where it overflows */

@@ -33,10 +33,12 @@ struct request {                    /* what the user asks for on the command lin
 	bool step_open;             /* nothing says how long a step is: one is chosen */
 	bool real_given;            /* that was said: --real */
 	bool selftest;              /* NAME_selftest */
-	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
+	bool fast;                  /* tables for long runs on a workstation: rows of outputs, rotated phasors */
+	bool phasors;               /* of these the phasors, which pay in every step: of --fast, batches and FMUs */
+	int rows;                   /* in a block of NAME_run; 0: with `fast` as many as serve best, else none */
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
-	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
+	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: see `phasors` */
 	const char *linearise;      /* where: rest, or states and their values; NULL: nowhere */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
@@ -49,6 +51,12 @@ struct request {                    /* what the user asks for on the command lin
 	struct place end_at;        /* the end of --solution, else as step_at */
 	struct again again;
 };
+
+/* Whether NAME_run is to go by blocks of rows */
+static inline bool wants_rows(const struct request *asked)
+{
+	return asked->rows ? asked->rows > 1 : asked->fast;
+}
 
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h; of collocation in h */

@@ -330,7 +330,7 @@ classdef plgen_model < handle
 
         % What plgen writes for these params, and its messages
         function [out, said] = plgen(m, given, h, extra)
-            words = [m.options, " ", extra];
+            words = [" --fast", m.options, " ", extra];
             if ! isempty(h)
                 words = [words, " --step ", quoted(expression(h))];
             end

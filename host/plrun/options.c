@@ -139,7 +139,7 @@ static const struct row {
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
 	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL },
-	{ "anchors", "N", NULL, NULL }, { "reduce", NULL, NULL, NULL },
+	{ "refresh", "N", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
 	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
 };
 enum { ROWS = sizeof rows / sizeof *rows };
@@ -157,7 +157,7 @@ static _Noreturn void print_usage(struct options *o, const char *value)
 			       rows[i].argument ? rows[i].argument : "", rows[i].help);
 	fputs("  passed on to plgen:", stdout);
 	for (int i = 0; i < ROWS; i++)
-		if (!rows[i].take)
+		if (!rows[i].take && !rows[i].help)
 			printf(" --%s", rows[i].name);
 	fputs("\n  --help, --version\n\n"
 	      "PLGEN names the generator (default: beside plrun, then in PATH), CC the compiler (cc), CFLAGS more\n"

@@ -340,7 +340,7 @@ class Model:
     # ---- making it ----
 
     def _plgen(self, given, step, extra=()):
-        argv = [_plgen()] + self._options + list(extra)
+        argv = [_plgen(), '--fast'] + self._options + list(extra)
         if step is not None:
             argv += ['--step', _expression(step)]
         for name, value in given.items():

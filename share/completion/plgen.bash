@@ -28,7 +28,7 @@ _plgen() {
         --loads) mapfile -t COMPREPLY < <(compgen -W 'exact remainder' -- "$current"); return ;;
         -o | --depfile | --input | --sweep | --plot)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
-        --step | --tolerance | --prefix | --modes | --rows | --anchors | --solution | --until | --every | --jobs | \
+        --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
             --column | --time | -D) return ;;
     esac
     case $current in

@@ -502,7 +502,7 @@ static void print_options(FILE *to)
 		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "radau", "--scheme radau" },
 		{ "auto", "--scheme auto" }, { "etdam5", "--scheme etdam5" }, { "etdcol", "--scheme etdcol" },
 		{ "selftest", "--selftest" },
-		{ "rows", "--rows 8" }, { "loads", "--loads remainder" }, { "anchors", "--anchors 8" },
+		{ "rows", "--rows 8" }, { "loads", "--loads remainder" }, { "refresh", "--refresh 8" },
 		{ "batch", "--batch" } };
 	bool scheme = false;
 	fputs("# options:", to);

@@ -68,7 +68,7 @@ while read -r name rows spec options; do
         *) file=$spec ;;
     esac
     # shellcheck disable=SC2086
-    "$plgen" $options --prefix "$name" "$file" >"$name.c" 2>log || { result 1 "$name is written"; continue; }
+    "$plgen" --fast $options --prefix "$name" "$file" >"$name.c" 2>log || { result 1 "$name is written"; continue; }
     type=double
     case $options in *float*) type=float ;; esac
     echo "$name $rows $type" >>list
@@ -134,4 +134,26 @@ for type in double float; do
     grep -q '^ok all' found && [ $status -eq 0 ]
     result $? "$type: the program came to its end"
 done
+# Without options none of these tables: the small form; what needs least operations, and batches, keep the phasors.
+: >log
+"$plgen" "$root/models/sdcsf.spec" >small.c 2>log
+lines=$(wc -l <small.c)
+echo "$lines lines, expected 270 at most; tables:" >log
+! grep -e '_ROWS = ' -e '_turned\[' -e ' since;' small.c >>log && [ "$lines" -gt 100 ] && [ "$lines" -le 270 ]
+result $? 'sdcsf without options: no rows, no phasors'
+# phasors WORDS SPEC [OPTION ...]: its struct has those of the last refresh
+phasors() {
+    words=$1 spec=$2
+    shift 2
+    "$plgen" "$@" "$spec" >kind.c 2>log && grep -q ' since; ' kind.c
+    result $? "$words: rotated phasors"
+}
+for option in --fast --batch --refresh=8; do
+    phasors "sdcsf $option" "$root/models/sdcsf.spec" $option
+done
+{ cat "$root/models/sdcsf.spec"; echo 'need x1 within 1e-11 until 1'; } >needed.spec
+phasors 'a need' needed.spec
+"$plgen" --refresh 8 "$root/models/sdcsf.spec" >new.c 2>log &&
+    "$plgen" --anchors 8 "$root/models/sdcsf.spec" >old.c 2>>log && cmp new.c old.c >>log 2>&1 && [ ! -s log ]
+result $? '--anchors: another name of --refresh, and nothing is said'
 tap_end

@@ -249,7 +249,7 @@ runtime_archive "$root/runtime"
 make_both() {
     : >log
     "$plgen" --fmu "$1.fmu" --fmu-version "$3" $4 "$2" >>log 2>&1 && unpack "$1.fmu" "$1" &&
-        build "$3" "$1" "./$1.so" && "$plgen" $4 "$2" >"$1.c" 2>>log &&
+        build "$3" "$1" "./$1.so" && "$plgen" --fast $4 "$2" >"$1.c" 2>>log &&
         $own_cc -fPIC -shared -I"$root/runtime" "$1.c" "$archive" -o "$1_own.so" -lm >>log 2>&1
 }
 

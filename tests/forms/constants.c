@@ -67,7 +67,7 @@ static struct model *model_of(const char *text, const struct variant *v)
     struct request *request = NEW(struct request);
     *request =
         (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single,
-                          .again.relative = kept };
+                          .fast = true, .phasors = true, .again.relative = kept };
     return model_build(spec_of("spec", text), request);
 }
 

@@ -40,7 +40,7 @@ one_model() {
 		double) define= ;;
 		float) define=-DFLOAT ;;
 	esac
-	if ! "$PLGEN" --real "$real" "$spec" >model_pl.c 2>refusal; then
+	if ! "$PLGEN" --fast --real "$real" "$spec" >model_pl.c 2>refusal; then
 		! run --real "$real" "$spec" "$end" >out 2>&1 && cmp refusal said >>log
 		result $? "$name $real: refused, with plgen's words"
 		return

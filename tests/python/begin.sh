@@ -35,7 +35,7 @@ rows() {
 	single=
 	case $options in *float*) single=-DFLOAT ;; esac
 	# shellcheck disable=SC2086
-	"$PLGEN" $options "$spec" >"$name.c" 2>said || cat said
+	"$PLGEN" --fast $options "$spec" >"$name.c" 2>said || cat said
 	model=$(sed -n 's/^extern const pl_modelf\{0,1\} \(.*\)_model;$/\1/p' "$name.c")
 	# shellcheck disable=SC2086
 	$run_cc $single -I"$root/runtime" -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" "$archive" -lm \

@@ -80,7 +80,7 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             [ "$scheme" = - ] && of_stages=etdcol
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order$over"} \
+            "$plgen" --fast --rhs $choice $given ${order:+--scheme "taylor $order$over"} \
                 ${stages:+--scheme "$of_stages $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }

@@ -161,4 +161,16 @@ printf 'model grows\ncoord x\ninit x = 0.5\nx%s - 4*x + max(x - 1, 0) = 0\nstep 
 told grows.spec 1000 'the step has left the finite numbers'
 told "$here/chatter.spec" 100 'the step has met more crossings, or needed a longer search for them, than its bound'
 
+# The comment that explains how an event is found, 25 lines at most, names tables and functions that there are.
+for name in gear1 stick_slip two_masses impact_oscillator; do
+    "$plgen" "$root/models/$name.spec" >noted.c 2>log
+    sed -n '/^\/\* How an event is found/,/^ \*\/$/p' noted.c >note
+    sed '/^\/\* How an event is found/,/^ \*\/$/d' noted.c >rest
+    lines=$(wc -l <note)
+    grep -o "${name}_[a-z_]*" note | sort -u >named
+    missing=$(while read -r word; do grep -q "[^A-Za-z_]$word[^A-Za-z_]" rest || printf ' %s' "$word"; done <named)
+    echo "$lines lines, $(wc -l <named) names; not there:$missing" >log
+    [ "$lines" -gt 5 ] && [ "$lines" -le 25 ] && [ "$(wc -l <named)" -gt 5 ] && [ -z "$missing" ]
+    result $? "$name: how an event is found is explained by what there is"
+done
 tap_end

@@ -253,7 +253,7 @@ static void emit_passage_limits(const struct emitter *e)
 static void emit_include(const struct emitter *e)
 {
 	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.divided;
-	emit_sizes(e, { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
+	emit_sizes(e, "radau.h", { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
 		   { "MODES", splits(e) ? e->step->collocation->modes : 0 },
 		   { "ENTRIES", e->step->collocation->motion->entries }, { "INPUTS", e->system->inputs },
 		   { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },

@@ -247,7 +247,7 @@ void emit_predictor(const struct emitter *e)
 	else
 		emit_unrolled_slope(e);
 	close_function(e, "which z");
-	emit_sizes(e, { "STATES", e->system->states }, { "FORCES", e->model->remainder.force_columns },
+	emit_sizes(e, "predict.h", { "STATES", e->system->states }, { "FORCES", e->model->remainder.force_columns },
 		   { "DRIVEN", adds_driven(e) }, { "EVENT_SPLIT", e->step->event_split != NULL });
 	say_include(e, "predict.h");
 }

@@ -112,7 +112,7 @@ static void emit_whole(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = event_split_of(e)->event_check;
-	emit_sizes(e, { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
+	emit_sizes(e, "event_split.h", { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
 		   { "FORCES", e->model->remainder.force_columns }, { "CARRIES", e->step->carried.count },
 		   { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
 		   { "EXPRESSIONS", x->expressions }, { "TERMS", terms_of_events(e) },

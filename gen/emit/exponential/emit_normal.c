@@ -322,7 +322,7 @@ void emit_mode_tables(const struct emitter *e)
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	emit_sizes(e, { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->multistep.points },
+	emit_sizes(e, "normal.h", { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->multistep.points },
 		   { "TWICE", m->multistep.twice }, { "STAGES", m->collocation.stages },
 		   { "SWEEPS", m->collocation.sweeps }, { "FIRST_SWEEPS", m->collocation.first_sweeps },
 		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "OPERATORS", m->operators },

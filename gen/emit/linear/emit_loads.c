@@ -155,11 +155,14 @@ static bool has_tuned_rates(const struct emitter *e)
 void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
-		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", phase_bits(e->step)), false);
+		print_turns(e, "phase_start",
+			    format("phases of the loads at t = 0, in units of 2^-%d of a cycle", phase_bits(e->step)),
+			    false);
 		if (!e->step->is.tuned)
-			print_turns(e, "phase_step", "in one step", true);
+			print_turns(e, "phase_step", "by how much they advance in a step", true);
 		if (!has_tuned_rates(e))
-			print_rates(e, true, "phase_rate", e->phases, "turns per second");
+			print_rates(e, true, "phase_rate", e->phases,
+				    "their frequencies: cycles per second, mantissa and exponent");
 	}
 	if (e->growths) {
 		if (!e->step->is.tuned)

@@ -87,7 +87,8 @@ static void emit_peak_places(const struct emitter *e)
 static void emit_include(const struct emitter *e)
 {
 	bool own = e->step->is.tuned;
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "peaks.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs },
 		   { "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
 		   { "REACHES", has_reach(e) }, { "BY_VALUES", 0 });
 	say_macro(e, "SLOPE", own ? "s->coeffs.slope" : spell(e, "$n_slope"));
@@ -115,7 +116,8 @@ void emit_peak_tables(const struct emitter *e)
 static void emit_values(const struct emitter *e)
 {
 	emit_peak_places(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "peaks.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs },
 		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", 1 }, { "RAMPS", e->ramps });
 	say_include(e, "peaks.h");
 }

@@ -55,7 +55,8 @@ static void emit_load_factors(const struct emitter *e)
 	double *value = ARRAY(double, (size_t)count);
 	for (int i = 0; i < count; i++)
 		value[i] = table->load[i].value;
-	emit_array(e, "Factors of the load states in each segment of time", "load_factor", 3, size, value,
+	emit_array(e, "Input columns: what each load state adds to the states in a step, in each segment of time",
+		   "load_factor", 3, size, value,
 		   e->model->names.state);
 }
 

@@ -93,16 +93,18 @@ static void store_inputs(const struct emitter *e, const int *index)
 void emit_series_slopes(const struct emitter *e)
 {
 	const int size = e->step->layout.size, branches = e->step->branches, each = size * size;
-	const char *acts = size > e->system->states ? ", then what acts on it" : "";
+	const char *acts = size > e->system->states ? ", then load states and inputs" : "";
 	double *value = ARRAY(double, (size_t)(branches * each));
 	for (int k = 0; k < branches; k++)
 		memcpy(value + k * each, slopes_of(e->step, k), (size_t)each * sizeof *value);
 	const int sizes[] = { branches, size, size };
 	if (branches > 1)
-		emit_array(e, format("x' = A x; x = y%s; for each operator", acts), "slope", 3, sizes, value,
+		emit_array(e, format("A of x' = A x, for each operator; x: the states%s", acts), "slope",
+			   3, sizes, value,
 			   series_names(e));
 	else
-		emit_array(e, format("x' = A x; x = y%s", acts), "slope", 2, sizes + 1, value, series_names(e));
+		emit_array(e, format("A of x' = A x; x: the states%s", acts), "slope",
+			   2, sizes + 1, value, series_names(e));
 }
 
 static const char *slope_text(const struct emitter *e)
@@ -142,7 +144,8 @@ void emit_series_vector(const struct emitter *e, bool looped)
 
 void emit_vector_now(const struct emitter *e)
 {
-	open_function(e, "x now", "static void $n_vector_now(const $n *s, const double u[], double x[%d])",
+	open_function(e, "x: the states and what acts on them, now",
+		   "static void $n_vector_now(const $n *s, const double u[], double x[%d])",
 		      e->step->layout.size);
 	emit_series_vector(e, false);
 	close_function(e, "u");
@@ -172,7 +175,8 @@ static void emit_load_slopes(const struct emitter *e, const struct load_slopes *
 	double *value = ARRAY(double, (size_t)(e->system->segments * each));
 	for (int s = 0; s < e->system->segments; s++)
 		memcpy(value + s * each, slopes->segment[s], (size_t)each * sizeof *value);
-	emit_array(e, format("The columns of A from %d on, in each segment of time", slopes->first), "load_slope", 3,
+	emit_array(e, format("Input matrix: the columns of A from %d on, in each segment of time", slopes->first),
+		   "load_slope", 3,
 		   sizes, value, series_names(e));
 }
 
@@ -185,7 +189,7 @@ static void emit_passing_algorithm(const struct emitter *e)
 	const struct load_slopes slopes = changes ? load_slopes_of(e->step) : (struct load_slopes){ .first = -1 };
 	if (slopes.first >= 0)
 		emit_load_slopes(e, &slopes);
-	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
+	emit_sizes(e, "changes.h", { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
 		   { "BLOCKS", blocks }, { "LARGEST", blocks ? states_of_largest_block(e) + acting : 0 },
 		   { "SEGMENTS", e->system->segments },
 		   { "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
@@ -376,7 +380,8 @@ static void emit_parabola(const struct emitter *e, bool blocks)
 	if (e->step->branches > 1)
 		emit_choice(e);
 	emit_go_on(e, blocks);
-	emit_sizes(e, { "STATES", e->system->states }, { "SIZE", layout->size }, { "INPUTS", given_inputs(e) },
+	emit_sizes(e, "parabola.h", { "STATES", e->system->states }, { "SIZE", layout->size },
+		   { "INPUTS", given_inputs(e) },
 		   { "FORCE_COLUMN", layout->force_column }, { "FORCES", e->system->force_columns },
 		   { "MIDDLE", point_at(e->step, 1) }, { "END", point_at(e->step, 2) });
 	say_macro(e, "BARE", spell(e, has_peaks(e) ? "$n_one_step" : "$n_step"));
@@ -418,7 +423,8 @@ static void emit_second_words(const struct emitter *e)
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->branch->whole->Phi[i].low;
-	emit_array(e, format("%s + this is the transfer matrix in two words", stepped_table(e, "Phi")), "Phi_low", 2,
+	emit_array(e, format("Low parts of the transfer matrix: %s + this is it in double-double",
+		   stepped_table(e, "Phi")), "Phi_low", 2,
 		   (const int[]){ n, n }, low, e->model->names.state);
 }
 
@@ -429,7 +435,7 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 	if (entries == 0)
 		return;
 	say(e, "\n"
-	       "/* ... and what the load states add, from column %d on */\n"
+	       "/* Its further columns, from %d on: what load states add, and how they go on over a step */\n"
 	       "static const struct { unsigned short %srow, column; pl_two value; } $n_power_entry[] = {\n",
 	    e->system->states, segments ? "segment, " : "");
 	for (int i = 0; i < entries; i++) {
@@ -500,7 +506,7 @@ void emit_jump(const struct emitter *e)
 	emit_power_entries(e, entries, entry);
 	emit_pass_steps(e);
 	emit_leap_loads(e, &leap);
-	emit_sizes(e, { "STATES", e->system->states }, { "LOAD_STATES", loads },
+	emit_sizes(e, "jump.h", { "STATES", e->system->states }, { "LOAD_STATES", loads },
 		   { "SIZE", (blocks > 1 ? states_of_largest_block(e) : e->system->states) + loads },
 		   { "SEGMENTS", e->system->segments }, { "BLOCKS", blocks }, { "CONVERTED", converts(e) },
 		   { "KEPT", !converts(e) && e->step->program->compensated },

@@ -199,7 +199,8 @@ static void emit_peaks_of_batch(struct batch *b)
 static void emit_include(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", given_inputs(e) }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs },
 		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
@@ -212,7 +213,8 @@ static void emit_include(const struct batch *b)
 
 static void emit_each(const struct emitter *e)
 {
-	emit_sizes(e, { "STATES", e->system->states }, { "INPUTS", inputs_of(e) }, { "OUTPUTS", e->model->outputs });
+	emit_sizes(e, "each.h", { "STATES", e->system->states }, { "INPUTS", inputs_of(e) },
+		   { "OUTPUTS", e->model->outputs });
 	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
 	say_macro(e, "INSTANCES", spell(e, "$n_instances"));
 	say_include(e, "each.h");
@@ -225,7 +227,7 @@ void emit_batch(const struct emitter *e)
 		return;
 	}
 	struct batch b = plan_batch(e);
-	open_algorithm(e, &(struct size){ NULL, 0 });
+	open_algorithm(e, "lanes.h", &(struct size){ NULL, 0 });
 	say(e, "#include \"lanes.h\"\n");
 	emit_shared(&b);
 	emit_lanes_step(&b);

@@ -11,7 +11,7 @@
 static void emit_expression(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
-	open_function(e, NULL, "static double $o_expression(int i, const double x[%d])", size);
+	open_function(e, "Event function i", "static double $o_expression(int i, const double x[%d])", size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
@@ -31,7 +31,8 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 }
 
 /* `what` of the entries of x that `row` reads, summed */
-static void emit_product(const struct emitter *e, const char *name, const char *const *what, const bool *reads)
+static void emit_product(const struct emitter *e, const char *name, const char *note, const char *const *what,
+			 const bool *reads)
 {
 	const int size = e->step->layout.size;
 	struct summands s = { 0 };
@@ -41,7 +42,7 @@ static void emit_product(const struct emitter *e, const char *name, const char *
 			add_summand(&s, *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j));
 			any = any || *what[j];
 		}
-	open_function(e, NULL, "static double $o_%s(const double row[%d], const double x[%d])", name, size, size);
+	open_function(e, note, "static double $o_%s(const double row[%d], const double x[%d])", name, size, size);
 	say(e, "%s%s    return %s;\n", s.terms ? "" : "    (void)row;\n", any ? "" : "    (void)x;\n", sum_of(&s, 11));
 	close_function(e, "");
 }
@@ -58,15 +59,15 @@ static void emit_products(const struct emitter *e, const struct pieces *p)
 		for (int i = 0; i < slopes.rows; i++)
 			reads[j] = reads[j] || acts_at(&slopes, i, j);
 	}
-	emit_product(e, "along", places(e, "x[%d]"), reads);
-	emit_product(e, "sizes", most, all);
+	emit_product(e, "along", "row . x, of slopes", places(e, "x[%d]"), reads);
+	emit_product(e, "sizes", "row . |x|", most, all);
 	for (int j = 0; j < size; j++) {
 		all[j] = !p->bounded[j] || !bounded;
 		bounded = bounded || p->bounded[j];
 		if (p->bounded[j])
 			most[j] = "";
 	}
-	emit_product(e, "most", most, all);
+	emit_product(e, "most", "The same where entries that are never above 1 count as 1", most, all);
 }
 
 /* off[i], from x */
@@ -74,7 +75,8 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 {
 	int n = expressions_of(e), size = e->step->layout.size;
 	const char **magnitude = entries(e, "pl_magnitude(x[%d])");
-	open_function(e, NULL, "static void $o_bounds(int which, const double x[%d], double off[%d])", size, n);
+	open_function(e, "How far each event function leaves its chord over h, at most",
+		      "static void $o_bounds(int which, const double x[%d], double off[%d])", size, n);
 	for (int i = 0; i < n; i++)
 		say(e, "    off[%d] = %s;\n", i,
 		    any_pieces(e) ? off_text(e, p, -1, i, magnitude, 13)
@@ -90,7 +92,9 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	int size = e->step->layout.size;
 	struct region_tables whole = steps_of_regions(e, p, "factor");
 	const char **x = entries(e, "x[%d]");
-	open_function(e, NULL, "static void $o_advance(int which, const double x[%d], double end[%d])", size, size);
+	open_function(e, "end = e^{A h} x",
+		      "static void $o_advance(int which, const double x[%d], double end[%d])", size,
+		      size);
 	say(e, "    const double (*const factor)[%d] = $o_pieces[which];\n", size);
 	for (int i = 0; i < size; i++)
 		if (keeps_rest(e))
@@ -146,7 +150,8 @@ static const char *rotated_row(const struct emitter *e, const struct region_tabl
 static void emit_turn(const struct emitter *e, const struct region_tables *t)
 {
 	int size = e->step->layout.size;
-	open_function(e, NULL, "static void $o_turn_once(int which, const double x[%d], double d[%d])", size, size);
+	open_function(e, "d = h A x", "static void $o_turn_once(int which, const double x[%d], double d[%d])",
+		   size, size);
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
 		say(e, "    d[%d] = %s;\n", i, rotated_row(e, t, i, "x[%d]", true));
@@ -156,7 +161,7 @@ static void emit_turn(const struct emitter *e, const struct region_tables *t)
 static void emit_weights(const struct emitter *e, const struct pieces *p)
 {
 	say(e, "\n"
-	       "static const double $d_weight[%d] = {  /* 1/k! */\n"
+	       "static const double $d_weight[%d] = {  /* 1/k!: weights of the Taylor polynomial */\n"
 	       "    1.0", p->degree + 1);
 	for (int k = 1; k <= p->degree; k++)
 		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
@@ -168,7 +173,8 @@ static void emit_weights(const struct emitter *e, const struct pieces *p)
 static void emit_move(const struct emitter *e, const struct pieces *p, const struct region_tables *t)
 {
 	int size = e->step->layout.size;
-	open_function(e, NULL, "static void $o_move(int which, const double x[%d], double s, double gain[%d])",
+	open_function(e, "gain = e^{A h s} x - x, by a Taylor polynomial",
+		   "static void $o_move(int which, const double x[%d], double s, double gain[%d])",
 		      size, size);
 	say(e, "    double power = s;\n"
 	       "    int k;\n");
@@ -197,7 +203,7 @@ static void emit_move(const struct emitter *e, const struct pieces *p, const str
 
 static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 {
-	open_function(e, NULL, "static double $o_size_of(const double x[%d])", e->step->layout.size);
+	open_function(e, "The sum of |x|", "static double $o_size_of(const double x[%d])", e->step->layout.size);
 	say(e, "    return %s;\n", size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 11));
 	close_function(e, "");
 }

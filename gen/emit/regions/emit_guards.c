@@ -9,10 +9,13 @@
 
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
 {
-	put_wholes(e, false, "first", "guards of each region", e->model->switching->regions + 1, g->first);
+	put_wholes(e, false, "first",
+		     "Where the guards of each region begin in the list below",
+		     e->model->switching->regions + 1, g->first);
 	say(e, "\n"
-	       "static const pl_guard $o_guard[%d] = {  /* row, expression, breakpoint, upward, leads, impact */\n",
-	    g->guards);
+	       "/* Guards, whose events end a region: row of the guard function; event function, breakpoint and\n"
+	       " * direction as listed; the region behind, counted from this one; impact that begins there, or -1 */\n"
+	       "static const pl_guard $o_guard[%d] = {\n", g->guards);
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
 		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
@@ -25,12 +28,14 @@ static void emit_limits(const struct emitter *e, const struct guards *g)
 	double *limit = ARRAY(double, (size_t)g->guards);
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
-	put_numbers(e, "limit", "of each guard", g->guards, limit);
+	put_numbers(e, "limit",
+		     "The guard surface of each: its event comes when guard function . x rises to this limit",
+		     g->guards, limit);
 	put_numbers(e, "amplitude",
-		     regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
-				       : "factors of cos and sin in each expression",
+		     format("Amplitude of cos and sin of loads in each event function%s; its rounding is noise",
+			    regions_change(e) ? ", segment of time by segment" : ""),
 		     s->segments * s->expressions, g->amplitude);
-	put_numbers(e, "guard_amplitude", "in each row of guards", g->rows, g->row_amplitude);
+	put_numbers(e, "guard_amplitude", "The same in each guard function", g->rows, g->row_amplitude);
 }
 
 /* Of each row: an expression, or what it takes to hold one */
@@ -45,8 +50,8 @@ static const char **guard_notes(const struct emitter *e, const struct guards *g)
 			bool held = is_stick(&s->expression[expression], interval_of(s, r, expression));
 			note[g->guard[i].row] =
 				format("system %d: %s%s", g->branch[g->guard[i].row],
-				       held                   ? g->guard[i].upward ? "what holds, less what can, back: "
-										   : "what holds, less what can, on: "
+				       held                   ? g->guard[i].upward ? "holding force - limit, up: "
+										   : "holding force - limit, down: "
 				       : g->guard[i].upward ? ""
 							    : "less ",
 				       name);
@@ -58,10 +63,14 @@ static void emit_guard_rows(const struct emitter *e, const struct guards *g)
 {
 	const char **note = guard_notes(e, g);
 	const struct { const char *name, *note; const double *value; } all[] = {
-		{ "guard_row", "rows of guards", g->row },
-		{ "guard_tangent", "d/3 times the slope of each", g->slope },
-		{ "guard_chord_error", "d^2/8 times its second derivative, at most", g->second },
-		{ "guard_cubic_error", "d^4/384 times its fourth derivative, at most", g->fourth }
+		{ "guard_row", "Guard functions g = guard_row . x: what slips has its event function, what sticks the "
+			  "force that holds it less its limit", g->row },
+		{ "guard_tangent", "Slope of each guard function along the solution: this row times x is d/3 g', "
+			       "d = h/2^halvings", g->slope },
+		{ "guard_chord_error", "Bound of its curvature: within d, g leaves its chord by at most d^2/8 |g''|, "
+			      "this row times |x|", g->second },
+		{ "guard_cubic_error", "Bound of its fourth derivative: g leaves the cubic through its ends and slopes "
+			       "by at most d^4/384 |g''''|, this row times |x|", g->fourth }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		put_matrix(e, all[i].name, all[i].note, g->rows, e->step->layout.size, all[i].value, note);
@@ -72,10 +81,12 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	int *state = ARRAY(int, (size_t)g->assignments);
 	for (int i = 0; i < g->assignments; i++)
 		state[i] = g->assignment[i].state;
-	put_wholes(e, false, "holding", "of each region: what holds its states, a set; -1: nothing",
+	put_wholes(e, false, "holding",
+		    "Constraint in each region, by friction that sticks or a contact at rest: a set of the assignments "
+		    "below; -1: none",
 		    e->model->switching->regions, g->hold);
-	put_wholes(e, false, "sets", "where they begin", g->sets + 1, g->set);
-	put_wholes(e, false, "held", "states", g->assignments, state);
+	put_wholes(e, false, "sets", "Where each set begins", g->sets + 1, g->set);
+	put_wholes(e, false, "held", "The state that each assignment holds", g->assignments, state);
 }
 
 static void emit_values(const struct emitter *e, const struct guards *g)
@@ -90,7 +101,8 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
 	put_matrix(e, "value",
-		    keeps_rest(e) ? "x[held] = value . x; second words behind the first ones" : "x[held] = value . x",
+		    format("The value that it is held at: x[held] = value . x%s",
+			   keeps_rest(e) ? "; second words behind the first ones" : ""),
 		    count, size, value, note);
 }
 
@@ -103,7 +115,9 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	open_table(e, "pl_impact", "impact", format("[%d]", count),
-		   "expression, breakpoint, upward, rest, jump, still, restitution, amplitude");
+		   "Impacts: event function, breakpoint and direction; interval in which its contact rests; "
+		   "assignments of its jump, and of that without restitution; restitution; amplitude of loads in its "
+		   "speed");
 	for (int i = 0; i < all; i++) {
 		const struct struck *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
@@ -120,8 +134,10 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	if (!all)
 		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
 	close_table(e);
-	put_matrix(e, "speed", "of what bounces", count, size, speed, note);
-	put_matrix(e, "back", "times how far its expression is beyond: onto the guard", count, size, back, note);
+	put_matrix(e, "speed", "Approach speed of each impact: speed . x", count, size, speed, note);
+	put_matrix(e, "back",
+		     "What puts a state that is beyond the stop by 1 back onto it, times the depth",
+		     count, size, back, note);
 }
 
 void emit_guards(const struct emitter *e, const struct guards *g)
@@ -153,5 +169,6 @@ void emit_grips(const struct emitter *e)
 	}
 	for (int r = 0; r < s->regions; r++)
 		row[r] = grip + r * s->felts * size;
-	put_matrices(e, "grips", "of each region: what friction carries", s->regions, s->felts, size, row, name);
+	put_matrices(e, "grips",
+		     "Friction force in each region: this row times x", s->regions, s->felts, size, row, name);
 }

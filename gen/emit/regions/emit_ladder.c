@@ -32,9 +32,11 @@ void emit_ladder_places(const struct emitter *e, const struct guards *g)
 		first[k] = next;
 	if (!has_ladder(e->step))
 		return;
-	put_wholes(e, false, "first_rung", "of each matrix", e->step->branches, first);
+	put_wholes(e, false, "first_rung",
+		     "Number of the first, shortest, piece of each linear system in rungs", e->step->branches, first);
 	if (g)
-		put_wholes(e, false, "guard_rung", "of each row of guards", g->rows, g->reach_at);
+		put_wholes(e, false, "guard_rung",
+			     "Number of the first row of bend for each guard function", g->rows, g->reach_at);
 }
 
 void emit_spacing(const struct emitter *e)
@@ -43,8 +45,9 @@ void emit_spacing(const struct emitter *e)
 	for (int k = 0; k < e->step->branches; k++)
 		spacing[k] = e->step->branch[k].spacing;
 	if (has_ladder(e->step))
-		put_wholes(e, e->model->params.retuned, "spacing", "between lengths of pieces", e->step->branches,
-			   spacing);
+		put_wholes(e, e->model->params.retuned, "spacing",
+			     "Each longer piece is 2^spacing times as long as the one before",
+			     e->step->branches, spacing);
 }
 
 static const char **names_of_rung(const struct emitter *e)
@@ -72,8 +75,8 @@ static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 		for (int r = 0; r < room_of(e, k); r++)
 			rung[count++] = r < e->step->branch[k].rungs ? pieces->piece[k].rung[r] : none;
 	put_matrices(e, "rungs",
-		      keeps_rest(e) ? "e^{A d} - I in two words, of pieces that are shorter than h"
-				    : "e^{A d} of pieces that are shorter than h, less I where the last row has 1",
+		      format("Transfer matrices of pieces shorter than h, of the shortest first: e^{A d}%s",
+			     keeps_rest(e) ? " - I in two words" : ", less I where the last row has 1"),
 		      count, rows, size, rung, names_of_rung(e));
 }
 
@@ -101,7 +104,10 @@ static void emit_reach_of(const struct emitter *e, const struct pieces *pieces, 
 	const char **note = ARRAY(const char *, (size_t)rows);
 	for (int i = 0; i < rows; i++)
 		note[i] = "over the next longer one";
-	put_matrix(e, "bend", "times |x''|: off the chord in such a piece, at most", rows, size,
+	put_matrix(e, "bend",
+		   "How far an event or guard function leaves its chord within such a piece, at most: this row "
+		   "times |x''|",
+		   rows, size,
 		   g ? g->reach : reach_of_all(e, pieces), note);
 }
 

@@ -64,6 +64,11 @@ static void for_parts(const struct emitter *e, int count, void (*emit)(const str
 	}
 }
 
+void emit_event_note_of_parts(const struct emitter *e)
+{
+	for_parts(e, 1, emit_event_note);
+}
+
 /* ---- tables ---- */
 
 /* What each region of the part adds to the number of the model's */
@@ -73,8 +78,10 @@ static void emit_shares(const struct emitter *part, const struct switching *whol
 	int *share = ARRAY(int, (size_t)s->regions);
 	for (int r = 0; r < s->regions; r++)
 		share[r] = share_of_region(part->part, whole, r);
-	put_wholes(part, false, "share", "of each region in the number of the model's region", s->regions, share);
-	put_wholes(part, false, "number", "of its expressions", s->expressions, part->part->expression);
+	put_wholes(part, false, "share",
+		     "What each region of the part adds to the number of the model's region", s->regions, share);
+	put_wholes(part, false, "number",
+		     "Numbers of its event functions among the model's", s->expressions, part->part->expression);
 }
 
 /* Of a state in two words each matrix has second ones behind the first */
@@ -86,8 +93,8 @@ static const char **names_of_rows(const struct emitter *part)
 
 static const char *note_of_slopes(const struct emitter *part)
 {
-	return keeps_rest(part) ? "x' = A x in two words; x = states, load states, inputs"
-				: "x' = A x; x = states, load states, inputs";
+	return keeps_rest(part) ? "A of the linear system, x' = A x in two words; x = states, load states, inputs"
+				: "A of the linear system, x' = A x; x = states, load states, inputs";
 }
 
 /* Regions without expressions, one in each segment of time: what the search has of those is not read. */
@@ -103,11 +110,14 @@ static void emit_linear_tables(const struct emitter *part)
 		halvings[k] = part->step->branch[k].halvings;
 	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
 		     of_branches(part, &pieces, OF_PIECE(slopes)), names_of_rows(part));
-	put_matrices(part, "pieces", keeps_rest(part) ? "e^{A h} - I in two words" : "e^{A h}", branches, rows, size,
+	put_matrices(part, "pieces",
+		     keeps_rest(part) ? "Transfer matrix e^{A h} - I in two words" : "Transfer matrix e^{A h}",
+		     branches, rows, size,
 		     of_branches(part, &pieces, keeps_rest(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
 		     names_of_rows(part));
-	put_wholes(part, false, "matrix", "in each segment of time", s->segments, matrix);
-	put_wholes(part, false, "halvings", "log2 of the pieces of a step", branches, halvings);
+	put_wholes(part, false, "matrix", "Which linear system holds in each segment of time", s->segments, matrix);
+	put_wholes(part, false, "halvings",
+		     "Into how many pieces a step may be split, as a power of 2", branches, halvings);
 	emit_ladder_places(part, NULL);
 	emit_spacing(part);
 	emit_ladder(part, &pieces, NULL);
@@ -127,7 +137,8 @@ static void emit_tables_of_part(const struct emitter *part)
 {
 	say(part, "\n/* ---- part %d: %s ---- */\n\n", (int)(part->part - part->step->shown->model->switching->part),
 	    names_of_part(part));
-	put_wholes(part, false, "state", "where its states are in y", part->system->states, part->part->state);
+	put_wholes(part, false, "state",
+		     "Where the states of the part are in y", part->system->states, part->part->state);
 	if (is_linear_part(part)) {
 		emit_linear_tables(part);
 		return;
@@ -225,7 +236,7 @@ static void emit_questions(const struct emitter *e)
 	say(e, "\n");
 	emit_list_of_parts(e, "shares", "share");
 	emit_list_of_parts(e, "numbers", "number");
-	begin_macros(e, e->name);
+	begin_macros(e, "parts.h", e->name);
 	say_macro(e, "PARTS", whole_text(divided_parts(e)));
 	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
 	say_include(e, "parts.h");
@@ -248,7 +259,8 @@ static int acting_entries(const struct emitter *part, const double *whole)
 
 static void emit_linear_loop(const struct emitter *part, const double *whole)
 {
-	put_matrix(part, "whole", "e^{A h}", size_of_vector(part), part->step->layout.size, whole, names_of_rows(part));
+	put_matrix(part, "whole", "Transfer matrix e^{A h}", size_of_vector(part), part->step->layout.size, whole,
+		   names_of_rows(part));
 	begin_step(part);
 	say(part, "    double end[%d];\n", part->system->states);
 	declare_region_vector(part);

@@ -37,15 +37,17 @@ struct matrices {
 	size_t of;
 };
 
+#define EVENT_FUNCTIONS "Event functions, e = row . x; where one passes a breakpoint the equations change"
+
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
 	const struct switching *s = regions_of(e);
 	int size = e->step->layout.size;
 	if (regions_change(e))
-		put_matrices(e, "row", "expressions that breakpoints divide, in each segment of time", s->segments,
+		put_matrices(e, "row", EVENT_FUNCTIONS ", in each segment of time", s->segments,
 			      s->expressions, size, pieces->rows, expression_names(e));
 	else
-		put_matrix(e, "row", "expressions that breakpoints divide", s->expressions, size, pieces->row,
+		put_matrix(e, "row", EVENT_FUNCTIONS, s->expressions, size, pieces->row,
 			    expression_names(e));
 }
 
@@ -62,9 +64,12 @@ static void emit_breaks(const struct emitter *e, const struct pieces *pieces, bo
 {
 	int *breaks = ARRAY(int, (size_t)expressions_of(e)), all = breaks_of(e, breaks);
 	if (!own)
-		put_wholes(e, false, "breaks", "breakpoints of each expression", expressions_of(e), breaks);
+		put_wholes(e, false, "breaks",
+			     "How many breakpoints each event function has", expressions_of(e), breaks);
 	if (own || !e->model->params.retuned)
-		put_numbers(e, "breakpoint", "those of each expression", all, pieces->breakpoint);
+		put_numbers(e, "breakpoint",
+			     "The breakpoints, in rising order, of one event function after the other",
+			     all, pieces->breakpoint);
 }
 
 static void emit_halvings(const struct emitter *e)
@@ -72,7 +77,9 @@ static void emit_halvings(const struct emitter *e)
 	int *halvings = ARRAY(int, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
 		halvings[k] = e->step->branch[k].halvings;
-	put_wholes(e, e->model->params.retuned, "halvings", "of h, to a piece", e->step->branches, halvings);
+	put_wholes(e, e->model->params.retuned, "halvings",
+		     "Events are looked for in pieces of d = h/2^halvings, so short that the fastest pole of each "
+		   "linear system does not turn far", e->step->branches, halvings);
 }
 
 static void emit_region_numbers(const struct emitter *e)
@@ -81,7 +88,9 @@ static void emit_region_numbers(const struct emitter *e)
 	int *matrix = ARRAY(int, (size_t)s->regions);
 	for (int r = 0; r < s->regions; r++)
 		matrix[r] = s->region[r].possible ? s->region[r].system : -1;
-	put_wholes(e, false, "matrix", "of each region; -1: its inequalities cannot hold together", s->regions, matrix);
+	put_wholes(e, false, "matrix",
+		     "Linear system of each region; -1: its inequalities cannot hold together",
+		     s->regions, matrix);
 }
 
 /* By which a step sees over the whole of h that it stays clear */
@@ -91,17 +100,20 @@ static void emit_own_check(const struct emitter *e, const struct pieces *pieces,
 	double *large = ARRAY(double, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
 		large[k] = pieces->large;
-	put_matrices(e, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
+	put_matrices(e, "chord_off", CHORD_NOTE,
 		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, OF_PIECE(off)), expression);
 	if (any_stays(e->step))
-		emit_of_branches(e, pieces, "added", "over h to each state, by what stays of x", e->system->states,
+		emit_of_branches(e, pieces, "added",
+			     "What the constant entries of x add to each state over h", e->system->states,
 				 OF_PIECE(added));
 	if (any_still(e->step))
-		emit_of_branches(e, pieces, "still", "to chord_off, by that and by what is never above 1", n,
+		emit_of_branches(e, pieces, "still",
+			     "What these, and entries of x that are never above 1, add to chord_off", n,
 				 OF_PIECE(still));
-	put_numbers(e, "edge", "breakpoints of each expression less what stays of x, between open ends",
+	put_numbers(e, "edge",
+		     "Breakpoints of each event function less what constant entries of x add to it, between open ends",
 		     edges_of_regions(regions_of(e)), pieces->edge);
-	put_numbers(e, "large", "|x| that it has to be below", e->step->branches, large);
+	put_numbers(e, "large", "Limit of |x|, below which no bound overflows", e->step->branches, large);
 }
 
 /* All that an instance has where params are tunable, in the order of its struct; else each a table */
@@ -114,16 +126,17 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 	if (rest)
 		entry = listed_twice(size, entry);
 	const struct matrices all[] = {
-		{ "slopes", format("x' = A x%s; x = states, load states, inputs", words), size_of_vector(e), entry,
-		  OF_PIECE(slopes) },
-		{ "pieces", format("e^{A h}%s%s", rest ? " - I" : "", words), size_of_vector(e), entry,
-		  rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
-		{ "tangent", "d/3 times the slope of each expression, d = h 2^-halvings", expressions, expression,
-		  OF_PIECE(slope) },
-		{ "chord_error", "d^2/8 times its second derivative, at most", expressions, expression,
-		 OF_PIECE(second) },
-		{ "cubic_error", "d^4/384 times its fourth derivative, at most", expressions, expression,
-		 OF_PIECE(fourth) }
+		{ "slopes", format("A of each linear system, x' = A x%s; x = states, load states, inputs", words),
+		  size_of_vector(e), entry, OF_PIECE(slopes) },
+		{ "pieces", format("Transfer matrix of each linear system over a step: e^{A h}%s%s",
+				   rest ? " - I" : "", words),
+		  size_of_vector(e), entry, rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
+		{ "tangent", "Slope of each event function along the solution: this row times x is d/3 e', "
+			  "d = h/2^halvings", expressions, expression, OF_PIECE(slope) },
+		{ "chord_error", "Bound of its curvature: within d, e leaves its chord by at most d^2/8 |e''|, "
+			 "this row times |x|", expressions, expression, OF_PIECE(second) },
+		{ "cubic_error", "Bound of its fourth derivative: e leaves the cubic through its ends and slopes by at "
+			  "most d^4/384 |e''''|, this row times |x|", expressions, expression, OF_PIECE(fourth) }
 	};
 	emit_halvings(e);
 	emit_spacing(e);
@@ -253,9 +266,10 @@ static bool any_lost(const struct emitter *e)
 	return any;
 }
 
-void begin_macros(const struct emitter *e, const char *own)
+void begin_macros(const struct emitter *e, const char *algorithm, const char *own)
 {
-	say(e, "\n#define PL(name) %s_##name\n", own);
+	say_purpose(e, algorithm);
+	say(e, "#define PL(name) %s_##name\n", own);
 	say_macro(e, "TYPE", e->name);
 	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
 }
@@ -291,7 +305,7 @@ static void emit_search_sizes(const struct emitter *e)
 void emit_search(const struct emitter *e, const char *ladder)
 {
 	const char *search = format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", keeps_rest(e) ? "_kept" : "");
-	begin_macros(e, e->own);
+	begin_macros(e, "search.h", e->own);
 	emit_search_sizes(e);
 	say_macro(e, "STATES", own_states(e));
 	say_macro(e, "ALL", spell(e, "$N_STATES"));
@@ -390,6 +404,85 @@ static void emit_whole_step(const struct emitter *e)
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
+}
+
+/* ---- how an event is found ---- */
+
+#define note(e, ...) say_words(e, spell(e, __VA_ARGS__))
+
+/* Of the file, or of an instance */
+static const char *table(const struct emitter *e, const char *name)
+{
+	return e->model->params.retuned ? format("s->coeffs.%s", name) : format("%s_%s", e->own, name);
+}
+
+/* What ends a region */
+static const char *event_text(const struct emitter *e)
+{
+	if (!has_guards(e))
+		return "An event is a crossing of a breakpoint.";
+	return spell(e, "Between two equal ones friction sticks or a contact rests, and states are held (%s). Each "
+		    "region has guards ($o_guard): an event is where a guard function g = guard_row . x (%s) rises to "
+		    "its limit (%s): what slips comes to rest, what sticks is pulled by more than it can hold, a stop "
+		    "is reached, a contact lets go.", table(e, "value"), table(e, "guard_row"), table(e, "limit"));
+}
+
+/* How most steps are seen to have none, and what else there is before the search */
+static void note_clear_steps(const struct emitter *e, const char *function, const char *second)
+{
+	if (e->step->regions.event_check.event_free)
+		note(e, "1. The whole step is tried: x becomes e^{A h} x. Within it %s leaves the chord through its "
+			"ends by at most h^2/8 times its largest second derivative, which a row times |x| bounds (as "
+			"%s does). Where the chord keeps further than that from %s, nothing happens: that is the step.",
+		     function, second, has_guards(e) ? "the limit" : "the breakpoints");
+	else
+		note(e, "1. Every step goes by the search.");
+	if (e->step->regions.event_check.fast_path)
+		note(e, "2. $o_cross: up to %d crossings by the Taylor polynomial of x in time, of degree %d "
+			"($o_move). A root of e - b is taken where bounds of the third and fourth derivative ($o_jerk, "
+			"$o_cubic_error) and of rounding ($o_slack) show that it is the first; else nothing is "
+			"changed, and 3 follows.", MOST_FAST_PATH, e->step->regions.event_check.degree);
+}
+
+static void note_search(const struct emitter *e, const char *function, const char *of)
+{
+	note(e, "%d. $o_seek, the search (%s): the step goes in pieces of d = h/2^halvings or longer ones. A piece is "
+		"clear by its chord, with the bound d^2/8 |%s''| (%s), or by the cubic through its ends and slopes "
+		"(%s), with d^4/384 |%s''''| (%s). In a piece that is not clear %s is a Taylor polynomial in time: "
+		"intervals are halved until bounds of its derivatives show that there is no root or one, so none is "
+		"stepped over, and the first is computed to rounding.",
+	     e->step->regions.event_check.fast_path ? 3 : 2, has_guards(e) ? "guards.c" : "crossings.c", function,
+	     table(e, format("%schord_error", of)), table(e, format("%stangent", of)), function,
+	     table(e, format("%scubic_error", of)), function);
+}
+
+void emit_event_note(const struct emitter *e)
+{
+	const bool guards = has_guards(e);
+	const char *function = guards ? "g" : "e", *of = guards ? "guard_" : "";
+	say(e, "\n/* How an event is found\n *\n");
+	note(e, "Between events the model is linear: x' = A x (%s), x being the states and the loads that act on them, "
+		"so that a step is a product with e^{A h} (%s).", table(e, "slopes"), table(e, "pieces"));
+	note(e, "Event functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
+	     table(e, "row"), table(e, "breakpoint"), event_text(e));
+	note_clear_steps(e, function, table(e, format("%schord_error", of)));
+	note_search(e, function, of);
+	note(e, "At an event %s, and the rest of the step goes on in the region behind ($o_matrix).",
+	     guards ? "impacts turn the speed of approach to -restitution times it, and of what may stick or slip the "
+		      "combination holds that contradicts no force" : "the state is taken there");
+	note(e, "A breakpoint passed by less than rounding errors is no event. $n_crossings lists those of a step; "
+		"more than $N_MAX_EVENTS set PL_TOO_MANY_EVENTS.");
+	say(e, " */\n");
+}
+
+void declare_region_search(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* The rest of a step in which something may happen: by the search, which takes every step */\n"
+	       "static void $o_seek($n *s, double x[%d]);\n", size_of_vector(e));
+	if (e->step->regions.event_check.fast_path)
+		say(e, "/* 1: it has followed all events of the step, few that are certain; 0: s is as it was */\n"
+		       "static int $o_cross($n *s, const double now[%d]);\n", size_of_vector(e));
 }
 
 void emit_region_step(const struct emitter *e)

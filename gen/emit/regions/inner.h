@@ -10,6 +10,8 @@ struct guards;
 
 /* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
 
+/* Of the table chord_off */
+#define CHORD_NOTE "How far each event function leaves its chord over h, at most: this row times |x|"
 #define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */
 
 struct region_tables {
@@ -78,7 +80,8 @@ const char *ladder_text(const struct emitter *e, const struct guards *guards);
 void emit_region_vector(const struct emitter *e, bool step);
 void declare_region_room(const struct emitter *e);                /* x, work */
 void declare_region_vector(const struct emitter *e);              /* x, i */
-void begin_macros(const struct emitter *e, const char *own);      /* own: what names of an algorithm begin with */
+/* own: what names of an algorithm begin with */
+void begin_macros(const struct emitter *e, const char *algorithm, const char *own);
 /* what search.h asks for; ladder: as ladder_text */
 void emit_search(const struct emitter *e, const char *ladder);
 void emit_region_start_call(const struct emitter *e);

@@ -15,10 +15,13 @@ int expressions_of(const struct emitter *e)
 static void open_as(const struct emitter *e, bool own, const char *type, const char *name, const char *shape,
 		    const char *note)
 {
-	if (own)
+	if (own) {
 		open_member(e, type, name, shape, note);
-	else
-		say(e, "\nstatic const %s $o_%s%s = {  /* %s */\n", type, name, shape, note);
+		return;
+	}
+	say(e, "\n");
+	say_comment(e, "", note);
+	say(e, "static const %s $o_%s%s = {\n", type, name, shape);
 }
 
 static void close_as(const struct emitter *e, bool own)
@@ -45,16 +48,31 @@ static void put_items(const struct emitter *e, int count, int in_line, const cha
 		say(e, "%s%s%s", i == 0 ? "    " : i % in_line ? ", " : ",\n    ", item[i], i == count - 1 ? "\n" : "");
 }
 
+/* A list of the file on one line, where it is short */
+static void put_list(const struct emitter *e, bool own, const char *type, const char *name, const char *note, int count,
+		     int in_line, const char *const *item)
+{
+	if (own || count > in_line) {
+		open_as(e, own, type, name, format("[%d]", count), note);
+		put_items(e, count, in_line, item);
+		close_as(e, own);
+		return;
+	}
+	say(e, "\n");
+	say_comment(e, "", note);
+	say(e, "static const %s $o_%s[%d] = {", type, name, count);
+	for (int i = 0; i < count; i++)
+		say(e, "%s%s", i > 0 ? ", " : "", item[i]);
+	say(e, "};\n");
+}
+
 void put_wholes(const struct emitter *e, bool own, const char *name, const char *note, int count, const int *number)
 {
 	const char **item = ARRAY(const char *, (size_t)count + 1);
 	item[0] = "0";
 	for (int i = 0; i < count; i++)
 		item[i] = whole_text(number[i]);
-	count = count > 0 ? count : 1;
-	open_as(e, own, "int", name, format("[%d]", count), note);
-	put_items(e, count, 20, item);
-	close_as(e, own);
+	put_list(e, own, "int", name, note, count > 0 ? count : 1, 20, item);
 }
 
 void put_numbers(const struct emitter *e, const char *name, const char *note, int count, const double *number)
@@ -62,9 +80,7 @@ void put_numbers(const struct emitter *e, const char *name, const char *note, in
 	const char **item = ARRAY(const char *, (size_t)count + 1);
 	for (int i = 0; i < count; i++)
 		item[i] = shortest(number[i]);
-	open_table(e, "double", name, format("[%d]", count), note);
-	put_items(e, count, 8, item);
-	close_table(e);
+	put_list(e, e->model->params.retuned, "double", name, note, count, 6, item);
 }
 
 void put_matrix(const struct emitter *e, const char *name, const char *note, int rows, int columns,
@@ -250,14 +266,17 @@ static const char *beyond_text(const struct emitter *e, const struct pieces *p, 
 
 void emit_spans(const struct emitter *e)
 {
-	emit_of_regions(e, "int", "span", "of each expression, from the lowest one", "", span_text, NULL);
+	emit_of_regions(e, "int", "span",
+		     "Number of the interval of each event function in each region, from the lowest one",
+		     "", span_text, NULL);
 }
 
-/* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
 static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
-	emit_of_regions(e, "double", "within", "what each expression is between in each region", "[2]", within_text, p);
-	emit_of_regions(e, "int", "beyond", "regions below and above; -1: none that can occur", "[2]", beyond_text, p);
+	emit_of_regions(e, "double", "within",
+		     "Ends of the interval of each event function in each region", "[2]", within_text, p);
+	emit_of_regions(e, "int", "beyond",
+		     "Regions across those ends, below and above; -1: none that can occur", "[2]", beyond_text, p);
 	emit_spans(e);
 }
 
@@ -272,17 +291,26 @@ void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, cons
 	if (any_pieces(e)) {
 		struct region_tables turn = tables_of_regions(e, p, "", n, OF_PIECE(turn)),
 			      bend = tables_of_regions(e, p, "", n, OF_PIECE(bend));
-		emit_of_each(e, &turn, "step_tangent", "tangent over h", expression);
-		emit_of_each(e, &bend, "step_cubic_error", "cubic_error over h", expression);
+		emit_of_each(e, &turn, "step_tangent",
+			     "Slope of each event function over all of h, in place of a piece: times x, h/3 e'",
+			     expression);
+		emit_of_each(e, &bend, "step_cubic_error",
+			     "Bound of its fourth derivative over all of h: times |x|, at least h^4/384 |e''''|",
+			     expression);
 	}
 	bool reads = any_pieces(e) || is_checked_by_tables(e->step);    /* what they are off their chords */
 	if (reads && is_table(&off))
 		emit_of_each(e, &off, "chord_off",
-			     "times |x|: how far each expression is off its chord over h, at most", expression);
+			     CHORD_NOTE, expression);
 	if (reads && is_table(&still))
-		emit_of_branches(e, p, "still", "what 1, cos and sin add to that, at most", n, OF_PIECE(still));
-	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
-	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
+		emit_of_branches(e, p, "still",
+			     "What the entries of x that are never above 1 (1, cos, sin) add to that bound",
+			     n, OF_PIECE(still));
+	emit_of_each(e, &slack, "slack",
+		     "Rounding error of each event function and of h e': at most this row times |x|", expression);
+	emit_of_each(e, &third, "jerk",
+		     "Bound of the third derivative of each event function: times |x|, at least h^3/24 |e'''|",
+		     expression);
 	emit_neighbours(e, p);
 }
 

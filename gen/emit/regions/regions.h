@@ -12,6 +12,10 @@ void emit_retuned_numbers(const struct emitter *e);               /* NAME_coeffs
 int rungs_of_all(const struct emitter *e);
 void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
+/* A comment: how an event is found, by the names of the tables; of independent parts by those of the first */
+void emit_event_note(const struct emitter *e);
+void emit_event_note_of_parts(const struct emitter *e);
+void declare_region_search(const struct emitter *e);               /* what the step calls of it */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
 

@@ -230,7 +230,7 @@ static void emit_algorithm(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	const struct truncation *t = truncation_of(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
+	emit_sizes(e, "taylor.h", { "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
 		   { "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
 		   { "TERMS", is_divided(e) ? terms_of_events(e) : 0 },

@@ -10,12 +10,12 @@ static int order_of(const struct emitter *e)
 	return e->step->taylor.expansion->order;
 }
 
-/* A block of rows has all coefficients as locals: no watch, few enough that they stand twice, and not --rows 1, which
- * wants small code. */
+/* A block of rows has all coefficients as locals: no watch, few enough that they stand twice, which --fast or --rows
+ * ask for. */
 bool runs_in_blocks(const struct emitter *e)
 {
-	return spans_steps(e) && e->model->asked.rows != 1 && !has_ranges(e) && !has_peaks(e) && expands_in_step(e) &&
-	       !watches(e) && is_written_out(e, order_of(e));
+	return spans_steps(e) && wants_rows(&e->model->asked) && !has_ranges(e) && !has_peaks(e) &&
+	       expands_in_step(e) && !watches(e) && is_written_out(e, order_of(e));
 }
 
 /* Of a state; 1: only the first is left */

@@ -25,7 +25,8 @@ void emit_entries(const struct emitter *e, int count, const struct fixed_slope *
 {
 	if (count == 0)
 		return;
-	say(e, "\nstatic const pl_entry $n_entry[%d] = {  /* of x' = A x, which no param changes */", count);
+	say(e, "\nstatic const pl_entry $n_entry[%d] = {"
+	       "  /* entries of A that no param changes: row, column, value */", count);
 	for (int i = 0; i < count; i++)
 		say(e, "%s{%d, %d, %s}", next_value(i), fixed[i].row, fixed[i].column, two_words(fixed[i].value));
 	close_array(e);
@@ -132,7 +133,8 @@ static void emit_operations(const struct emitter *e, const struct entries *x)
 {
 	if (x->operations == 0)
 		return;
-	say(e, "\nstatic const pl_operation $n_operation[%d] = {  /* on %d params, %d constants, what was made */",
+	say(e, "\nstatic const pl_operation $n_operation[%d] = {"
+	       "  /* formulas of params: on %d params, %d constants, earlier results */",
 	    x->operations, x->tuning->params, x->constants);
 	for (int i = 0; i < x->operations; i++)
 		say(e, "%s{%s, %d, %d}", next_value(i), x->operation[i].what, x->operation[i].a, x->operation[i].b);
@@ -143,7 +145,8 @@ static void emit_places(const struct emitter *e, const struct entries *x)
 {
 	if (x->places == 0)
 		return;
-	say(e, "\nstatic const pl_place $n_entries[%d] = {  /* row, column, number, with the other sign */", x->places);
+	say(e, "\nstatic const pl_place $n_entries[%d] = {"
+	       "  /* entries of A by them: row, column, which number, 1: with the other sign */", x->places);
 	for (int i = 0; i < x->places; i++)
 		say(e, "%s{%d, %d, %d, %d}", next_value(i), x->place[i].row, x->place[i].column,
 		    x->place[i].made.number, x->place[i].made.negative);

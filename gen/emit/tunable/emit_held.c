@@ -139,7 +139,7 @@ static void emit_held(const struct emitter *e)
 		emit_retuned(e);
 	if (held_leads(e))
 		emit_frequencies(e);
-	emit_sizes(e, { "PARAMS", held(e)->params }, { "WRAPPED", wraps_retune(e) },
+	emit_sizes(e, "held.h", { "PARAMS", held(e)->params }, { "WRAPPED", wraps_retune(e) },
 		   { "RETUNED", e->model->params.retuned != NULL },
 		   { "LEADS", held_leads(e) },
 		   { "MODES", keeps_modes(e) ? e->step->normal->modes : 0 }, { "PLACES", has_place(e) });

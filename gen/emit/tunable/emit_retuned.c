@@ -245,7 +245,7 @@ void emit_retuned(const struct emitter *e)
 		emit_integers(e, "short", "guard_branch", g.rows, g.branch);
 	const int checks = emit_checks(e), entries = emit_systems(e);
 	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
-	emit_sizes(e, { "PARAMS", e->model->params.held->params }, { "WRAPPED", wraps_retune(e) },
+	emit_sizes(e, "retuned.h", { "PARAMS", e->model->params.held->params }, { "WRAPPED", wraps_retune(e) },
 		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },

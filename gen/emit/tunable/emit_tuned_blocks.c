@@ -192,7 +192,7 @@ static const char *block_text(const struct emitter *e, const struct tuned_block 
 static void emit_blocks(const struct emitter *e, const char *const *text)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	say(e, "\n/* Independent blocks%s */\n"
+	say(e, "\n/* Independent blocks of the equations%s */\n"
 	       "static const pl_block $n_block[%d] = {\n", p->blocks < p->all ? " that params touch" : "", p->blocks);
 	for (int b = 0; b < p->blocks; b++)
 		say(e, "    %s,  /* %s */\n", text[b], e->model->names.state[p->block[b].from[0]]);
@@ -258,7 +258,7 @@ static const char *group_text(const struct emitter *e, const struct tuned_block 
 
 static void emit_groups_of(const struct emitter *e, int groups, const char *const *text)
 {
-	say(e, "\n/* Those of one shape together */\n"
+	say(e, "\n/* Blocks of one shape together */\n"
 	       "static const pl_group $n_block_group[%d] = {\n", groups);
 	for (int k = 0; k < groups; k++)
 		say(e, "    %s%s", text[k], k < groups - 1 ? ",\n" : "\n};\n");
@@ -349,7 +349,8 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 {
 	const struct tuning *t = e->model->params.tuning;
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_sizes(e, { "STATES", e->system->states }, { "PARAMS", t->params }, { "WRAPPED", wraps_retune(e) },
+	emit_sizes(e, "retune.h", { "STATES", e->system->states }, { "PARAMS", t->params },
+		   { "WRAPPED", wraps_retune(e) },
 		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
 		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },

@@ -75,7 +75,7 @@ static void note_aside(const struct step *step, const char *why)
 {
 	const char *steps = format("%d", step->model->asked.refresh);
 	if (step->model->asked.refresh > 1 && !step->model->asked.again.trial)
-		stand_aside((struct place){ source_argument(steps), 0 }, format("--anchors %s", steps), why);
+		stand_aside((struct place){ source_argument(steps), 0 }, format("--refresh %s", steps), why);
 }
 
 /* As many as were asked for, or as are good; 1: what stands against more is said */
@@ -116,13 +116,22 @@ static bool any_load(const struct step *step, const struct refresh *refresh)
 	return any;
 }
 
+/* NULL: more than 1 was asked for, or serves best. What a need is met with is the cheapest that there is. */
+static const char *not_asked_for(const struct model *model)
+{
+	const struct request *asked = &model->asked;
+	if (asked->refresh)
+		return asked->refresh == 1 ? "--refresh 1" : NULL;
+	return asked->phasors || model->spec->required.needs > 0 ? NULL : "--fast adds them";
+}
+
 void check_refresh(struct step *step)
 {
-	const char *against = step_objection(step, CAN_REFRESH);
+	const char *against = step_objection(step, CAN_REFRESH), *not_asked = not_asked_for(step->model);
 	if (against)
 		note_aside(step, against);
 	if (any_load(step, refresh_of(step)))
-		step->no.refresh = step->model->asked.refresh == 1 ? "--anchors 1" : against;
+		step->no.refresh = not_asked && !against ? not_asked : against;
 }
 
 void drop_refresh(struct step *step, const char *why)
@@ -135,7 +144,7 @@ void drop_refresh(struct step *step, const char *why)
 void plan_refresh(struct step *step)
 {
 	struct refresh *refresh = refresh_of(step);
-	if (step->no.refresh || step->model->asked.refresh == 1 || step_objection(step, CAN_REFRESH) ||
+	if (step->no.refresh || not_asked_for(step->model) || step_objection(step, CAN_REFRESH) ||
 	    !any_load(step, refresh))
 		return;
 	list_terms(refresh, step, true);
@@ -313,7 +322,7 @@ static void fill_term(const struct step *step, struct row *row, struct turn *tur
 		precision *= 2;
 	bool decided = precision <= LIMIT_PRECISION;
 	if (!decided || !isfinite(c->value))
-		error(step->model->asked.step_at, "--anchors 1 may do",
+		error(step->model->asked.step_at, "--refresh 1 may do",
 		      "what a load adds so many steps after a refresh is %s",
 		      decided ? format("beyond the range of %s", target_name())
 			      : format("not decided with %d bits", LIMIT_PRECISION));

@@ -305,11 +305,12 @@ static bool try_rows(struct step *step, int count)
 	return true;
 }
 
-/* In float they are made where they are asked for: tables are larger than all the code of a small board's model. */
+/* They are made with --fast, and in float only where their number is asked for: tables are larger than all the code of
+ * a small board's model. */
 void plan_rows(struct step *step)
 {
 	const struct request *asked = &step->model->asked;
-	if (asked->rows == 1 || (!asked->rows && (asked->single || !is_linear_alone(step) || step->is.tuned)))
+	if (!wants_rows(asked) || (!asked->rows && (asked->single || !is_linear_alone(step) || step->is.tuned)))
 		return;
 	step->no.rows = step_objection(step, CAN_ROWS);
 	if (step->no.rows)
