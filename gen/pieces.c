@@ -196,7 +196,7 @@ static int decided(const struct runtime *r, const char *name)
 	size_t length = strlen(name);
 	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0 || strcmp(name, "PL_SINGLE") == 0)
 		return r->single;
-	if (strcmp(name, "REST_IS_KEPT") == 0)
+	if (strcmp(name, "STATE_IS_COMPENSATED") == 0)
 		return r->kept;
 	if (strcmp(name, "__cplusplus") == 0)
 		return 0;
@@ -303,8 +303,8 @@ static void read_file(struct runtime *r, const char *name)
 
 /* ---- all of it ---- */
 
-/* Files of one type: growthf.c beside growth.c is of floats, guards_kept.c beside guards.c of states in two words. Not
- * those of FMUs: they have a model inside. */
+/* Files of one type: growthf.c beside growth.c is of floats, guards_compensated.c beside guards.c of states in two
+ * words. Not those of FMUs: they have a model inside. */
 static bool serves(const struct runtime *r, const char *name)
 {
 	size_t length = strlen(name);

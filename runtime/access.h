@@ -10,7 +10,7 @@
  *                                PL_COLUMNS, times what PL(forced_loads)(s, load) gives; behind it stand the rows of
  *                                the states as written, whose product was s->start at the last set
  *     PL_WHOLE                   1: outputs read PL(kept)(s, x), of PL_RELATIVE too
- *     PL_KEPT, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
+ *     PL_COMPENSATED, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
  *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
@@ -37,7 +37,7 @@ static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
 #else
         s->y[i] = y[i];
 #endif
-#if PL_KEPT
+#if PL_COMPENSATED
         s->rest[i] = 0;
 #endif
     }
@@ -112,7 +112,7 @@ static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
     PL(forced)(s, now);
     for (i = 0; i < PL_STATES; i++) {
         const real z = x[i], sum = z + now[i], back = sum - z;
-#if PL_KEPT
+#if PL_COMPENSATED
         const real rest = s->rest[i];
 #elif PL_RELATIVE
         const real rest = 0;
@@ -135,7 +135,7 @@ static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
     for (i = 0; i < PL_STATES; i++) {
         const real f = now[i], z = x[i] - f, lost = z - x[i];
         s->y[i] = z;
-#if PL_KEPT || !PL_RELATIVE
+#if PL_COMPENSATED || !PL_RELATIVE
         s->rest[i] = (x[i] - (z - lost)) - (f + lost);
 #else
         (void)lost;
@@ -330,7 +330,7 @@ int PL(status)(const PL_TYPE *s)
 #if PL_STATUS
     status |= s->status;
 #endif
-#if PL_KEPT
+#if PL_COMPENSATED
     status |= pl_not_finite(s->rest, PL_STATES);
 #endif
     return status;

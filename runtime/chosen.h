@@ -204,7 +204,7 @@ static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
 {
     int i, m;
     for (i = 0; i < PL(along).impacts; i++) {
-        const pl_strike *const p = &PL(along).impact[i];
+        const pl_event_impact *const p = &PL(along).impact[i];
         const real per = (p->upward ? dt : -dt) * p->per;
         for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
             c[m + 1][p->expression] = per * c[m][PL_EXPRESSIONS + p->speed] / (real)(m + 1);
@@ -231,7 +231,7 @@ static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], re
     at->unit = 1;
     at->time = 0;
     at->next = contact->last;
-    at->strike = at->freed = -1;
+    at->starting = at->freed = -1;
     at->unlisted = 0;
     at->status = 0;
     at->chain = PL(no_impact)();

@@ -346,10 +346,10 @@ static int give_up(const contacts *m, instant *at, uint32_t met)
 
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits.  What
  * has met once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
-static uint32_t collide(const contacts *m, instant *at, int begins)
+static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
 {
     pl_chain *chain = &at->chain;
-    uint32_t struck = 0, met = 0;
+    uint32_t acted = 0, met = 0;
     real slow = -1;
     int k, calms = 0;
     go_on(chain, at->time, SPAN * m->h);
@@ -388,7 +388,7 @@ static uint32_t collide(const contacts *m, instant *at, int begins)
             follow(m, at, 1);
             met = 0;
         }
-        struck |= (uint32_t)1 << k;
+        acted |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
         calms = 0;
         k = -1;
@@ -396,7 +396,7 @@ static uint32_t collide(const contacts *m, instant *at, int begins)
     if (calms) {
         calm(m, at, slow, met);
     }
-    return struck;
+    return acted;
 }
 
 /* ---- what sticks, rests or slips ---- */
@@ -461,7 +461,7 @@ static int best_of(const contacts *m, instant *at, const resting *r, int count, 
 
 /* What is at rest: whether it is held, and where else it goes.  Changes count from where things were before the instant
  * with `turned`, so that what turns round changes once; else from now. */
-static void settle(const contacts *m, instant *at, int turned)
+static void resolve(const contacts *m, instant *at, int turned)
 {
     resting r[MOST];
     int now[MOST], before[MOST], next[MOST], best, how = 2, i;
@@ -548,25 +548,25 @@ static void rest_together(const contacts *m, instant *at, uint32_t set)
     renew(m, at);
     if (pressed) {
         lay_down(m, at, laid, at->time);
-        settle(m, at, 0);
+        resolve(m, at, 0);
     }
 }
 
 /* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
-static void come_to_rest(const contacts *m, instant *at, uint32_t struck)
+static void come_to_rest(const contacts *m, instant *at, uint32_t acted)
 {
     const real brief = (listed(at) > m->max_events - LAST ? SPAN : BRIEF) * step_of(m);
     uint32_t set;
     int k;
     for (k = 0; k < m->impacts; k++) {
-        const real e = m->impact[k].restitution, along = struck >> k & 1 && e < 1 ? flight(m, at, k) : -1;
+        const real e = m->impact[k].restitution, along = acted >> k & 1 && e < 1 ? flight(m, at, k) : -1;
         const real left = along / (1 - e);
         if (left >= 0 && left <= brief && touches(m, at, k)) {
             lay_down(m, at, (uint32_t)1 << k, at->time + left * unit(m));
-            settle(m, at, 0);
+            resolve(m, at, 0);
         }
     }
-    set = struck != 0 ? near_rest(m, at) : 0;
+    set = acted != 0 ? near_rest(m, at) : 0;
     if (set != 0) {
         rest_together(m, at, set);
     }

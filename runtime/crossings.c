@@ -2,7 +2,7 @@
 /* Steps of piecewise-linear models, in pieces of which most stay clear of every breakpoint, and a bound shows it; the
  * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first
  * crossing is isolated before it is computed, so none is stepped over. */
-#ifndef REST_IS_KEPT
+#ifndef STATE_IS_COMPENSATED
 #include "columns.h"
 #endif
 #include "ladder.h"
@@ -232,7 +232,7 @@ void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossin
     pl_switching_advance(m, m->h, x, c, crossing, work);
 }
 
-#ifdef REST_IS_KEPT
+#ifdef STATE_IS_COMPENSATED
 
 void pl_switching_move(const pl_switching *m, int matrix, int degree, real dt, real *x, real *work)
 {

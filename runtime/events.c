@@ -2,7 +2,7 @@
 /* Impacts, contacts at rest and dry friction beside a Taylor series: from event to event, each found on the series of
  * the region before it.  What holds, what slips and what flies behind an event is found by looking at all combinations
  * of those that are at rest; the series of a combination says whether it can be. */
-#include "strikes.h"
+#include "series_impacts.h"
 
 /* ---- events at the start, and in a piece ---- */
 
@@ -11,7 +11,7 @@ static void set_event(const pl_events *m, pl_instant *at, int expression, int br
     at->next.expression = expression;
     at->next.breakpoint = breakpoint;
     at->next.upward = upward;
-    at->strike = impact_at(m, expression, breakpoint, upward);
+    at->starting = impact_at(m, expression, breakpoint, upward);
     at->freed = -1;
 }
 
@@ -20,7 +20,7 @@ static void set_freed(const pl_events *m, pl_instant *at, int hold, int up)
     at->next.expression = m->hold[hold].expression;
     at->next.breakpoint = m->hold[hold].interval - !up;
     at->next.upward = up;
-    at->strike = -1;
+    at->starting = -1;
     at->freed = hold;
 }
 
@@ -57,7 +57,7 @@ static int has_left(const pl_events *m, pl_instant *at)
 }
 
 /* The sizes of what the first two derivatives of a guard are summed from, over a piece */
-static real terms_behind(const pl_events *m, const pl_instant *at, const pl_strike *p, real end)
+static real terms_behind(const pl_events *m, const pl_instant *at, const pl_event_impact *p, real end)
 {
     const pl_hold *h = &m->hold[p->hold];
     const column speed = watched(m, at, p->speed), pull = watched(m, at, p->upward ? h->down : h->up);
@@ -123,7 +123,7 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
         for (up = 0; up < 2; up++) {
             const int k = at->interval[i] - !up;
             const int watch = hold < 0 ? -1 : up ? m->hold[hold].up : m->hold[hold].down;
-            int strike, last;
+            int starting, last;
             real behind;
             if (watch >= 0) {
                 const column w = watched(m, at, watch);
@@ -135,9 +135,9 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
             if (hold >= 0 || k < 0 || k == d->breaks[i]) {
                 continue;
             }
-            strike = impact_at(m, i, k, up);
-            behind = strike >= 0 && m->impact[strike].hold >= 0
-                         ? m->impact[strike].per * terms_behind(m, at, &m->impact[strike], end)
+            starting = impact_at(m, i, k, up);
+            behind = starting >= 0 && m->impact[starting].hold >= 0
+                         ? m->impact[starting].per * terms_behind(m, at, &m->impact[starting], end)
                          : -1;
             last = at->last->expression == i && at->last->breakpoint == k;
             if (look(&e, b[k], up ? 1 : -1, last, behind, end, along, &first, splits, at->work)) {
@@ -160,10 +160,10 @@ real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
 int pl_events_pass(const pl_events *m, pl_instant *at)
 {
     const pl_crossing e = at->next;
-    const int begins = at->strike, loses = begins >= 0 && m->impact[begins].restitution < 1;
+    const int begins = at->starting, loses = begins >= 0 && m->impact[begins].restitution < 1;
     const int full = *at->crossings == m->max_events && !loses;
     int *interval = &at->interval[e.expression];
-    uint32_t struck = 0;
+    uint32_t acted = 0;
     if (full) {
         return 0;
     }
@@ -184,12 +184,12 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
         keep(m, at); /* what is held with it, before it is let go */
     }
     if (begins >= 0) {
-        struck = collide(m, at, begins);
+        acted = apply_impacts(m, at, begins);
         follow(m, at, 0);
     }
-    settle(m, at, 1);
+    resolve(m, at, 1);
     at->freed = -1;
-    come_to_rest(m, at, struck);
+    come_to_rest(m, at, acted);
     keep(m, at);
     return !at->chain.full;
 }
@@ -237,7 +237,7 @@ real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
     return *splits < 0 ? 0 : next >= 0 ? next : end;
 }
 
-static real breakpoint_of(const pl_events *m, const pl_strike *p)
+static real breakpoint_of(const pl_events *m, const pl_event_impact *p)
 {
     const real *b = m->divided->at;
     int i;
@@ -248,7 +248,7 @@ static real breakpoint_of(const pl_events *m, const pl_strike *p)
 }
 
 /* Whether an expression is beyond the guard of this bounce, s on, by more than rounding and `least` */
-static int is_beyond(const pl_events *m, const pl_instant *at, const pl_strike *p, real s, real least)
+static int is_beyond(const pl_events *m, const pl_instant *at, const pl_event_impact *p, real s, real least)
 {
     const column e = column_of(m->divided, at->c, at->terms, p->expression);
     const real b = breakpoint_of(m, p);
@@ -317,6 +317,6 @@ void pl_events_place(const pl_events *m, pl_instant *at)
         }
     }
     renew(m, at);
-    settle(m, at, 0);
+    resolve(m, at, 0);
     at->unlisted = 0;
 }

@@ -227,9 +227,9 @@ static double PL(reach)(int which, int i, double b, const double x[PL_SIZE], dou
 /* x on over a part of the step, of h 1: to `end`, or by the same polynomial in two words */
 static void PL(go)(int which, double part, double x[PL_VECTOR], const double end[PL_SIZE])
 {
-#if PL_KEPT
-    double work[PL_SWITCHING_KEPT_WORK(PL_SIZE, PL_EXPRESSIONS, PL_MOVES)];
-    pl_switching_kept_move(&PL(switching), which, PL_MOVES, part * PL_H, x, work);
+#if PL_COMPENSATED
+    double work[PL_SWITCHING_COMPENSATED_WORK(PL_SIZE, PL_EXPRESSIONS, PL_MOVES)];
+    pl_switching_compensated_move(&PL(switching), which, PL_MOVES, part * PL_H, x, work);
     (void)end;
 #else
     int i;
@@ -350,7 +350,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
     if (look == PL_EVENT_CHECKS) {
         return 0;
     }
-#if PL_KEPT
+#if PL_COMPENSATED
     PL(go)(part.which, part.length, x, end);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];

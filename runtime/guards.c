@@ -74,9 +74,9 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
     at = instant_of(m, work, c, (pl_crossing *)0, work + WORDS * m->size);
     follow(m, &at, 1);
     hold_first(m, &at);
-    settle(m, &at, 0);
+    resolve(m, &at, 0);
     decide(m, at.x, c, at.work);
-    settle(m, &at, 0);
+    resolve(m, &at, 0);
 }
 
 /* ---- a piece ---- */
@@ -224,7 +224,7 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
     const pl_guard *g = &m->guard[e->guard];
     const int rest = impact_of(m, g->expression, interval_of(m, at, g->expression));
     pl_chain *chain = &at->chain;
-    uint32_t struck = 0;
+    uint32_t acted = 0;
     at->time = time;
     at->before = at->c->region;
     if (g->impact < 0) {
@@ -237,11 +237,11 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
     }
     keep(m, at);
     if (g->impact >= 0) {
-        struck = collide(m, at, g->impact);
+        acted = apply_impacts(m, at, g->impact);
         follow(m, at, 0);
     }
-    settle(m, at, 1);
-    come_to_rest(m, at, struck);
+    resolve(m, at, 1);
+    come_to_rest(m, at, acted);
     keep(m, at);
     if (!chain->full) {
         return GO_ON;
@@ -253,8 +253,8 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
 static void decide_anew(const pl_guards *m, instant *at, int jumped)
 {
     follow(m, at, jumped);
-    (void)collide(m, at, -1);
-    settle(m, at, 0);
+    (void)apply_impacts(m, at, -1);
+    resolve(m, at, 0);
     keep(m, at);
 }
 
@@ -341,7 +341,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     }
 }
 
-#ifndef REST_IS_KEPT
+#ifndef STATE_IS_COMPENSATED
 #ifndef REAL_IS_FLOAT
 
 /* row . x as dot, but for what is 0 in the row: where products are calls, a look at the row costs less. */

@@ -8,9 +8,9 @@
  *     PL_SEGMENTS                of time, in which loads have their formulas
  *     PL_BLOCKS                  independent ones, that are taken one after the other: the states of each are those of
  *                                PL(block_state)[] from PL(block_first)[block] on; 1: the model is one
- *     PL_CONVERTED               1: what is kept are not the states: PL(kept_state)(s, y) and PL(keep_state)(s, y);
+ * PL_CONVERTED               1: what is kept are not the states: PL(kept_state)(s, y) and PL(keep_state)(s, y);
  *                                not of several blocks
- *     PL_KEPT                    1: of each state what rounding took is in s->rest
+ *     PL_COMPENSATED                    1: of each state what rounding took is in s->rest
  *     PL_CARRIES                 of so many, PL(carried)[], it is in s->carry
  *     PL_PHI                     the name of the transfer matrix; PL(Phi_low) has its second words
  *     PL_ENTRIES                 of the load states beside it: PL(power_entry)[], {segment, row, column, value}
@@ -110,7 +110,7 @@ static void PL(leap_from)(const PL_TYPE *s, int block, pl_two x[PL_SIZE])
 #endif
     for (i = 0; i < states; i++) {
         x[i].hi = y[PL(state_of)(block, i)];
-#if PL_KEPT
+#if PL_COMPENSATED
         x[i].lo = s->rest[PL(state_of)(block, i)];
 #else
         x[i].lo = 0;
@@ -141,7 +141,7 @@ static void PL(leap_to)(PL_TYPE *s, int block, const pl_two x[PL_SIZE])
 #else
     for (i = 0; i < states; i++) {
         s->y[PL(state_of)(block, i)] = x[i].hi;
-#if PL_KEPT
+#if PL_COMPENSATED
         s->rest[PL(state_of)(block, i)] = x[i].lo;
 #endif
     }

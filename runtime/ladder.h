@@ -5,7 +5,7 @@
 #ifndef PLRT_LADDER_H
 #define PLRT_LADDER_H
 
-#include "kept.h"
+#include "compensated.h"
 
 enum { TOP = 32, PATIENCE = 16 }; /* TOP: above every rung */
 enum { GO_ON, SEARCH_NO_MORE, STAY }; /* behind an event: STAY, x is held there for the rest of the step */

@@ -65,7 +65,7 @@ static real PL(onto_event)(const PL(piece) *p, real at, real size, real left, re
         const pl_hold *const h = &PL(along).hold[p->at.freed];
         return PL(onto)(p, at, size, left, PL(events).watch[e->upward ? h->up : h->down], 0, 1, y);
     }
-    if (p->at.strike >= 0 && PL(along).impact[p->at.strike].hold >= 0 && e->expression == last->expression &&
+    if (p->at.starting >= 0 && PL(along).impact[p->at.starting].hold >= 0 && e->expression == last->expression &&
         e->breakpoint == last->breakpoint) {
         return 0;
     }

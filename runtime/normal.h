@@ -18,7 +18,7 @@
  *     PL_WAVES                   values of known loads
  * PL_OPERATORS                   operators; of several PL_SELECTOR is the function of time that says which one serves
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
- *     PL_SETTLES, PL_SETTLED_IN  whether all functions are constant in the last one; the operator of the step then
+ *     PL_STEADY, PL_STEADY_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
  * PL_IN_MODES                1: part of event_split.h, whose step is PL(whole), by collocation: s->y is the state, and
  *                                functions of time are the time of the node alone
@@ -35,7 +35,7 @@
  *     PL(predict)(s, which, wave, eta, rate, expected)   of points: modes after the step, and the forces there
  *     PL(correct)[][2][PL_WIDTH]         what a force adds by its excess over that, of all operators or of one
  * PL(bound)[], PL(next)[][][]        of a schedule: value up to which each operator serves; modes of the next from its
- *     PL(still)(x, wave, sum)            once settled: [omega eta, eta'] after a step from those before
+ *     PL(still)(x, wave, sum)            once steady: [omega eta, eta'] after a step from those before
  *     PL(omega)[2][PL_WIDTH]             omega, 1 over it
  *     PL(until), PL(change)              of segments: time to each change, and the changes
  *     PL(pass_time)(s, u)                phases and time of a step */
@@ -278,7 +278,7 @@ static void PL(advance)(PL_TYPE *s, real first[PL_WIDTH])
 
 /* ---- once nothing changes any more ---- */
 
-#if PL_SETTLES
+#if PL_STEADY
 /* The step is exact. */
 static void PL(settled_step)(PL_TYPE *s)
 {
@@ -286,8 +286,8 @@ static void PL(settled_step)(PL_TYPE *s)
     int i;
     PL(waves_now)(s, wave);
 #if PL_OPERATORS > 1
-    if (s->which != PL_SETTLED_IN) {
-        PL(serve)(s, PL_SETTLED_IN);
+    if (s->which != PL_STEADY_IN) {
+        PL(serve)(s, PL_STEADY_IN);
     }
 #endif
     for (i = 0; i < PL_WIDTH; i++) {
@@ -412,7 +412,7 @@ static void PL(one_step)(PL_TYPE *s)
 void PL(step)(PL_TYPE *s)
 #endif
 {
-#if PL_SETTLES
+#if PL_STEADY
     if (s->segment == PL_SEGMENTS - 1) {
         PL(settled_step)(s);
     } else {

@@ -250,7 +250,7 @@ static real PL(find_first)(PL(search) *f, const PL_TYPE *s, real *end)
     f->along.h = s->size * PL_H;
     theta = pl_events_next(&f->along, &f->at, end, &f->splits);
     f->found = f->at.next;
-    f->exact = f->at.strike >= 0 && PL(along).impact[f->at.strike].hold >= 0 && PL(is_last)(f, s);
+    f->exact = f->at.starting >= 0 && PL(along).impact[f->at.starting].hold >= 0 && PL(is_last)(f, s);
     return theta;
 }
 

@@ -191,14 +191,17 @@ void pl_switching_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_con
 /* The same with what rounding takes from x kept: x is `size` entries and then their rests, so that x + rest is what is
  * meant.  m->A, m->Phi and the rungs, which are e^{A d} - I, have two words: of each size x size first ones and then as
  * many second ones.  Crossings are those of x. */
-#define PL_SWITCHING_KEPT_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
-void pl_switching_kept_start(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
-void pl_switching_kept_step(const pl_switching *m, PL_REAL *x, pl_contact *c, pl_crossing *crossing, PL_REAL *work);
-void pl_switching_kept_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+#define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
+void pl_switching_compensated_start(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
+void pl_switching_compensated_step(const pl_switching *m, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+                                   PL_REAL *work);
+void pl_switching_compensated_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c,
+                                      pl_crossing *crossing,
                                PL_REAL *work);
 
 /* x on by dt, 0 <= dt <= h, with one of its matrices by a Taylor polynomial of this degree, whatever it passes. */
-void pl_switching_kept_move(const pl_switching *m, int matrix, int degree, PL_REAL dt, PL_REAL *x, PL_REAL *work);
+void pl_switching_compensated_move(const pl_switching *m, int matrix, int degree, PL_REAL dt, PL_REAL *x,
+                                   PL_REAL *work);
 
 /* Formulas that the state chooses beside a Taylor series: expressions e_i, each with breakpoints as above, whose series
  * stand in columns of its coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the
@@ -240,14 +243,14 @@ PL_REAL pl_divided_next(const pl_divided *m, const PL_REAL *c, const PL_REAL *te
  *
  * An impact, where an expression passes a breakpoint.  One with a hold is a bounce: it turns the speed of its guard, s
  * to -restitution s. */
-typedef struct pl_strike {
+typedef struct pl_event_impact {
     int expression, breakpoint, upward;
     int hold;               /* in which its contact rests; -1: it is no bounce */
     int place, speed;       /* watches: how far the guard is beyond 0, its rate */
     int jump, still, jumps; /* assignments, so many from there on: its own; those with restitution 0 */
     PL_REAL restitution;
     PL_REAL per; /* of the expression for a guard of 1 */
-} pl_strike;
+} pl_event_impact;
 
 typedef struct pl_events {
     const pl_divided *divided;
@@ -257,7 +260,7 @@ typedef struct pl_events {
     const pl_hold *hold;
     const PL_REAL *back; /* holds x states: what is taken from a state for a velocity of 1 */
     int impacts;        /* at most 32, in the order in which they act at one instant */
-    const pl_strike *impact;
+    const pl_event_impact *impact;
     const PL_REAL *place_back; /* impacts x states: likewise for a guard of 1 */
     const int *state, *value; /* assignments: a state is set to a watch */
     int conflicts;
@@ -291,7 +294,7 @@ typedef struct pl_instant {
     pl_crossing *crossing, *last;
     PL_REAL time;       /* after the start of the step [s] */
     pl_crossing next;   /* the event that pl_events_next has found, */
-    int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
+    int starting, freed; /* the impact that begins there, the hold that lets go; -1: none */
     int crossed, was;   /* the expression that passed a breakpoint there, or -1; its interval before */
     int unlisted;       /* 1: what happens is not listed */
     int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS, PL_PENETRATED */
@@ -406,13 +409,13 @@ void pl_guards_advance(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *
 void pl_guards_change(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                       PL_REAL *work);
 
-/* The same with what rounding takes from x kept, as pl_switching_kept_step: m->value is of each assignment `size` first
- * words and then as many second ones. */
-#define PL_GUARDS_KEPT_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
-void pl_guards_kept_start(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
-void pl_guards_kept_advance(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+/* The same with what rounding takes from x kept, as pl_switching_compensated_step: m->value is of each assignment
+ * `size` first words and then as many second ones. */
+#define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
+void pl_guards_compensated_start(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
+void pl_guards_compensated_advance(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                             PL_REAL *work);
-void pl_guards_kept_change(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+void pl_guards_compensated_change(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                            PL_REAL *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */

@@ -13,7 +13,7 @@
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a remainder
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     guards.c    the same with dry friction and jumps: events that each region has its own of
- *     crossings_kept.c, guards_kept.c
+ *     crossings_compensated.c, guards_compensated.c
  *                 the same with what rounding takes from the state kept: --accuracy compensated
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     event_split.c       a part of a step: schemes with a remainder, from crossing to crossing

@@ -37,20 +37,20 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #endif
 
 /* With what rounding takes kept, in either type */
-#ifdef REST_IS_KEPT
+#ifdef STATE_IS_COMPENSATED
 #undef pl_switching_start
-#define pl_switching_start pl_switching_kept_start
+#define pl_switching_start pl_switching_compensated_start
 #undef pl_switching_step
-#define pl_switching_step pl_switching_kept_step
+#define pl_switching_step pl_switching_compensated_step
 #undef pl_switching_advance
-#define pl_switching_advance pl_switching_kept_advance
-#define pl_switching_move pl_switching_kept_move
+#define pl_switching_advance pl_switching_compensated_advance
+#define pl_switching_move pl_switching_compensated_move
 #undef pl_guards_start
-#define pl_guards_start pl_guards_kept_start
+#define pl_guards_start pl_guards_compensated_start
 #undef pl_guards_advance
-#define pl_guards_advance pl_guards_kept_advance
+#define pl_guards_advance pl_guards_compensated_advance
 #undef pl_guards_change
-#define pl_guards_change pl_guards_kept_change
+#define pl_guards_change pl_guards_compensated_change
 #endif
 
 /* row . x, of n entries.  Four sums, so that an addition need not wait for the one before it: as fast as several rows

@@ -2,7 +2,7 @@
 /* regions.h: regions as intervals of expressions between breakpoints, and a state in one of them, for the runtime's own
  * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and AMPLITUDE(m, i), the
  * size of what is never above 1 in expression i.  It has no guard, for it is a part of these. */
-#include "kept.h"
+#include "compensated.h"
 
 typedef struct instant {
     real *x;

@@ -19,8 +19,8 @@
  *     PL_ENTRIES, PL(entry)[], PL_HIGHEST, PL(highest)[]     of x' = A x: what stays; rows of highest derivatives
  *     PL_WORK, PL_HALVINGS, PL_RUNGS     numbers of two words to work in; of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
- * PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_GRIPS   of friction and impacts: guards, their rows, what is
- * held,
+ * PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their rows,
+ * what is held,
  *                                        impacts in all segments of time, what friction carries; else 0
  *     PL(guard_branch)[], PL(guard_rung)[] of rows of guards
  *     PL_BOUNDED, PL(bounded)[]          columns of x that are never above 1
@@ -108,8 +108,8 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
         from = PL(take)(from, 1, PL_SIZE, value, c->speed[i]);
         from = PL(take)(from, 1, PL_SIZE, value, c->back[i]);
     }
-#if PL_GRIPS > 0
-    from = PL(take)(from, PL_GRIPS, PL_SIZE, value, c->grips[0][0]);
+#if PL_FRICTION_FORCES > 0
+    from = PL(take)(from, PL_FRICTION_FORCES, PL_SIZE, value, c->friction_forces[0][0]);
 #endif
     (void)from;
 #if PL_BOUNDED > 0

@@ -11,7 +11,7 @@
  *     PL_RESTS                   0: nothing comes to rest; 1: all states at once; n: n - 1 parts, of each state
  *                                PL(part)[], -1: that does not
  *     PL_IN_STEP                 1: the step looks for that, not the run
- *     PL_KEPT                    1: s->rest is what rounding took of states that rest at once */
+ *     PL_COMPENSATED                    1: s->rest is what rounding took of states that rest at once */
 #include "numbers.h"
 
 #if PL_RESTS > 0
@@ -48,7 +48,7 @@ static void PL(rest)(PL_TYPE *s)
     }
     for (i = 0; i < PL_STATES; i++) {
         s->y[i] = 0;
-#if PL_KEPT
+#if PL_COMPENSATED
         s->rest[i] = 0;
 #endif
     }

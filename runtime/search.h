@@ -8,7 +8,7 @@
  * Included by the file of the model behind its tables, for each of its independent parts, which defines before it
  *
  *     PL(name), PL_TYPE          the prefix of the part before a name; the model, with members contact and crossing
- *     PL_SINGLE, PL_KEPT         whether its numbers are floats; whether x is in two words
+ *     PL_SINGLE, PL_COMPENSATED         whether its numbers are floats; whether x is in two words
  *     PL_SIZE, PL_STATES         entries of x, of which the first are states; PL_ALL: of the model's
  *     PL_VECTOR, PL_WORK         words of x; numbers that the search works in
  *     PL_H, PL_DEGREE            [s]; of its Taylor polynomials
@@ -217,7 +217,7 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
     PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
-#if PL_KEPT
+#if PL_COMPENSATED
         s->rest[PL_PLACE(i)] = x[PL_SIZE + i];
 #endif
     }

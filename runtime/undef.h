@@ -83,7 +83,7 @@
 #undef PL_GIVEN
 #undef PL_GO
 #undef PL_GONE
-#undef PL_GRIPS
+#undef PL_FRICTION_FORCES
 #undef PL_GROUPS
 #undef PL_GROWTHS
 #undef PL_GUARDS
@@ -105,7 +105,7 @@
 #undef PL_JUMPS
 #undef PL_KEEPS
 #undef PL_KEEPS_CHECK
-#undef PL_KEPT
+#undef PL_COMPENSATED
 #undef PL_KIND
 #undef PL_KINDS
 #undef PL_KNOWN
@@ -192,8 +192,8 @@
 #undef PL_SERVES
 #undef PL_SERVING
 #undef PL_SET
-#undef PL_SETTLED_IN
-#undef PL_SETTLES
+#undef PL_STEADY_IN
+#undef PL_STEADY
 #undef PL_SHARED
 #undef PL_SHARE_OF_FIRST
 #undef PL_SHORTER

@@ -140,22 +140,22 @@ void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
 {
     PL_TYPE next = *s;
     real force[PL_DEGREE + 1][PL_WIDTH], wave[PL_WAVES + 1];
-    const real *settled = NULL;
+    const real *steady = NULL;
     int i, degree = 0;
-#if PL_SETTLES
+#if PL_STEADY
     real f[PL_FUNCTIONS + 1];
     if (s->segment == PL_SEGMENTS - 1) {
         PL(functions_at)(s, 0, 0, f);
-        settled = f;
+        steady = f;
 #if PL_OPERATORS > 1
-        if (s->which != PL_SETTLED_IN) {
-            PL(serve)(&next, PL_SETTLED_IN);
+        if (s->which != PL_STEADY_IN) {
+            PL(serve)(&next, PL_STEADY_IN);
         }
 #endif
     }
 #endif
     PL(waves_now)(s, wave);
-    if (settled == NULL) {
+    if (steady == NULL) {
         degree = PL(forces_of_step)(s, &next, force);
         next.which = s->which;
         for (i = 0; i < PL_WIDTH; i++) {
@@ -163,7 +163,7 @@ void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
             next.rate[i] = s->rate[i];
         }
     }
-    PL(go_on)(s, next.which, tau, degree, force, settled, wave, next.eta, next.rate);
+    PL(go_on)(s, next.which, tau, degree, force, steady, wave, next.eta, next.rate);
     PL(of_modes)(next.which, next.eta, y);
     PL(of_modes)(next.which, next.rate, y + PL_MODES);
 }

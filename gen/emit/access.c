@@ -93,7 +93,7 @@ void emit_access(const struct emitter *e)
 		   { "NORMAL", keeps_modes(e) ? step->normal->modes : 0 }, { "MOMENTA", step->linear.kicks.momenta },
 		   { "FORCED", step->forced != NULL },
 		   { "WHOLE", step->forced && e->model->relative && !rows_sustained(step) },
-		   { "KEPT", step->program->compensated },
+		   { "COMPENSATED", step->program->compensated },
 		   { "CARRIES", step->carried.count }, { "RELATIVE", e->model->relative != NULL },
 		   { "PHASES", e->phases },
 		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },

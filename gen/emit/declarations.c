@@ -113,8 +113,8 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	const char *note = e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written";
 	if (e->model->reduction.place)
 		note = format("as written; y: all %d written states", e->model->written->system.states);
-	if (rhs && (e->model->contacts.drags > 0 || e->model->contacts.bearings > 0 ||
-		    (e->model->switching && rubs(e->model->switching))))
+	if (rhs && (e->model->contacts.drags > 0 || e->model->contacts.massless_sliders > 0 ||
+		    (e->model->switching && has_dry_friction(e->model->switching))))
 		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
 		      "--rhs has no formula for friction, whose force is a set where it sticks");
 	if (rhs)

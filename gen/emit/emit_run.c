@@ -332,6 +332,7 @@ void emit_run(const struct emitter *e)
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
 		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL }, { "RESTS", rests },
-		   { "IN_STEP", rests && e->step->linear.rest->in_step }, { "KEPT", e->step->program->compensated });
+		   { "IN_STEP", rests && e->step->linear.rest->in_step },
+		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");
 }

@@ -59,7 +59,7 @@ static tape_ref leaf(struct tape *t, const void *context, const struct basis *ba
 static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)
 {
 	const struct formulas *f = context;
-	return tape_operand(t, TAPE_FRICTION, felt_of(f->e->model->switching, atom), 0);
+	return tape_operand(t, TAPE_FRICTION, transmitted_of(f->e->model->switching, atom), 0);
 }
 
 /* ---- what interval[] says ---- */

@@ -186,7 +186,8 @@ static bool takes(struct asked *v, const char *sign)
 /* What the generator knows of: names of the model and of the runtime; others are a compiler's. */
 static bool is_ours(const char *name)
 {
-	return strncmp(name, "PL", 2) == 0 || strncmp(name, "REAL_", 5) == 0 || strcmp(name, "REST_IS_KEPT") == 0;
+	return strncmp(name, "PL", 2) == 0 || strncmp(name, "REAL_", 5) == 0 ||
+		strcmp(name, "STATE_IS_COMPENSATED") == 0;
 }
 
 static long value_of_name(struct asked *v)

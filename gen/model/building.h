@@ -7,7 +7,7 @@
 #include "model.h"
 
 struct expression;
-struct strike;
+struct impact_law;
 
 /* ---- the builders of a model share ---- */
 
@@ -38,7 +38,7 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct residual *residual;
 	struct form **element;      /* per element of the sketch: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
-	struct strike **strike;     /* per `when` and stop; NULL: it has been told */
+	struct impact_law **impact_law; /* per `when` and stop; NULL: it has been told */
 };
 
 /* ---- equations.c: equations and sketches to residuals ---- */
@@ -78,7 +78,7 @@ void fill_system(struct building *b, struct linear *system, int segment, int row
 /* the model's coordinates, loads and inputs; no factors yet */
 struct linear empty_system(const struct model *model);
 
-/* ---- settle.c: which scheme the equations allow ---- */
+/* ---- scheme_choice.c: which scheme the equations allow ---- */
 
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
 /* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */

@@ -10,7 +10,7 @@
 #include "request.h"
 #include "tape/tape.h"
 
-struct bearing;
+struct massless_slider;
 struct drag;
 struct impact;
 struct shortening;
@@ -24,8 +24,8 @@ struct model_names {
 	const char **state;         /* x1, x2, x1', x2' */
 };
 struct model_contacts {             /* of regions and of other schemes: gen/model/contacts */
-	int bearings;
-	struct bearing *bearing;    /* friction without mass, by what it bears */
+	int massless_sliders;
+	struct massless_slider *massless_slider; /* friction without mass, by what it bears */
 	int impacts;                /* in the order in which they act at one instant */
 	struct impact *impact;
 	int drags;                  /* friction that a Taylor series goes beside */

@@ -171,14 +171,14 @@ static void collect_left(void *context)
 }
 
 /* The friction of what has no mass is what it bears: then it may be a row after all. */
-static bool becomes_row(struct building *b, int index, struct value *value, bool *bears)
+static bool becomes_row(struct building *b, int index, struct value *value, bool *reads_slider_force)
 {
-	bool row = b->model->contacts.bearings > 0 && value;
-	for (int i = 0; b->model->contacts.bearings > 0 && value && i < value->rows * value->columns; i++) {
+	bool row = b->model->contacts.massless_sliders > 0 && value;
+	for (int i = 0; b->model->contacts.massless_sliders > 0 && value && i < value->rows * value->columns; i++) {
 		const struct form *written = value->cell[i];
-		const struct form *borne = value->cell[i] = borne_form(b, written);
-		*bears = *bears || !same_form(written, borne);
-		row = row && (borne->terms == 0 || !borne->term[borne->terms - 1].basis.atom);
+		const struct form *slider_force = value->cell[i] = borne_form(b, written);
+		*reads_slider_force = *reads_slider_force || !same_form(written, slider_force);
+		row = row && (slider_force->terms == 0 || !slider_force->term[slider_force->terms - 1].basis.atom);
 	}
 	for (int s = 0; row && s < b->model->system.segments; s++)
 		b->segment_equations[s].output[index] = value;
@@ -192,17 +192,17 @@ static void name_outputs(struct building *b)
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
-		bool row = is_row(b, index), bears = false;
+		bool row = is_row(b, index), reads_slider_force = false;
 		struct output_work work = { b, s, row ? b->segment_equations->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
-		row = row || becomes_row(b, index, work.value, &bears);
+		row = row || becomes_row(b, index, work.value, &reads_slider_force);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
 			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
 				   row ? work.value->cell[i] : NULL);
 			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
-			model->output[model->outputs - 1].bears = bears;
+			model->output[model->outputs - 1].reads_slider_force = reads_slider_force;
 			model->output[model->outputs - 1].peak = s->peak;
 			model->output[model->outputs - 1].statement = index;
 			model->output[model->outputs - 1].cell = i;

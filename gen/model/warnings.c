@@ -431,10 +431,10 @@ static bool is_first(const struct switching *s, int index, bool low)
 /* Of a slider without mass that is none of regions, since a damper stands beside it; each is said once. */
 static bool falls_beside_damper(const struct model *model, int index)
 {
-	const struct atom *atom = model->contacts.bearing[index].atom;
+	const struct atom *atom = model->contacts.massless_slider[index].atom;
 	bool other = never_falls_below(atom->operand[1]);
 	for (int i = 0; i < index; i++)
-		other = other || model->contacts.bearing[i].atom->node == atom->node;
+		other = other || model->contacts.massless_slider[i].atom->node == atom->node;
 	for (int i = 0; model->switching && i < model->switching->sliders; i++)
 		other = other || model->switching->slider[i].atom->node == atom->node;
 	return !other;
@@ -453,9 +453,9 @@ static void check_friction(const struct model *model)
 	for (int i = 0; s && i < s->sliders; i++)
 		if (s->slider[i].negative && !is_repeated_slider(s, i))
 			say_falls(s->slider[i].atom->node, true);
-	for (int i = 0; i < model->contacts.bearings; i++)
+	for (int i = 0; i < model->contacts.massless_sliders; i++)
 		if (falls_beside_damper(model, i))
-			say_falls(model->contacts.bearing[i].atom->node, true);
+			say_falls(model->contacts.massless_slider[i].atom->node, true);
 	for (int i = 0; i < model->contacts.drags; i++) {
 		const struct drag *drag = &model->contacts.drag[i];
 		if (!never_falls_below(drag->force))

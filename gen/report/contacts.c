@@ -24,13 +24,14 @@ const char *contact_text(const struct step *step, int hold)
 		      held_in(step, &c->hold[hold]), c->hold[hold].expression);
 }
 
-static const char *rest_text(const struct step *step, const struct series_strike *strike)
+static const char *rest_text(const struct step *step, const struct series_impact *series_impact)
 {
 	const struct contacts *c = step->taylor.divided->contacts;
-	return strike->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
+	return series_impact->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
 						  "expression %d",
-						  shortest(strike->restitution),
-						  held_in(step, &c->hold[strike->hold]), strike->expression);
+						  shortest(series_impact->restitution),
+						  held_in(step, &c->hold[series_impact->hold]),
+						  series_impact->expression);
 }
 
 void person_contacts(FILE *to, const struct step *step)
@@ -39,10 +40,10 @@ void person_contacts(FILE *to, const struct step *step)
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
-	for (int i = 0; c && i < c->strikes; i++) {
+	for (int i = 0; c && i < c->series_impacts; i++) {
 		const struct when *when = step->model->contacts.impact[i].when;
 		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end),
-			rest_text(step, &c->strike[i]));
+			rest_text(step, &c->series_impact[i]));
 	}
 }
 
@@ -61,15 +62,15 @@ void json_contacts(FILE *to, const struct step *step)
 	}
 	if (c && step->model->contacts.drags > 0)
 		fputs("],\n", to);
-	for (int i = 0; c && i < c->strikes; i++) {
-		const struct series_strike *s = &c->strike[i];
+	for (int i = 0; c && i < c->series_impacts; i++) {
+		const struct series_impact *s = &c->series_impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "  \"impacts\": [",
 			s->expression, s->upward ? "true" : "false");
 		if (s->hold == NONE)
 			fputs("null}", to);
 		else
 			fprintf(to, "%.17g, \"rests\": %d}", s->restitution, held_in(step, &c->hold[s->hold]));
-		if (i == c->strikes - 1)
+		if (i == c->series_impacts - 1)
 			fputs("],\n", to);
 	}
 }

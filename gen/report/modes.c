@@ -58,7 +58,7 @@ int numbers_of_modes(const struct step *step)
 		forces += m->force[f] ? width : 0;
 	return (m->operators - 1) * width * width +
 	       m->operators * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
-	       (m->steady.flow ? settled_size(step->model) * 2 * width : 0);
+	       (m->steady.flow ? steady_size(step->model) * 2 * width : 0);
 }
 
 void person_normal(FILE *to, const struct step *step)

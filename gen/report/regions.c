@@ -71,11 +71,11 @@ static long guard_bytes(const struct step *step)
 	const struct switching *s = step->model->switching;
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
-	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
+	long size = step->layout.size, friction_forces = 8 * size * s->regions * s->transmitted_forces;
 	return 8 * (g.reaches * size + g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size +
 		    s->expressions -
 		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
-	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
+	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + friction_forces;
 }
 
 /* Of the tables of a step, or of a part that is stepped alone */

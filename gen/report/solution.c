@@ -78,10 +78,10 @@ static bool round_value(mpfi_srcptr x, double *largest, double *value)
 	return true;
 }
 
-static bool print_passed(struct printing *p, const struct through *t)
+static bool print_passed(struct printing *p, const struct trajectory *t)
 {
 	const struct passed *list;
-	int count = through_passed(t, &list);
+	int count = trajectory_passed(t, &list);
 	for (; p->passed < count; p->passed++) {
 		const struct passed *now = &list[p->passed];
 		double when, latest = 0;
@@ -97,13 +97,13 @@ static bool print_passed(struct printing *p, const struct through *t)
 	return true;
 }
 
-static bool print_row(struct printing *p, const struct through *t, mpq_srcptr time)
+static bool print_row(struct printing *p, const struct trajectory *t, mpq_srcptr time)
 {
 	const struct model *model = p->model;
 	SCRATCH double *value = ARRAY(double, model->outputs);
 	INTERVAL x = OVER_BITS(53);
 	for (int j = 0; j < model->outputs; j++) {
-		through_value(t, &model->output[j], x);
+		trajectory_value(t, &model->output[j], x);
 		if (!round_value(x, &p->largest[j], &value[j])) {
 			p->why = format("output '%s' is not known to all digits at t = %s s", model->output[j].name,
 					readable_text(time));
@@ -123,23 +123,23 @@ static bool print_row(struct printing *p, const struct through *t, mpq_srcptr ti
 /* What was not told with fewer bits, with so many; true: all is */
 static bool print_with(struct printing *p, int precision)
 {
-	struct through *t = through_start(p->model, NULL, p->model->initial, precision);
+	struct trajectory *t = trajectory_start(p->model, NULL, p->model->initial, precision);
 	bool told = true;
 	RATIONAL time = ZERO;
 	for (; p->rows <= p->last && told; p->rows += told) {
 		mpq_set_ui(time, p->rows, 1);
 		mpq_mul(time, time, p->model->h);
 		progress("row", (int)p->rows, (int)p->last);
-		told = through_reach(t, time);
+		told = trajectory_reach(t, time);
 		if (!told)
-			p->why = through_undecided(t);
+			p->why = trajectory_undecided(t);
 		told = told && print_passed(p, t) && print_row(p, t, time);
 	}
-	through_free(t);
+	trajectory_free(t);
 	return told;
 }
 
-static void print_through(FILE *to, const struct model *model, unsigned long last)
+static void print_trajectory(FILE *to, const struct model *model, unsigned long last)
 {
 	enum { FEWEST_BITS = 192, MOST_BITS = 6144, EQUAL = 3 };
 	struct printing p = { .to = to, .model = model, .last = last,
@@ -168,7 +168,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	check_peaks_of(model);
 	unsigned long last = last_step(model, end);
 	if (model->switching) {
-		print_through(to, model, last);
+		print_trajectory(to, model, last);
 		return;
 	}
 	check_pole_size(model, written);

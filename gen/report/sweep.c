@@ -129,7 +129,7 @@ static void take_means(struct course_of_mover *c)
 }
 
 /* At the frequency that the mover is tuned to, in time */
-static void settle(struct course_of_mover *c)
+static void approach(struct course_of_mover *c)
 {
 	c->repeats = false;
 	for (int round = 0, periods = 4; !c->repeats && round < ROUNDS; round++) {
@@ -156,7 +156,7 @@ static void follow(struct course_of_mover *c, double from, double to, int halvin
 		follow(c, from, sqrt(from * to), halvings - 1);
 		follow(c, sqrt(from * to), to, halvings - 1);
 	} else {
-		settle(c);
+		approach(c);
 	}
 }
 
@@ -270,9 +270,9 @@ static _Noreturn void tell_left_over(const struct model *model)
 
 static bool has_friction(const struct model *model)
 {
-	bool rubbed = rubs(model->switching);
+	bool rubbed = has_dry_friction(model->switching);
 	for (int p = 0; p < model->switching->parts; p++)
-		rubbed = rubbed || rubs(model->switching->part[p].model->switching);
+		rubbed = rubbed || has_dry_friction(model->switching->part[p].model->switching);
 	return rubbed;
 }
 

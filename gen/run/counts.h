@@ -43,12 +43,15 @@ const void *const pl_counts = &pl_counted;
 	PL_TAKES_BOTH((m)->size * ((words) * (m)->size + 3 + ((m)->halvings[(c)->matrix] > 0 ? 4 * (m)->size : 0)))
 #define pl_switching_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_step(m, x, c, e, w))
 #define pl_switchingf_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_step(m, x, c, e, w))
-#define pl_switching_kept_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_kept_step(m, x, c, e, w))
-#define pl_switchingf_kept_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_kept_step(m, x, c, e, w))
+#define pl_switching_compensated_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_compensated_step(m, x, c, e, w))
+#define pl_switchingf_compensated_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_compensated_step(m, x, c, \
+    e, w))
 #define pl_switching_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_advance(m, t, x, c, e, w))
 #define pl_switchingf_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_advance(m, t, x, c, e, w))
-#define pl_switching_kept_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_kept_advance(m, t, x, c, e, w))
-#define pl_switchingf_kept_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_kept_advance(m, t, x, c, e, w))
+#define pl_switching_compensated_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_compensated_advance(m, \
+    t, x, c, e, w))
+#define pl_switchingf_compensated_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), \
+    pl_switchingf_compensated_advance(m, t, x, c, e, w))
 
 /* A part of a step with a remainder */
 #define PL_EVENT_SPLIT_FLOWS(m) PL_TAKES_BOTH((m)->size * (m)->size * ((m)->terms > 0 ? (m)->terms : 1))

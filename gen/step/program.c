@@ -47,14 +47,16 @@ bool is_forced(const struct step *step, int column)
 }
 
 /* What is held there, and what releases it */
-static void mark_loads_of_region(const struct region *region, int felts, int load, size_t columns, bool *needed)
+static void mark_loads_of_region(const struct region *region, int transmitted_forces, int load, size_t columns,
+				 bool *needed)
 {
 	for (int k = 0; k < region->holds && region->possible; k++)
 		*needed = *needed || !rationals_zero(columns, region->hold[k].row->load[load]);
 	for (int k = 0; k < region->releases && region->possible; k++)
 		*needed = *needed || !rationals_zero(columns, region->release[k].row->load[load]);
-	for (int k = 0; k < felts && region->grip; k++)
-		*needed = *needed || (region->grip[k] && !rationals_zero(columns, region->grip[k]->load[load]));
+	for (int k = 0; k < transmitted_forces && region->friction_force; k++)
+		*needed = *needed ||
+			(region->friction_force[k] && !rationals_zero(columns, region->friction_force[k]->load[load]));
 }
 
 /* Where states jump to, and the speed of what bounces */
@@ -62,11 +64,11 @@ static void mark_loads_of_impacts(const struct switching *s, int load, size_t co
 {
 	for (int i = 0; i < s->impacts; i++)
 		for (int segment = 0; segment < s->segments; segment++) {
-			const struct strike *strike = &s->impact[i].in[segment];
-			for (int k = 0; k < strike->jumps; k++)
-				*needed = *needed || !rationals_zero(columns, strike->jump[k].row->load[load]);
+			const struct impact_law *impact_law = &s->impact[i].in[segment];
+			for (int k = 0; k < impact_law->jumps; k++)
+				*needed = *needed || !rationals_zero(columns, impact_law->jump[k].row->load[load]);
 			if (s->impact[i].bounces)
-				*needed = *needed || !rationals_zero(columns, strike->speed_row->load[load]);
+				*needed = *needed || !rationals_zero(columns, impact_law->speed_row->load[load]);
 		}
 }
 
@@ -79,7 +81,7 @@ static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 		for (int e = 0; e < s->expressions; e++)
 			needed[l] = needed[l] || !rationals_zero(columns, s->expression[e].row->load[l]);
 		for (int k = 0; k < s->regions; k++)
-			mark_loads_of_region(&s->region[k], s->felts, l, columns, &needed[l]);
+			mark_loads_of_region(&s->region[k], s->transmitted_forces, l, columns, &needed[l]);
 		mark_loads_of_impacts(s, l, columns, &needed[l]);
 	}
 }

@@ -88,7 +88,7 @@ static const real bent_stiffness[1][1] = {{0}};
 #define PL_WAVES 0
 #define PL_OPERATORS 1
 #define PL_SEGMENTS 1
-#define PL_SETTLES 0
+#define PL_STEADY 0
 #define PL_AT 1
 #define PL_TERMS 6
 #define PL_TURNS 1
@@ -233,8 +233,8 @@ static const real plane_next[1][2][2] = {
 #define PL_OPERATORS 2
 #define PL_SELECTOR 1
 #define PL_SEGMENTS 3
-#define PL_SETTLES 1
-#define PL_SETTLED_IN 0
+#define PL_STEADY 1
+#define PL_STEADY_IN 0
 void plane_step(plane *s);
 #include "normal.h"
 

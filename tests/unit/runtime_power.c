@@ -335,7 +335,7 @@ static void tripled_step(tripled *s)
 #define PL_SEGMENTS 3
 #define PL_BLOCKS 1
 #define PL_CONVERTED 0
-#define PL_KEPT 1
+#define PL_COMPENSATED 1
 #define PL_CARRIES 0
 #define PL_PHI tripled_Phi
 #define PL_ENTRIES 5
@@ -372,7 +372,7 @@ static void from_change_to_change(void **state)
 #define PL_SEGMENTS 1
 #define PL_BLOCKS 2
 #define PL_CONVERTED 0
-#define PL_KEPT 0
+#define PL_COMPENSATED 0
 #define PL_CARRIES 0
 #define PL_PHI paired_Phi
 #define PL_ENTRIES 2
@@ -396,7 +396,7 @@ void paired_jump(paired *s, uint64_t n);
 #define PL_REFRESHED 0
 #define PL_RESTS 2
 #define PL_IN_STEP 0
-#define PL_KEPT 0
+#define PL_COMPENSATED 0
 static const short paired_part[] = {0, -1};
 void paired_run(paired *s, size_t n, real *out);
 #include "run.h"
@@ -481,7 +481,7 @@ static void faded_block(faded *s, real *out)
 #define PL_REFRESHED 0
 #define PL_RESTS 3
 #define PL_IN_STEP 0
-#define PL_KEPT 0
+#define PL_COMPENSATED 0
 void faded_run(faded *s, size_t n, real *out);
 #include "run.h"
 
@@ -501,7 +501,7 @@ void faded_run(faded *s, size_t n, real *out);
 #define PL_REFRESHED 0
 #define PL_RESTS 1
 #define PL_IN_STEP 0
-#define PL_KEPT 1
+#define PL_COMPENSATED 1
 void faded_whole_run(faded_whole *s, size_t n, real *out);
 #include "run.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* DOP853 of the kept charts, with the model's equations in its steps. */
-#include "kept.h"
+#include "compensated.h"
 
 enum { MOST_ENTRIES = N + N % 2 };
 #define SIZE N

@@ -48,7 +48,7 @@ static void emit_rows(const struct emitter *e, const char *name, const char *not
 	const int size[] = { rows > 0 ? rows : 1, e->system->states };
 	double *value = ARRAY(double, (size_t)(size[0] * size[1]));
 	for (int i = 0; i < rows; i++)
-		memcpy(value + i * size[1], kind ? c->strike[i].back : c->hold[i].back,
+		memcpy(value + i * size[1], kind ? c->series_impact[i].back : c->hold[i].back,
 		       (size_t)size[1] * sizeof *value);
 	emit_array(e, note, name, 2, size, value, NULL);
 }
@@ -69,21 +69,22 @@ static void emit_holds(const struct emitter *e)
 	emit_rows(e, "event_back", "Of each: what is taken from the states for a velocity of 1", c->holds, 0);
 }
 
-static void emit_strikes(const struct emitter *e)
+static void emit_series_impacts(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
 	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, "
 	       "without restitution, how many; restitution; of the expression for a guard of 1 */\n"
-	       "static const pl_strike $n_event_strike[%d] = {\n", c->strikes > 0 ? c->strikes : 1);
-	for (int i = 0; i < c->strikes; i++) {
-		const struct series_strike *s = &c->strike[i];
+	       "static const pl_event_impact $n_event_strike[%d] = {\n",
+		       c->series_impacts > 0 ? c->series_impacts : 1);
+	for (int i = 0; i < c->series_impacts; i++) {
+		const struct series_impact *s = &c->series_impact[i];
 		int rank = rank_in(e, s->expression, s->breakpoint) + (s->hold != NONE && !s->upward);
 		say(e, "    {%d, %d, %d, %d, %d, %d, %d, %d, %d, %s, %s},\n", s->expression, rank, s->upward,
 		    watch_or_none(s->hold), s->place, s->speed, s->jump, s->still, s->jumps,
 		    shortest(s->restitution), shortest(s->per));
 	}
-	say(e, "%s};\n", c->strikes > 0 ? "" : "    {0, 0, 0, -1, 0, 0, 0, 0, 0, 0.0, 1.0}\n");
-	emit_rows(e, "event_place", "Of each: what is taken from the states for a guard of 1", c->strikes, 1);
+	say(e, "%s};\n", c->series_impacts > 0 ? "" : "    {0, 0, 0, -1, 0, 0, 0, 0, 0, 0.0, 1.0}\n");
+	emit_rows(e, "event_place", "Of each: what is taken from the states for a guard of 1", c->series_impacts, 1);
 	int *state = ARRAY(int, (size_t)c->assignments), *value = ARRAY(int, (size_t)c->assignments);
 	for (int i = 0; i < c->assignments; i++) {
 		state[i] = c->assignment[i].state;
@@ -100,7 +101,7 @@ static void emit_events(const struct emitter *e, const char *name, const char *d
 	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
 	       "    $n_event_place[0],\n"
 	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
-	       "};\n", name, divided, watch, c->holds, c->strikes, c->conflicts);
+	       "};\n", name, divided, watch, c->holds, c->series_impacts, c->conflicts);
 }
 
 void emit_event_tables(const struct emitter *e)
@@ -109,7 +110,7 @@ void emit_event_tables(const struct emitter *e)
 	const char *conflict = "";
 	emit_watches(e, "event_watch", NONE);
 	emit_holds(e);
-	emit_strikes(e);
+	emit_series_impacts(e);
 	for (int i = 0; i < c->conflicts; i++)
 		conflict = format("%s%s{%luu, %d, %d}", conflict, i ? ", " : "", c->conflict[i].set,
 				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);

@@ -56,7 +56,7 @@ static void add_waves_of_columns(const struct emitter *e, struct summands *s, in
 {
 	for (int k = 0; k < wave_values(e); k++)
 		if (is_there(e, k))
-			add_summand(s, spell(e, "$n_settled[%d][i] * wave[%d]", first + k, k));
+			add_summand(s, spell(e, "$n_steady[%d][i] * wave[%d]", first + k, k));
 }
 
 /* ---- a stage: modes at a node, or after a step ---- */
@@ -210,13 +210,13 @@ static void emit_still(const struct emitter *e)
 	emit_array(e, "Frequencies that amplitudes are scaled by, and 1 over them", "omega", 2,
 		   (const int[]){ 2, width }, omega, NULL);
 	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
-		   "settled", 2, (const int[]){ settled_size(e->model), 2 * width }, m->steady.flow, NULL);
+		   "steady", 2, (const int[]){ steady_size(e->model), 2 * width }, m->steady.flow, NULL);
 	open_function(e, NULL, "static inline void $n_still(const double x[], const double wave[], double sum[])");
 	say(e, "    int i;\n");
 	for (int j = 0; j < 2 * m->modes; j++)
-		add_summand(&s, spell(e, "$n_settled[%d][i] * x[%d]", j,
+		add_summand(&s, spell(e, "$n_steady[%d][i] * x[%d]", j,
 				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
-	add_summand(&s, spell(e, "$n_settled[%d][i]", 2 * m->modes));
+	add_summand(&s, spell(e, "$n_steady[%d][i]", 2 * m->modes));
 	add_waves_of_columns(e, &s, 2 * m->modes + 1);
 	say_row_sum(e, "sum[i]", 2 * width, &s);
 	close_function(e, "wave");
@@ -327,7 +327,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "SWEEPS", m->collocation.sweeps }, { "FIRST_SWEEPS", m->collocation.first_sweeps },
 		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "OPERATORS", m->operators },
 		   { "SELECTOR", e->model->remainder.split->selector - 1 }, { "SEGMENTS", e->system->segments },
-		   { "SETTLES", m->steady.flow != NULL }, { "SETTLED_IN", m->steady.schedule },
+		   { "STEADY", m->steady.flow != NULL }, { "STEADY_IN", m->steady.schedule },
 		   { "AT", e->step->series.emitted }, { "TERMS", m->within.terms }, { "TURNS", turns_within(e) },
 		   { "DAMPED", m->within.damping != NULL }, { "PEAKS", peak_outputs(e->model) }, { "IN_MODES", 0 });
 	say(e, "#include \"normal.h\"\n");

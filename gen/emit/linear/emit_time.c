@@ -509,7 +509,7 @@ void emit_jump(const struct emitter *e)
 	emit_sizes(e, "jump.h", { "STATES", e->system->states }, { "LOAD_STATES", loads },
 		   { "SIZE", (blocks > 1 ? states_of_largest_block(e) : e->system->states) + loads },
 		   { "SEGMENTS", e->system->segments }, { "BLOCKS", blocks }, { "CONVERTED", converts(e) },
-		   { "KEPT", !converts(e) && e->step->program->compensated },
+		   { "COMPENSATED", !converts(e) && e->step->program->compensated },
 		   { "CARRIES", converts(e) ? 0 : emit_carried(e) }, { "ENTRIES", entries });
 	say(e, "#define PL_PHI %s\n"
 	       "#include \"jump.h\"\n", stepped_table(e, "Phi"));

@@ -97,11 +97,11 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 		      size);
 	say(e, "    const double (*const factor)[%d] = $o_pieces[which];\n", size);
 	for (int i = 0; i < size; i++)
-		if (keeps_rest(e))
+		if (is_compensated(e))
 			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));
 		else
 			say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
-	close_function(e, is_table(&whole) && !keeps_rest(e) ? "" : "factor");
+	close_function(e, is_table(&whole) && !is_compensated(e) ? "" : "factor");
 }
 
 static bool moves(const struct region_tables *t, int row)

@@ -185,7 +185,7 @@ static void emit_end(const struct emitter *e, const struct check *l, int row, co
 	int indent = 24 + (int)strlen(before);
 	const struct region_tables *whole = &l->whole;
 	const char **x = l->x;
-	if (!keeps_rest(e))
+	if (!is_compensated(e))
 		say(e, "    %send%d = %s;  /* %s */\n", before, row, end_text(e, l, row), name);
 	else if (row >= e->system->states)
 		say(e, "    %send%d = %s + (%s);  /* %s */\n", before, row, *x[row] ? x[row] : "1.0",
@@ -349,7 +349,7 @@ void emit_event_check(const struct emitter *e)
 			say(e, "    const double part%d = %s;  /* its slope */\n", of,
 			    spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
 	}
-	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+	for (int i = 0; i < e->system->states && is_compensated(e); i++)
 		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
 	if (e->model->params.retuned)
 		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
@@ -363,14 +363,14 @@ void emit_event_check(const struct emitter *e)
 					    : "c->large[s->contact.matrix]");
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
-	for (int i = 0; i < e->system->states && keeps_rest(e); i++)
+	for (int i = 0; i < e->system->states && is_compensated(e); i++)
 		say(e, "        s->rest[%d] = rest%d;\n", place_of_state(e, i), i);
 	say(e, "        s->contact$p.crossings = 0;\n"
 	       "    } else {\n"
 	       "        double now[%d];\n", size_of_vector(e));
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
-	for (int j = 0; j < layout->size && keeps_rest(e); j++)
+	for (int j = 0; j < layout->size && is_compensated(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
 	say(e, e->step->regions.event_check.fast_path ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"

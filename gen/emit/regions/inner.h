@@ -51,7 +51,7 @@ void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, cons
 
 /* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */
 
-void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
+void emit_friction_forces(const struct emitter *e);               /* what friction carries, for outputs */
 /* of dry friction and impacts in regions: their lists, numbers, descriptor */
 void emit_guards(const struct emitter *e, const struct guards *guards);
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
@@ -87,7 +87,7 @@ void emit_search(const struct emitter *e, const char *ladder);
 void emit_region_start_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
-bool keeps_rest(const struct emitter *e);                         /* the state has two words: its rests are behind x */
+bool is_compensated(const struct emitter *e);                     /* the state has two words: its rests are behind x */
 int size_of_vector(const struct emitter *e);                      /* of x, with them */
 /* A list behind itself: first and second words */
 const char **listed_twice(int count, const char *const *text);

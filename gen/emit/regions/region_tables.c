@@ -174,7 +174,7 @@ struct region_tables tables_of_regions(const struct emitter *e, const struct pie
 struct region_tables steps_of_regions(const struct emitter *e, const struct pieces *p, const char *text)
 {
 	int size = e->step->layout.size;
-	return keeps_rest(e) ? tables_of_regions(e, p, text, 2 * size, OF_PIECE(gain))
+	return is_compensated(e) ? tables_of_regions(e, p, text, 2 * size, OF_PIECE(gain))
 			     : tables_of_regions(e, p, text, size, OF_PIECE(Phi));
 }
 
@@ -353,21 +353,21 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 	return sum_of(&s, indent);
 }
 
-bool keeps_rest(const struct emitter *e)
+bool is_compensated(const struct emitter *e)
 {
 	return e->step->program->compensated;
 }
 
 int size_of_vector(const struct emitter *e)
 {
-	return e->step->layout.size * (keeps_rest(e) ? 2 : 1);
+	return e->step->layout.size * (is_compensated(e) ? 2 : 1);
 }
 
 void emit_state_of_x(const struct emitter *e)
 {
 	say(e, "    for (i = 0; i < %s; i++) {\n"
 	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
-	if (keeps_rest(e))
+	if (is_compensated(e))
 		say(e, "        s->rest[%s] = x[%d + i];\n", place_in_loop(e), e->step->layout.size);
 	say(e, "    }\n");
 }

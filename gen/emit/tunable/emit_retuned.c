@@ -140,8 +140,8 @@ static void list_jumps(const struct emitter *e, struct list *l, const struct gua
 		from(e, l, RETUNED_BACK, i, 0, false);
 	}
 	for (int k = 0; k < s->regions; k++)
-		for (int i = 0; i < s->felts; i++)
-			from(e, l, RETUNED_GRIP, k, i, false);
+		for (int i = 0; i < s->transmitted_forces; i++)
+			from(e, l, RETUNED_FRICTION, k, i, false);
 }
 
 static int emit_from(const struct emitter *e, const struct guards *g)
@@ -254,7 +254,8 @@ void emit_retuned(const struct emitter *e)
 		   { "HIGHEST", e->system->n }, { "WORK", most_work(e) },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
-		   { "GRIPS", has_guards(e) ? s->regions * s->felts : 0 }, { "BOUNDED", bounded },
+		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
+		   { "BOUNDED", bounded },
 		   { "EVENT_FREE", e->step->regions.event_check.event_free });
 	if (e->step->regions.event_check.event_free)
 		emit_gathering(e);

@@ -129,16 +129,16 @@ void place_contact_loads(struct building *b)
 {
 	const struct model *model = b->model;
 	for (int i = 0; i < model->contacts.impacts; i++) {
-		const struct strike *strike = model->contacts.impact[i].in;
+		const struct impact_law *impact_law = model->contacts.impact[i].in;
 		const bool bounces = model->contacts.impact[i].bounces;
-		place_loads(b, strike->guard);
-		place_loads(b, strike->speed);
+		place_loads(b, impact_law->guard);
+		place_loads(b, impact_law->speed);
 		if (bounces)
-			place_loads(b, strike->press);
-		for (int k = 0; k < strike->jumps; k++)
-			place_loads(b, strike->jump[k].form);
-		for (int k = 0; k < strike->jumps && bounces; k++)
-			place_loads(b, strike->still[k].form);
+			place_loads(b, impact_law->press);
+		for (int k = 0; k < impact_law->jumps; k++)
+			place_loads(b, impact_law->jump[k].form);
+		for (int k = 0; k < impact_law->jumps && bounces; k++)
+			place_loads(b, impact_law->still[k].form);
 	}
 	for (int i = 0; i < model->contacts.drags; i++) {
 		place_loads(b, model->contacts.drag[i].velocity);

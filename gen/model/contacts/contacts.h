@@ -12,7 +12,7 @@ struct jump {                       /* a state just behind an impact, over state
 	struct form *form;
 	struct output *row;
 };
-struct strike {                     /* what an impact is in one segment of time */
+struct impact_law {                 /* what an impact is in one segment of time */
 	struct form *guard, *speed; /* turned so that it rises where it comes true, through 0; its derivative */
 	struct form *press;         /* of a bounce: that of the speed; it may have highest derivatives */
 	int jumps;
@@ -30,7 +30,7 @@ struct impact {                     /* of `when`, or of a stop */
 	const struct when *when;
 	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
 	bool bounces;
-	struct strike *in;          /* per segment of time of the model */
+	struct impact_law *in;      /* per segment of time of the model */
 };
 
 /* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
@@ -42,7 +42,7 @@ struct friction {                   /* in one segment of time */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
 	bool low;                   /* S may fall below F, and counts as F there */
 };
-struct bearing { const struct atom *atom; const struct form *borne; };
+struct massless_slider { const struct atom *atom; const struct form *slider_force; };
 /* Of FN_SLIDE: friction of what has no mass, by what it bears */
 struct slider {
 	const struct atom *atom;
@@ -78,7 +78,7 @@ struct release {                    /* of what sticks: the interval is left wher
 void collect_impacts(struct building *b, struct segment_equations *segment_equations); /* in one interval of time */
 void gather_impacts(struct building *b);                    /* of all of them */
 void build_impacts(struct building *b);                     /* once the masses are known */
-bool strikes_change(const struct building *b);              /* from interval to interval */
+bool impacts_change(const struct building *b);              /* from interval to interval */
 /* At the start of this segment of time a load takes the guard up, so that it may come true by no crossing. */
 bool closes_by_jump(struct building *b, const struct impact *impact, int segment);
 void place_impact_loads(struct building *b, const struct switching *s);
@@ -97,7 +97,7 @@ int  rest_of(const struct switching *s, int segment, const struct impact *impact
 bool has_contacts(const struct model *model);                /* impacts, friction without regions */
 bool has_bounces(const struct model *model);
 const char *restitution_text(const struct model *model, const struct impact *impact); /* of a bounce, at all times */
-bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
+bool has_dry_friction(const struct switching *s);           /* there is friction, with mass or without */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 
 /* ---- contacts.c: impacts and friction beside what is not piecewise linear ---- */

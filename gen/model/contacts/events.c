@@ -5,8 +5,9 @@
 int impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward)
 {
 	for (int i = 0; i < s->impacts; i++) {
-		const struct strike *strike = &s->impact[i].in[segment];
-		if (strike->expression == expression && strike->upward == upward && mpq_equal(strike->at, at))
+		const struct impact_law *impact_law = &s->impact[i].in[segment];
+		if (impact_law->expression == expression && impact_law->upward == upward &&
+		    mpq_equal(impact_law->at, at))
 			return i;
 	}
 	return -1;
@@ -23,10 +24,10 @@ int impact_resting(const struct switching *s, int segment, int expression, int i
 
 int rest_of(const struct switching *s, int segment, const struct impact *impact)
 {
-	const struct strike *strike = &impact->in[segment];
-	const struct expression *e = &s->expression[strike->expression];
+	const struct impact_law *impact_law = &impact->in[segment];
+	const struct expression *e = &s->expression[impact_law->expression];
 	for (int k = 1; k < e->breaks && impact->bounces; k++)
-		if (is_stick(e, k) && mpq_equal(e->at[k], strike->at))
+		if (is_stick(e, k) && mpq_equal(e->at[k], impact_law->at))
 			return k;
 	return -1;
 }
@@ -56,10 +57,10 @@ const char *restitution_text(const struct model *model, const struct impact *imp
 
 bool has_events(const struct switching *s)
 {
-	return rubs(s) || s->impacts > 0;
+	return has_dry_friction(s) || s->impacts > 0;
 }
 
-bool rubs(const struct switching *s)
+bool has_dry_friction(const struct switching *s)
 {
 	return s->frictions > 0 || s->sliders > 0;
 }

@@ -131,7 +131,7 @@ struct stuck {                      /* one expression that is held, in one regio
 	int expression;
 	const struct atom *atom;    /* the first that acts; NULL: none does */
 	const struct impact *impact; /* that rests there; NULL: it is friction */
-	const struct strike *strike; /* the same in this segment of time */
+	const struct impact_law *impact_law; /* the same in this segment of time */
 	struct form *place;         /* of that: 0 too */
 	mpq_t *direction;           /* per row: of its force */
 	mpq_t *share;               /* per friction: what it carries of that force */
@@ -208,7 +208,7 @@ static void find_rest(struct building *b, const struct switching *s, int index, 
 			const struct form_term *mass = form_find(region->residual[s->row[k]], &basis);
 			if (!mass)
 				continue;
-			rational_addmul(stuck->direction[k], mass->factor, stuck->strike->direction[j]);
+			rational_addmul(stuck->direction[k], mass->factor, stuck->impact_law->direction[j]);
 		}
 }
 
@@ -240,7 +240,7 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 		int impact = impact_resting(s, segment, e, interval);
 		if (impact >= 0) {
 			new->impact = &s->impact[impact];
-			new->strike = &new->impact->in[segment];
+			new->impact_law = &new->impact->in[segment];
 		}
 		if (impact >= 0)
 			find_rest(b, s, index, new);
@@ -367,7 +367,7 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 	int stride = s->expression[stuck->expression].stride;
 	const struct form *up = NEW(struct form), *down = up;
 	if (stuck->impact) {                    /* it presses, and does not pull */
-		add_release(region, stuck->expression, !stuck->strike->upward,
+		add_release(region, stuck->expression, !stuck->impact_law->upward,
 			    form_difference(NEW(struct form), stuck->force));
 		return;
 	}
@@ -431,7 +431,7 @@ void resolve_friction(struct building *b, struct switching *s)
 /* ---- rows ---- */
 
 /* How v' answers to the force that is held against it, g W^-1 G: above 0, or the force drives what it should hold */
-static void check_answer(struct building *b, const struct switching *s, const struct friction *f)
+static void check_response(struct building *b, const struct switching *s, const struct friction *f)
 {
 	const struct model *model = b->model;
 	const struct linear *system = &model->system;
@@ -466,16 +466,16 @@ static void feel(struct switching *s, bool *seen, const struct form *form)
 		seen[a->index] = true;
 		bool friction = a->kind == ATOM_CALL && a->function >= FN_FRICTION;
 		if (friction)
-			*MORE(s->felt, s->felts) = a;
+			*MORE(s->transmitted, s->transmitted_forces) = a;
 		for (int k = 0; k < a->operands && !friction; k++)
 			feel(s, seen, a->operand[k]);
 	}
 }
 
-int felt_of(const struct switching *s, const struct atom *a)
+int transmitted_of(const struct switching *s, const struct atom *a)
 {
-	int index = s->felts - 1;
-	while (index >= 0 && s->felt[index] != a)
+	int index = s->transmitted_forces - 1;
+	while (index >= 0 && s->transmitted[index] != a)
 		index--;
 	return index;
 }
@@ -488,7 +488,7 @@ struct feeling {
 };
 
 /* Which of a segment of time it is: that which its text is there */
-static void find_felt(void *context)
+static void find_transmitted(void *context)
 {
 	struct feeling *work = context;
 	struct collector *c = &work->b->collector;
@@ -502,7 +502,7 @@ static void find_felt(void *context)
 			work->found = friction_of(work->s, work->segment, value->cell[0]->term[i].basis.atom);
 }
 
-static int *felt_in_segments(struct building *b, const struct switching *s, const struct atom *a)
+static int *transmitted_in_segments(struct building *b, const struct switching *s, const struct atom *a)
 {
 	int *index = ARRAY(int, s->segments);
 	bool any = false;
@@ -510,7 +510,7 @@ static int *felt_in_segments(struct building *b, const struct switching *s, cons
 		index[k] = friction_of(s, k, a);
 		if (index[k] < 0 && s->segments > 1) {
 			struct feeling work = { b, s, a, k, -1 };
-			statement_guard(find_felt, &work);
+			statement_guard(find_transmitted, &work);
 			index[k] = work.found;
 		}
 		any = any || index[k] >= 0;
@@ -535,7 +535,7 @@ static bool reads_remainder(const struct model *model)
 	return any;
 }
 
-static void build_grips(struct building *b, struct switching *s)
+static void build_friction_forces(struct building *b, struct switching *s)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	const struct model *model = b->model;
@@ -545,22 +545,22 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int c = 0; c < model->remainder.force_columns && reads_remainder(model); c++)
 		feel(s, seen, model->schedule.operator[0].left[c]);
 	for (int r = 0; r < s->regions; r++)
-		s->region[r].grip = ARRAY(struct output *, s->felts);
-	for (int i = 0; i < s->felts; i++) {
-		bool slides = s->felt[i]->function == FN_SLIDE;
-		const int *index = slides ? NULL : felt_in_segments(b, s, s->felt[i]);
+		s->region[r].friction_force = ARRAY(struct output *, s->transmitted_forces);
+	for (int i = 0; i < s->transmitted_forces; i++) {
+		bool slides = s->transmitted[i]->function == FN_SLIDE;
+		const int *index = slides ? NULL : transmitted_in_segments(b, s, s->transmitted[i]);
 		for (int r = 0; r < s->regions; r++) {
 			struct region *region = &s->region[r];
 			if (!region->possible)          /* nothing is carried there */
 				continue;
 			int here = slides ? -1 : index[segment_of_region(s, r)];
-			struct form *carried = slides     ? slide_velocity(s, region, s->felt[i]->node)
+			struct form *carried = slides     ? slide_velocity(s, region, s->transmitted[i]->node)
 					       : here < 0 ? NULL
 							  : region->carried[s->friction[here].atom->index];
 			if (carried)
-				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
-			if (region->grip[i])
-				region->grip[i]->form = carried;
+				region->friction_force[i] = row_in_system(b, &s->system[region->system], carried);
+			if (region->friction_force[i])
+				region->friction_force[i]->form = carried;
 		}
 	}
 }
@@ -570,7 +570,7 @@ void build_friction(struct building *b, struct switching *s)
 	int column;
 	mpq_t *inverse = rationals((size_t)b->model->n * (size_t)b->model->n);
 	for (int i = 0; i < s->frictions; i++)
-		check_answer(b, s, &s->friction[i]);
+		check_response(b, s, &s->friction[i]);
 	for (int r = 0; r < s->regions; r++) {
 		struct region *region = &s->region[r];
 		if (!region->possible || (region->holds == 0 && region->releases == 0))
@@ -584,7 +584,7 @@ void build_friction(struct building *b, struct switching *s)
 		for (int k = 0; k < region->releases; k++)
 			region->release[k].row = row_in_system(b, system, region->release[k].form);
 	}
-	build_grips(b, s);
+	build_friction_forces(b, s);
 }
 
 bool same_friction(const struct region *a, const struct region *b)

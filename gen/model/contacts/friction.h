@@ -27,7 +27,7 @@ int  stick_of(const struct switching *s, const struct friction *f); /* the inter
 /* puts in the forces of what slips, and the constraints of what sticks */
 /* its index; -1: no equation has it in this segment of time */
 int  friction_of(const struct switching *s, int segment, const struct atom *a);
-int  felt_of(const struct switching *s, const struct atom *a); /* among those that outputs read */
+int  transmitted_of(const struct switching *s, const struct atom *a); /* among those that outputs read */
 bool is_repeated(const struct switching *s, int friction);  /* as written it stands there for an earlier segment too */
 void resolve_friction(struct building *b, struct switching *s);
 void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */

@@ -57,7 +57,7 @@ static void check_stop(struct building *b, const struct when *when, mpq_ptr rest
 struct collecting {
 	struct building *b;
 	const struct when *when;
-	struct strike *strike;
+	struct impact_law *impact_law;
 };
 
 static int state_at(const struct building *b, const struct node *target)
@@ -70,11 +70,11 @@ static int state_at(const struct building *b, const struct node *target)
 	return target->primes ? b->model->system.velocity[coord] : coord;
 }
 
-static void collect_jumps(struct building *b, const struct when *when, struct strike *strike)
+static void collect_jumps(struct building *b, const struct when *when, struct impact_law *impact_law)
 {
-	strike->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
+	impact_law->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
 	for (int i = 0; i < when->jumps; i++) {
-		struct jump *jump = &strike->jump[strike->jumps++];
+		struct jump *jump = &impact_law->jump[impact_law->jumps++];
 		jump->state = state_at(b, when->jump[i].target);
 		jump->form = scalar_form(b, when->jump[i].value);
 		check_linear(b, when->jump[i].value, jump->form, "a jump");
@@ -86,41 +86,41 @@ static void collect_impact(void *context)
 	struct collecting *work = context;
 	struct building *b = work->b;
 	const struct when *when = work->when;
-	struct strike *strike = work->strike;
+	struct impact_law *impact_law = work->impact_law;
 	struct node *const *side = when->guard->child;
-	mpq_inits(strike->restitution, strike->gap, strike->at, strike->factor, NULL);
+	mpq_inits(impact_law->restitution, impact_law->gap, impact_law->at, impact_law->factor, NULL);
 	if (when->restitution)
-		check_stop(b, when, strike->restitution, strike->gap);
+		check_stop(b, when, impact_law->restitution, impact_law->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
 	check_linear(b, side[0], left, "a guard");
 	check_linear(b, side[1], right, "a guard");
-	strike->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
-	if (is_constant(strike->guard))
+	impact_law->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
+	if (is_constant(impact_law->guard))
 		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
 		      "this guard never changes");
-	for (int i = 0; i < strike->guard->terms; i++) {
-		const struct basis *basis = &strike->guard->term[i].basis;
+	for (int i = 0; i < impact_law->guard->terms; i++) {
+		const struct basis *basis = &impact_law->guard->term[i].basis;
 		if (basis->kind == BASIS_INPUT && !input_hold(b, basis->index))
 			error(when->guard->start, "as a ramp it moves: input ... hold first",
 			      "this guard jumps with an input that is held");
 	}
-	collect_jumps(b, when, strike);
+	collect_jumps(b, when, impact_law);
 }
 
 void collect_impacts(struct building *b, struct segment_equations *segment_equations)
 {
 	const struct spec *spec = b->spec;
-	segment_equations->strike = ARRAY(struct strike *, spec->whens);
+	segment_equations->impact_law = ARRAY(struct impact_law *, spec->whens);
 	for (int i = 0; i < spec->whens; i++) {
-		struct strike *strike = NEW(struct strike);
-		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], strike }))
-			segment_equations->strike[i] = strike;
+		struct impact_law *impact_law = NEW(struct impact_law);
+		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], impact_law }))
+			segment_equations->impact_law[i] = impact_law;
 	}
 }
 
-static struct strike copied(const struct building *b, const struct when *when, const struct strike *from)
+static struct impact_law copied(const struct building *b, const struct when *when, const struct impact_law *from)
 {
-	struct strike copy = *from;
+	struct impact_law copy = *from;
 	mpq_inits(copy.restitution, copy.gap, copy.at, copy.factor, NULL);
 	mpq_set(copy.gap, from->gap);
 	mpq_set(copy.restitution, from->restitution);
@@ -143,13 +143,13 @@ void gather_impacts(struct building *b)
 	model->contacts.impacts = spec->whens;
 	for (int i = 0; i < spec->whens; i++) {
 		struct impact *impact = &model->contacts.impact[i];
-		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, segments) };
+		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct impact_law, segments) };
 		for (int s = 0; s < segments; s++)
-			impact->in[s] = copied(b, impact->when, b->segment_equations[s].strike[i]);
+			impact->in[s] = copied(b, impact->when, b->segment_equations[s].impact_law[i]);
 	}
 }
 
-static bool same_strike(const struct strike *a, const struct strike *b)
+static bool same_impact_law(const struct impact_law *a, const struct impact_law *b)
 {
 	bool same = a->jumps == b->jumps && same_form(a->guard, b->guard);
 	for (int k = 0; k < a->jumps && same; k++)
@@ -157,20 +157,21 @@ static bool same_strike(const struct strike *a, const struct strike *b)
 	return same;
 }
 
-bool strikes_change(const struct building *b)
+bool impacts_change(const struct building *b)
 {
 	bool changes = false;
 	for (int i = 0; i < b->model->contacts.impacts; i++)
 		for (int s = 1; s < b->model->system.segments; s++)
 			changes = changes ||
-				  !same_strike(b->model->contacts.impact[i].in, &b->model->contacts.impact[i].in[s]);
+				  !same_impact_law(b->model->contacts.impact[i].in,
+						   &b->model->contacts.impact[i].in[s]);
 	return changes;
 }
 
 void tell_no_events(const struct building *b, struct place at)
 {
 	const enum scheme scheme = b->model->scheme;
-	if ((stops_at_events(scheme) || scheme == SCHEME_EXACT) && strikes_change(b))
+	if ((stops_at_events(scheme) || scheme == SCHEME_EXACT) && impacts_change(b))
 		error(at, "scheme exact takes them beside what is piecewise linear",
 		      "beside a series a guard and its jumps have one formula for all time");
 	refuse(CAN_CONTACTS, b->model, at);
@@ -179,22 +180,23 @@ void tell_no_events(const struct building *b, struct place at)
 
 /* ---- what a jump does to a form ---- */
 
-static const struct jump *jump_of(const struct building *b, const struct strike *strike, const struct basis *basis)
+static const struct jump *jump_of(const struct building *b, const struct impact_law *impact_law,
+				  const struct basis *basis)
 {
-	for (int i = 0; i < strike->jumps && basis->kind == BASIS_COORD; i++) {
+	for (int i = 0; i < impact_law->jumps && basis->kind == BASIS_COORD; i++) {
 		int state = basis->order ? b->model->system.velocity[basis->index] : basis->index;
-		if (strike->jump[i].state == state)
-			return &strike->jump[i];
+		if (impact_law->jump[i].state == state)
+			return &impact_law->jump[i];
 	}
 	return NULL;
 }
 
 /* The form of the state behind the jump, over the state before it */
-static struct form *behind(const struct building *b, const struct strike *strike, const struct form *form)
+static struct form *behind(const struct building *b, const struct impact_law *impact_law, const struct form *form)
 {
 	struct form *sum = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
-		const struct jump *jump = jump_of(b, strike, &form->term[i].basis);
+		const struct jump *jump = jump_of(b, impact_law, &form->term[i].basis);
 		if (jump)
 			form_add_to(sum, jump->form, form->term[i].factor);
 		else
@@ -232,15 +234,16 @@ static _Noreturn void tell_again(const struct when *when, const char *why)
 }
 
 /* Behind its own jump a guard may not stand where it is true, nor go on to there. */
-static void check_jump(struct building *b, const struct when *when, const struct strike *strike)
+static void check_jump(struct building *b, const struct when *when, const struct impact_law *impact_law)
 {
 	RATIONAL ratio = ZERO, rest = ZERO;
-	bool known = is_along(b, behind(b, strike, strike->guard), strike->guard, ratio, rest);
+	bool known = is_along(b, behind(b, impact_law, impact_law->guard), impact_law->guard, ratio, rest);
 	if (known && mpq_sgn(rest) > 0)
 		tell_again(when, "behind it the guard is true, by a constant");
 	bool stays = known && mpq_sgn(rest) == 0;
-	if (stays && !reads_highest(b, strike->speed) && !is_constant(strike->speed) &&
-	    is_along(b, behind(b, strike, strike->speed), strike->speed, ratio, rest) && mpq_sgn(rest) == 0 &&
+	if (stays && !reads_highest(b, impact_law->speed) && !is_constant(impact_law->speed) &&
+	    is_along(b, behind(b, impact_law, impact_law->speed), impact_law->speed, ratio, rest) &&
+	    mpq_sgn(rest) == 0 &&
 	    mpq_sgn(ratio) > 0)
 		tell_again(when, "behind it the guard goes on as it came");
 }
@@ -248,20 +251,20 @@ static void check_jump(struct building *b, const struct when *when, const struct
 /* ---- bounces ---- */
 
 /* Whether each jump is v -> v - (1 + e) d s of velocities v, s the speed of the guard; then e and d */
-static bool find_bounce(struct building *b, struct strike *strike)
+static bool find_bounce(struct building *b, struct impact_law *impact_law)
 {
 	const struct linear *system = &b->model->system;
 	mpq_t *part = rationals(b->model->n);
-	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
+	bool bounce = !reads_highest(b, impact_law->speed) && !is_constant(impact_law->speed);
 	RATIONAL reversed = ZERO, product = ZERO, rest = ZERO;
-	for (int i = 0; i < strike->jumps && bounce; i++) {
-		int state = strike->jump[i].state, coord = system->coord[state];
+	for (int i = 0; i < impact_law->jumps && bounce; i++) {
+		int state = impact_law->jump[i].state, coord = system->coord[state];
 		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
 		bounce = state >= b->model->n &&
-			 is_along(b, form_difference(form_unit(basis), strike->jump[i].form), strike->speed,
+			 is_along(b, form_difference(form_unit(basis), impact_law->jump[i].form), impact_law->speed,
 				  part[coord], rest) &&
 			 mpq_sgn(rest) == 0;
-		const struct form_term *term = bounce ? form_find(strike->speed, &basis) : NULL;
+		const struct form_term *term = bounce ? form_find(impact_law->speed, &basis) : NULL;
 		if (term)
 			mpq_mul(product, term->factor, part[coord]);
 		if (term)
@@ -272,8 +275,8 @@ static bool find_bounce(struct building *b, struct strike *strike)
 	for (int j = 0; j < b->model->n && bounce; j++)
 		mpq_div(part[j], part[j], reversed);
 	if (bounce)
-		mpq_sub(strike->restitution, reversed, rest);
-	strike->direction = bounce ? part : NULL;
+		mpq_sub(impact_law->restitution, reversed, rest);
+	impact_law->direction = bounce ? part : NULL;
 	return bounce;
 }
 
@@ -291,20 +294,21 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 }
 
 /* v -> v - (1 + e) d s; returns how many */
-static int velocity_jumps(const struct building *b, const struct strike *strike, mpq_srcptr e, struct jump *jump)
+static int velocity_jumps(const struct building *b, const struct impact_law *impact_law, mpq_srcptr e,
+			  struct jump *jump)
 {
 	int jumps = 0;
 	RATIONAL factor = ZERO;
 	for (int j = 0; j < b->model->n; j++) {
-		if (mpq_sgn(strike->direction[j]) == 0)
+		if (mpq_sgn(impact_law->direction[j]) == 0)
 			continue;
 		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 1 };
 		mpq_set_si(factor, -1, 1);
 		mpq_sub(factor, factor, e);
-		mpq_mul(factor, factor, strike->direction[j]);
+		mpq_mul(factor, factor, impact_law->direction[j]);
 		jump[jumps++] = (struct jump){
 			.state = b->model->system.velocity[j],
-			.form = form_sum(form_unit(basis), form_scale(strike->speed, factor), false)
+			.form = form_sum(form_unit(basis), form_scale(impact_law->speed, factor), false)
 		};
 	}
 	return jumps;
@@ -331,7 +335,7 @@ static mpq_t *inverse_masses(const struct building *b)
 }
 
 /* d = M^-1 f/(s M^-1 f), f the force of contact on the equations of the two */
-static void find_jumps(struct building *b, const struct when *when, struct strike *strike)
+static void find_jumps(struct building *b, const struct when *when, struct impact_law *impact_law)
 {
 	int n = b->model->n;
 	mpq_t *inverse = inverse_masses(b), *force = rationals(n), *d = rationals(n);
@@ -339,29 +343,29 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 	add_row(b, when->from, 1, force);
 	add_row(b, when->to, -1, force);
 	rational_product(n, n, 1, inverse, force, d);
-	for (int i = 0; i < strike->speed->terms; i++) {
-		const struct basis *basis = &strike->speed->term[i].basis;
+	for (int i = 0; i < impact_law->speed->terms; i++) {
+		const struct basis *basis = &impact_law->speed->term[i].basis;
 		if (basis->kind != BASIS_COORD)
 			continue;
-		mpq_mul(factor, strike->speed->term[i].factor, d[basis->index]);
+		mpq_mul(factor, impact_law->speed->term[i].factor, d[basis->index]);
 		mpq_add(speed, speed, factor);
 	}
 	if (mpq_sgn(speed) <= 0)
 		error(when->at, NULL, "the masses at this stop do not make a force part them");
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
-	strike->direction = d;
-	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
+	impact_law->direction = d;
+	impact_law->jumps = velocity_jumps(b, impact_law, impact_law->restitution, impact_law->jump);
 }
 
 /* What is left where nothing comes back */
-static void still_jumps(struct building *b, struct strike *strike)
+static void still_jumps(struct building *b, struct impact_law *impact_law)
 {
 	RATIONAL none = ZERO;
-	strike->still = ARRAY(struct jump, b->model->n);
-	strike->jump = ARRAY(struct jump, b->model->n);
-	velocity_jumps(b, strike, none, strike->still);
-	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
+	impact_law->still = ARRAY(struct jump, b->model->n);
+	impact_law->jump = ARRAY(struct jump, b->model->n);
+	velocity_jumps(b, impact_law, none, impact_law->still);
+	impact_law->jumps = velocity_jumps(b, impact_law, impact_law->restitution, impact_law->jump);
 }
 
 struct indexed {
@@ -399,19 +403,19 @@ static void build_impact(void *context)
 	struct impact *impact = &b->model->contacts.impact[work->index];
 	const struct when *when = impact->when;
 	for (int s = 0; s < b->model->system.segments; s++) {
-		struct strike *strike = &impact->in[s];
+		struct impact_law *impact_law = &impact->in[s];
 		bool bounces = when->restitution != NULL;
-		strike->speed = rate_of_form(b, strike->guard);
+		impact_law->speed = rate_of_form(b, impact_law->guard);
 		if (when->restitution)
-			find_jumps(b, when, strike);
+			find_jumps(b, when, impact_law);
 		else
-			bounces = find_bounce(b, strike);
+			bounces = find_bounce(b, impact_law);
 		if (s > 0 && bounces != impact->bounces)
 			tell_bounce_changes(b, when, s, bounces);
 		impact->bounces = bounces;
-		check_jump(b, when, strike);
+		check_jump(b, when, impact_law);
 		if (bounces)
-			still_jumps(b, strike);
+			still_jumps(b, impact_law);
 	}
 }
 
@@ -464,10 +468,10 @@ void place_impact_loads(struct building *b, const struct switching *s)
 {
 	for (int i = 0; i < s->impacts; i++)
 		for (int segment = 0; segment < s->segments; segment++) {
-			const struct strike *strike = &s->impact[i].in[segment];
-			place_loads(b, strike->speed);
-			for (int k = 0; k < strike->jumps; k++)
-				place_loads(b, strike->jump[k].form);
+			const struct impact_law *impact_law = &s->impact[i].in[segment];
+			place_loads(b, impact_law->speed);
+			for (int k = 0; k < impact_law->jumps; k++)
+				place_loads(b, impact_law->jump[k].form);
 		}
 }
 
@@ -475,13 +479,13 @@ void build_impact_rows(struct building *b, struct switching *s)
 {
 	for (int i = 0; i < s->impacts; i++)
 		for (int segment = 0; segment < s->segments; segment++) {
-			struct strike *strike = &s->impact[i].in[segment];
+			struct impact_law *impact_law = &s->impact[i].in[segment];
 			bool bounces = s->impact[i].bounces;
-			for (int k = 0; k < strike->jumps; k++)
-				strike->jump[k].row = row_of_form(b, strike->jump[k].form);
-			for (int k = 0; k < strike->jumps && bounces; k++)
-				strike->still[k].row = row_of_form(b, strike->still[k].form);
+			for (int k = 0; k < impact_law->jumps; k++)
+				impact_law->jump[k].row = row_of_form(b, impact_law->jump[k].form);
+			for (int k = 0; k < impact_law->jumps && bounces; k++)
+				impact_law->still[k].row = row_of_form(b, impact_law->still[k].form);
 			if (bounces)
-				strike->speed_row = row_of_form(b, strike->speed);
+				impact_law->speed_row = row_of_form(b, impact_law->speed);
 		}
 }

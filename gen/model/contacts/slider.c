@@ -83,18 +83,19 @@ static struct form *scaled_form(const struct form *form, mpq_srcptr by, bool inv
 }
 
 /* In other equations the friction is what it bears, and in outputs. */
-static void put_in_others(const struct slider_row *r, const struct form *borne)
+static void put_in_others(const struct slider_row *r, const struct form *slider_force)
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
 	struct model *model = r->b->model;
-	*MORE(model->contacts.bearing, model->contacts.bearings) = (struct bearing){ r->atom, borne };
+	*MORE(model->contacts.massless_slider, model->contacts.massless_sliders) =
+		(struct massless_slider){ r->atom, slider_force };
 	for (int i = 0; i < r->segment_equations->residuals; i++) {
 		struct residual *residual = &r->segment_equations->residual[i];
 		const struct form_term *term = form_find(residual->form, &basis);
 		if (i == r->row || !term)
 			continue;
 		struct form *rest = form_difference(residual->form, form_single(basis, term->factor));
-		residual->form = form_sum(rest, form_scale(borne, term->factor), false);
+		residual->form = form_sum(rest, form_scale(slider_force, term->factor), false);
 	}
 }
 
@@ -105,10 +106,10 @@ static _Noreturn void tell_drives(const struct node *node)
 }
 
 /* What it bears becomes less as it slides. */
-static void check_borne(const struct slider_row *r, const struct form *borne)
+static void check_borne(const struct slider_row *r, const struct form *slider_force)
 {
 	struct basis place = { .kind = BASIS_COORD, .index = r->coord };
-	const struct form_term *term = form_find(borne, &place);
+	const struct form_term *term = form_find(slider_force, &place);
 	if (term && mpq_sgn(term->factor) * mpq_sgn(rate_factor(r->velocity, r->coord)) > 0)
 		tell_drives(r->atom->node);
 }
@@ -116,12 +117,12 @@ static void check_borne(const struct slider_row *r, const struct form *borne)
 /* c f + rest = 0: q = -rest/c */
 static void slide_alone(const struct slider_row *r, const struct form *rest)
 {
-	struct form *borne = scaled_form(rest, r->factor, true, true), *operand[] = { borne, NULL };
-	check_borne(r, borne);
+	struct form *slider_force = scaled_form(rest, r->factor, true, true), *operand[] = { slider_force, NULL };
+	check_borne(r, slider_force);
 	operand[1] = form_alias(r->force);
 	struct form *slides = kept_call(&r->b->collector, r->atom->node, FN_SLIDE, 2, operand);
 	r->segment_equations->residual[r->row].form = form_difference(r->velocity, slides);
-	put_in_others(r, borne);
+	put_in_others(r, slider_force);
 }
 
 /* F of a slider with a damper, and 0 where it falls below */
@@ -137,7 +138,7 @@ static const struct form *force_beside_damper(const struct slider_row *r)
  * one function of three pieces it would jump where both sides are passed, which a force that is never below 0 does not
  * let happen. */
 static void divide_drive(const struct slider_row *r, const struct form *p, mpq_srcptr k, struct form **slides,
-			 struct form **borne)
+			 struct form **slider_force)
 {
 	struct collector *c = &r->b->collector;
 	const struct node *node = r->atom->node;
@@ -145,13 +146,13 @@ static void divide_drive(const struct slider_row *r, const struct form *p, mpq_s
 	struct form *x[] = { form_alias(p), scaled_form(force, k, false, true), form_scale(force, k) };
 	if (is_constant(force)) {
 		*slides = kept_call(c, node, FN_DEADZONE, 3, x);
-		*borne = kept_call(c, node, FN_CLIP, 3, x);
+		*slider_force = kept_call(c, node, FN_CLIP, 3, x);
 		return;
 	}
 	struct form *above[] = { form_difference(p, x[2]), form_number(0) },
 		    *below[] = { form_difference(p, x[1]), form_number(0) };
 	*slides = form_sum(kept_call(c, node, FN_MAX, 2, above), kept_call(c, node, FN_MIN, 2, below), false);
-	*borne = form_difference(p, *slides);
+	*slider_force = form_difference(p, *slides);
 }
 
 /* c f + a z' + rest = 0 and v = d z' + w: v + k f = p, where k = c d/a and p = w - (d/a) rest; v is what p has beyond
@@ -168,10 +169,10 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 	rest = form_difference(rest, form_single(rate, damping));
 	struct form *drive = form_difference(form_difference(r->velocity, form_single(rate, along)),
 					     form_scale(rest, ratio));
-	struct form *slides, *borne;
-	divide_drive(r, drive, k, &slides, &borne);
+	struct form *slides, *slider_force;
+	divide_drive(r, drive, k, &slides, &slider_force);
 	r->segment_equations->residual[r->row].form = form_difference(r->velocity, slides);
-	put_in_others(r, scaled_form(borne, k, true, false));
+	put_in_others(r, scaled_form(slider_force, k, true, false));
 }
 
 static void slide(struct building *b, struct segment_equations *segment_equations, int row,
@@ -202,12 +203,12 @@ struct form *borne_form(const struct building *b, const struct form *form)
 	struct form *sum = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
-		const struct form *borne = NULL;
-		for (int k = 0; k < b->model->contacts.bearings && term->basis.atom; k++)
-			if (b->model->contacts.bearing[k].atom == term->basis.atom)
-				borne = b->model->contacts.bearing[k].borne;
-		if (borne)
-			form_add_to(sum, borne, term->factor);
+		const struct form *slider_force = NULL;
+		for (int k = 0; k < b->model->contacts.massless_sliders && term->basis.atom; k++)
+			if (b->model->contacts.massless_slider[k].atom == term->basis.atom)
+				slider_force = b->model->contacts.massless_slider[k].slider_force;
+		if (slider_force)
+			form_add_to(sum, slider_force, term->factor);
 		else
 			form_add_basis(sum, term->basis, term->factor);
 	}

@@ -42,14 +42,14 @@ static void remove_break(struct switching *s, int expression, int at)
 	}
 }
 
-static bool is_struck(const struct switching *s, int expression, int at)
+static bool has_impact(const struct switching *s, int expression, int at)
 {
 	mpq_srcptr value = s->expression[expression].at[at];
-	bool struck = false;
+	bool acted = false;
 	for (int k = 0; k < s->segments; k++)
-		struck = struck || impact_at(s, k, expression, value, true) >= 0 ||
+		acted = acted || impact_at(s, k, expression, value, true) >= 0 ||
 			 impact_at(s, k, expression, value, false) >= 0;
-	return struck;
+	return acted;
 }
 
 int breaks_of_all(const struct switching *s)
@@ -91,7 +91,7 @@ void remove_idle_breaks(struct switching *s)
 	for (int e = s->expressions - 1; e >= 0; e--) {
 		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
 			if (breaks_of_all(s) > 1 && !is_stick(&s->expression[e], at) &&
-			    !is_stick(&s->expression[e], at + 1) && !is_struck(s, e, at) && changes_nothing(s, e, at))
+			    !is_stick(&s->expression[e], at + 1) && !has_impact(s, e, at) && changes_nothing(s, e, at))
 				remove_break(s, e, at);
 		if (s->expression[e].breaks == 0)
 			drop_expression(s, e);

@@ -414,20 +414,20 @@ int count_candidates(struct switching *s)
 /* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
 static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
 {
-	struct strike *strike = &impact->in[l->segment];
+	struct impact_law *impact_law = &impact->in[l->segment];
 	const struct node *node = impact->when->guard;
 	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
-	const struct form *guard = rising ? strike->guard : form_difference(NEW(struct form), strike->guard);
+	const struct form *guard = rising ? impact_law->guard : form_difference(NEW(struct form), impact_law->guard);
 	struct compared what = compared_here(l, node, guard, constant);
-	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
-	note_sign(l->b, l->s, strike->factor, false);
-	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
+	impact_law->expression = find_expression(l->s, l->segment, &what, impact_law->factor, impact_law->at);
+	note_sign(l->b, l->s, impact_law->factor, false);
+	impact_law->upward = (mpq_sgn(impact_law->factor) > 0) == rising;
 	if (!rising)
-		mpq_neg(strike->factor, strike->factor);
+		mpq_neg(impact_law->factor, impact_law->factor);
 	if (impact->bounces)
-		add_stick(l, &l->s->expression[strike->expression], strike->at);
+		add_stick(l, &l->s->expression[impact_law->expression], impact_law->at);
 	else
-		(void)is_above(l, strike->expression, strike->at);
+		(void)is_above(l, impact_law->expression, impact_law->at);
 }
 
 static void meet_impacts(struct looking *l)
@@ -506,7 +506,7 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 		for (int k = 0; k < rows; k++)
 			changes = changes || !same_form(b->segment_equations[s].residual[row[k]].form,
 							b->segment_equations->residual[row[k]].form);
-	return changes || strikes_change(b);
+	return changes || impacts_change(b);
 }
 
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */

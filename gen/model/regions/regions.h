@@ -18,7 +18,7 @@ struct region {                     /* one interval for each expression, in one 
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
 	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
-	struct output **grip;       /* per friction that outputs read: the same as a row; NULL: nothing */
+	struct output **friction_force; /* per friction that outputs read: the same as a row; NULL: nothing */
 	struct slide *slide;        /* per slider's atom */
 	int holds, releases;
 	struct hold *hold;
@@ -49,8 +49,8 @@ struct switching {
 	struct slider *slider;
 	int impacts;                /* the model's */
 	struct impact *impact;
-	int felts;                  /* friction of which outputs read what it carries: as they have it, for all time */
-	const struct atom **felt;
+	int transmitted_forces;     /* friction of which outputs read what it carries: as they have it, for all time */
+	const struct atom **transmitted;
 	int signs;                  /* where there are factors */
 	struct sign *sign;
 	int sharing;                /* parts that have these regions together, since some move as a whole */

@@ -13,7 +13,8 @@ struct model;
 struct output {
 	const char *name;
 	struct node *value;         /* as written */
-	bool peak, bears;           /* the largest size so far is asked for; reads what friction without mass bears */
+	/* the largest size so far is asked for; reads what friction without mass bears */
+	bool peak, reads_slider_force;
 	int statement, cell;        /* which output statement, and which cell of its value */
 	struct form *form;          /* in the first segment of time; NULL where it is not linear in states and loads */
 	struct form *left;          /* then: for all time, with atoms; highest derivatives stand for themselves */
@@ -56,7 +57,7 @@ struct splitting {                  /* the remainder, sorted: see split.c */
 	int waves;                  /* known loads to which modes respond exactly; none where loads are left over */
 	struct wave_force *wave;
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
-	bool settles;               /* there is a last segment of time, in which all functions are constant */
+	bool ends_steady;           /* there is a last segment of time, in which all functions are constant */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */
 	int selector; /* function that a schedule is chosen by; -1: there is no schedule, or it is by states */
 };

@@ -39,7 +39,7 @@ static bool same_region(const struct region *a, const struct region *b)
 
 static bool same_impact(const struct impact *whole, const struct impact *other, int segment)
 {
-	const struct strike *a = &whole->in[segment], *b = &other->in[segment];
+	const struct impact_law *a = &whole->in[segment], *b = &other->in[segment];
 	bool same = whole->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
 		    a->expression == b->expression;
 	for (int k = 0; k < a->jumps && same; k++)
@@ -72,7 +72,7 @@ static bool same_outputs(const struct model *model, const struct model *other)
 	bool same = true;
 	for (int i = 0; i < model->outputs && same; i++) {
 		const struct form *a = model->output[i].left, *b = other->output[i].left;
-		if (model->output[i].bears && a)
+		if (model->output[i].reads_slider_force && a)
 			same = b && strcmp(form_text(model, a), form_text(other, b)) == 0;
 	}
 	return same;
@@ -186,7 +186,7 @@ static bool is_of_system(const struct elsewhere *s, int row, int system)
 	case RETUNED_OUTPUT:
 	case RETUNED_FREQUENCY: return row_changes(s, row);
 	case RETUNED_RELEASE:
-	case RETUNED_GRIP: return s->model->switching->region[r->of].system == system;
+	case RETUNED_FRICTION: return s->model->switching->region[r->of].system == system;
 	default: return false;
 	}
 }
@@ -288,7 +288,7 @@ static void take_rows(struct elsewhere *s)
 		take_system(s, k);
 	for (int i = 0; i < t->rows; i++) {
 		const enum retuned_kind kind = t->row[i].kind;
-		const bool apart = kind <= RETUNED_FREQUENCY || (kind >= RETUNED_RELEASE && kind <= RETUNED_GRIP_W);
+		const bool apart = kind <= RETUNED_FREQUENCY || (kind >= RETUNED_RELEASE && kind <= RETUNED_FRICTION_W);
 		if (!apart && row_changes(s, i))
 			place_row(s, i);
 	}

@@ -168,18 +168,18 @@ static void list_region(struct listing *l, int index)
 		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
 		list_parts(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
 	}
-	for (int k = 0; k < s->felts && region->grip; k++) {
-		if (!region->grip[k])
+	for (int k = 0; k < s->transmitted_forces && region->friction_force; k++) {
+		if (!region->friction_force[k])
 			continue;
-		list_output(l, RETUNED_GRIP, index, k, region->grip[k], 0);
-		list_parts(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
+		list_output(l, RETUNED_FRICTION, index, k, region->friction_force[k], 0);
+		list_parts(l, region->system, region->friction_force[k]->form, RETUNED_FRICTION_R, RETUNED_FRICTION_W);
 	}
 }
 
-static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct strike *strike,
+static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct impact_law *impact_law,
 		       const struct jump *jump)
 {
-	for (int k = 0; k < strike->jumps; k++)
+	for (int k = 0; k < impact_law->jumps; k++)
 		list_output(l, kind, index, k, jump[k].row, 0);
 }
 
@@ -188,16 +188,16 @@ static void list_impact(struct listing *l, int index)
 {
 	const struct switching *s = l->model->switching;
 	const struct impact *impact = &s->impact[index % s->impacts];
-	const struct strike *strike = &impact->in[index / s->impacts];
-	list_jumps(l, index, RETUNED_JUMP, strike, strike->jump);
+	const struct impact_law *impact_law = &impact->in[index / s->impacts];
+	list_jumps(l, index, RETUNED_JUMP, impact_law, impact_law->jump);
 	if (impact->bounces) {
-		list_jumps(l, index, RETUNED_STILL, strike, strike->still);
-		list_output(l, RETUNED_SPEED, index, 0, strike->speed_row, 0);
+		list_jumps(l, index, RETUNED_STILL, impact_law, impact_law->still);
+		list_output(l, RETUNED_SPEED, index, 0, impact_law->speed_row, 0);
 		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
 		for (int j = 0; j < l->model->n; j++)
-			mpq_mul(back[j], strike->direction[j], strike->factor);
-		add_number(l, RETUNED_RESTITUTION, index, 0, strike->restitution);
-		add_number(l, RETUNED_LEAST, index, 0, strike->gap);
+			mpq_mul(back[j], impact_law->direction[j], impact_law->factor);
+		add_number(l, RETUNED_RESTITUTION, index, 0, impact_law->restitution);
+		add_number(l, RETUNED_LEAST, index, 0, impact_law->gap);
 	}
 }
 

@@ -27,8 +27,8 @@ enum retuned_kind {                 /* of rows: */
 	RETUNED_OUTPUT, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W, RETUNED_FREQUENCY, /* of linear models; load, a number */
 	RETUNED_EXPRESSION,         /* of segment of time: expression */
 	RETUNED_BREAK,              /* of expression: breakpoint; a number, in column 0, as those below are */
-	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_GRIP, /* of region: one of its holds, releases; friction */
-	RETUNED_RELEASE_R, RETUNED_RELEASE_W, RETUNED_GRIP_R, RETUNED_GRIP_W,
+	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_FRICTION, /* of region: one of its holds, releases; friction */
+	RETUNED_RELEASE_R, RETUNED_RELEASE_W, RETUNED_FRICTION_R, RETUNED_FRICTION_W,
 	RETUNED_JUMP, RETUNED_STILL, /* of impact: one of its jumps, of those without restitution */
 	RETUNED_SPEED, RETUNED_BACK, RETUNED_RESTITUTION, /* of impact; restitution is a number */
 	RETUNED_LEAST,              /* a number that is at least 0: a force of friction, the gap of a stop */

@@ -3,18 +3,18 @@
 #include "inner.h"
 #include "model/tunable/elsewhere.h"
 #include "model/contacts/friction.h"
-#include "through.h"
+#include "trajectory.h"
 
 #include <math.h>
 
 /* ---- rows ---- */
 
-void through_row(const struct through *t, const struct output *output, mpq_t *row)
+void trajectory_row(const struct trajectory *t, const struct output *output, mpq_t *row)
 {
 	row_of_output(&t->layout, t->system, output, t->when.segments, t->when.segment, row);
 }
 
-void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)
+void trajectory_dot(const struct trajectory *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)
 {
 	INTERVAL part = OVER_BITS(t->precision);
 	mpfi_set_ui(sum, 0);
@@ -26,15 +26,15 @@ void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpf
 	}
 }
 
-void through_value(const struct through *t, const struct output *output, mpfi_ptr value)
+void trajectory_value(const struct trajectory *t, const struct output *output, mpfi_ptr value)
 {
 	RATIONALS *row = rationals(t->n);
 	mpfi_set_prec(value, t->precision);
-	through_row(t, output, row);
-	through_dot(t, row, t->x, value);
+	trajectory_row(t, output, row);
+	trajectory_dot(t, row, t->x, value);
 }
 
-void through_state(const struct through *t, int state, mpfi_ptr value)
+void trajectory_state(const struct trajectory *t, int state, mpfi_ptr value)
 {
 	mpfi_set_prec(value, t->precision);
 	mpfi_set(value, t->x[state]);
@@ -50,7 +50,7 @@ static double *doubles(int n, const mpq_t *row)
 	return value;
 }
 
-mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
+mpq_t *trajectory_times(const struct trajectory *t, const mpq_t *row, const mpq_t *A)
 {
 	mpq_t *product = rationals(t->n);
 	for (int i = 0; i < t->n; i++)
@@ -63,7 +63,7 @@ mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A)
 }
 
 /* |row A^4|, and something for what doubles round */
-static double *fourth_of(const struct through *t, const double *row, const mpq_t *A)
+static double *fourth_of(const struct trajectory *t, const double *row, const mpq_t *A)
 {
 	int n = t->n;
 	SCRATCH double *a = doubles(n * n, A);
@@ -85,12 +85,12 @@ static double *fourth_of(const struct through *t, const double *row, const mpq_t
 	return now;
 }
 
-static void add_guard(const struct through *t, struct area *area, struct guard guard, mpq_t *row, mpq_srcptr limit)
+static void add_guard(const struct trajectory *t, struct area *area, struct guard guard, mpq_t *row, mpq_srcptr limit)
 {
 	mpq_init(guard.limit);
 	mpq_set(guard.limit, limit);
 	guard.row = row;
-	guard.slope = through_times(t, row, area->A);
+	guard.slope = trajectory_times(t, row, area->A);
 	guard.near_limit = mpq_get_d(limit);
 	guard.near_row = doubles(t->n, row);
 	guard.near_slope = doubles(t->n, guard.slope);
@@ -99,7 +99,7 @@ static void add_guard(const struct through *t, struct area *area, struct guard g
 }
 
 /* The ends of an interval of an expression */
-static void add_ends(const struct through *t, struct area *area, int region, int expression)
+static void add_ends(const struct trajectory *t, struct area *area, int region, int expression)
 {
 	const struct expression *e = &t->s->expression[expression];
 	int interval = interval_of(t->s, region, expression), segment = segment_of_region(t->s, region);
@@ -114,7 +114,7 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
 		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
-		through_row(t, e->row, row);
+		trajectory_row(t, e->row, row);
 		mpq_set(limit, e->at[breakpoint]);
 		if (!upward)
 			mpq_neg(limit, limit);
@@ -151,7 +151,7 @@ static double *growth_of(const struct stream *f)
 	return E;
 }
 
-static struct stream *stream_of_system(struct through *t, int system, mpq_t **A)
+static struct stream *stream_of_system(struct trajectory *t, int system, mpq_t **A)
 {
 	if (!t->A[system]) {
 		t->A[system] = augmented_matrix(&t->layout, &t->s->system[system], 0);
@@ -163,7 +163,7 @@ static struct stream *stream_of_system(struct through *t, int system, mpq_t **A)
 }
 
 /* What lets go an expression that is held */
-static void add_releases(const struct through *t, struct area *area, int region, int expression)
+static void add_releases(const struct trajectory *t, struct area *area, int region, int expression)
 {
 	const struct region *r = &t->s->region[region];
 	int stride = t->s->expression[expression].stride, interval = interval_of(t->s, region, expression);
@@ -173,7 +173,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 		if (release->expression != expression)
 			continue;
 		mpq_t *row = rationals(t->n);
-		through_row(t, release->row, row);
+		trajectory_row(t, release->row, row);
 		add_guard(t, area,
 			 (struct guard){ .expression = expression, .breakpoint = interval - !release->upward,
 					.upward = release->upward, .release = true, .impact = -1,
@@ -183,7 +183,7 @@ static void add_releases(const struct through *t, struct area *area, int region,
 }
 
 /* Regions that cannot be are passed through where two expressions cross at once; the equations stay those before. */
-struct area *through_area(struct through *t, int region)
+struct area *trajectory_area(struct trajectory *t, int region)
 {
 	struct area *area = &t->area[region];
 	const struct region *r = &t->s->region[region];
@@ -203,9 +203,9 @@ struct area *through_area(struct through *t, int region)
 	return area;
 }
 
-void through_enter(struct through *t, int region)
+void trajectory_enter(struct trajectory *t, int region)
 {
-	struct area *area = through_area(t, region);
+	struct area *area = trajectory_area(t, region);
 	t->region = region;
 	t->grid.met = false;
 	for (int e = 0; e < t->s->expressions; e++) {
@@ -217,7 +217,7 @@ void through_enter(struct through *t, int region)
 
 /* ---- what loads and inputs are at a time ---- */
 
-static void wave_at(const struct through *t, const struct load *load, int column, mpq_srcptr time, mpfi_ptr z)
+static void wave_at(const struct trajectory *t, const struct load *load, int column, mpq_srcptr time, mpfi_ptr z)
 {
 	const struct wave *wave = load->wave;
 	bool turns = oscillates(wave);
@@ -240,14 +240,14 @@ static void wave_at(const struct through *t, const struct load *load, int column
 	}
 }
 
-void through_loads(struct through *t)
+void trajectory_loads(struct trajectory *t)
 {
 	for (int l = 0; l < t->system->loads; l++)
 		for (int k = 0; k < t->system->load[l].columns && t->layout.load[l] >= 0; k++)
 			wave_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
 }
 
-bool through_meets(const struct through *t, const struct guard *one, const struct guard *other)
+bool trajectory_meets(const struct trajectory *t, const struct guard *one, const struct guard *other)
 {
 	RATIONAL ratio = ZERO;
 	return one->release && other->release && rationals_multiple((size_t)t->n, other->row, one->row, ratio) &&
@@ -256,14 +256,14 @@ bool through_meets(const struct through *t, const struct guard *one, const struc
 
 /* ---- what cannot be told ---- */
 
-const char *through_time(mpq_srcptr time)
+const char *trajectory_time(mpq_srcptr time)
 {
 	return format("%.12g", mpq_get_d(time));
 }
 
-bool through_lost(struct through *t, const struct guard *guard, const char *what)
+bool trajectory_lost(struct trajectory *t, const struct guard *guard, const char *what)
 {
-	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", through_time(t->base),
+	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", trajectory_time(t->base),
 			      spoken_expression(t->model, guard->expression),
 			      readable_text(t->s->expression[guard->expression].at[guard->breakpoint]), what);
 	return false;

@@ -6,7 +6,7 @@
 /* ---- the start ---- */
 
 /* Of a row over x at the start: its sign, exactly where the start is rational */
-static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
+static int sign_at_start(struct trajectory *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	int sign;
 	RATIONAL sum = ZERO;
@@ -17,7 +17,7 @@ static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, b
 		sign = mpq_cmp(sum, less);
 	} else {
 		INTERVAL value = OVER_BITS(t->precision);
-		through_dot(t, row, t->x, value);
+		trajectory_dot(t, row, t->x, value);
 		mpfi_sub_q(value, value, less);
 		sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 		*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right));
@@ -26,29 +26,29 @@ static int sign_at_start(struct through *t, const mpq_t *row, mpq_srcptr less, b
 }
 
 /* Where an expression that stands on a breakpoint is heading: the sign of its first derivative that is not 0 */
-static int heading(struct through *t, int expression, bool *known)
+static int heading(struct trajectory *t, int expression, bool *known)
 {
 	mpq_t *row = rationals(t->n);
 	int sign = 0;
 	RATIONAL zero = ZERO;
 	*known = true;
-	through_row(t, t->s->expression[expression].row, row);
+	trajectory_row(t, t->s->expression[expression].row, row);
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
-		row = through_times(t, row, t->at->A);
+		row = trajectory_times(t, row, t->at->A);
 		sign = sign_at_start(t, row, zero, known);
 	}
 	return sign;
 }
 
 /* The interval of an expression, below where it stands on a breakpoint; then *on */
-static int interval_at_start(struct through *t, int expression, bool *on, bool *known)
+static int interval_at_start(struct trajectory *t, int expression, bool *on, bool *known)
 {
 	const struct expression *e = &t->s->expression[expression];
 	mpq_t *row = rationals(t->n);
 	int interval = 0, sign = 1;
 	*on = false;
 	*known = true;
-	through_row(t, e->row, row);
+	trajectory_row(t, e->row, row);
 	while (interval < e->breaks && *known) {
 		sign = sign_at_start(t, row, e->at[interval], known);
 		*on = sign == 0;
@@ -59,15 +59,16 @@ static int interval_at_start(struct through *t, int expression, bool *on, bool *
 	return interval;
 }
 
-static bool stands_where(struct through *t, int expression)
+static bool stands_where(struct trajectory *t, int expression)
 {
-	t->undecided = format("at t = %s s it is not known on which side of a breakpoint %s is", through_time(t->base),
+	t->undecided =
+		format("at t = %s s it is not known on which side of a breakpoint %s is", trajectory_time(t->base),
 			      spoken_expression(t->model, expression));
 	return false;
 }
 
 /* On a breakpoint that stands twice it rests first, but what comes to a stop or leaves it */
-static int rest_at_start(struct through *t, int expression, int interval, bool *on, bool *known)
+static int rest_at_start(struct trajectory *t, int expression, int interval, bool *on, bool *known)
 {
 	const struct expression *e = &t->s->expression[expression];
 	if (!*on || !is_stick(e, interval + 1))
@@ -76,14 +77,14 @@ static int rest_at_start(struct through *t, int expression, int interval, bool *
 	RATIONALS *row = rationals(t->n);
 	RATIONAL zero = ZERO;
 	if (impact >= 0) {
-		through_row(t, t->s->impact[impact].in[t->when.segment].speed_row, row);
+		trajectory_row(t, t->s->impact[impact].in[t->when.segment].speed_row, row);
 		speed = sign_at_start(t, row, zero, known);
 	}
 	*on = false;
 	return speed == 0 ? interval + 1 : t->s->impact[impact].in[t->when.segment].upward ? interval : interval + 2;
 }
 
-bool through_place(struct through *t)
+bool trajectory_place(struct trajectory *t)
 {
 	int count = t->s->expressions, region = t->when.segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
 	bool *on = ARRAY(bool, count), *above = ARRAY(bool, count), known;
@@ -95,17 +96,17 @@ bool through_place(struct through *t)
 			return stands_where(t, e);
 		region += interval * t->s->expression[e].stride;
 	}
-	through_enter(t, region);
-	if (has_events(t->s) && !through_settle(t, NULL, NULL))
+	trajectory_enter(t, region);
+	if (has_events(t->s) && !trajectory_resolve(t, NULL, NULL))
 		return false;
-	through_hold(t);
+	trajectory_hold(t);
 	for (int round = 0; round < count; round++)     /* where one goes may change where another one is heading */
 		for (int e = 0; e < count; e++) {
 			bool up = on[e] && heading(t, e, &known) > 0;
 			if (on[e] && !known)
 				return stands_where(t, e);
 			if (up != above[e])
-				through_enter(t, t->region + (up ? 1 : -1) * t->s->expression[e].stride);
+				trajectory_enter(t, t->region + (up ? 1 : -1) * t->s->expression[e].stride);
 			above[e] = up;
 		}
 	for (int e = 0; e < count; e++)

@@ -62,7 +62,7 @@ struct choice {
 	struct alternative *alternative; /* those that there are come first, the cheapest before others */
 };
 
-/* ---- through.c: a piecewise-linear model through its crossings, enclosed ---- */
+/* ---- trajectory.c: a piecewise-linear model through its crossings, enclosed ---- */
 
 struct passed {                     /* a breakpoint, by its expression */
 	int expression, breakpoint;
@@ -74,16 +74,16 @@ struct passed {                     /* a breakpoint, by its expression */
 	double speed;               /* of the expression there [its unit/s] */
 	double size;                /* of what it is summed from there [its unit] */
 };
-struct through;
+struct trajectory;
 /* From t = 0 on in so many bits. NULL: of the whole model, which then has no parts; `initial` has its states. Inputs
  * follow u = 1 - t/h; held, u = 1; those that stand for params have the spec's values. */
-struct through *through_start(const struct model *model, const struct region_part *part, const mpq_t *initial,
+struct trajectory *trajectory_start(const struct model *model, const struct region_part *part, const mpq_t *initial,
 			      int precision);
-bool through_reach(struct through *t, mpq_srcptr time);     /* false: it is not decided what comes before */
-const char *through_undecided(const struct through *t);     /* why */
-void through_value(const struct through *t, const struct output *output, mpfi_ptr value);
-int  through_passed(const struct through *t, const struct passed **list);      /* so far, in order */
-void through_free(struct through *t);
+bool trajectory_reach(struct trajectory *t, mpq_srcptr time); /* false: it is not decided what comes before */
+const char *trajectory_undecided(const struct trajectory *t); /* why */
+void trajectory_value(const struct trajectory *t, const struct output *output, mpfi_ptr value);
+int  trajectory_passed(const struct trajectory *t, const struct passed **list); /* so far, in order */
+void trajectory_free(struct trajectory *t);
 
 /* ---- closed.c: states in closed form for the self-test ---- */
 

@@ -80,7 +80,7 @@ static void fill_units(struct reference *r, bool single)
 struct reference reference_of(const struct step *step)
 {
 	if (step->model->switching)
-		return reference_through(step);
+		return reference_of_trajectory(step);
 	struct reference r = new_reference(step);
 	fill_rows(step, closed_forms(step, &r), &r);
 	fill_units(&r, step->model->asked.single);

@@ -4,7 +4,7 @@
 #define PLGEN_STEP_CERTIFY_INNER_H
 
 #include "certify.h"
-#include "kept.h"
+#include "step_map.h"
 
 /* ---- rounding.c: how far an output of the emitted program may be off ---- */
 
@@ -16,23 +16,23 @@ double kept_mass(const struct step *step, int state);       /* momenta: of the c
 bool   is_load_forced(const struct step *step, int column);
 double load_value(const struct wave_of_column *p, double t); /* at t [s] */
 /* what the step of the errors keeps, by the numbers of `exact` */
-struct kept *kept_of(const struct errors *e, const struct step *exact);
+struct step_map *step_map_of(const struct errors *e, const struct step *exact);
 /* from the start, inputs 0; the output is added to `trace`, where there is one, at each sample */
-struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace);
+struct extent walk_loads(long steps, double h, const struct spread *spread, struct step_map *k, double *trace);
 /* what samples of an input within its bound do to the output at most; it is attained */
-double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first,
+double sum_of_input(const struct linear *system, long steps, const struct step_map *k, int input, int first,
 		    double *trace);
 /* what reads slopes of inputs is bounded, not attained */
-double slopes_of_inputs(const struct linear *system, const struct kept *k, double h);
-struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k);
+double slopes_of_inputs(const struct linear *system, const struct step_map *k, double h);
+struct extent extent_of_step_map(const struct step *step, long steps, const struct spread *spread, struct step_map *k);
 
 /* ---- lasting.c: bounds of the same, of so many samples that they are not walked through ---- */
 
-bool is_lasting(const struct kept *k, long steps);
-double lasting_output(const struct kept *k, const struct spread *spread, double h); /* inputs 0: its largest size */
-void lasting_sizes(const struct spread *spread, struct kept *k, double h);          /* of the states */
+bool is_lasting(const struct step_map *k, long steps);
+double lasting_output(const struct step_map *k, const struct spread *spread, double h); /* inputs 0: its largest size */
+void lasting_sizes(const struct spread *spread, struct step_map *k, double h);      /* of the states */
 /* what samples of an input in its bound do to the output at most; columns from `first` on are its taps */
-double lasting_input(const struct linear *system, const struct spread *spread, const struct kept *k, int input,
+double lasting_input(const struct linear *system, const struct spread *spread, const struct step_map *k, int input,
 		     int first);
 
 /* ---- rounding.c ---- */
@@ -40,16 +40,16 @@ double lasting_input(const struct linear *system, const struct spread *spread, c
 const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
 struct errors errors_of(const struct step *step, const struct requirement *r);
 
-/* ---- through.c: a piecewise-linear model through its crossings, enclosed ---- */
+/* ---- trajectory.c: a piecewise-linear model through its crossings, enclosed ---- */
 
-void through_state(const struct through *t, int state, mpfi_ptr value);        /* where it has got to */
-void through_limit(struct through *t, int most);            /* crossings; what comes behind them is not decided */
+void trajectory_state(const struct trajectory *t, int state, mpfi_ptr value);  /* where it has got to */
+void trajectory_limit(struct trajectory *t, int most);      /* crossings; what comes behind them is not decided */
 
 /* ---- passing.c: the same through crossings ---- */
 
 double ulp_of(double value, bool single);
 void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
 struct reference new_reference(const struct step *step);    /* room for its rows */
-struct reference reference_through(const struct step *step); /* leaves the statement where nothing is known */
+struct reference reference_of_trajectory(const struct step *step); /* leaves the statement where nothing is known */
 
 #endif

@@ -10,7 +10,7 @@
 
 enum { WALKED = 30000000 };          /* operations of a walk through all samples */
 
-bool is_lasting(const struct kept *k, long steps)
+bool is_lasting(const struct step_map *k, long steps)
 {
 	return (double)steps * (k->n * k->n + 32 * k->columns + 32) > WALKED;
 }
@@ -22,7 +22,7 @@ static double complex root_of_wave(const struct wave_of_column *wave, double h)
 	return cexp((wave->a + I * (wave->turns ? wave->w : 0)) * h);
 }
 
-static void find_defect(const struct kept *k, double complex root, const double complex *b, const double complex *p,
+static void find_defect(const struct step_map *k, double complex root, const double complex *b, const double complex *p,
 			double *defect)
 {
 	const int n = k->n;
@@ -39,7 +39,7 @@ static void find_defect(const struct kept *k, double complex root, const double 
 
 /* The complex amplitude that the pair of columns from `column` sustains; defects are added. false: there is none, the
  * load grows as t, or is at a pole */
-static bool sustained(const struct kept *k, int column, double h, double complex *p, double *defect)
+static bool sustained(const struct step_map *k, int column, double h, double complex *p, double *defect)
 {
 	const struct wave_of_column *wave = &k->wave[column];
 	const int n = k->n;
@@ -68,7 +68,7 @@ static bool sustained(const struct kept *k, int column, double h, double complex
 /* ---- over all samples ---- */
 
 struct lasting {                    /* |x_i| <= most_ij |ringing_j| + sum_ij steady_j, and what loads sustain */
-	const struct kept *k;
+	const struct step_map *k;
 	double *ringing, *steady;
 	double complex *row;        /* per column: what its load sustains in the output, what it reads itself counted */
 	double *size;               /* per state: sustained */
@@ -77,13 +77,13 @@ struct lasting {                    /* |x_i| <= most_ij |ringing_j| + sum_ij ste
 /* Of what sustains nothing: its force at each sample */
 static void add_force(struct lasting *l, int column)
 {
-	const struct kept *k = l->k;
+	const struct step_map *k = l->k;
 	for (int i = 0; i < k->n; i++)
 		l->steady[i] += fabs(k->load[i * k->columns + column]) * k->amplitude[column];
 	l->row[column] = k->direct[column];
 }
 
-static struct lasting lasting_of(const struct kept *k, double h)
+static struct lasting lasting_of(const struct step_map *k, double h)
 {
 	const size_t n = (size_t)k->n, columns = (size_t)k->columns;
 	struct lasting l = { k, ARRAY(double, n), ARRAY(double, n), ARRAY(double complex, columns), ARRAY(double, n) };
@@ -119,7 +119,7 @@ static void lasting_free(const struct lasting *l)
 	discard(l->size);
 }
 
-double lasting_output(const struct kept *k, const struct spread *spread, double h)
+double lasting_output(const struct step_map *k, const struct spread *spread, double h)
 {
 	const struct lasting l = lasting_of(k, h);
 	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n);
@@ -133,7 +133,7 @@ double lasting_output(const struct kept *k, const struct spread *spread, double 
 	return out * (1 + 1e-9);
 }
 
-void lasting_sizes(const struct spread *spread, struct kept *k, double h)
+void lasting_sizes(const struct spread *spread, struct step_map *k, double h)
 {
 	const struct lasting l = lasting_of(k, h);
 	for (int i = 0; i < k->n; i++) {
@@ -145,7 +145,7 @@ void lasting_sizes(const struct spread *spread, struct kept *k, double h)
 	lasting_free(&l);
 }
 
-double lasting_input(const struct linear *system, const struct spread *spread, const struct kept *k, int input,
+double lasting_input(const struct linear *system, const struct spread *spread, const struct step_map *k, int input,
 		     int first)
 {
 	const int taps = system->input[input].hold + 1;

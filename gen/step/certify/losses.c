@@ -14,7 +14,7 @@ struct loss {                       /* of one output, summed over modes */
 	double slack;               /* how far what is found may be off; of long runs a bound of all that is lost */
 };
 
-static void add_lasting_loss(const struct step *step, const struct kept *k, const struct spread *spread,
+static void add_lasting_loss(const struct step *step, const struct step_map *k, const struct spread *spread,
 			     struct loss *loss)
 {
 	const struct linear *system = &step->branch->system;
@@ -31,7 +31,7 @@ static bool add_loss(const struct step *step, const struct requirement *r, struc
 	const struct errors e = errors_of(step, r);
 	if (certificate_objection(&e))
 		return false;
-	struct kept *k = kept_of(&e, step);
+	struct step_map *k = step_map_of(&e, step);
 	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
 	if (!spread.known)
 		return false;
@@ -95,10 +95,10 @@ static void build_loss(void *context)
 /* What is lost with one mode, as a step in double; NULL: it is not found */
 static struct step *step_of_loss(struct modes *modes, int mode, bool statics)
 {
-	SCRATCH bool *kept = ARRAY(bool, modes->count);
+	SCRATCH bool *step_map = ARRAY(bool, modes->count);
 	for (int i = 0; i < modes->count; i++)
-		kept[i] = i != mode;
-	struct building_loss b = { .error = modes_dropped(modes, kept, statics) };
+		step_map[i] = i != mode;
+	struct building_loss b = { .error = modes_dropped(modes, step_map, statics) };
 	return b.error && silent_guard(build_loss, &b) ? b.step : NULL;
 }
 
@@ -107,7 +107,7 @@ double *losses_of(struct modes *modes, const int *order, bool statics, const str
 	const struct linear *system = &modes->model->system;
 	const long steps = samples_until(r, modes->model->h);
 	double *lost = ARRAY(double, modes->count + 1);
-	const struct kept shape = { .n = 2, .columns = load_columns(system) };
+	const struct step_map shape = { .n = 2, .columns = load_columns(system) };
 	bool good = steps >= 0;
 	const bool lasts = good && is_lasting(&shape, steps);
 	struct loss loss = no_loss(system, good && !lasts ? steps : 0);

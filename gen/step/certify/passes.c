@@ -13,7 +13,7 @@ enum {
 
 /* ---- a piece that stays clear ---- */
 
-static void near_of(const struct through *t, const mpfi_t *x, struct near *room)
+static void near_of(const struct trajectory *t, const mpfi_t *x, struct near *room)
 {
 	for (int i = 0; i < t->n; i++) {
 		double low = mpfr_get_d(&x[i]->left, MPFR_RNDD), high = mpfr_get_d(&x[i]->right, MPFR_RNDU);
@@ -34,7 +34,7 @@ static double value_near(int n, const double *row, const struct near *x, double 
 }
 
 /* A cubic lies within its Bezier points, and the guard is off it by its fourth derivative. */
-static bool is_event_free(const struct through *t, const struct guard *g, const struct near *x, const struct near *y,
+static bool is_event_free(const struct trajectory *t, const struct guard *g, const struct near *x, const struct near *y,
 		     const double *most, double tau)
 {
 	int n = t->n;
@@ -49,7 +49,7 @@ static bool is_event_free(const struct through *t, const struct guard *g, const 
 	       to - arrives + off < g->near_limit;
 }
 
-bool through_event_free(struct through *t, const mpfi_t *y, double tau)
+bool trajectory_event_free(struct trajectory *t, const mpfi_t *y, double tau)
 {
 	const struct near *from = &t->piece.near[0], *to = &t->piece.near[1];
 	near_of(t, (const mpfi_t *)t->x, &t->piece.near[0]);
@@ -68,7 +68,7 @@ bool through_event_free(struct through *t, const mpfi_t *y, double tau)
 
 /* ---- the first event of a piece ---- */
 
-static void add_room(struct through *t, int degree)
+static void add_room(struct trajectory *t, int degree)
 {
 	if (degree < t->piece.terms)
 		return;
@@ -81,21 +81,22 @@ static void add_room(struct through *t, int degree)
 }
 
 /* The guard's polynomial in s, less its limit, and that of its slope */
-static void expand_guard(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau)
+static void expand_guard(struct trajectory *t, const struct guard *guard, int degree, mpq_srcptr tau)
 {
 	INTERVAL length = OVER_BITS(t->precision);
 	mpfi_set_q(length, tau);
 	add_room(t, degree);
 	for (int m = 0; m <= degree; m++) {
-		through_dot(t, (const mpq_t *)guard->row, (const mpfi_t *)t->piece.room.term[m], t->piece.value[m]);
-		through_dot(t, (const mpq_t *)guard->slope, (const mpfi_t *)t->piece.room.term[m], t->piece.slope[m]);
+		trajectory_dot(t, (const mpq_t *)guard->row, (const mpfi_t *)t->piece.room.term[m], t->piece.value[m]);
+		trajectory_dot(t, (const mpq_t *)guard->slope, (const mpfi_t *)t->piece.room.term[m],
+			       t->piece.slope[m]);
 		mpfi_mul(t->piece.slope[m], t->piece.slope[m], length);
 	}
 	mpfi_sub_q(t->piece.value[0], t->piece.value[0], guard->limit);
 }
 
 /* For --solution, what so many bits do not tell apart from 0 is 0. */
-static void clear_none(struct through *t, const struct guard *guard, int degree)
+static void clear_none(struct trajectory *t, const struct guard *guard, int degree)
 {
 	double size = fabs(guard->near_limit);
 	if (!t->whole->asked.solution || t->precision < BITS_OF_ONE)
@@ -104,7 +105,7 @@ static void clear_none(struct through *t, const struct guard *guard, int degree)
 		for (int i = 0; i < t->n; i++)
 			size += fabs(guard->near_row[i] * mpfi_get_d(t->piece.room.term[m][i]));
 	for (int m = 0; m <= degree; m++)
-		if (mpfi_has_zero(t->piece.value[m]) && through_is_none(t, t->piece.value[m], size)) {
+		if (mpfi_has_zero(t->piece.value[m]) && trajectory_is_none(t, t->piece.value[m], size)) {
 			mpfi_set_ui(t->piece.value[m], 0);
 			if (m > 0)
 				mpfi_set_ui(t->piece.slope[m - 1], 0);
@@ -112,7 +113,7 @@ static void clear_none(struct through *t, const struct guard *guard, int degree)
 }
 
 /* How many first coefficients of a polynomial that begins below 0 are exactly 0 */
-static int zeros_of(const struct through *t, int degree)
+static int zeros_of(const struct trajectory *t, int degree)
 {
 	int order = 0;
 	while (order < degree && mpfr_zero_p(&t->piece.value[order]->left) &&
@@ -123,7 +124,7 @@ static int zeros_of(const struct through *t, int degree)
 
 /* A polynomial has its first coefficients 0, fresh: but that it was let go `fresh_off` away: it is divided by that
  * power of s. */
-static int divide_by_power(struct through *t, int degree, int order, bool fresh, mpq_srcptr tau)
+static int divide_by_power(struct trajectory *t, int degree, int order, bool fresh, mpq_srcptr tau)
 {
 	INTERVAL wide = OVER_BITS(t->precision);
 	int rest = degree - order;
@@ -146,28 +147,28 @@ static int divide_by_power(struct through *t, int degree, int order, bool fresh,
 	return rest;
 }
 
-static bool is_fresh(const struct through *t, const struct guard *guard)
+static bool is_fresh(const struct trajectory *t, const struct guard *guard)
 {
 	return t->fresh.order[guard->expression] > 0 && guard->upward == t->fresh.back[guard->expression] &&
 	       !guard->release;
 }
 
 /* Whether nothing of a polynomial is told apart from 0, or all of it is 0 */
-static bool is_none(const struct through *t, int degree, bool told)
+static bool is_none(const struct trajectory *t, int degree, bool event_state)
 {
 	for (int m = 0; m <= degree; m++)
-		if (told ? mpfi_is_zero(t->piece.value[m]) <= 0 : !mpfi_has_zero(t->piece.value[m]))
+		if (event_state ? mpfi_is_zero(t->piece.value[m]) <= 0 : !mpfi_has_zero(t->piece.value[m]))
 			return false;
 	return true;
 }
 
-static bool bounces(const struct through *t, const struct guard *guard)
+static bool bounces(const struct trajectory *t, const struct guard *guard)
 {
 	return guard->impact >= 0 && t->s->impact[guard->impact].bounces;
 }
 
 /* 1: found; -1: not known; 0: none */
-int through_first(struct through *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at)
+int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at)
 {
 	REAL end = WITH_BITS(t->precision);
 	INTERVAL root = OVER_BITS(t->precision);
@@ -175,7 +176,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gu
 	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
 	for (int k = 0; k < t->at->guards && result >= 0; k++) {
 		const struct guard *guard = &t->at->guard[k];
-		if (t->resting[guard->expression] || (result > 0 && through_meets(t, *found, guard)))
+		if (t->resting[guard->expression] || (result > 0 && trajectory_meets(t, *found, guard)))
 			continue;
 		int terms = degree;
 		expand_guard(t, guard, degree, tau);
@@ -194,7 +195,7 @@ int through_first(struct through *t, int degree, mpq_srcptr tau, const struct gu
 			continue;
 		}
 		if (rise == RISE_UNKNOWN) {
-			through_lost(t, guard, "it comes closer than is known");
+			trajectory_lost(t, guard, "it comes closer than is known");
 			result = -1;
 		} else if (rise == RISE_AT && mpfr_cmp_ui(&root->left, 1) <= 0) {
 			*found = guard;
@@ -220,7 +221,7 @@ static void width_of(mpfi_srcptr at, mpfr_srcptr s, mpq_srcptr tau, mpfr_ptr off
 
 /* Each event would lengthen the time by all bits of the enclosures: it is kept to little more than these, and x is that
  * of any time so close. */
-static bool shorten_base(struct through *t, const struct stream *flow, mpfr_ptr off)
+static bool shorten_base(struct trajectory *t, const struct stream *flow, mpfr_ptr off)
 {
 	const mp_bitcnt_t bits = (mp_bitcnt_t)t->precision + SPARE_BITS;
 	if (mpz_sizeinbase(mpq_denref(t->base), 2) <= bits)
@@ -236,18 +237,18 @@ static bool shorten_base(struct through *t, const struct stream *flow, mpfr_ptr 
 }
 
 /* What sticks and slips behind it */
-static bool settle(struct through *t, const struct guard *guard, mpfr_srcptr off)
+static bool resolve(struct trajectory *t, const struct guard *guard, mpfr_srcptr off)
 {
-	through_hold(t);
-	if (!through_settle(t, guard, off))
+	trajectory_hold(t);
+	if (!trajectory_resolve(t, guard, off))
 		return false;
-	through_let_go(t, guard);
+	trajectory_let_go(t, guard);
 	t->noted.list[t->noted.count - 1].faint = t->fresh.order[guard->expression] == 3;
 	mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	return true;
 }
 
-bool through_pass(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at)
+bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at)
 {
 	REAL s = WITH_BITS(t->precision), off = WITH_BITS(64);
 	RATIONAL part = ZERO;
@@ -264,21 +265,21 @@ bool through_pass(struct through *t, const struct guard *guard, int degree, mpq_
 	mpq_add(t->base, t->base, part);
 	bool known = shorten_base(t, before, off);
 	t->piece.at_once = mpq_sgn(part) == 0 ? t->piece.at_once + 1 : 0;
-	through_note(t, guard, off);
+	trajectory_note(t, guard, off);
 	if (guard->impact >= 0) {
 		mpfi_clear(t->noted.list[--t->noted.count].at);    /* as what is struck it is noted again */
-		known = known && through_strike(t, guard, off);
+		known = known && trajectory_impact(t, guard, off);
 	} else {
-		through_enter(t, t->region + guard->leads);
+		trajectory_enter(t, t->region + guard->leads);
 		known = known && stream_change(before, t->at->flow, off, t->x);
 		if (has_events(t->s))
-			known = known && settle(t, guard, off);
+			known = known && resolve(t, guard, off);
 	}
-	through_hold(t);
-	through_loads(t);
+	trajectory_hold(t);
+	trajectory_loads(t);
 	if (!known)
-		return t->undecided ? false : through_lost(t, guard, "when is not known well enough");
+		return t->undecided ? false : trajectory_lost(t, guard, "when is not known well enough");
 	if (t->noted.most > 0 && t->noted.count >= t->noted.most)
-		return through_lost(t, guard, "that many crossings are not followed");
-	return t->piece.at_once < AT_ONCE || through_lost(t, guard, "breakpoints are passed without end");
+		return trajectory_lost(t, guard, "that many crossings are not followed");
+	return t->piece.at_once < AT_ONCE || trajectory_lost(t, guard, "breakpoints are passed without end");
 }

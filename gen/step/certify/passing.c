@@ -46,7 +46,7 @@ double ulp_of(double value, bool single)
 struct ways {
 	const struct step *step;
 	int count;
-	struct through **way;
+	struct trajectory **way;
 };
 
 static const struct switching *regions_of(const struct step *step)
@@ -58,24 +58,25 @@ static struct ways ways_of(const struct step *step, const mpq_t *start, int bits
 {
 	const struct switching *s = regions_of(step);
 	struct ways w = { .step = step, .count = s->parts ? s->parts : 1 };
-	w.way = ARRAY(struct through *, w.count);
+	w.way = ARRAY(struct trajectory *, w.count);
 	for (int p = 0; p < w.count; p++)
-		through_limit(w.way[p] = through_start(step->model, s->parts ? &s->part[p] : NULL, start, bits), MOST);
+		trajectory_limit(w.way[p] = trajectory_start(step->model, s->parts ? &s->part[p] : NULL, start, bits),
+				 MOST);
 	return w;
 }
 
 static void free_ways(struct ways *w)
 {
 	for (int p = 0; p < w->count; p++)
-		through_free(w->way[p]);
+		trajectory_free(w->way[p]);
 	discard(w->way);
 }
 
 static const char *reach(const struct ways *w, mpq_srcptr time)
 {
 	for (int p = 0; p < w->count; p++)
-		if (!through_reach(w->way[p], time))
-			return through_undecided(w->way[p]);
+		if (!trajectory_reach(w->way[p], time))
+			return trajectory_undecided(w->way[p]);
 	return NULL;
 }
 
@@ -92,7 +93,7 @@ static bool states_of(const struct ways *w, double *y, mpfr_ptr width)
 		int count = s->parts ? s->part[p].model->system.states : w->step->branch->system.states;
 		for (int i = 0; i < count; i++) {
 			double *value = &y[s->parts ? s->part[p].state[i] : i];
-			through_state(w->way[p], i, x);
+			trajectory_state(w->way[p], i, x);
 			mpfi_diam_abs(here, x);
 			mpfr_max(width, width, here, MPFR_RNDU);
 			if (round_enclosure(x, value))
@@ -110,7 +111,7 @@ static int crossings_of(const struct ways *w)
 	const struct passed *list;
 	int count = 0;
 	for (int p = 0; p < w->count; p++)
-		count += through_passed(w->way[p], &list);
+		count += trajectory_passed(w->way[p], &list);
 	return count;
 }
 
@@ -152,7 +153,7 @@ static struct moment *all_crossings(const struct ways *w, int *count)
 		const struct passed *list;
 		const struct switching *s = regions_of(w->step);
 		const struct region_part *part = s->parts ? &s->part[p] : NULL;
-		int passed = through_passed(w->way[p], &list);
+		int passed = trajectory_passed(w->way[p], &list);
 		for (int k = 0; k < passed; k++)
 			all[(*count)++] = (struct moment){ mpfi_get_d(list[k].at), part, list[k] };
 	}
@@ -337,7 +338,7 @@ struct reference new_reference(const struct step *step)
 	return r;
 }
 
-struct reference reference_through(const struct step *step)
+struct reference reference_of_trajectory(const struct step *step)
 {
 	struct reference best = { 0 };
 	mpq_t *start = rationals(step->branch->system.states);

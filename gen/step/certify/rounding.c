@@ -27,7 +27,7 @@ int levels(int terms)
  * 64 bits for float, in 128 for double, is off by one of its last for each step */
 static double load_error(const struct errors *e, int column)
 {
-	const struct wave_of_column *p = &e->kept->wave[column];
+	const struct wave_of_column *p = &e->step_map->wave[column];
 	const double phase = ldexp((double)(e->steps + 1) * 7, 1 - phase_bits(e->step));
 	return (2 + 3 * (p->a != 0) + 4 * p->power) * e->unit + phase;
 }
@@ -39,10 +39,10 @@ static struct operand_bound bound_of_operand(const struct errors *e, const struc
 	switch (operand->kind) {
 	case OPERAND_STATE: return (struct operand_bound){ e->size[operand->index], e->err[operand->index] };
 	case OPERAND_LOAD: {
-		const double size = e->kept->amplitude[operand->index];
+		const double size = e->step_map->amplitude[operand->index];
 		return (struct operand_bound){ size, size * load_error(e, operand->index) };
 	}
-	default: return (struct operand_bound){ e->kept->most[operand->index], 0 };
+	default: return (struct operand_bound){ e->step_map->most[operand->index], 0 };
 	}
 }
 
@@ -86,7 +86,7 @@ static void reckon(const struct errors *e, const struct assignment *a, const dou
 static void reckon_list(struct errors *e, const double *size, double *error)
 {
 	const struct program *program = e->step->program;
-	const int n = e->kept->n;
+	const int n = e->step_map->n;
 	double *old[2] = { ARRAY(double, n), ARRAY(double, n) };
 	e->size = old[0];
 	e->err = old[1];
@@ -108,13 +108,13 @@ static double modal_drive(const struct errors *e, int i, int *terms)
 	*terms = 0;
 	for (int c = 0; c < modal->loads; c++)
 		if (modal->load[i * modal->loads + c] != 0) {
-			sum += fabs(modal->load[i * modal->loads + c]) * e->kept->amplitude[c] *
+			sum += fabs(modal->load[i * modal->loads + c]) * e->step_map->amplitude[c] *
 			       (1 + load_error(e, c) / e->unit);
 			(*terms)++;
 		}
 	for (int c = 0; c < modal->inputs; c++)
 		if (modal->input[i * modal->inputs + c] != 0) {
-			sum += fabs(modal->input[i * modal->inputs + c]) * e->kept->most[c];
+			sum += fabs(modal->input[i * modal->inputs + c]) * e->step_map->most[c];
 			(*terms)++;
 		}
 	return sum;
@@ -140,7 +140,7 @@ static void reckon_modes(const struct errors *e, const double *size, double *err
 /* The state at the start is rounded, or made of modes. */
 static void reckon_start(const struct errors *e, double *error)
 {
-	const struct kept *k = e->kept;
+	const struct step_map *k = e->step_map;
 	const struct modal *modal = e->step->modal;
 	for (int i = 0; i < k->n; i++) {
 		double size = fabs(k->start[i]) * k->scale[i] * (kept_mass(e->step, i) != 1 ? 3 : 1);
@@ -158,7 +158,7 @@ static void reckon_start(const struct errors *e, double *error)
 /* What reading the output rounds */
 static double reckon_output(const struct errors *e, const double *size)
 {
-	const struct kept *k = e->kept;
+	const struct step_map *k = e->step_map;
 	const struct linear *system = &e->step->branch->system;
 	double sum = 0, error = 0;
 	int terms = 0;
@@ -187,7 +187,7 @@ static double reckon_output(const struct errors *e, const double *size)
 /* ---- the whole ---- */
 
 /* How far states are off: what steps add, and what becomes of the start */
-static void spread_errors(const struct kept *k, const struct spread *s, const double *each, const double *first,
+static void spread_errors(const struct step_map *k, const struct spread *s, const double *each, const double *first,
 			  double *error)
 {
 	for (int i = 0; i < k->n; i++) {
@@ -199,10 +199,10 @@ static void spread_errors(const struct kept *k, const struct spread *s, const do
 }
 
 /* Sizes of the states as computed, and what a step of such sizes rounds; false: errors outgrow the state */
-static bool settle(struct errors *e, const struct spread *s, double *size, double *each, const double *first)
+static bool converge(struct errors *e, const struct spread *s, double *size, double *each, const double *first)
 {
 	enum { TRIES = 12 };
-	const struct kept *k = e->kept;
+	const struct step_map *k = e->step_map;
 	double *error = ARRAY(double, k->n);
 	for (int i = 0; i < k->n; i++)
 		size[i] = k->size[i] * k->scale[i];
@@ -231,12 +231,12 @@ static bool settle(struct errors *e, const struct spread *s, double *size, doubl
 
 static void add_up(struct errors *e, const struct spread *spread, struct certificate *found)
 {
-	const struct kept *k = e->kept;
+	const struct step_map *k = e->step_map;
 	const size_t n = (size_t)k->n;
 	double *each = ARRAY(double, n), *first = ARRAY(double, n), *size = ARRAY(double, n), *sum = ARRAY(double, n),
 	       *most = ARRAY(double, n);
 	reckon_start(e, first);
-	if (!settle(e, spread, size, each, first)) {
+	if (!converge(e, spread, size, each, first)) {
 		found->why = "rounding outgrows the state";
 		return;
 	}
@@ -295,9 +295,9 @@ double largest_of_output(const struct step *exact, const struct requirement *r)
 	const struct errors e = errors_of(exact, r);
 	if (certificate_objection(&e))
 		return 0;
-	struct kept *k = kept_of(&e, exact);
+	struct step_map *k = step_map_of(&e, exact);
 	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
-	return spread.known ? extent_of_kept(exact, e.steps, &spread, k).lower : 0;
+	return spread.known ? extent_of_step_map(exact, e.steps, &spread, k).lower : 0;
 }
 
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r)
@@ -306,14 +306,14 @@ struct certificate certificate_of(const struct step *step, const struct step *ex
 	struct certificate found = { .why = certificate_objection(&e) };
 	if (found.why)
 		return found;
-	struct kept *k = kept_of(&e, exact);
+	struct step_map *k = step_map_of(&e, exact);
 	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
 	if (!spread.known) {
 		found.why = "powers of its step grow beyond what double tells";
 		return found;
 	}
-	e.kept = k;
-	extent_of_kept(step, e.steps, &spread, k);
+	e.step_map = k;
+	extent_of_step_map(step, e.steps, &spread, k);
 	add_up(&e, &spread, &found);
 	return found;
 }

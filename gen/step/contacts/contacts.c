@@ -36,22 +36,22 @@ static struct division divide_guard(struct sequencing *w, const struct impact *i
 
 /* ---- who holds, and how each acts on the others ---- */
 
-struct holder {
+struct constraint {
 	int impact, drag;           /* one of them NONE */
 	const struct form *velocity, *rate;
 	const struct node *node;    /* of friction */
-	mpq_t *push;                /* per state: what its force, 1, adds to the slope; of a contact it presses off */
+	mpq_t *force_direction;     /* per state: what its force, 1, adds to the slope; of a contact it presses off */
 	mpq_t *gives;               /* per force column: what its force, 1, adds */
-	mpq_t *answer;              /* per holder: what the force of that adds to the rate of the velocity here */
+	mpq_t *delassus;            /* per constraint: what the force of that adds to the rate of the velocity here */
 	int bare;                   /* sequences: that rate without any of these forces, */
 	int slips, force;           /* the force while it slips, NONE: there is none; now */
 	int group;
 };
 
-struct holders {
+struct constraints {
 	struct sequencing *w;
-	int holders;
-	struct holder *holder;
+	int constraints;
+	struct constraint *constraint;
 	struct contacts *c;
 	int none;                   /* a sequence: 0 */
 };
@@ -65,7 +65,7 @@ static int rate_state(const struct sequencing *w, const struct basis *basis)
 }
 
 /* What one unit of this friction's force adds to the slope of each state */
-static void push_of_drag(const struct sequencing *w, struct holder *h, const struct atom *atom)
+static void direction_of_drag(const struct sequencing *w, struct constraint *h, const struct atom *atom)
 {
 	const struct model *model = w->step->model;
 	struct basis basis = { .kind = BASIS_ATOM, .index = atom->index, .atom = atom };
@@ -74,99 +74,100 @@ static void push_of_drag(const struct sequencing *w, struct holder *h, const str
 		if (term)
 			mpq_set(h->gives[e], term->factor);
 		for (int i = 0; i < w->system->states && term; i++) {
-			rational_addmul(h->push[i], term->factor,
+			rational_addmul(h->force_direction[i], term->factor,
 					w->slopes[0][i * w->layout.size + w->layout.force_column + e]);
 		}
 	}
 }
 
-static void push_of_contact(const struct sequencing *w, struct holder *h, const struct impact *impact)
+static void direction_of_contact(const struct sequencing *w, struct constraint *h, const struct impact *impact)
 {
 	const int n = w->system->n;
 	for (int j = 0; j < n; j++)
 		if (mpq_sgn(impact->in->direction[j]) != 0)
-			mpq_neg(h->push[w->system->velocity[j]], impact->in->direction[j]);
+			mpq_neg(h->force_direction[w->system->velocity[j]], impact->in->direction[j]);
 	for (int e = 0; e < w->system->force_columns; e++)
 		for (int j = 0; j < n; j++) {
 			mpq_srcptr mass = w->system->M[w->step->model->remainder.row[e] * n + j];
 			if (w->system->velocity[j] >= 0)
-				rational_addmul(h->gives[e], mass, h->push[w->system->velocity[j]]);
+				rational_addmul(h->gives[e], mass, h->force_direction[w->system->velocity[j]]);
 		}
 }
 
-static struct holder *add_holder(struct holders *all)
+static struct constraint *add_constraint(struct constraints *all)
 {
-	struct holder *h = MORE(all->holder, all->holders);
-	*h = (struct holder){ .impact = NONE, .drag = NONE, .slips = NONE,
-			      .push = rationals(all->w->system->states),
+	struct constraint *h = MORE(all->constraint, all->constraints);
+	*h = (struct constraint){ .impact = NONE, .drag = NONE, .slips = NONE,
+			      .force_direction = rationals(all->w->system->states),
 			      .gives = rationals(all->w->system->force_columns) };
 	return h;
 }
 
-static void find_holders(struct holders *all)
+static void find_constraints(struct constraints *all)
 {
 	const struct model *model = all->w->step->model;
 	for (int i = 0; i < model->contacts.impacts; i++) {
 		if (!model->contacts.impact[i].bounces)
 			continue;
-		struct holder *h = add_holder(all);
+		struct constraint *h = add_constraint(all);
 		h->impact = i;
 		h->velocity = model->contacts.impact[i].in->speed;
 		h->rate = model->contacts.impact[i].in->press;
-		push_of_contact(all->w, h, &model->contacts.impact[i]);
+		direction_of_contact(all->w, h, &model->contacts.impact[i]);
 	}
 	for (int i = 0; i < model->contacts.drags; i++) {
-		struct holder *h = add_holder(all);
+		struct constraint *h = add_constraint(all);
 		h->drag = i;
 		h->velocity = model->contacts.drag[i].velocity;
 		h->rate = model->contacts.drag[i].rate;
 		h->node = model->contacts.drag[i].atom->node;
-		push_of_drag(all->w, h, model->contacts.drag[i].atom);
+		direction_of_drag(all->w, h, model->contacts.drag[i].atom);
 	}
 }
 
-static void find_answer(struct holders *all, const struct holder *h, const struct holder *of, mpq_ptr answer)
+static void find_delassus(struct constraints *all, const struct constraint *h, const struct constraint *of,
+			  mpq_ptr delassus)
 {
 	for (int i = 0; i < h->rate->terms; i++) {
 		int state = rate_state(all->w, &h->rate->term[i].basis);
 		if (state == NONE)
 			continue;
-		rational_addmul(answer, h->rate->term[i].factor, of->push[state]);
+		rational_addmul(delassus, h->rate->term[i].factor, of->force_direction[state]);
 	}
 }
 
-static void find_answers(struct holders *all)
+static void find_all_delassus(struct constraints *all)
 {
-	for (int i = 0; i < all->holders; i++) {
-		struct holder *h = &all->holder[i];
-		h->answer = rationals(all->holders);
-		for (int j = 0; j < all->holders; j++)
-			find_answer(all, h, &all->holder[j], h->answer[j]);
-		if (h->node && mpq_sgn(h->answer[i]) == 0)
+	for (int i = 0; i < all->constraints; i++) {
+		struct constraint *h = &all->constraint[i];
+		h->delassus = rationals(all->constraints);
+		for (int j = 0; j < all->constraints; j++)
+			find_delassus(all, h, &all->constraint[j], h->delassus[j]);
+		if (h->node && mpq_sgn(h->delassus[i]) == 0)
 			error(h->node->at, "its velocity has to answer to its force",
 			      "friction cannot hold what slides there");
-		if (h->node && mpq_sgn(h->answer[i]) > 0)
+		if (h->node && mpq_sgn(h->delassus[i]) > 0)
 			error(h->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
 			      "this friction drives what slides instead of holding it");
 	}
 }
 
-static bool meets(const struct holders *all, int i, int j)
+static bool meets(const struct constraints *all, int i, int j)
 {
-	return mpq_sgn(all->holder[i].answer[j]) != 0 || mpq_sgn(all->holder[j].answer[i]) != 0;
+	return mpq_sgn(all->constraint[i].delassus[j]) != 0 || mpq_sgn(all->constraint[j].delassus[i]) != 0;
 }
 
 /* Those that act on each other, over others too, have one number. */
-static void group_holders(struct holders *all)
+static void group_constraints(struct constraints *all)
 {
-	for (int i = 0; i < all->holders; i++)
-		all->holder[i].group = i;
+	for (int i = 0; i < all->constraints; i++)
+		all->constraint[i].group = i;
 	for (bool changed = true; changed;) {
 		changed = false;
-		for (int i = 0; i < all->holders; i++)
-			for (int j = 0; j < all->holders; j++)
-				if (meets(all, i, j) && all->holder[j].group > all->holder[i].group) {
-					all->holder[j].group = all->holder[i].group;
+		for (int i = 0; i < all->constraints; i++)
+			for (int j = 0; j < all->constraints; j++)
+				if (meets(all, i, j) && all->constraint[j].group > all->constraint[i].group) {
+					all->constraint[j].group = all->constraint[i].group;
 					changed = true;
 				}
 	}
@@ -213,10 +214,10 @@ static _Noreturn void tell_held_twice(struct place at)
 	      "beside what is not piecewise linear one friction, stop or 'when' is for each value of an expression");
 }
 
-static void make_hold(struct holders *all, int index)
+static void make_hold(struct constraints *all, int index)
 {
 	struct sequencing *w = all->w;
-	const struct holder *h = &all->holder[index];
+	const struct constraint *h = &all->constraint[index];
 	const struct model *model = w->step->model;
 	struct series_hold *hold = &all->c->hold[index];
 	*hold = (struct series_hold){ .impact = h->impact, .pull = { NONE, NONE } };
@@ -255,10 +256,10 @@ static int rest_sequence(struct sequencing *w, const struct drag *drag)
 	return sum_sequence(w, &sum);
 }
 
-static void make_slip(struct holders *all, int index)
+static void make_slip(struct constraints *all, int index)
 {
 	struct sequencing *w = all->w;
-	struct holder *h = &all->holder[index];
+	struct constraint *h = &all->constraint[index];
 	const struct series_hold *hold = &all->c->hold[index];
 	if (h->drag == NONE)
 		return;
@@ -281,8 +282,8 @@ static int hold_choice(struct sequencing *w, const struct series_hold *hold, int
 /* ---- forces of those that hold together ---- */
 
 struct together {
-	struct holders *all;
-	int of;                     /* the holder whose force is made */
+	struct constraints *all;
+	int of;                     /* the constraint whose force is made */
 	int members, *member;       /* of its group, itself first */
 	bool *holds;                /* per member */
 };
@@ -293,19 +294,19 @@ static bool invert(const struct together *t, int count, const int *which, mpq_t 
 	mpq_t *a = rationals((size_t)(count * count));
 	for (int i = 0; i < count; i++)
 		for (int j = 0; j < count; j++)
-			mpq_set(a[i * count + j], t->all->holder[which[i]].answer[which[j]]);
+			mpq_set(a[i * count + j], t->all->constraint[which[i]].delassus[which[j]]);
 	int column;
 	return rational_inverse(count, a, inverse, &column);
 }
 
 /* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
-static int side_beside(const struct holders *all, int friction, int contact)
+static int side_beside(const struct constraints *all, int friction, int contact)
 {
-	bool along = mpq_sgn(all->holder[friction].answer[contact]) < 0;
+	bool along = mpq_sgn(all->constraint[friction].delassus[contact]) < 0;
 	return along == all->c->hold[friction].above ? 1 : -1;
 }
 
-static void note_conflict(const struct holders *all, int count, const int *which)
+static void note_conflict(const struct constraints *all, int count, const int *which)
 {
 	struct contacts *c = all->c;
 	struct conflict new = { .hold = NONE };
@@ -316,12 +317,12 @@ static void note_conflict(const struct holders *all, int count, const int *which
 			return;
 	int frictions = 0, at = 0;
 	for (int i = 0; i < count; i++) {
-		bool drags = all->holder[which[i]].drag != NONE;
+		bool drags = all->constraint[which[i]].drag != NONE;
 		frictions += drags;
 		at = drags ? i : at;
 	}
 	if (frictions == count)
-		error(all->holder[which[0]].node->at, "without one of them its part is known",
+		error(all->constraint[which[0]].node->at, "without one of them its part is known",
 		      "friction holds what other friction holds already: while all of it sticks its force is not "
 		      "determined");
 	if (count == 2 && frictions == 1) {
@@ -347,15 +348,15 @@ static int force_together(const struct together *t)
 	}
 	RATIONAL part = ZERO;
 	for (int i = 0; i < count; i++) {
-		const struct holder *h = &t->all->holder[which[i]];
+		const struct constraint *h = &t->all->constraint[which[i]];
 		mpq_neg(part, inverse[i]);
 		sum_add(&sum, TERM_SEQUENCE, h->bare, 0, part);
 		for (int j = 0; j < t->members; j++) {
-			const struct holder *other = &t->all->holder[t->member[j]];
+			const struct constraint *other = &t->all->constraint[t->member[j]];
 			if (t->holds[j] || other->slips == NONE)
 				continue;
 			mpq_neg(part, inverse[i]);
-			mpq_mul(part, part, h->answer[t->member[j]]);
+			mpq_mul(part, part, h->delassus[t->member[j]]);
 			sum_add(&sum, TERM_SEQUENCE, other->slips, 0, part);
 		}
 	}
@@ -373,16 +374,16 @@ static int force_in_cases(struct together *t, int next)
 	return hold_choice(t->all->w, &t->all->c->hold[t->member[next]], held, free);
 }
 
-static void make_force(struct holders *all, int index)
+static void make_force(struct constraints *all, int index)
 {
 	enum { MOST = 4 };
 	struct sequencing *w = all->w;
-	struct holder *h = &all->holder[index];
-	struct together t = { all, index, 1, ARRAY(int, all->holders), ARRAY(bool, all->holders) };
+	struct constraint *h = &all->constraint[index];
+	struct together t = { all, index, 1, ARRAY(int, all->constraints), ARRAY(bool, all->constraints) };
 	t.member[0] = index;
 	t.holds[0] = true;
-	for (int i = 0; i < all->holders; i++)
-		if (i != index && all->holder[i].group == h->group)
+	for (int i = 0; i < all->constraints; i++)
+		if (i != index && all->constraint[i].group == h->group)
 			t.member[t.members++] = i;
 	if (t.members > MOST)
 		error(h->node ? h->node->at : w->step->model->contacts.impact[h->impact].when->at,
@@ -407,41 +408,41 @@ static int watch(struct sequencing *w, int sequence, bool whole)
 }
 
 /* The force that it would take to hold this one, the others as they are: -(bare + answers of the others)/answer */
-static struct sum needed_force(const struct holders *all, int index, long sign)
+static struct sum needed_force(const struct constraints *all, int index, long sign)
 {
-	const struct holder *h = &all->holder[index];
+	const struct constraint *h = &all->constraint[index];
 	struct sum sum = { 0 };
 	RATIONAL factor = ZERO, part = ZERO;
 	mpq_set_si(factor, -sign, 1);
-	mpq_div(factor, factor, h->answer[index]);
+	mpq_div(factor, factor, h->delassus[index]);
 	sum_add(&sum, TERM_SEQUENCE, h->bare, 0, factor);
-	for (int j = 0; j < all->holders; j++) {
-		if (j == index || mpq_sgn(h->answer[j]) == 0)
+	for (int j = 0; j < all->constraints; j++) {
+		if (j == index || mpq_sgn(h->delassus[j]) == 0)
 			continue;
-		mpq_mul(part, factor, h->answer[j]);
-		sum_add(&sum, TERM_SEQUENCE, all->holder[j].force, 0, part);
+		mpq_mul(part, factor, h->delassus[j]);
+		sum_add(&sum, TERM_SEQUENCE, all->constraint[j].force, 0, part);
 	}
 	return sum;
 }
 
-static double *row_of_back(const struct holders *all, int index)
+static double *row_of_back(const struct constraints *all, int index)
 {
-	const struct holder *h = &all->holder[index];
+	const struct constraint *h = &all->constraint[index];
 	int states = all->w->system->states;
 	double *back = ARRAY(double, states);
 	RATIONAL part = ZERO;
 	for (int i = 0; i < states; i++) {
-		mpq_div(part, h->push[i], h->answer[index]);
+		mpq_div(part, h->force_direction[i], h->delassus[index]);
 		back[i] = round_rational(part);
 	}
 	return back;
 }
 
 /* Beyond 0 it lets go: of friction either way, of a contact where it would have to pull */
-static void watch_hold(struct holders *all, int index)
+static void watch_hold(struct constraints *all, int index)
 {
 	struct sequencing *w = all->w;
-	const struct holder *h = &all->holder[index];
+	const struct constraint *h = &all->constraint[index];
 	struct series_hold *hold = &all->c->hold[index];
 	RATIONAL minus = ZERO;
 	mpq_set_si(minus, -1, 1);
@@ -459,7 +460,7 @@ static void watch_hold(struct holders *all, int index)
 	}
 }
 
-static void assign(struct holders *all, const struct jump *jump, int jumps)
+static void assign(struct constraints *all, const struct jump *jump, int jumps)
 {
 	struct contacts *c = all->c;
 	for (int k = 0; k < jumps; k++) {
@@ -469,35 +470,36 @@ static void assign(struct holders *all, const struct jump *jump, int jumps)
 	}
 }
 
-static void watch_impact(struct holders *all, int index)
+static void watch_impact(struct constraints *all, int index)
 {
 	struct sequencing *w = all->w;
 	const struct impact *impact = &w->step->model->contacts.impact[index];
-	struct series_strike *strike = &all->c->strike[index];
+	struct series_impact *series_impact = &all->c->series_impact[index];
 	RATIONAL factor = ZERO;
 	struct division d = divide_guard(w, impact, factor);
 	for (int i = 0; i < all->c->holds && !impact->bounces; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
 			tell_held_twice(impact->when->at);
-	*strike = (struct series_strike){ .expression = d.expression, .breakpoint = d.breakpoint, .upward = d.above,
+	*series_impact =
+		(struct series_impact){ .expression = d.expression, .breakpoint = d.breakpoint, .upward = d.above,
 				   .hold = NONE, .jump = all->c->assignments, .still = all->c->assignments,
 				   .jumps = impact->in->jumps, .back = ARRAY(double, w->system->states),
 				   .restitution = round_rational(impact->in->restitution) };
 	mpq_inv(factor, factor);
-	strike->per = round_rational(factor);
-	for (int i = 0; i < all->holders; i++)
-		if (all->holder[i].impact == index)
-			strike->hold = i;
+	series_impact->per = round_rational(factor);
+	for (int i = 0; i < all->constraints; i++)
+		if (all->constraint[i].impact == index)
+			series_impact->hold = i;
 	assign(all, impact->in->jump, impact->in->jumps);
-	strike->place = watch(w, sequence_of_form(w, impact->in->guard), false);
-	strike->speed = strike->place;
-	if (strike->hold == NONE)
+	series_impact->place = watch(w, sequence_of_form(w, impact->in->guard), false);
+	series_impact->speed = series_impact->place;
+	if (series_impact->hold == NONE)
 		return;
-	strike->still = all->c->assignments;
+	series_impact->still = all->c->assignments;
 	assign(all, impact->in->still, impact->in->jumps);
-	strike->speed = watch(w, sequence_of_form(w, impact->in->speed), false);
+	series_impact->speed = watch(w, sequence_of_form(w, impact->in->speed), false);
 	for (int j = 0; j < w->system->n; j++)
-		strike->back[j] = round_rational(impact->in->direction[j]);
+		series_impact->back[j] = round_rational(impact->in->direction[j]);
 }
 
 /* ---- the whole ---- */
@@ -534,8 +536,8 @@ struct sum held_slope(struct sequencing *w, int state)
 	if (c->bare[state] != NONE)
 		sum_add(&slope, TERM_SEQUENCE, c->bare[state], 0, one);
 	for (int i = 0; i < c->holds; i++)
-		if (mpq_sgn(c->hold[i].push[state]) != 0)
-			sum_add(&slope, TERM_SEQUENCE, c->hold[i].force, 0, c->hold[i].push[state]);
+		if (mpq_sgn(c->hold[i].force_direction[state]) != 0)
+			sum_add(&slope, TERM_SEQUENCE, c->hold[i].force, 0, c->hold[i].force_direction[state]);
 	for (int i = 0; i < c->holds; i++) {
 		if (c->hold[i].only != state)
 			continue;
@@ -564,7 +566,7 @@ int held_force(struct sequencing *w, int force_column)
 void hold_contacts(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
-	struct holders all = { .w = w };
+	struct constraints all = { .w = w };
 	if (!has_contacts(model))
 		return;
 	struct contacts *c = all.c = w->x->contacts = NEW(struct contacts);
@@ -572,30 +574,30 @@ void hold_contacts(struct sequencing *w)
 	for (int i = 0; i < w->system->states; i++)
 		c->bare[i] = NONE;
 	c->none = all.none = sequence_of_form(w, form_number(0));
-	c->strikes = model->contacts.impacts;
-	c->strike = ARRAY(struct series_strike, model->contacts.impacts);
-	find_holders(&all);
-	find_answers(&all);
-	group_holders(&all);
-	c->hold = ARRAY(struct series_hold, all.holders);
-	c->holds = all.holders;
-	for (int i = 0; i < all.holders; i++)
+	c->series_impacts = model->contacts.impacts;
+	c->series_impact = ARRAY(struct series_impact, model->contacts.impacts);
+	find_constraints(&all);
+	find_all_delassus(&all);
+	group_constraints(&all);
+	c->hold = ARRAY(struct series_hold, all.constraints);
+	c->holds = all.constraints;
+	for (int i = 0; i < all.constraints; i++)
 		make_hold(&all, i);
-	for (int i = 0; i < all.holders; i++)
+	for (int i = 0; i < all.constraints; i++)
 		make_slip(&all, i);
-	for (int i = 0; i < all.holders; i++)
-		all.holder[i].bare = bare_rate(w, all.holder[i].rate);
-	for (int i = 0; i < all.holders; i++)
+	for (int i = 0; i < all.constraints; i++)
+		all.constraint[i].bare = bare_rate(w, all.constraint[i].rate);
+	for (int i = 0; i < all.constraints; i++)
 		make_force(&all, i);
-	for (int i = 0; i < all.holders; i++)
+	for (int i = 0; i < all.constraints; i++)
 		watch_hold(&all, i);
 	for (int i = 0; i < model->contacts.impacts; i++)
 		watch_impact(&all, i);
 	sort_watches(c);
-	for (int i = 0; i < all.holders; i++) {
-		c->hold[i].force = all.holder[i].force;
-		c->hold[i].push = all.holder[i].push;
-		c->hold[i].gives = all.holder[i].gives;
-		c->hold[i].only = only_state(w, all.holder[i].velocity);
+	for (int i = 0; i < all.constraints; i++) {
+		c->hold[i].force = all.constraint[i].force;
+		c->hold[i].force_direction = all.constraint[i].force_direction;
+		c->hold[i].gives = all.constraint[i].gives;
+		c->hold[i].only = only_state(w, all.constraint[i].velocity);
 	}
 }

@@ -18,10 +18,10 @@ struct series_hold {                /* a velocity that is kept at 0: by friction
 	int velocity, pull[2];      /* watches; beyond 0 it is let go to the interval below, above; NONE: it is not */
 	double *back;               /* per state: what is taken from it for a velocity of 1 */
 	int force, only;            /* a sequence; the only state of the velocity, or NONE */
-	mpq_t *push;                /* per state: what that force, 1, adds to its slope */
+	mpq_t *force_direction;     /* per state: what that force, 1, adds to its slope */
 	mpq_t *gives;               /* per force column: likewise */
 };
-struct series_strike {                     /* an impact */
+struct series_impact {                     /* an impact */
 	int expression, breakpoint;
 	bool upward;
 	int hold;                   /* in which its contact rests; NONE: it is no bounce */
@@ -40,8 +40,8 @@ struct contacts {
 	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
 	int holds;
 	struct series_hold *hold;
-	int strikes;
-	struct series_strike *strike;
+	int series_impacts;
+	struct series_impact *series_impact;
 	int assignments;
 	struct series_jump *assignment;
 	int conflicts;

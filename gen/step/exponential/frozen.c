@@ -202,7 +202,7 @@ static double span_of(const struct step *step)
 		if (w > 0 && (slowest == 0 || w < slowest))
 			slowest = w;
 	}
-	if (step->model->remainder.split->settles)
+	if (step->model->remainder.split->ends_steady)
 		return span;
 	double turns = slowest > 0 ? 4 * acos(-1) / slowest : 0;
 	span = span > turns ? span : turns;

@@ -52,11 +52,11 @@ void check_turns(const struct step *step);
 void find_waves(struct normal_work *w);
 double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta); /* of all operators; see struct normal_stage */
 
-/* ---- settled.c: a step once all functions of time are constant ---- */
+/* ---- steady.c: a step once all functions of time are constant ---- */
 
 /* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and
  * K: of the first operator, rows by coordinates */
-mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
+mpfr_t *steady_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega);
 
 #endif

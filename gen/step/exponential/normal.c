@@ -229,11 +229,11 @@ static int last_schedule(const struct model *model)
 	return schedule;
 }
 
-static void find_settled(struct normal_work *w)
+static void find_steady(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
-	int n = normal->modes, size = settled_size(model), width = normal->width;
+	int n = normal->modes, size = steady_size(model), width = normal->width;
 	int schedule = normal->steady.schedule = last_schedule(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
 	normal->steady.omega = ARRAY(double, width);
@@ -250,7 +250,7 @@ static void find_settled(struct normal_work *w)
 		normal->steady.period[normal->place[j]] = round_real(omega[j]);
 		mpfr_ui_div(omega[j], 1, omega[j], MPFR_RNDN);
 	}
-	Phi = settled_matrix(model, w->M, by_coordinates(model, model->schedule.operator[0].C),
+	Phi = steady_matrix(model, w->M, by_coordinates(model, model->schedule.operator[0].C),
 			     by_coordinates(model, model->schedule.operator[0].K), &w->pairs[schedule], omega);
 	for (int i = 0; i < 2 * n; i++)
 		for (int j = 0; j < size; j++)
@@ -359,8 +359,8 @@ struct normal *normal_of(struct step *step)
 	find_stages(&w);
 	step->normal = normal;
 	choose_evaluations(&w);
-	if (model->remainder.split->settles)
-		find_settled(&w);
+	if (model->remainder.split->ends_steady)
+		find_steady(&w);
 	find_within(&w);
 	return normal;
 }

@@ -19,9 +19,9 @@ struct mode_flow {                  /* of one mode over theta h */
 	mpfr_t *position, *rate;    /* ... + what a force of each polynomial adds to eta, to eta' */
 };
 
-/* ---- settled.c: a step once all functions of time are constant ---- */
+/* ---- steady.c: a step once all functions of time are constant ---- */
 
-int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
+int steady_size(const struct model *model);                 /* 2n + 1, and 2 for each wave */
 
 /* ---- bank.c: what the remainders of a schedule's operators have in common ---- */
 

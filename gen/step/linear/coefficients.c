@@ -80,20 +80,20 @@ static void add_response(struct filling *f, struct response *response, mpq_srcpt
 
 /* Two who answer what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
 enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_PHI_WEIGHT, SOUGHT };
-typedef void answer(struct filling *f, int a, int b);
+typedef void evaluator(struct filling *f, int a, int b);
 
-static answer state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor;
-static answer state_by_residues, input_by_residues, load_by_residues, phi_weight_by_residues;
-static answer *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor };
-static answer *const by_residues[SOUGHT] = { state_by_residues, input_by_residues, load_by_residues,
+static evaluator state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor;
+static evaluator state_by_residues, input_by_residues, load_by_residues, phi_weight_by_residues;
+static evaluator *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor };
+static evaluator *const by_residues[SOUGHT] = { state_by_residues, input_by_residues, load_by_residues,
 					     phi_weight_by_residues };
 
-static struct number ask(struct filling *f, answer *const *answerer, enum sought what, int a, int b)
+static struct number ask(struct filling *f, evaluator *const *evaluators, enum sought what, int a, int b)
 {
 	f->entries = f->responses = 0;
-	answerer[what](f, a, b);
+	evaluators[what](f, a, b);
 	struct number number = { .row = f->row, .t = f->tau, .scale = f->scale, .less = f->less };
-	if (answerer == by_taylor) {
+	if (evaluators == by_taylor) {
 		number.count = f->entries;
 		number.entry = f->entry;
 	} else {

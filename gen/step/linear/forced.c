@@ -14,7 +14,7 @@
 #include "model/linear/relative.h"
 #include "step/cost.h"
 #include "forms.h"
-#include "step/certify/kept.h"
+#include "step/certify/step_map.h"
 #include "step/tapes.h"
 
 #include <math.h>

@@ -148,7 +148,7 @@ static void ask(struct asking *a, enum operand_kind kind, int index, share_maker
 }
 
 /* Row by row: what poles give at one time serves every column. */
-static void answer_all(const struct asking *a)
+static void evaluate_all(const struct asking *a)
 {
 	int outputs = a->rows->outputs;
 	for (int l = 0; l < a->rows->count; l++)
@@ -180,7 +180,7 @@ static void fill_columns(const struct step *step, struct rows *rows)
 			ask(&a, OPERAND_INPUT, column++, share_of_sample_before, i);
 	for (int i = 0; i < system->inputs; i++)
 		ask(&a, OPERAND_INPUT, held + i, share_of_sample, i);
-	answer_all(&a);
+	evaluate_all(&a);
 	rows->column = ARRAY(struct row_column, columns + 1);
 	for (int k = 0; k < columns; k++)
 		keep_column(rows, &a.asked[k]);

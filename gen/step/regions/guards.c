@@ -130,29 +130,30 @@ static int set_of_jumps(const struct step *step, struct guards *g, int jumps, co
 	return end_set(g);
 }
 
-static struct struck struck_in(const struct step *step, struct guards *g, int number, int segment)
+static struct impact_row impact_in(const struct step *step, struct guards *g, int number, int segment)
 {
 	const struct switching *s = step->model->switching;
 	const struct impact *impact = &s->impact[number];
-	const struct strike *strike = &impact->in[segment];
-	const struct expression *e = &s->expression[strike->expression];
-	struct struck new = { .expression = strike->expression, .upward = strike->upward,
+	const struct impact_law *impact_law = &impact->in[segment];
+	const struct expression *e = &s->expression[impact_law->expression];
+	struct impact_row new = { .expression = impact_law->expression, .upward = impact_law->upward,
 			      .rest = rest_of(s, segment, impact),
-			      .still = -1, .restitution = round_rational(strike->restitution) };
-	while (!mpq_equal(e->at[new.breakpoint], strike->at))
+			      .still = -1, .restitution = round_rational(impact_law->restitution) };
+	while (!mpq_equal(e->at[new.breakpoint], impact_law->at))
 		new.breakpoint++;
-	if (impact->bounces && !strike->upward)
+	if (impact->bounces && !impact_law->upward)
 		new.breakpoint++;               /* the upper of two */
-	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, segment * s->impacts + number);
+	new.jump =
+		set_of_jumps(step, g, impact_law->jumps, impact_law->jump, RETUNED_JUMP, segment * s->impacts + number);
 	new.speed = ARRAY(double, step->layout.size);
 	new.back = ARRAY(double, step->layout.size);
 	RATIONAL part = ZERO;
 	if (impact->bounces) {
-		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL,
+		new.still = set_of_jumps(step, g, impact_law->jumps, impact_law->still, RETUNED_STILL,
 					 segment * s->impacts + number);
-		row_over_x(step, strike->speed_row, 0, new.speed);
+		row_over_x(step, impact_law->speed_row, 0, new.speed);
 		for (int j = 0; j < step->model->n; j++) {
-			mpq_mul(part, strike->direction[j], strike->factor);
+			mpq_mul(part, impact_law->direction[j], impact_law->factor);
 			new.back[j] = round_rational(part);
 		}
 	}
@@ -199,17 +200,17 @@ static void add_rounding(const struct step *step, struct guards *g)
 		g->second[i] += rounding * (fabs(g->row[i]) + 3 * fabs(g->slope[i]));
 }
 
-double *grips_of(const struct step *step)
+double *friction_forces_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	size_t size = (size_t)step->layout.size, count = (size_t)s->felts;
-	double *grip = ARRAY(double, (size_t)s->regions * count * size);
+	size_t size = (size_t)step->layout.size, count = (size_t)s->transmitted_forces;
+	double *friction_force = ARRAY(double, (size_t)s->regions * count * size);
 	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < s->felts; i++)
-			if (s->region[r].grip[i])
-				row_over_x(step, s->region[r].grip[i], 0,
-					   grip + ((size_t)r * count + (size_t)i) * size);
-	return grip;
+		for (int i = 0; i < s->transmitted_forces; i++)
+			if (s->region[r].friction_force[i])
+				row_over_x(step, s->region[r].friction_force[i], 0,
+					   friction_force + ((size_t)r * count + (size_t)i) * size);
+	return friction_force;
 }
 
 struct guards guards_of(const struct step *step, const struct pieces *pieces)
@@ -231,10 +232,10 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	}
 	g.first[s->regions] = g.guards;
 	g.impacts = s->impacts;
-	g.impact = ARRAY(struct struck, (size_t)(s->segments * s->impacts));
+	g.impact = ARRAY(struct impact_row, (size_t)(s->segments * s->impacts));
 	for (int k = 0; k < s->segments; k++)
 		for (int i = 0; i < s->impacts; i++)
-			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
+			g.impact[k * s->impacts + i] = impact_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
 	g.amplitude = ARRAY(double, (size_t)(s->segments * s->expressions));
 	g.row_amplitude = ARRAY(double, g.rows);

@@ -17,7 +17,7 @@ struct guard {                      /* row . x must not become greater than the 
 	double limit;
 	int impact;                 /* that begins there; -1: none */
 };
-struct struck {                     /* an impact */
+struct impact_row {                 /* an impact */
 	int expression, breakpoint;
 	bool upward;
 	int rest;                   /* the interval in which it rests; -1: it is no bounce */
@@ -52,12 +52,13 @@ struct guards {
 	int assignments;
 	struct held_state *assignment;
 	int impacts;
-	struct struck *impact;      /* per segment of time and impact */
+	struct impact_row *impact;  /* per segment of time and impact */
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
-double *grips_of(const struct step *step); /* what friction carries that outputs read: regions x felts x size */
+/* what friction carries that outputs read: regions x felts x size */
+double *friction_forces_of(const struct step *step);
 
 #endif

@@ -242,8 +242,8 @@ static bool has_way(const struct contacts *c, int watch)
 	bool any = false;
 	for (int i = 0; i < c->holds; i++)
 		any = any || c->hold[i].pull[0] == watch || c->hold[i].pull[1] == watch;
-	for (int i = 0; i < c->strikes; i++)
-		any = any || (c->strike[i].hold != NONE && c->strike[i].speed == watch);
+	for (int i = 0; i < c->series_impacts; i++)
+		any = any || (c->series_impact[i].hold != NONE && c->series_impact[i].speed == watch);
 	return any;
 }
 
@@ -272,9 +272,9 @@ void sort_watches(struct contacts *c)
 		renumber(place, &c->hold[i].pull[0]);
 		renumber(place, &c->hold[i].pull[1]);
 	}
-	for (int i = 0; i < c->strikes; i++) {
-		renumber(place, &c->strike[i].place);
-		renumber(place, &c->strike[i].speed);
+	for (int i = 0; i < c->series_impacts; i++) {
+		renumber(place, &c->series_impact[i].place);
+		renumber(place, &c->series_impact[i].speed);
 	}
 	for (int i = 0; i < c->assignments; i++)
 		renumber(place, &c->assignment[i].watch);

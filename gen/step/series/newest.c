@@ -48,14 +48,14 @@ static bool is_late(const struct sequence *s)
 }
 
 /* Those that are so, and those made of them; through integrals or not */
-static bool *made_of(const struct expansion *x, bool (*is_so)(const struct sequence *s), bool through)
+static bool *made_of(const struct expansion *x, bool (*is_so)(const struct sequence *s), bool trajectory)
 {
 	bool *so = ARRAY(bool, x->count);
 	for (bool changed = true; changed;) {
 		changed = false;
 		for (int i = 0; i < x->count; i++) {
 			const struct sequence *s = &x->sequence[i];
-			bool enters = through || s->kind != SEQUENCE_INTEGRAL;
+			bool enters = trajectory || s->kind != SEQUENCE_INTEGRAL;
 			bool now = is_so(s) || (enters && is_any(so, s));
 			changed = changed || now != so[i];
 			so[i] = now;

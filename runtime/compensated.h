@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* kept.h: x on over a piece of a step, for the runtime's own use: by crossings.c and guards.c, and with what rounding
- * takes from x kept by crossings_kept.c and guards_kept.c, which define REST_IS_KEPT and include them.  There x is
- * `size` entries and then as many rests, so that x + rest is what is meant; breakpoints and guards see x, from which it
- * differs by rounding. */
-#ifndef PLRT_KEPT_H
-#define PLRT_KEPT_H
+/* compensated.h: x on over a piece of a step, for the runtime's own use: by crossings.c and guards.c, and with what
+ * rounding takes from x kept by crossings_compensated.c and guards_compensated.c, which define STATE_IS_COMPENSATED and
+ * include them.  There x is `size` entries and then as many rests, so that x + rest is what is meant; breakpoints and
+ * guards see x, from which it differs by rounding. */
+#ifndef PLRT_COMPENSATED_H
+#define PLRT_COMPENSATED_H
 
 #include "roots.h"
 
@@ -14,7 +14,7 @@ static PL_APART real dot(int n, const real *row, const real *x)
     return dot_product(n, row, x);
 }
 
-#ifdef REST_IS_KEPT
+#ifdef STATE_IS_COMPENSATED
 
 #include "two.h"
 

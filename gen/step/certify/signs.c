@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Whether all of an enclosure is 0 to half of the bits, BITS_OF_ONE or fewer, of such a size, or of 2^-64 */
-bool through_is_none(const struct through *t, mpfi_srcptr value, double size)
+bool trajectory_is_none(const struct trajectory *t, mpfi_srcptr value, double size)
 {
 	const int bits = t->precision < BITS_OF_ONE ? t->precision : BITS_OF_ONE;
 	REAL least = WITH_BITS(53);
@@ -17,7 +17,7 @@ bool through_is_none(const struct through *t, mpfi_srcptr value, double size)
 }
 
 /* What row . x may be summed from: of positions and of speeds the largest */
-double through_size(const struct through *t, const mpq_t *row)
+double trajectory_size(const struct trajectory *t, const mpq_t *row)
 {
 	double most[2] = { 0, 0 }, size = 0;
 	for (int i = 0; i < t->layout.states; i++)
@@ -30,44 +30,44 @@ double through_size(const struct through *t, const mpq_t *row)
 
 /* Of row . x - less: its sign, 0 where it is 0; *known false: it is not told apart from 0. For --solution what enough
  * bits do not tell apart from 0 is 0. */
-int through_sign(const struct through *t, const mpq_t *row, mpq_srcptr less, bool *known)
+int trajectory_sign(const struct trajectory *t, const mpq_t *row, mpq_srcptr less, bool *known)
 {
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, row, t->x, value);
+	trajectory_dot(t, row, t->x, value);
 	if (less)
 		mpfi_sub_q(value, value, less);
 	int sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 	*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right)) ||
 		 (t->whole->asked.solution && t->precision >= BITS_OF_ONE &&
-		  through_is_none(t, value, through_size(t, row) + (less ? fabs(mpq_get_d(less)) : 0)));
+		  trajectory_is_none(t, value, trajectory_size(t, row) + (less ? fabs(mpq_get_d(less)) : 0)));
 	return sign;
 }
 
-mpq_t *through_row_of(const struct through *t, const struct output *output)
+mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output)
 {
 	mpq_t *row = rationals(t->n);
-	through_row(t, output, row);
+	trajectory_row(t, output, row);
 	return row;
 }
 
-void through_assign(struct through *t, int state, const struct output *output, mpfi_t *fresh)
+void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh)
 {
-	RATIONALS *row = through_row_of(t, output);
-	through_dot(t, row, t->x, fresh[state]);
+	RATIONALS *row = trajectory_row_of(t, output);
+	trajectory_dot(t, row, t->x, fresh[state]);
 }
 
-void through_hold(struct through *t)
+void trajectory_hold(struct trajectory *t)
 {
 	const struct region *r = &t->s->region[t->region];
 	for (int k = 0; k < r->holds; k++)
-		through_assign(t, r->hold[k].state, r->hold[k].row, t->y);
+		trajectory_assign(t, r->hold[k].state, r->hold[k].row, t->y);
 	for (int k = 0; k < r->holds; k++)
 		mpfi_set(t->x[r->hold[k].state], t->y[r->hold[k].state]);
 }
 
-bool through_unknown(struct through *t, const char *what)
+bool trajectory_unknown(struct trajectory *t, const char *what)
 {
-	t->undecided = format("at t = %s s it is not known %s", through_time(t->base), what);
+	t->undecided = format("at t = %s s it is not known %s", trajectory_time(t->base), what);
 	return false;
 }
 
@@ -75,17 +75,17 @@ bool through_unknown(struct through *t, const char *what)
 
 /* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
  * first one is but rounding */
-int through_heads(const struct through *t, const struct area *area, int expression, bool still, bool *known)
+int trajectory_heads(const struct trajectory *t, const struct area *area, int expression, bool still, bool *known)
 {
-	mpq_t *row = through_row_of(t, t->s->expression[expression].row);
+	mpq_t *row = trajectory_row_of(t, t->s->expression[expression].row);
 	int sign = 0;
 	*known = true;
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
-		mpq_t *next = through_times(t, row, area->A);
+		mpq_t *next = trajectory_times(t, row, area->A);
 		rationals_free(row, (size_t)t->n);
 		row = next;
 		if (k > 0 || !still)
-			sign = through_sign(t, row, NULL, known);
+			sign = trajectory_sign(t, row, NULL, known);
 	}
 	rationals_free(row, (size_t)t->n);
 	return sign;
@@ -93,7 +93,7 @@ int through_heads(const struct through *t, const struct area *area, int expressi
 
 /* How often an expression that was let go has the value 0 where it is: with its slope, and for a contact, whose force
  * was 0, with its acceleration */
-static int order_of(struct through *t, const struct guard *guard)
+static int order_of(struct trajectory *t, const struct guard *guard)
 {
 	bool known;
 	if (!guard->release)
@@ -101,13 +101,13 @@ static int order_of(struct through *t, const struct guard *guard)
 	if (impact_resting(t->s, t->when.segment, guard->expression,
 			   interval_of(t->s, t->region, guard->expression) - (guard->upward ? 1 : -1)) >= 0)
 		return 3;
-	RATIONALS *row = through_row_of(t, t->s->expression[guard->expression].row);
-	RATIONALS *slope = through_times(t, row, t->at->A);
-	int sign = through_sign(t, slope, NULL, &known);
+	RATIONALS *row = trajectory_row_of(t, t->s->expression[guard->expression].row);
+	RATIONALS *slope = trajectory_times(t, row, t->at->A);
+	int sign = trajectory_sign(t, slope, NULL, &known);
 	return known && sign != 0 ? 0 : 2;
 }
 
-void through_let_go(struct through *t, const struct guard *guard)
+void trajectory_let_go(struct trajectory *t, const struct guard *guard)
 {
 	t->fresh.order[guard->expression] = order_of(t, guard);
 	t->fresh.back[guard->expression] = !guard->upward;
@@ -115,7 +115,7 @@ void through_let_go(struct through *t, const struct guard *guard)
 
 /* Of sliders without mass one that would slide back where it is; -1: none does, -2: not known. What is 0, as all that
  * slides with one velocity is where it is met as 0, counts by its slope. */
-static int slides_back(const struct through *t, const struct guard *met, const struct guard **release)
+static int slides_back(const struct trajectory *t, const struct guard *met, const struct guard **release)
 {
 	for (int k = 0; k < t->at->guards; k++) {
 		const struct guard *guard = &t->at->guard[k];
@@ -123,12 +123,12 @@ static int slides_back(const struct through *t, const struct guard *met, const s
 		if (!guard->release || is_stick(&t->s->expression[guard->expression],
 					       interval_of(t->s, t->region, guard->expression)))
 			continue;
-		int sign = through_sign(t, guard->row, NULL, &known);
+		int sign = trajectory_sign(t, guard->row, NULL, &known);
 		bool none = known && sign == 0;
 		if (!known && met)
-			none = through_meets(t, met, guard);
+			none = trajectory_meets(t, met, guard);
 		if (none)
-			sign = through_sign(t, guard->slope, NULL, &known);
+			sign = trajectory_sign(t, guard->slope, NULL, &known);
 		*release = guard;
 		if (!known)
 			return -2;
@@ -139,28 +139,28 @@ static int slides_back(const struct through *t, const struct guard *met, const s
 }
 
 /* A slider without mass whose velocity an event has turned round sticks from there on. */
-bool through_slide(struct through *t, const struct guard *guard, mpfr_srcptr off)
+bool trajectory_slide(struct trajectory *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct guard *release, **gone;
 	if (t->s->sliders == 0)
 		return true;
-	through_hold(t);
+	trajectory_hold(t);
 	gone = ARRAY(const struct guard *, t->s->expressions);
 	int count = 0, back = slides_back(t, guard, &release);
 	for (; back >= 0 && count < t->s->expressions; count++) {
 		gone[count] = release;
 		if (off)
-			through_note_plain(t, back, release->breakpoint, release->upward, off);
-		through_enter(t, t->region + release->leads);
-		through_hold(t);
+			trajectory_note_plain(t, back, release->breakpoint, release->upward, off);
+		trajectory_enter(t, t->region + release->leads);
+		trajectory_hold(t);
 		back = slides_back(t, guard, &release);
 	}
 	for (int k = 0; k < count && back == -1; k++)
-		through_let_go(t, gone[k]);
+		trajectory_let_go(t, gone[k]);
 	if (off)
 		mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	else
 		mpfr_set_zero(t->fresh.off, 1);
 	discard(gone);
-	return back == -1 || through_unknown(t, "what slides on");
+	return back == -1 || trajectory_unknown(t, "what slides on");
 }

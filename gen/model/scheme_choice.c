@@ -279,7 +279,7 @@ static bool goes_by_series(const struct building *b)
 {
 	const struct model *model = b->model;
 	bool chosen = !model->asked.scheme_at.source && !is_piecewise_linear(b);
-	return (stops_at_events(model->scheme) || chosen) && !strikes_change(b) && !b->request->solution &&
+	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
 	       !b->request->loads_left;
 }
 
@@ -289,7 +289,7 @@ static bool goes_by_regions(const struct building *b)
 }
 
 /* Impacts go from event to event. */
-static void settle_impacts(void *context)
+static void resolve_impacts(void *context)
 {
 	struct building *b = context;
 	bool exact = goes_by_regions(b);
@@ -305,7 +305,7 @@ static void tell_friction_stands(void *context)
 	tell_no_friction(context);
 }
 
-static void settle_contacts(void *context)
+static void choose_beside_contacts(void *context)
 {
 	find_contacts(context);
 }
@@ -324,13 +324,13 @@ static void keep_loads(struct building *b, const char *why)
 }
 
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
-static bool settle_scheme(struct building *b)
+static bool choose_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->contacts.impacts == 0;
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
-	if (model->contacts.impacts > 0 && !statement_guard(settle_impacts, b))
+	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(tell_friction_stands, b);
@@ -360,7 +360,7 @@ static bool settle_scheme(struct building *b)
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
 	if (b->whole && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)))
-		statement_guard(settle_contacts, b);
+		statement_guard(choose_beside_contacts, b);
 	return !diagnostics_errors();
 }
 
@@ -395,7 +395,7 @@ void build_system(struct building *b)
 		return;
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->segment_equations[s]);
-	if (diagnostics_errors() || !settle_scheme(b))
+	if (diagnostics_errors() || !choose_scheme(b))
 		return;
 	const struct segment_equations *rows = b->whole ? b->whole : b->segment_equations;
 	fill_states(b, rows);

@@ -1,4 +1,4 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* guards.c with what rounding takes from x kept. */
-#define REST_IS_KEPT
+#define STATE_IS_COMPENSATED
 #include "guards.c"

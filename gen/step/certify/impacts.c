@@ -14,9 +14,9 @@
 
 typedef double real;
 typedef struct law contacts;
-typedef struct through instant;
+typedef struct trajectory instant;
 
-enum { MOST = 6, MOST_STRUCK = 200, MOST_SWEPT = 100000, SELFTEST_BRIEF = 16 };
+enum { MOST = 6, MOST_IMPACTS = 200, MOST_SWEPT = 100000, SELFTEST_BRIEF = 16 };
 
 #define LISTED_AT_ONCE INT_MAX      /* what a selftest compares ends before */
 #define HANGING 0                   /* that comes first by its changes, and is not known */
@@ -29,7 +29,7 @@ enum { MOST = 6, MOST_STRUCK = 200, MOST_SWEPT = 100000, SELFTEST_BRIEF = 16 };
 struct bound {                      /* an impact in this segment of time */
 	int expression, breakpoint, upward, rest;
 	double restitution;
-	const struct strike *strike;
+	const struct impact_law *impact_law;
 	mpq_t *speed, *place, **jump, **still;  /* rows over x */
 };
 
@@ -61,7 +61,7 @@ static int interval_in(const struct law *m, int region, int expression)
 	return interval_of(m->s, region, expression);
 }
 
-static int place_of_rest(const struct through *t, const struct impact *p)
+static int place_of_rest(const struct trajectory *t, const struct impact *p)
 {
 	return rest_of(t->s, t->when.segment, p);
 }
@@ -74,40 +74,41 @@ static int place_of_rest(const struct through *t, const struct impact *p)
 
 /* ---- impacts of a segment of time ---- */
 
-static int breakpoint_of(const struct through *t, const struct strike *strike, bool bounces)
+static int breakpoint_of(const struct trajectory *t, const struct impact_law *impact_law, bool bounces)
 {
-	const struct expression *e = &t->s->expression[strike->expression];
+	const struct expression *e = &t->s->expression[impact_law->expression];
 	int b = 0;
-	while (!mpq_equal(e->at[b], strike->at))
+	while (!mpq_equal(e->at[b], impact_law->at))
 		b++;
-	return b + (bounces && !strike->upward);
+	return b + (bounces && !impact_law->upward);
 }
 
-static mpq_t **rows_of_jumps(const struct through *t, int jumps, const struct jump *list)
+static mpq_t **rows_of_jumps(const struct trajectory *t, int jumps, const struct jump *list)
 {
 	mpq_t **row = ARRAY(mpq_t *, (size_t)jumps + 1);
 	for (int k = 0; k < jumps && list; k++)
-		row[k] = through_row_of(t, list[k].row);
+		row[k] = trajectory_row_of(t, list[k].row);
 	return row;
 }
 
-static void fill_bound(const struct through *t, int k, struct bound *b)
+static void fill_bound(const struct trajectory *t, int k, struct bound *b)
 {
 	const struct impact *p = &t->s->impact[k];
-	const struct strike *strike = &p->in[t->when.segment];
-	*b = (struct bound){ .expression = strike->expression, .upward = strike->upward, .rest = -1, .strike = strike };
-	b->breakpoint = breakpoint_of(t, strike, p->bounces);
-	b->restitution = p->bounces ? mpq_get_d(strike->restitution) : 0;
-	b->place = through_row_of(t, t->s->expression[strike->expression].row);
-	b->jump = rows_of_jumps(t, strike->jumps, strike->jump);
+	const struct impact_law *impact_law = &p->in[t->when.segment];
+	*b = (struct bound){ .expression = impact_law->expression, .upward = impact_law->upward, .rest = -1,
+			    .impact_law = impact_law };
+	b->breakpoint = breakpoint_of(t, impact_law, p->bounces);
+	b->restitution = p->bounces ? mpq_get_d(impact_law->restitution) : 0;
+	b->place = trajectory_row_of(t, t->s->expression[impact_law->expression].row);
+	b->jump = rows_of_jumps(t, impact_law->jumps, impact_law->jump);
 	if (!p->bounces)        /* it has no speed */
 		return;
-	b->speed = through_row_of(t, strike->speed_row);
+	b->speed = trajectory_row_of(t, impact_law->speed_row);
 	b->rest = place_of_rest(t, p);
-	b->still = rows_of_jumps(t, strike->jumps, strike->still);
+	b->still = rows_of_jumps(t, impact_law->jumps, impact_law->still);
 }
 
-static const struct law *law_of(struct through *t)
+static const struct law *law_of(struct trajectory *t)
 {
 	const bool solution = t->whole->asked.solution, coarse = t->whole->asked.single && !solution;
 	if (t->law && t->law->segment == t->when.segment)
@@ -134,17 +135,17 @@ static double nearest(mpfi_srcptr value)
 	return mpfr_get_d(mpfi_is_neg(value) ? &value->right : &value->left, MPFR_RNDA);
 }
 
-static bool is_none(const struct through *t, const mpq_t *row)
+static bool is_none(const struct trajectory *t, const mpq_t *row)
 {
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, row, t->x, value);
-	return through_is_none(t, value, through_size(t, row));
+	trajectory_dot(t, row, t->x, value);
+	return trajectory_is_none(t, value, trajectory_size(t, row));
 }
 
-static double value_of(const struct through *t, const mpq_t *row)
+static double value_of(const struct trajectory *t, const mpq_t *row)
 {
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, row, t->x, value);
+	trajectory_dot(t, row, t->x, value);
 	return nearest(value);
 }
 
@@ -175,7 +176,7 @@ static void go_to(const contacts *m, instant *t, int expression, int interval)
 {
 	int now = interval_of(m, t, expression);
 	if (now != interval)
-		through_enter(t, t->region + (interval - now) * t->s->expression[expression].stride);
+		trajectory_enter(t, t->region + (interval - now) * t->s->expression[expression].stride);
 }
 
 static void renew(const contacts *m, instant *t)
@@ -213,8 +214,8 @@ static real depth(const contacts *m, const instant *t, int k, real *noise)
 {
 	const struct bound *b = &m->impact[k];
 	INTERVAL value = OVER_BITS(t->precision);
-	through_dot(t, b->place, t->x, value);
-	mpfi_sub_q(value, value, b->strike->at);
+	trajectory_dot(t, b->place, t->x, value);
+	mpfi_sub_q(value, value, b->impact_law->at);
 	*noise = 0;
 	return b->upward ? nearest(value) : -nearest(value);
 }
@@ -231,10 +232,10 @@ static real speed_of_met(const contacts *m, instant *t, int k)
 {
 	const struct bound *b = &m->impact[k];
 	const double speed = speed_of(m, t, k);
-	const bool still = rests(m, t, k) || (t->told->struck >> k & 1 && !(b->restitution > 0));
-	t->told->flies = false;
-	if (speed == 0 && !still && k != t->told->begins && value_of(t, b->speed) == 0 && !is_none(t, b->speed))
-		through_unknown(t, "whether what touches comes closer");
+	const bool still = rests(m, t, k) || (t->event_state->acted >> k & 1 && !(b->restitution > 0));
+	t->event_state->flies = false;
+	if (speed == 0 && !still && k != t->event_state->begins && value_of(t, b->speed) == 0 && !is_none(t, b->speed))
+		trajectory_unknown(t, "whether what touches comes closer");
 	return speed;
 }
 
@@ -246,31 +247,31 @@ static real least_speed(const contacts *m, const instant *t, real least)
 }
 
 /* All further bounces of what leaves with v and is pressed back by a: 2 v/(a (1 - e)) */
-static void note_flight(const struct through *t, const struct bound *b, mpfi_srcptr press)
+static void note_flight(const struct trajectory *t, const struct bound *b, mpfi_srcptr press)
 {
 	RATIONAL loss = ZERO;
-	t->told->bounces = b->restitution > 0;
+	t->event_state->bounces = b->restitution > 0;
 	mpq_set_ui(loss, 1, 1);
-	mpq_sub(loss, loss, b->strike->restitution);
-	through_dot(t, b->speed, t->x, t->told->flight);
-	mpfi_abs(t->told->flight, t->told->flight);
-	mpfi_div(t->told->flight, t->told->flight, press);
-	mpfi_mul_ui(t->told->flight, t->told->flight, 2);
+	mpq_sub(loss, loss, b->impact_law->restitution);
+	trajectory_dot(t, b->speed, t->x, t->event_state->flight);
+	mpfi_abs(t->event_state->flight, t->event_state->flight);
+	mpfi_div(t->event_state->flight, t->event_state->flight, press);
+	mpfi_mul_ui(t->event_state->flight, t->event_state->flight, 2);
 	if (mpq_sgn(loss) > 0)
-		mpfi_div_q(t->told->flight, t->told->flight, loss);
+		mpfi_div_q(t->event_state->flight, t->event_state->flight, loss);
 }
 
 /* Of no force, where it does not move, by where it is heading; of one that is not known, the most that it may be */
 static real press_of(const contacts *m, const instant *t, int k)
 {
 	const struct bound *b = &m->impact[k];
-	RATIONALS *row = through_times(t, b->speed, t->at->A);
+	RATIONALS *row = trajectory_times(t, b->speed, t->at->A);
 	INTERVAL press = OVER_BITS(t->precision);
 	bool known;
-	int sign = through_sign(t, row, NULL, &known);
-	through_dot(t, row, t->x, press);
-	t->told->flies = sign > 0;
-	t->told->doubtful = known ? -1 : k;
+	int sign = trajectory_sign(t, row, NULL, &known);
+	trajectory_dot(t, row, t->x, press);
+	t->event_state->flies = sign > 0;
+	t->event_state->doubtful = known ? -1 : k;
 	if (sign > 0)
 		note_flight(t, b, press);
 	if (sign != 0)
@@ -279,14 +280,14 @@ static real press_of(const contacts *m, const instant *t, int k)
 		return fmax(fabs(mpfr_get_d(&press->left, MPFR_RNDA)), fabs(mpfr_get_d(&press->right, MPFR_RNDA)));
 	if (!m->solution || value_of(t, b->speed) != 0)
 		return 0;
-	return through_heads(t, t->at, b->expression, true, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
+	return trajectory_heads(t, t->at, b->expression, true, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
 }
 
 /* The states of so many assignments, all from the same state */
-static void assign(struct through *t, int count, const struct jump *jump, mpq_t *const *row)
+static void assign(struct trajectory *t, int count, const struct jump *jump, mpq_t *const *row)
 {
 	for (int k = 0; k < count; k++)
-		through_dot(t, row[k], t->x, t->y[jump[k].state]);
+		trajectory_dot(t, row[k], t->x, t->y[jump[k].state]);
 	for (int k = 0; k < count; k++)
 		mpfi_set(t->x[jump[k].state], t->y[jump[k].state]);
 }
@@ -294,11 +295,11 @@ static void assign(struct through *t, int count, const struct jump *jump, mpq_t 
 static void jump(const contacts *m, instant *t, int k)
 {
 	const struct bound *b = &m->impact[k];
-	assign(t, b->strike->jumps, b->strike->jump, b->jump);
-	t->told->struck |= 1u << k;
-	t->told->begins = -1;
-	if (!m->solution && t->chain.impacts > MOST_STRUCK)
-		through_unknown(t, "whether what touches comes closer");
+	assign(t, b->impact_law->jumps, b->impact_law->jump, b->jump);
+	t->event_state->acted |= 1u << k;
+	t->event_state->begins = -1;
+	if (!m->solution && t->chain.impacts > MOST_IMPACTS)
+		trajectory_unknown(t, "whether what touches comes closer");
 }
 
 static void stop(const contacts *m, instant *t, int k)
@@ -306,11 +307,11 @@ static void stop(const contacts *m, instant *t, int k)
 	const struct bound *b = &m->impact[k];
 	if (b->rest < 0 || t->undecided)
 		return;
-	assign(t, b->strike->jumps, b->strike->still, b->still);
-	if (t->told->doubtful == k)
-		through_unknown(t, "whether what bounces comes to rest");
-	if (++t->told->swept > MOST_SWEPT)
-		through_unknown(t, "what impacts without end come to: so many are not followed");
+	assign(t, b->impact_law->jumps, b->impact_law->still, b->still);
+	if (t->event_state->doubtful == k)
+		trajectory_unknown(t, "whether what bounces comes to rest");
+	if (++t->event_state->swept > MOST_SWEPT)
+		trajectory_unknown(t, "what impacts without end come to: so many are not followed");
 }
 
 static void put_on(const contacts *m, instant *t, int k)
@@ -323,7 +324,7 @@ static void put_on(const contacts *m, instant *t, int k)
 static void keep(const contacts *m, instant *t)
 {
 	(void)m;
-	through_hold(t);
+	trajectory_hold(t);
 }
 
 /* An event is listed by its enclosed time, and what bounces on behind it by that of the last bounce. */
@@ -332,14 +333,14 @@ static int has_listed(const contacts *m, instant *t, int loses, real time, int e
 	(void)m;
 	(void)loses;
 	(void)time;
-	if (!t->told->off)
+	if (!t->event_state->off)
 		return 1;
-	through_note_plain(t, expression, breakpoint, upward, t->told->off);
-	if (t->told->flies) {
+	trajectory_note_plain(t, expression, breakpoint, upward, t->event_state->off);
+	if (t->event_state->flies) {
 		struct passed *last = &t->noted.list[t->noted.count - 1];
-		last->stands = t->told->bounces && mpfi_has_zero(t->told->flight);
-		mpfi_add(last->at, last->at, t->told->flight);
-		t->told->flies = false;
+		last->stands = t->event_state->bounces && mpfi_has_zero(t->event_state->flight);
+		mpfi_add(last->at, last->at, t->event_state->flight);
+		t->event_state->flies = false;
 	}
 	return 1;
 }
@@ -360,11 +361,11 @@ static void say(instant *t, int status)
 	if (t->undecided || status == 0)
 		return;
 	if (status == IN_DOUBT)
-		through_unknown(t, "what sticks and what slips");
+		trajectory_unknown(t, "what sticks and what slips");
 	else if (status == PL_UNDECIDED)
-		through_unknown(t, "what sticks: no combination of what sticks and what slips agrees");
+		trajectory_unknown(t, "what sticks: no combination of what sticks and what slips agrees");
 	else
-		through_unknown(t, "whether what touches comes closer");
+		trajectory_unknown(t, "whether what touches comes closer");
 }
 
 /* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
@@ -374,12 +375,12 @@ static void follow(const contacts *m, instant *t, int jumped)
 		const struct expression *x = &t->s->expression[e];
 		for (int way = 1; way;) {
 			const int interval = interval_of(m, t, e);
-			way = interval < x->breaks && through_side(t, e, x->at[interval]) > 0	  ? 1
-			      : interval > 0 && through_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
+			way = interval < x->breaks && trajectory_side(t, e, x->at[interval]) > 0	  ? 1
+			      : interval > 0 && trajectory_side(t, e, x->at[interval - 1]) < 0 ? -1 : 0;
 			if (way == 0 || (!jumped && is_stopped(m, t, e, way)))
 				break;
 			(void)has_listed(m, t, 1, t->time, e, interval - (way < 0), way > 0);
-			through_enter(t, t->region + way * x->stride);
+			trajectory_enter(t, t->region + way * x->stride);
 		}
 	}
 }
@@ -389,7 +390,7 @@ static void follow(const contacts *m, instant *t, int jumped)
 /* The side to which the guard that was met has let an expression go; 0: it has not */
 static int side_let_go(const instant *t, int expression)
 {
-	const struct guard *guard = t->told->met;
+	const struct guard *guard = t->event_state->met;
 	return !guard || !guard->release || guard->expression != expression ? 0 : guard->upward ? 1 : -1;
 }
 
@@ -404,7 +405,7 @@ static bool is_still(const contacts *m, const instant *t, int k)
 static bool is_there(const contacts *m, const instant *t, int expression, int impact)
 {
 	if (impact < 0) {
-		RATIONALS *row = through_row_of(t, t->s->expression[expression].row);
+		RATIONALS *row = trajectory_row_of(t, t->s->expression[expression].row);
 		return is_none(t, row);
 	}
 	return !(m->impact[impact].restitution > 0) && touches(m, t, impact) && is_still(m, t, impact);
@@ -426,7 +427,7 @@ static int find_resting(const contacts *m, const instant *t, resting *found)
 
 static int holds_in(const contacts *m, instant *t, int region, int expression)
 {
-	const struct area *area = through_area(t, region);
+	const struct area *area = trajectory_area(t, region);
 	(void)m;
 	for (int k = 0; k < area->guards; k++) {
 		const struct guard *guard = &area->guard[k];
@@ -435,9 +436,9 @@ static int holds_in(const contacts *m, instant *t, int region, int expression)
 			continue;
 		if (side_let_go(t, expression) == (guard->upward ? 1 : -1))
 			return 0;
-		int sign = through_sign(t, guard->row, guard->limit, &known);
+		int sign = trajectory_sign(t, guard->row, guard->limit, &known);
 		if (known && sign == 0)
-			sign = through_sign(t, guard->slope, NULL, &known);
+			sign = trajectory_sign(t, guard->slope, NULL, &known);
 		if (!known || sign > 0)
 			return !known;
 	}
@@ -447,9 +448,9 @@ static int holds_in(const contacts *m, instant *t, int region, int expression)
 static int heading_in(const contacts *m, instant *t, int region, const resting *one, int *known)
 {
 	const bool still = one->impact >= 0 && is_still(m, t, one->impact);
-	bool told;
-	const int way = through_heads(t, through_area(t, region), one->expression, still, &told);
-	*known = told;
+	bool event_state;
+	const int way = trajectory_heads(t, trajectory_area(t, region), one->expression, still, &event_state);
+	*known = event_state;
 	return way;
 }
 
@@ -463,15 +464,15 @@ static int is_freed(const contacts *m, const instant *t, int region, const resti
 static int is_pressed(const contacts *m, const instant *t, int k)
 {
 	bool known, any = false;
-	t->told->flies = false;
-	t->told->doubtful = -1;
+	t->event_state->flies = false;
+	t->event_state->doubtful = -1;
 	if (!m->solution)
-		t->told->together = true;
+		t->event_state->together = true;
 	for (int g = 0; g < t->at->guards; g++) {
 		const struct guard *guard = &t->at->guard[g];
 		if (!guard->release || guard->expression != m->impact[k].expression)
 			continue;
-		if (through_sign(t, guard->row, guard->limit, &known) >= 0)
+		if (trajectory_sign(t, guard->row, guard->limit, &known) >= 0)
 			return 0;
 		any = true;
 	}
@@ -481,15 +482,15 @@ static int is_pressed(const contacts *m, const instant *t, int k)
 /* ---- events ---- */
 
 /* guard: what was met, NULL: nothing; off: how far from base it may be, NULL: what changes is not listed */
-static const struct law *begin(struct through *t, const struct guard *guard, mpfr_srcptr off)
+static const struct law *begin(struct trajectory *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct law *m = law_of(t);
-	t->told->met = guard;
-	t->told->off = off;
-	t->told->struck = 0;
-	t->told->swept = 0;
-	t->told->begins = t->told->doubtful = -1;
-	t->told->flies = t->told->together = false;
+	t->event_state->met = guard;
+	t->event_state->off = off;
+	t->event_state->acted = 0;
+	t->event_state->swept = 0;
+	t->event_state->begins = t->event_state->doubtful = -1;
+	t->event_state->flies = t->event_state->together = false;
 	t->time = mpq_get_d(t->base);
 	t->before = t->region;
 	t->chain.all = 0;
@@ -498,61 +499,61 @@ static const struct law *begin(struct through *t, const struct guard *guard, mpf
 
 /* What is on its guard with a speed of 0, and rested there before or was struck without restitution, has the value 0
  * where it is, with its slope. */
-static void note_touching(const struct law *m, struct through *t)
+static void note_touching(const struct law *m, struct trajectory *t)
 {
 	for (int k = 0; k < m->impacts; k++) {
 		const struct bound *b = &m->impact[k];
 		const bool rested = b->rest >= 0 && interval_in(m, t->before, b->expression) == b->rest,
-			   struck = t->told->struck >> k & 1 && !(b->restitution > 0);
-		if (b->rest < 0 || !(rested || struck) || rests(m, t, k) || !touches(m, t, k) ||
+			   acted = t->event_state->acted >> k & 1 && !(b->restitution > 0);
+		if (b->rest < 0 || !(rested || acted) || rests(m, t, k) || !touches(m, t, k) ||
 		    fabs(speed_of(m, t, k)) > 0)
 			continue;
 		t->fresh.order[b->expression] = 2;
 		t->fresh.back[b->expression] = b->upward;
-		if (t->told->off)
-			mpfr_set(t->fresh.off, t->told->off, MPFR_RNDU);
+		if (t->event_state->off)
+			mpfr_set(t->fresh.off, t->event_state->off, MPFR_RNDU);
 		else
 			mpfr_set_zero(t->fresh.off, 1);
 	}
 }
 
-bool through_settle(struct through *t, const struct guard *guard, mpfr_srcptr off)
+bool trajectory_resolve(struct trajectory *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct law *m = begin(t, guard, off);
 	if (guard)
 		t->before -= guard->leads;
-	settle(m, t, guard != NULL);
+	resolve(m, t, guard != NULL);
 	note_touching(m, t);
-	return !t->undecided && through_slide(t, guard, off);
+	return !t->undecided && trajectory_slide(t, guard, off);
 }
 
-bool through_take_up(struct through *t, mpfr_srcptr off)
+bool trajectory_take_up(struct trajectory *t, mpfr_srcptr off)
 {
 	const struct law *m = begin(t, NULL, off);
 	follow(m, t, 1);
-	(void)collide(m, t, -1);
-	settle(m, t, 0);
+	(void)apply_impacts(m, t, -1);
+	resolve(m, t, 0);
 	keep(m, t);
 	note_touching(m, t);
-	return !t->undecided && through_slide(t, NULL, off);
+	return !t->undecided && trajectory_slide(t, NULL, off);
 }
 
-bool through_strike(struct through *t, const struct guard *guard, mpfr_srcptr off)
+bool trajectory_impact(struct trajectory *t, const struct guard *guard, mpfr_srcptr off)
 {
 	const struct law *m = begin(t, NULL, off);
 	bool known = stream_change(t->at->flow, NULL, off, t->x);
-	through_enter(t, t->region + (m->impact[guard->impact].rest >= 0 ? 0 : guard->leads));
-	t->told->begins = guard->impact;
-	const unsigned struck = collide(m, t, guard->impact);
+	trajectory_enter(t, t->region + (m->impact[guard->impact].rest >= 0 ? 0 : guard->leads));
+	t->event_state->begins = guard->impact;
+	const unsigned acted = apply_impacts(m, t, guard->impact);
 	known = known && stream_change(t->at->flow, NULL, off, t->x);
 	if (!known || t->undecided)
-		return t->undecided ? false : through_unknown(t, "when an impact is");
+		return t->undecided ? false : trajectory_unknown(t, "when an impact is");
 	follow(m, t, 0);
-	settle(m, t, 1);
-	come_to_rest(m, t, struck);
+	resolve(m, t, 1);
+	come_to_rest(m, t, acted);
 	keep(m, t);
-	if (t->told->together)
-		return through_unknown(t, "whether several come to rest together");
+	if (t->event_state->together)
+		return trajectory_unknown(t, "whether several come to rest together");
 	note_touching(m, t);
-	return !t->undecided && through_slide(t, NULL, off);
+	return !t->undecided && trajectory_slide(t, NULL, off);
 }

@@ -11,7 +11,7 @@
 /* ---- a piece ---- */
 
 /* The length of the piece that begins at base, up to `target` at most; whole: it is one of the grid */
-static void piece_at(struct through *t, mpq_srcptr target, mpq_ptr tau, bool *whole)
+static void piece_at(struct trajectory *t, mpq_srcptr target, mpq_ptr tau, bool *whole)
 {
 	mpq_srcptr d = t->at->flow->piece;
 	RATIONAL pieces = ZERO, end = ZERO;
@@ -29,29 +29,29 @@ static void piece_at(struct through *t, mpq_srcptr target, mpq_ptr tau, bool *wh
 	mpq_sub(tau, end, t->base);
 }
 
-static void keep(const struct through *t, const mpfi_t *from, mpfi_t *to)
+static void keep(const struct trajectory *t, const mpfi_t *from, mpfi_t *to)
 {
 	for (int i = 0; i < t->n; i++)
 		mpfi_set(to[i], from[i]);
 }
 
 /* A piece of the grid on: from where the grid was met, by as few products as the number of pieces has ones */
-static void step_on_grid(struct through *t, mpfi_t *y)
+static void step_on_grid(struct trajectory *t, mpfi_t *y)
 {
 	if (!t->grid.met) {
 		t->grid.met = true;
 		t->grid.pieces = 0;
-		keep(t, t->x, t->grid.slot[THROUGH_SLOTS]);
+		keep(t, t->x, t->grid.slot[TRAJECTORY_SLOTS]);
 	}
 	unsigned long next = t->grid.pieces + 1;
 	unsigned long from = next & (next - 1);
 	int power = __builtin_ctzl(next);
-	const mpfi_t *x = t->grid.slot[from ? __builtin_ctzl(from) : THROUGH_SLOTS];
+	const mpfi_t *x = t->grid.slot[from ? __builtin_ctzl(from) : TRAJECTORY_SLOTS];
 	stream_pieces(t->at->flow, power, x, y);
 	keep(t, y, t->grid.slot[power]);
 }
 
-static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
+static void arrive(struct trajectory *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
 {
 	keep(t, y, t->x);
 	mpq_add(t->base, t->base, tau);
@@ -61,10 +61,10 @@ static void arrive(struct through *t, mpq_srcptr tau, bool whole, const mpfi_t *
 		t->fresh.order[e] = 0;
 	t->grid.met = t->grid.met && whole;
 	if (!whole)
-		through_loads(t);
+		trajectory_loads(t);
 }
 
-static bool move(struct through *t, mpq_srcptr target)
+static bool move(struct trajectory *t, mpq_srcptr target)
 {
 	bool whole;
 	const struct guard *guard = NULL;
@@ -72,43 +72,43 @@ static bool move(struct through *t, mpq_srcptr target)
 	piece_at(t, target, tau, &whole);
 	if (whole) {
 		step_on_grid(t, t->y);
-		if (through_event_free(t, t->y, mpq_get_d(tau))) {
+		if (trajectory_event_free(t, t->y, mpq_get_d(tau))) {
 			arrive(t, tau, true, t->y);
 			return true;
 		}
 	}
 	INTERVAL at = OVER_BITS(t->precision);
 	int degree = stream_expand(t->at->flow, t->x, tau, &t->piece.room);
-	int found = through_first(t, degree, tau, &guard, at);
+	int found = trajectory_first(t, degree, tau, &guard, at);
 	if (found == 0 && !whole)
 		stream_sum(t->at->flow, &t->piece.room, degree, t->piece.one, t->y);
 	if (found == 0)
 		arrive(t, tau, whole, t->y);
-	return found == 0 || (found > 0 && through_pass(t, guard, degree, tau, at));
+	return found == 0 || (found > 0 && trajectory_pass(t, guard, degree, tau, at));
 }
 
 /* ---- changes of formula in time ---- */
 
-static bool next_segment(struct through *t)
+static bool next_segment(struct trajectory *t)
 {
 	t->when.segment++;
-	through_loads(t);
+	trajectory_loads(t);
 	t->grid.met = false;
 	if (t->s->segments == 1)
 		return true;
-	through_enter(t, t->region + regions_at_once(t->s));
+	trajectory_enter(t, t->region + regions_at_once(t->s));
 	t->noted.speed = 0;
 	REAL none = WITH_BITS(64);
 	mpfr_set_zero(none, 1);
-	return through_take_up(t, none);
+	return trajectory_take_up(t, none);
 }
 
-static bool changes_here(const struct through *t)
+static bool changes_here(const struct trajectory *t)
 {
 	return t->when.segment + 1 < t->when.segments && mpq_cmp(t->when.change[t->when.segment], t->base) <= 0;
 }
 
-bool through_reach(struct through *t, mpq_srcptr time)
+bool trajectory_reach(struct trajectory *t, mpq_srcptr time)
 {
 	bool known = !t->undecided;
 	while (known && changes_here(t))
@@ -125,7 +125,7 @@ bool through_reach(struct through *t, mpq_srcptr time)
 
 /* ---- the beginning and the end ---- */
 
-static void take_start(struct through *t, const mpq_t *initial)
+static void take_start(struct trajectory *t, const mpq_t *initial)
 {
 	bool rational = true;
 	mpq_t *exact = rationals(t->n);
@@ -149,11 +149,11 @@ static void take_start(struct through *t, const mpq_t *initial)
 	}
 	for (int i = 0; i < t->n; i++)
 		mpfi_set_q(t->x[i], exact[i]);
-	through_loads(t);
+	trajectory_loads(t);
 	t->exact = rational ? exact : NULL;
 }
 
-static void make_room(struct through *t)
+static void make_room(struct trajectory *t)
 {
 	const struct switching *s = t->s;
 	t->area = ARRAY(struct area, s->regions);
@@ -165,24 +165,24 @@ static void make_room(struct through *t)
 	t->fresh.back = ARRAY(bool, s->expressions);
 	t->x = enclosures(t->n, t->precision);
 	t->y = enclosures(t->n, t->precision);
-	for (int k = 0; k <= THROUGH_SLOTS; k++)
+	for (int k = 0; k <= TRAJECTORY_SLOTS; k++)
 		t->grid.slot[k] = enclosures(t->n, t->precision);
 	for (int k = 0; k < 2; k++)
 		t->piece.near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
 	t->piece.most = ARRAY(double, t->n);
 	mpq_init(t->base);
-	t->told = NEW(struct telling);
-	mpfi_init2(t->told->flight, t->precision);
+	t->event_state = NEW(struct event_state);
+	mpfi_init2(t->event_state->flight, t->precision);
 	mpfr_init2(t->fresh.off, 64);
 	mpfr_init2(t->fresh.most_off, 64);
 	mpfr_init2(t->piece.one, 2);
 	mpfr_set_ui(t->piece.one, 1, MPFR_RNDN);
 }
 
-struct through *through_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
+struct trajectory *trajectory_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
 			      int precision)
 {
-	struct through *t = NEW(struct through);
+	struct trajectory *t = NEW(struct trajectory);
 	t->whole = whole;
 	t->part = part;
 	t->model = part ? part->model : whole;
@@ -197,21 +197,21 @@ struct through *through_start(const struct model *whole, const struct region_par
 	take_start(t, initial);
 	while (t->when.segment + 1 < t->when.segments && mpq_sgn(t->when.change[t->when.segment]) <= 0)
 		t->when.segment++;
-	through_place(t);
+	trajectory_place(t);
 	return t;
 }
 
-const char *through_undecided(const struct through *t)
+const char *trajectory_undecided(const struct trajectory *t)
 {
 	return t->undecided;
 }
 
-void through_limit(struct through *t, int most)
+void trajectory_limit(struct trajectory *t, int most)
 {
 	t->noted.most = most;
 }
 
-int through_passed(const struct through *t, const struct passed **list)
+int trajectory_passed(const struct trajectory *t, const struct passed **list)
 {
 	*list = t->noted.list;
 	return t->noted.count;
@@ -224,7 +224,7 @@ static void free_room(int n, mpfi_t *x)
 	discard(x);
 }
 
-void through_free(struct through *t)
+void trajectory_free(struct trajectory *t)
 {
 	for (int k = 0; k < t->s->systems; k++)
 		if (t->flow[k])
@@ -233,14 +233,14 @@ void through_free(struct through *t)
 		mpfi_clear(t->piece.value[k]);
 		mpfi_clear(t->piece.slope[k]);
 	}
-	for (int k = 0; k <= THROUGH_SLOTS; k++)
+	for (int k = 0; k <= TRAJECTORY_SLOTS; k++)
 		free_room(t->n, t->grid.slot[k]);
 	for (int k = 0; k < t->noted.count; k++)
 		mpfi_clear(t->noted.list[k].at);
 	free_room(t->n, t->x);
 	free_room(t->n, t->y);
 	series_room_free(&t->piece.room);
-	mpfi_clear(t->told->flight);
+	mpfi_clear(t->event_state->flight);
 	mpfr_clears(t->piece.one, t->fresh.off, t->fresh.most_off, NULL);
 	mpq_clear(t->base);
 	discard(t);

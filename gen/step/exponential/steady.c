@@ -15,7 +15,7 @@ static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 		rational_addmul(X[i], by, Y[i]);
 }
 
-int settled_size(const struct model *model)
+int steady_size(const struct model *model)
 {
 	return 2 * model->n + 1 + 2 * model->remainder.split->waves;
 }
@@ -23,7 +23,7 @@ int settled_size(const struct model *model)
 /* Rows of the waves: (a + i w) (cos + i sin); their forces, as columns of the accelerations */
 static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 {
-	int n = model->n, size = settled_size(model);
+	int n = model->n, size = steady_size(model);
 	for (int k = 0; k < model->remainder.split->waves; k++) {
 		const struct wave_force *own = &model->remainder.split->wave[k];
 		int c = 2 * n + 1 + 2 * k, s = c + 1;
@@ -41,7 +41,7 @@ static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 /* A of [q, q', 1, waves], by the first operator and what it leaves over at the end */
 static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K)
 {
-	int n = model->n, size = settled_size(model), column;
+	int n = model->n, size = steady_size(model), column;
 	size_t cells = (size_t)n * (size_t)n;
 	const struct splitting *split = model->remainder.split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals(n) };
@@ -91,7 +91,7 @@ static void real_product(int rows, int inner, int columns, mpfr_t *X, mpfr_t *Y,
 static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct eigenpairs *pairs, mpfr_t *omega,
 			 bool back)
 {
-	int n = model->n, size = settled_size(model);
+	int n = model->n, size = steady_size(model);
 	mpfr_t *T = reals((size_t)size * (size_t)size, ENTRY_BITS);
 	REAL part = WITH_BITS(ENTRY_BITS);
 	for (int i = 0; i < n; i++)
@@ -113,10 +113,10 @@ static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct
 	return T;
 }
 
-mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
+mpfr_t *steady_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega)
 {
-	int size = settled_size(model);
+	int size = steady_size(model);
 	size_t cells = (size_t)size * (size_t)size;
 	struct taylor *taylor = taylor_of(size, last_matrix(model, M, C, K), model->h);
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of a way through crossings share. */
-#ifndef PLGEN_THROUGH_H
-#define PLGEN_THROUGH_H
+#ifndef PLGEN_TRAJECTORY_H
+#define PLGEN_TRAJECTORY_H
 
 #include "math/math.h"
 #include "model/linear/linear.h"
 
-struct telling;
+struct event_state;
 
 /* What so many bits do not tell apart is one: two instants, a force and its limit. */
-enum { THROUGH_SLOTS = 64, BITS_OF_ONE = 768 };
+enum { TRAJECTORY_SLOTS = 64, BITS_OF_ONE = 768 };
 struct near {                       /* x in double, and how far off it may be */
 	double *x, *off;
 };
@@ -31,12 +31,12 @@ struct area {                       /* a region as it is met */
 	int guards;
 	struct guard *guard;
 };
-struct through_grid {               /* of pieces, from where it was met: x after so many, by the lowest one of them */
+struct trajectory_grid {            /* of pieces, from where it was met: x after so many, by the lowest one of them */
 	bool met;
 	unsigned long pieces;
-	mpfi_t *slot[THROUGH_SLOTS + 1];
+	mpfi_t *slot[TRAJECTORY_SLOTS + 1];
 };
-struct through_piece {
+struct trajectory_piece {
 	struct series_room room;
 	int terms;
 	mpfi_t *value, *slope;      /* polynomials */
@@ -45,28 +45,28 @@ struct through_piece {
 	double *most;
 	int at_once;
 };
-struct through_fresh {              /* let go at base, but for so much [s]: 0 there with their first derivatives */
+struct trajectory_fresh {           /* let go at base, but for so much [s]: 0 there with their first derivatives */
 	int *order;                 /* per expression; 0: it was not */
 	bool *back;                 /* which way it would come back */
 	mpfr_t off, most_off;
 };
-struct through_time {
+struct trajectory_time {
 	int segments, segment;      /* of time */
 	const mpq_t *change;
 };
-struct through_list {               /* of crossings */
+struct trajectory_list {            /* of crossings */
 	int count, most;            /* most: 0: any number */
 	struct passed *list;
 	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
 };
-struct through {
+struct trajectory {
 	const struct model *whole, *model;
 	const struct region_part *part; /* NULL: both are one */
 	const struct switching *s;
 	const struct linear *system; /* the first: coordinates, loads and inputs are those of all */
 	int precision, n;           /* bits; entries of x */
 	struct layout layout;
-	struct through_time when;
+	struct trajectory_time when;
 	mpq_t **A;                  /* per system */
 	struct stream **flow;
 	double **growth;
@@ -76,44 +76,44 @@ struct through {
 	mpq_t base;                 /* [s] */
 	mpfi_t *x, *y;              /* x at that time, in the equations of `at` */
 	mpq_t *exact;               /* x at the start; NULL: it is not rational */
-	struct through_grid grid;
-	struct through_piece piece;
-	struct through_fresh fresh;
-	struct through_list noted;
-	/* Of struck.c: */
+	struct trajectory_grid grid;
+	struct trajectory_piece piece;
+	struct trajectory_fresh fresh;
+	struct trajectory_list noted;
+	/* Of impacts.c: */
 	double time;                /* base [s] */
 	int before;                 /* the region before what happens now */
 	pl_chain chain;
 	const struct law *law;      /* impacts of this segment of time; NULL: none yet */
-	struct telling *told;
+	struct event_state *event_state;
 	const char *undecided;
 };
 
 /* ---- areas.c: regions as they are met, loads at a time ---- */
 
-void through_row(const struct through *t, const struct output *output, mpq_t *row);     /* over x, now */
-void through_dot(const struct through *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum);
-mpq_t *through_times(const struct through *t, const mpq_t *row, const mpq_t *A);        /* row A */
-struct area *through_area(struct through *t, int region);
+void trajectory_row(const struct trajectory *t, const struct output *output, mpq_t *row); /* over x, now */
+void trajectory_dot(const struct trajectory *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum);
+mpq_t *trajectory_times(const struct trajectory *t, const mpq_t *row, const mpq_t *A);  /* row A */
+struct area *trajectory_area(struct trajectory *t, int region);
 /* Whether both let go at the same time, always: what slides with one velocity */
-bool through_meets(const struct through *t, const struct guard *one, const struct guard *other);
-void through_enter(struct through *t, int region);
-void through_loads(struct through *t);                       /* load states at base */
-const char *through_time(mpq_srcptr time);
-bool through_lost(struct through *t, const struct guard *guard, const char *what);     /* false: it is not known */
+bool trajectory_meets(const struct trajectory *t, const struct guard *one, const struct guard *other);
+void trajectory_enter(struct trajectory *t, int region);
+void trajectory_loads(struct trajectory *t);                 /* load states at base */
+const char *trajectory_time(mpq_srcptr time);
+bool trajectory_lost(struct trajectory *t, const struct guard *guard, const char *what); /* false: it is not known */
 
 /* ---- passes.c: the first event of a piece, and what is behind it ---- */
 
-bool through_event_free(struct through *t, const mpfi_t *y, double tau); /* nothing is met up to y, tau on */
+bool trajectory_event_free(struct trajectory *t, const mpfi_t *y, double tau); /* nothing is met up to y, tau on */
 /* In t->room, of that degree: 1: found; -1: not known; 0: none. at: s */
-int  through_first(struct through *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at);
-bool through_pass(struct through *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at);
+int  trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at);
+bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at);
 
 /* ---- noted.c: the list of crossings, and where expressions stand ---- */
 
 /* of e - at: 1 above, -1 below; 0: not told apart */
-int  through_side(const struct through *t, int expression, mpq_srcptr at);
-void through_note(struct through *t, const struct guard *guard, mpfr_srcptr off);
-void through_note_plain(struct through *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
+int  trajectory_side(const struct trajectory *t, int expression, mpq_srcptr at);
+void trajectory_note(struct trajectory *t, const struct guard *guard, mpfr_srcptr off);
+void trajectory_note_plain(struct trajectory *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
 
 #endif

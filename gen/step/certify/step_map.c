@@ -23,7 +23,8 @@ bool is_load_forced(const struct step *step, int column)
 	return step->forced && is_forced(step, column);
 }
 
-static void keep_states(const struct step *step, const struct step *exact, const struct output *output, struct kept *k)
+static void keep_states(const struct step *step, const struct step *exact, const struct output *output,
+			struct step_map *k)
 {
 	const struct table *table = exact->branch->whole;
 	const int n = k->n;
@@ -41,7 +42,7 @@ static void keep_states(const struct step *step, const struct step *exact, const
 	}
 }
 
-static void keep_modes(const struct step *exact, int o, struct kept *k)
+static void keep_modes(const struct step *exact, int o, struct step_map *k)
 {
 	const struct modal *modal = exact->modal;
 	const int n = k->n, pairs = modal->pairs;
@@ -101,7 +102,7 @@ static double largest_load(const struct wave_of_column *p, double end)
 }
 
 /* What the step leaves out is added where the state is read: it starts less that, and the output reads it. */
-static void keep_forced(const struct step *step, struct kept *k)
+static void keep_forced(const struct step *step, struct step_map *k)
 {
 	for (int i = 0; i < k->n; i++)
 		for (int c = 0; c < k->columns && step->forced; c++) {
@@ -115,7 +116,7 @@ static void keep_forced(const struct step *step, struct kept *k)
 
 /* ---- what goes into the kept map ---- */
 
-static void keep_output(const struct step *step, const struct output *output, struct kept *k)
+static void keep_output(const struct step *step, const struct output *output, struct step_map *k)
 {
 	const struct linear *system = &step->branch->system;
 	for (int l = 0, c = 0; l < system->loads; l++)
@@ -127,7 +128,7 @@ static void keep_output(const struct step *step, const struct output *output, st
 	}
 }
 
-static void bound_operands(const struct errors *e, struct kept *k)
+static void bound_operands(const struct errors *e, struct step_map *k)
 {
 	const struct linear *system = &e->step->branch->system;
 	const double end = mpq_get_d(e->r->until) + mpq_get_d(e->step->model->h);
@@ -139,7 +140,7 @@ static void bound_operands(const struct errors *e, struct kept *k)
 }
 
 /* In units in which the map is balanced */
-static void balance_kept(struct kept *k)
+static void balance_kept(struct step_map *k)
 {
 	balance_map(k->n, k->Phi, k->scale);
 	for (int i = 0; i < k->n; i++) {
@@ -152,11 +153,11 @@ static void balance_kept(struct kept *k)
 	}
 }
 
-struct kept *kept_of(const struct errors *e, const struct step *exact)
+struct step_map *step_map_of(const struct errors *e, const struct step *exact)
 {
 	const struct step *step = e->step;
 	const struct output *output = &step->model->output[e->r->output];
-	struct kept *k = NEW(struct kept);
+	struct step_map *k = NEW(struct step_map);
 	const size_t n = (size_t)step->branch->system.states;
 	k->n = (int)n;
 	k->columns = load_columns(&step->branch->system);
@@ -189,7 +190,7 @@ struct kept *kept_of(const struct errors *e, const struct step *exact)
 /* ---- how large states become ---- */
 
 /* The output less its inputs at sample m, loads z; row_size: sum of |row| */
-static double output_now(const struct kept *k, const double *x, const double *z)
+static double output_now(const struct step_map *k, const double *x, const double *z)
 {
 	double out = 0;
 	for (int i = 0; i < k->n; i++)
@@ -200,7 +201,7 @@ static double output_now(const struct kept *k, const double *x, const double *z)
 }
 
 /* How far that may be off: what the walk has rounded, and what reading it and the loads rounds */
-static double slack_of_output(const struct kept *k, const struct spread *spread, double largest)
+static double slack_of_output(const struct step_map *k, const struct spread *spread, double largest)
 {
 	double sum = 0, direct = 0;
 	for (int i = 0; i < k->n; i++)
@@ -212,7 +213,7 @@ static double slack_of_output(const struct kept *k, const struct spread *spread,
 
 /* From the start, inputs 0: sizes of the states; the largest and the last of the output; added to `trace`, where there
  * is one, at each sample */
-struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace)
+struct extent walk_loads(long steps, double h, const struct spread *spread, struct step_map *k, double *trace)
 {
 	const struct sparse Phi = sparse_of(k->n, k->n, k->Phi), load = sparse_of(k->n, k->columns, k->load);
 	SCRATCH double *x = ARRAY(double, k->n), *next = ARRAY(double, k->n), *z = ARRAY(double, k->columns);
@@ -248,7 +249,7 @@ struct extent walk_loads(long steps, double h, const struct spread *spread, stru
 }
 
 /* What inputs within their bounds can do to the states at most */
-static void add_inputs(const struct spread *spread, struct kept *k)
+static void add_inputs(const struct spread *spread, struct step_map *k)
 {
 	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n), *column = ARRAY(double, k->n);
 	for (int c = 0; c < k->inputs; c++) {
@@ -263,7 +264,7 @@ static void add_inputs(const struct spread *spread, struct kept *k)
 /* What a sample of an input does to the output m steps after it is given: to states by column `first` and on, one for
  * each tap, the last of which is the sample itself; sum of sizes over m < steps, of a sample in its bound. It is
  * attained: the signs of the samples may be any. Each is added to `trace`, where there is one. */
-double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first,
+double sum_of_input(const struct linear *system, long steps, const struct step_map *k, int input, int first,
 			   double *trace)
 {
 	const int taps = system->input[input].hold + 1, n = k->n;
@@ -290,7 +291,7 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 }
 
 /* What reads the slopes of inputs is bounded, not attained. */
-double slopes_of_inputs(const struct linear *system, const struct kept *k, double h)
+double slopes_of_inputs(const struct linear *system, const struct step_map *k, double h)
 {
 	double sum = 0;
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
@@ -299,7 +300,7 @@ double slopes_of_inputs(const struct linear *system, const struct kept *k, doubl
 }
 
 /* Of a lasting run, what is surely reached is so by its first samples. */
-struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k)
+struct extent extent_of_step_map(const struct step *step, long steps, const struct spread *spread, struct step_map *k)
 {
 	enum { HEAD = 20000 };
 	const struct linear *system = &step->branch->system;
@@ -509,19 +510,20 @@ bool make_course(const struct step *step, struct course *c)
 	static struct course followed;
 	static bool good;
 	const bool relative = step->model->relative != NULL;
-	size_t states = (size_t)step->branch->system.states, kept = relative ? 2 * states : states, rows = STEPS + 1;
+	size_t states = (size_t)step->branch->system.states, step_map = relative ? 2 * states : states,
+		rows = STEPS + 1;
 	struct layout place = layout_of(&step->branch->system, 0);
 	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_COURSE_STATES ||
 	    step->branch->system.segments > LIMIT_SEGMENTS)
 		return false;
 	if (last != step->model) {
 		followed = (struct course){ .steps = STEPS,
-					    .rows = (int)kept,
+					    .rows = (int)step_map,
 					    .written = relative ? rounded_rows(step->model) : NULL,
-					    .y = ARRAY(double, rows *kept),
+					    .y = ARRAY(double, rows *step_map),
 					    .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
 					    .segment = ARRAY(int, rows),
-					    .largest = ARRAY(double, kept) };
+					    .largest = ARRAY(double, step_map) };
 		good = follow(step, &place, &followed);
 		last = step->model;
 	}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What bounds of rounding share: the step as a map over the state as it is kept, in double, and the model's exact
  * course. */
-#ifndef PLGEN_KEPT_H
-#define PLGEN_KEPT_H
+#ifndef PLGEN_STEP_MAP_H
+#define PLGEN_STEP_MAP_H
 
 #include "base/base.h"
 
@@ -11,7 +11,7 @@ struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); with
 	bool turns, sine;
 	double a, w, p;
 };
-struct kept {                       /* the step over the state as it is kept: y+ = Phi y + load z + input u */
+struct step_map {                   /* the step over the state as it is kept: y+ = Phi y + load z + input u */
 	int n, columns, inputs;
 	double *Phi, *load, *input, *start;
 	double *row, *direct, *feed[2]; /* of the output: y; z; u and u' */
@@ -37,7 +37,7 @@ struct course {
 };
 struct errors {
 	const struct step *step;
-	const struct kept *kept;
+	const struct step_map *step_map;
 	const struct requirement *r;
 	long steps;
 	/* of rounding, relative; where numbers leave the range below, or what has decayed is set to rest */
@@ -49,7 +49,7 @@ struct errors {
 
 /* Followed in 320 bits, and how far errors reach in it; false: the model is too large, or leaves the range */
 bool make_course(const struct step *step, struct course *c);
-double written_factor(const struct course *c, int states, int written, int kept); /* of a state as written */
+double written_factor(const struct course *c, int states, int written, int step_map); /* of a state as written */
 
 /* ---- rounding.c ---- */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* strikes.h: watches, what is held beside a series, and what contacts.h asks of its impacts and of those at rest; for
- * the runtime's own use: by events.c. */
-#ifndef PLRT_STRIKES_H
-#define PLRT_STRIKES_H
+/* series_impacts.h: watches, what is held beside a series, and what contacts.h asks of its impacts and of those at
+ * rest; for the runtime's own use: by events.c. */
+#ifndef PLRT_SERIES_IMPACTS_H
+#define PLRT_SERIES_IMPACTS_H
 
 #include "columns.h"
 
@@ -419,7 +419,7 @@ static int agrees_one(const pl_events *m, const pl_instant *at, uint32_t held, c
         return side == beside ? 2 : 0;
     }
     /* Another impact has parted it; without one, a speed is what rounding has left. */
-    if (at->strike >= 0 && r->impact >= 0 && speed_of(m, at, r->impact) < 0) {
+    if (at->starting >= 0 && r->impact >= 0 && speed_of(m, at, r->impact) < 0) {
         return at->interval[r->expression] == free_of(m, r->impact) ? 2 : 0;
     }
     if (side == 0) {
