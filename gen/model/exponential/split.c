@@ -234,16 +234,16 @@ static void find_last_values(void *context)
 	struct collector *c = &w->b->collector;
 	struct splitting *s = w->split;
 	struct point *point = point_new(c, 0, NULL);
-	s->settles = loads_change(&w->b->model->system);
+	s->ends_steady = loads_change(&w->b->model->system);
 	for (int i = 0; i < s->functions; i++) {
 		const struct form *here = form_at(point, s->function[i].form);
 		mpq_init(s->function[i].last);
 		if (is_constant(here))
 			constant_value(c, here, s->function[i].last);
 		else
-			s->settles = false;
+			s->ends_steady = false;
 	}
-	s->settles = s->settles && s->rests == 0 && !has_contacts(w->b->model);
+	s->ends_steady = s->ends_steady && s->rests == 0 && !has_contacts(w->b->model);
 }
 
 static void find_course(struct split_work *w)
@@ -254,7 +254,7 @@ static void find_course(struct split_work *w)
 		s->unknown = first_unknown(s->function[i].form);
 	c->interval = w->b->model->system.segments - 1;
 	if (!silent_guard(find_last_values, w))
-		s->settles = false;
+		s->ends_steady = false;
 	c->interval = 0;
 }
 
