@@ -80,8 +80,8 @@
 #ifndef PL_JUMPS
 #define PL_JUMPS 0
 #endif
-#ifndef PL_KEPT
-#define PL_KEPT 0
+#ifndef PL_COMPENSATED
+#define PL_COMPENSATED 0
 #endif
 #ifndef PL_LARGEST
 #define PL_LARGEST 0

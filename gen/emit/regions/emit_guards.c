@@ -102,7 +102,7 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 	}
 	put_matrix(e, "value",
 		    format("The value that it is held at: x[held] = value . x%s",
-			   keeps_rest(e) ? "; second words behind the first ones" : ""),
+			   is_compensated(e) ? "; second words behind the first ones" : ""),
 		    count, size, value, note);
 }
 
@@ -119,7 +119,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 		   "assignments of its jump, and of that without restitution; restitution; amplitude of loads in its "
 		   "speed");
 	for (int i = 0; i < all; i++) {
-		const struct struck *impact = &g->impact[i];
+		const struct impact_row *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
 		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
 		    shortest(impact->amplitude));
@@ -152,23 +152,24 @@ void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 	emit_guard_rows(e, g);
 	emit_values(e, g);
 	emit_impacts(e, g);
-	if (e->model->params.retuned && e->model->switching->felts > 0)
-		emit_grips(e);
+	if (e->model->params.retuned && e->model->switching->transmitted_forces > 0)
+		emit_friction_forces(e);
 }
 
-void emit_grips(const struct emitter *e)
+void emit_friction_forces(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size;
-	double *grip = grips_of(e->step), **row = ARRAY(double *, (size_t)s->regions);
-	const char **name = ARRAY(const char *, (size_t)s->felts);
-	for (int i = 0; i < s->felts; i++) {
-		const struct node *node = s->felt[i]->node;
+	double *friction_force = friction_forces_of(e->step), **row = ARRAY(double *, (size_t)s->regions);
+	const char **name = ARRAY(const char *, (size_t)s->transmitted_forces);
+	for (int i = 0; i < s->transmitted_forces; i++) {
+		const struct node *node = s->transmitted[i]->node;
 		const char *text = text_between(node->start, node->end);
-		name[i] = s->felt[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
+		name[i] = s->transmitted[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
 	}
 	for (int r = 0; r < s->regions; r++)
-		row[r] = grip + r * s->felts * size;
-	put_matrices(e, "grips",
-		     "Friction force in each region: this row times x", s->regions, s->felts, size, row, name);
+		row[r] = friction_force + r * s->transmitted_forces * size;
+	put_matrices(e, "friction_forces",
+		     "Friction force in each region: this row times x", s->regions, s->transmitted_forces, size, row,
+		     name);
 }

@@ -57,14 +57,14 @@ static const char **names_of_rung(const struct emitter *e)
 	const char **all = ARRAY(const char *, 2 * (size_t)size + 1);
 	for (int i = 0; i < 2 * size; i++)
 		all[i] = name[i % size];
-	if (!keeps_rest(e))
+	if (!is_compensated(e))
 		all[size] = "what stays";
 	return all;
 }
 
 static int rows_of_rung(const struct emitter *e)
 {
-	return keeps_rest(e) ? 2 * e->step->layout.size : e->step->layout.size + 1;
+	return is_compensated(e) ? 2 * e->step->layout.size : e->step->layout.size + 1;
 }
 
 static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
@@ -76,7 +76,7 @@ static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 			rung[count++] = r < e->step->branch[k].rungs ? pieces->piece[k].rung[r] : none;
 	put_matrices(e, "rungs",
 		      format("Transfer matrices of pieces shorter than h, of the shortest first: e^{A d}%s",
-			     keeps_rest(e) ? " - I in two words" : ", less I where the last row has 1"),
+			     is_compensated(e) ? " - I in two words" : ", less I where the last row has 1"),
 		      count, rows, size, rung, names_of_rung(e));
 }
 

@@ -88,12 +88,12 @@ static void emit_shares(const struct emitter *part, const struct switching *whol
 static const char **names_of_rows(const struct emitter *part)
 {
 	const char **name = layout_names(&part->step->layout, part->system, part->model);
-	return keeps_rest(part) ? listed_twice(part->step->layout.size, name) : name;
+	return is_compensated(part) ? listed_twice(part->step->layout.size, name) : name;
 }
 
 static const char *note_of_slopes(const struct emitter *part)
 {
-	return keeps_rest(part) ? "A of the linear system, x' = A x in two words; x = states, load states, inputs"
+	return is_compensated(part) ? "A of the linear system, x' = A x in two words; x = states, load states, inputs"
 				: "A of the linear system, x' = A x; x = states, load states, inputs";
 }
 
@@ -111,9 +111,9 @@ static void emit_linear_tables(const struct emitter *part)
 	put_matrices(part, "slopes", note_of_slopes(part), branches, rows, size,
 		     of_branches(part, &pieces, OF_PIECE(slopes)), names_of_rows(part));
 	put_matrices(part, "pieces",
-		     keeps_rest(part) ? "Transfer matrix e^{A h} - I in two words" : "Transfer matrix e^{A h}",
+		     is_compensated(part) ? "Transfer matrix e^{A h} - I in two words" : "Transfer matrix e^{A h}",
 		     branches, rows, size,
-		     of_branches(part, &pieces, keeps_rest(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
+		     of_branches(part, &pieces, is_compensated(part) ? OF_PIECE(gain) : OF_PIECE(Phi)),
 		     names_of_rows(part));
 	put_wholes(part, false, "matrix", "Which linear system holds in each segment of time", s->segments, matrix);
 	put_wholes(part, false, "halvings",
@@ -333,7 +333,7 @@ static void emit_linear_step(const struct emitter *part)
 	enum { TERMS = 400 };
 	const double *whole = whole_step_of(part->step, 0);
 	struct summands size = { 0 };
-	if (regions_change(part) || keeps_rest(part))
+	if (regions_change(part) || is_compensated(part))
 		emit_linear_by_pieces(part);
 	else
 		(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);

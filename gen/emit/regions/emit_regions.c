@@ -121,7 +121,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 {
 	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
 	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
-	const bool rest = keeps_rest(e);
+	const bool rest = is_compensated(e);
 	const char *words = rest ? " in two words" : "";
 	if (rest)
 		entry = listed_twice(size, entry);
@@ -242,7 +242,7 @@ void emit_region_vector(const struct emitter *e, bool step)
 			say(e, "    x[%d] = %s;\n", layout->load[l] + k, operand ? operand : "1.0");
 		}
 	emit_inputs_in_x(e, step);
-	if (keeps_rest(e))
+	if (is_compensated(e))
 		emit_rests_in_x(e);
 }
 
@@ -250,7 +250,7 @@ void emit_region_vector(const struct emitter *e, bool step)
 static const char *room_text(const struct emitter *e)
 {
 	int size = e->step->layout.size, degree = e->step->series.degree, n = regions_of(e)->expressions;
-	const char *kept = keeps_rest(e) ? "KEPT_" : "";
+	const char *kept = is_compensated(e) ? "COMPENSATED_" : "";
 	return has_guards(e) ? format("PL_GUARDS_%sWORK(%d, %d)", kept, size, degree)
 			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, n, degree);
 }
@@ -290,7 +290,7 @@ static void emit_search_sizes(const struct emitter *e)
 	const struct switching *s = regions_of(e);
 	const bool divided = s->expressions > 0;
 	const struct size all[] = {
-		{ "KEPT", keeps_rest(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
+		{ "COMPENSATED", is_compensated(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
 		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
@@ -304,7 +304,8 @@ static void emit_search_sizes(const struct emitter *e)
 
 void emit_search(const struct emitter *e, const char *ladder)
 {
-	const char *search = format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", keeps_rest(e) ? "_kept" : "");
+	const char *search =
+		format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", is_compensated(e) ? "_compensated" : "");
 	begin_macros(e, "search.h", e->own);
 	emit_search_sizes(e);
 	say_macro(e, "STATES", own_states(e));
@@ -331,10 +332,10 @@ void declare_region_vector(const struct emitter *e)
 }
 
 /* What friction carries now */
-static void emit_grip(const struct emitter *e)
+static void emit_friction_force(const struct emitter *e)
 {
 	if (!e->model->params.retuned)
-		emit_grips(e);
+		emit_friction_forces(e);
 	open_function(e, NULL, "static double $n_grip(const $n *s, int which)");
 	say(e, "    double force;\n");
 	declare_region_vector(e);
@@ -342,7 +343,7 @@ static void emit_grip(const struct emitter *e)
 	emit_region_vector(e, false);
 	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"
 	       "    return force;\n", e->step->layout.size,
-	    e->model->params.retuned ? "s->coeffs.grips" : spell(e, "$o_grips"));
+	    e->model->params.retuned ? "s->coeffs.friction_forces" : spell(e, "$o_friction_forces"));
 	close_function(e, "");
 }
 
@@ -365,8 +366,8 @@ void emit_region_start(const struct emitter *e)
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
 	close_function(e, "");
-	if (regions_of(e)->felts > 0)
-		emit_grip(e);
+	if (regions_of(e)->transmitted_forces > 0)
+		emit_friction_force(e);
 }
 
 static void emit_region_status(const struct emitter *e)
