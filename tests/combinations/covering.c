@@ -140,7 +140,7 @@ static struct facts facts_of(const bool *row)
 			bool *const all = (bool *)((char *)&f + fact[k].place);
 			*all = *all || *own;
 		}
-	f.contacts = f.rubs || f.bounces;
+	f.contacts = f.has_dry_friction || f.bounces;
 	/* a scheme leaves over what is piecewise linear; from event to event loads are not left over */
 	f.left = f.left || (f.regions && f.approximates) || (f.recipe && !f.contacts);
 	f.regions = f.regions && !f.left;
