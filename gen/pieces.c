@@ -313,9 +313,11 @@ static bool serves(const struct runtime *r, const char *name)
 	int stem = (int)length - 2;
 	bool single = name[stem - 1] == 'f' && runtime_text(format("%.*s.c", stem - 1, name));
 	stem -= single;
-	bool kept = stem > 5 && strncmp(name + stem - 5, "_kept", 5) == 0;
-	bool both = kept || runtime_text(format("%.*s_kept.c", stem, name));
-	return single == r->single && (kept == r->kept || !both);
+	static const char suffix[] = "_compensated";
+	const int behind = (int)strlen(suffix);
+	bool compensated = stem > behind && strncmp(name + stem - behind, suffix, strlen(suffix)) == 0;
+	bool both = compensated || runtime_text(format("%.*s%s.c", stem, name, suffix));
+	return single == r->single && (compensated == r->kept || !both);
 }
 
 struct runtime *runtime_read(bool single, bool kept)

@@ -43,7 +43,7 @@ model()         # NAME OPTIONS: its text on standard input
 : > wrong
 printf "model qqq\ncoord x\ninput u\nx'' + x + 0.1*x' = u + t*exp(-t)*cos(t)\nstep 0.1\n" | model inputs '--rhs'
 printf "model qqq\ncoord x\nx'' + x = t < 3 ? cos(t) : 1\nstep 0.1\n" | model changes '--rhs --selftest'
-printf "model qqq\ncoord x\nx'' + x + x^3 = cos(t)\noperator at x = 0, 1\nstep 0.1\n" | model operator schedule --rhs
+printf "model qqq\ncoord x\nx'' + x + x^3 = cos(t)\noperator at x = 0, 1\nstep 0.1\n" | model operator --rhs
 printf "model qqq\ncoord x\nx'' + x + x^3 = cos(t)\nstep 0.1\n" | model nodes '--scheme nc3'
 printf "model qqq\ncoord x\ninput u\nx'' + x + max(x - 1, 0) = u\nstep 0.1\n" | model regions ''
 printf "model qqq\nparam k = 1\ntunable k\ncoord x\nx'' + k*x = cos(t)\noutput o = k*x\nstep 0.1\n" |
