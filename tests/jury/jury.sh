@@ -64,7 +64,7 @@ link() {
 # run_c NAME SCHEME: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
 run_c() {
 	# shellcheck disable=SC2086
-	"$PLGEN" --scheme "$2" --prefix judged $options "$here/$1.spec" >judged.c 2>log || return 2
+	"$PLGEN" --fast --scheme "$2" --prefix judged $options "$here/$1.spec" >judged.c 2>log || return 2
 	$run_cc -I"$root/runtime" -DMODEL=judged "$root/runtime/host/plmain.c" judged.c "$archive" -lm -o judged \
 		>>log 2>&1 && ./judged "$end" >rows.csv 2>>log
 }
