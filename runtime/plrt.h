@@ -1,36 +1,37 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* plrt.h: the runtime that every model made by plgen shares.
  *
- * Freestanding C99 (and C++17): no libm, no allocation, no recursion, no mutable globals, every loop bounded.
- * The caller owns all memory; nothing here fails, waits or prints.  Each piece stands alone, so the linker
- * takes only what a model uses:
+ * Freestanding C99 (and C++17): no libm, no allocation, no recursion, no mutable globals, every loop bounded.  The
+ * caller owns all memory; no function allocates, waits or prints.  The files are independent, so the linker takes only
+ * those that a model uses:
  *
- *     turns.c     phases as 128-bit fractions of a turn, and their cosine and sine
- *     growth.c    exponents of growing and decaying loads as 128-bit numbers, and their powers
- *     series.c    x(tau) for 0 <= tau <= h: NAME_at
- *     power.c     the state n steps on in log n time: NAME_jump
- *     until.c     the time to a change of the loads
- *     apply.c     matrices times vectors, and whether all is finite: schemes with a remainder
- *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
- *     guards.c    the same with dry friction and jumps: events that each region has its own of
+ *     turns.c        phases of loads as 128-bit fractions of a cycle, their cosine and sine
+ *     growth.c       exponents of growing and decaying loads as 128-bit numbers, their exponential envelopes
+ *     series.c       x(tau) for 0 <= tau <= h: NAME_at
+ *     power.c        the state after n steps in log n time: NAME_jump
+ *     until.c        the time until a load changes its formula
+ *     apply.c        matrices times vectors, and a test for finite numbers: schemes with a nonlinear remainder
+ *     crossings.c    steps of piecewise-linear models; every crossing of a breakpoint is found
+ *     guards.c       such steps with dry friction and impacts, whose events differ from region to region
  *     crossings_compensated.c, guards_compensated.c
- *                 the same with what rounding takes from the state kept: --accuracy compensated
- *     retune.c    coefficients of a step from other params: NAME_retune
- *     event_split.c       a part of a step: schemes with a remainder, from crossing to crossing
- *     rate.c      the rate of a load's phase from another frequency; phases that go on where one changes
- *     root.c      rough roots: the length of a step by its error
- *     dense.c     linear equations: Newton's method of implicit schemes
+ *                    such steps of a double-double state: --accuracy compensated
+ *     retune.c       coefficients of a step from other params: NAME_retune
+ *     event_split.c  event-split steps: schemes with a nonlinear remainder, from event to event
+ *     rate.c         the frequency of a load from other params; its phase stays continuous
+ *     root.c         n-th roots within 6 %, for step sizes from error estimates
+ *     dense.c        systems of linear equations, for Newton's method of implicit schemes
  *
- * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where
- * the others have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.  What is the same but for
- * the type stands in plreal.h, with names for double.
+ * turnsf.c, growthf.c, ... are these files for models in float, which use no double.  Their names have an f:
+ * pl_turnf_at is to pl_turn_at as sinf is to sin.  Declarations that differ by the type alone are in plreal.h, under
+ * the names for double.
  *
- * Compile it as the compiler comes: contraction to fused multiply-adds does no harm; flags that do are refused below.
- */
+ * Compile it with the compiler's default flags: contraction to fused multiply-adds is harmless, and flags that reorder
+ * sums are refused below.
+ * */
 #ifndef PLRT_H
 #define PLRT_H
 
-#ifdef PL_BUNDLED /* they define its types where they are not there yet */
+#ifdef PL_BUNDLED /* a bundle defines these types where they are not defined yet */
 #error "plrt.h, or a header that includes it, goes before headers of bundles (plgen --bundle)"
 #endif
 
@@ -43,7 +44,7 @@ extern "C" {
 
 /* ---- what the arithmetic needs of the compiler --------------------------------------------------------------- */
 
-/* y + (Phi - I) y as Phi y, or the error of a sum as 0: a compiler that takes additions for associative may read so. */
+/* A compiler that takes additions for associative may replace y + (Phi - I) y by Phi y, and the error of a sum by 0. */
 #if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || defined _M_FP_FAST
 #error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, \
 -funsafe-math-optimizations, -fassociative-math, -freciprocal-math, /fp:fast"
@@ -59,7 +60,7 @@ extern "C" {
 #define PL_ASSERT(condition, name, text) extern char name[(condition) ? 1 : -1] /* `name` says what `text` does */
 #endif
 
-/* What this points at is reached in no other way. */
+/* The object of such a pointer is reached through no other pointer. */
 #if defined __GNUC__ || defined _MSC_VER
 #define PL_RESTRICT __restrict
 #elif defined __cplusplus
@@ -91,13 +92,12 @@ PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number),
 /* Code for float defines this before: no constant such as 1.0 occurs there, so what becomes of it does not matter. */
 #ifndef PL_FLOAT_ONLY
 PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits,
-          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has "
-          "32 bits, make "
-          "models with --real float, and leave out the files of the runtime for double");
+          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 "
+          "bits, make models with --real float, and leave out the files of the runtime for double");
 #endif
 
-/* 1: sums are kept in more bits than a double, or a float, has, so rounding is not what two-word arithmetic takes it
- * for */
+/* 1: sums are evaluated with more bits than a double, or a float, has, so double-double arithmetic misjudges their
+ * rounding errors. */
 #ifdef __FLT_EVAL_METHOD__
 #define PL_EXCESS_PRECISION (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ > 64)
 #define PL_EXCESS_PRECISIONF (__FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16 && __FLT_EVAL_METHOD__ != 32)
@@ -260,22 +260,22 @@ enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
 
 /* ---- how functions and loops are compiled -------------------------------------------------------------------- */
 
-/* Of a function that is called rarely: apart from its caller, which is not to keep registers for it */
+/* A function that is called rarely stays out of line, so that its caller reserves no registers for it. */
 #ifdef __GNUC__
 #define PL_APART __attribute__((noinline))
 #else
 #define PL_APART
 #endif
 
-/* Of a function that is a part of its caller, in which its arguments are numbers */
+/* A function that is compiled into its caller, where some of its arguments are constants. */
 #ifdef __GNUC__
 #define PL_INLINE inline __attribute__((always_inline))
 #else
 #define PL_INLINE inline
 #endif
 
-/* Whether a sum is shorter and hardly slower as a call: code is to be small, or products of doubles are calls, too. A
- * function that is rare where that is not so, is written out where it is. */
+/* 1: a sum is shorter and hardly slower as a call, because code has to be small or products of doubles are calls too.
+ * PL_APART_HARD keeps rarely called functions out of line on other targets only. */
 #if defined __OPTIMIZE_SIZE__ || (defined __arm__ && !(defined __ARM_FP && (__ARM_FP & 8)))
 #define PL_SOFT 1
 #define PL_APART_HARD
@@ -284,7 +284,7 @@ enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
 #define PL_APART_HARD PL_APART
 #endif
 
-/* The loop that follows is of constant length, and is written out unless code is to be small. */
+/* The loop that follows has a constant length; it is unrolled unless code has to be small. */
 #if defined __OPTIMIZE_SIZE__
 #define PL_UNROLL
 #elif defined __clang__
@@ -295,7 +295,7 @@ enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
 #define PL_UNROLL
 #endif
 
-/* No array is empty. */
+/* The length of an array of n entries, at least 1, as C has no empty arrays. */
 #define PL_ROOM(n) ((n) > 0 ? (n) : 1)
 
 /* |a| */
@@ -316,77 +316,88 @@ static inline float pl_magnitudef(float a)
 #endif
 }
 
-/* ---- what the status of a model says: 0, or --------------------------------------------------------------------- */
+/* ---- status of a model ------------------------------------------------------------------------------------------- */
 
+/* NAME_status returns 0 or a sum of these bits. */
 enum {
-    PL_NOT_FINITE = 1,      /* a step has left the finite numbers: of linear models, while it shows in the state */
-    PL_TOO_MANY_EVENTS = 2, /* it has met more crossings, or needed more splits, than its bound: chatter, as a rule */
-    PL_TOO_MANY_STEPS = 4,  /* of steps by series: more substeps within h than allowed, and the state is the last good
-                             * one */
-    PL_INACCURATE = 8,      /* last terms above the tolerance */
-    PL_UNDECIDED = 16,      /* what is to stick and what is to slip at an event has no answer that holds: some that was
-                             * nearest was kept */
-    PL_LEFT_RANGE = 32,     /* at the end of a step a state was outside of the range that the spec gives it */
-    PL_PENETRATED = 64      /* a step has ended beyond the guard of a bounce, by more than rounding: its contact is
-                             * lost */
+    PL_NOT_FINITE = 1,      /* A state is infinite or not a number.  Linear models set it while that is so. */
+    PL_TOO_MANY_EVENTS = 2, /* A step exceeded its bound of crossings, or of halvings in the search: mostly chatter. */
+    PL_TOO_MANY_STEPS = 4,  /* A step of h needed more substeps than allowed; the state is the last accepted one. */
+    PL_INACCURATE = 8,      /* The last terms of a Taylor series were above the tolerance. */
+    PL_UNDECIDED = 16,      /* No combination of sticking and slipping met all conditions; the nearest was taken. */
+    PL_LEFT_RANGE = 32,     /* At the end of a step a state was outside the range that the spec gives it. */
+    PL_PENETRATED = 64      /* A step ended beyond a stop by more than rounding: that contact is lost. */
 };
 
-/* What NAME_retune says, beside PL_NOT_FINITE; the coefficients are then as they were */
+/* NAME_retune returns 0, PL_NOT_FINITE or one of these; unless it returns 0 the coefficients are unchanged. */
 enum {
-    PL_SINGULAR = 4, /* the mass matrix has no inverse, or a param that something is divided by is 0 */
-    PL_NO_STEP = 8,  /* the step is not above 0 */
-    PL_NO_RATE = 16, /* a load's frequency is below 0 */
-    /* of regions: breakpoints come in another order, or what decided about regions has another sign; a restitution is
-     * not within 0 and 1; a gap or a force of friction is below 0; a pole times h is above 2^30 */
+    PL_SINGULAR = 4, /* The mass matrix is singular, or a divisor is 0. */
+    PL_NO_STEP = 8,  /* The step is not above 0. */
+    PL_NO_RATE = 16, /* A load's frequency is below 0. */
+    /* Breakpoints are in another order, or a sign that the regions rest on has changed; a restitution is outside 0 to
+     * 1; a gap or a friction force is below 0; a pole times h is above 2^30. */
     PL_OUT_OF_RANGE = 32
 };
 
-/* ---- of what plreal.h has for doubles and floats, what both share ----------------------------------------------- */
+/* ---- types that the functions for double and for float share --------------------------------------------------- */
 
 enum { PL_ACCUMULATE_ADD = 11 };
 enum { PL_PEAK_SPACE = 6 };
 
-/* What a model's state keeps. */
+/* The number of entries of `work`, or `room`, that functions need for a model of this size. */
+#define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size))
+#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 5 * (size) + 5 * (switches))
+#define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
+#define PL_DIVIDED_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
+#define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
+#define PL_INCREMENT_WORK(size) (6 * (size) * (size))
+#define PL_REGION_WORK(size) (7 * (size) * (size))
+#define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
+#define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
+#define PL_EVENT_SPLIT_ROOM(size) (8 * (size) * (size))
+#define PL_EVENT_SPLIT_WORK(size) ((2 * (size) + 2) * (size))
+
+/* Region and events of a model, a part of its state. */
 typedef struct pl_contact {
-    uint64_t total; /* crossings since the start */
-    int crossings;  /* in the last step; the first max_events of them are listed */
-    int region;
-    int matrix;     /* in use: that of the region, or where it cannot occur that of the one before */
+    uint64_t total; /* number of crossings since the start */
+    int crossings;  /* number in the last step; the first max_events of them are listed */
+    int region;     /* number of the region */
+    int matrix;     /* number of its linear system; in a region that cannot occur, that of the region before */
     int status;     /* 0 or PL_TOO_MANY_EVENTS, sticky until the next start */
-    int rested;     /* contacts that came to rest by infinitely many bounces since the start */
+    int rested;     /* number of contacts that came to rest after infinitely many bounces, since the start */
 } pl_contact;
 
-/* Of pl_events: in an interval between equal breakpoints an expression is held there, by friction that sticks, by a
- * contact at rest. */
+/* A constraint of pl_events: in an interval between equal breakpoints a switching function is held there, by friction
+ * that sticks or by a contact at rest. */
 typedef struct pl_hold {
-    int expression, interval; /* held there */
-    int velocity;             /* a watch: kept at 0 */
-    int down, up;             /* watches: beyond 0 it is let go to the interval below, above; -1: it is not */
-    int impact;               /* whose contact rests; -1: friction sticks */
+    int expression, interval; /* number of the switching function, and the interval where it is held */
+    int velocity;             /* number of the watch that is held at 0 */
+    int down, up;             /* watches that release it to the interval below, above, once they exceed 0; -1: none */
+    int impact;               /* number of the impact whose contact rests; -1: friction sticks */
 } pl_hold;
 
-/* Holds that cannot be all at once, as bits.  Of friction of what a contact at rest holds: it brakes what presses
- * there, and while it does not stick slips to that side, 1 or -1 interval on, whatever its velocity is. */
+/* Constraints that exclude each other, as bits.  Friction on a body that a contact at rest holds brakes what presses
+ * there; while it does not stick it slips to that side, 1 or -1 interval on, whatever its velocity. */
 typedef struct pl_conflict {
     uint32_t set;
-    int hold, side; /* that friction; -1: it is others */
+    int hold, side; /* number of that friction and its side; hold -1: no such friction */
 } pl_conflict;
 
-/* Of pl_guards: a row that must not become greater than its limit; where it does, x jumps, and goes on in another
- * region. */
+/* A guard of pl_guards: where row . x rises above its limit x jumps, and goes on in another region. */
 typedef struct pl_guard {
-    int row;                              /* among those of guards */
-    int expression, breakpoint, upward;   /* as a crossing of it is listed */
-    int leads;                            /* to the region of this number, less that where it stands */
-    int impact;                           /* that begins there, by its number; -1: none */
+    int row;                              /* number of its guard function */
+    int expression, breakpoint, upward;   /* how its crossing is listed */
+    int leads;                            /* number of the region behind it less that of the region before */
+    int impact;                           /* number of the impact that begins there; -1: none */
 } pl_guard;
 
-/* Bounces that would all be over within this part of h come to rest: their number is infinite, their time is not. */
+/* Bounces that would all end within this fraction of h come to rest: there are infinitely many in a finite time. */
 #define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
 
-/* What is done to two numbers, to make the next one.  Numbers are counted: params first, then constants, then what was
- * made so far. */
+/* An operation on numbers a and b, whose result is the next number.  Params are numbered first, then constants, then
+ * results in their order. */
 enum { PL_SUM, PL_DIFFERENCE, PL_PRODUCT, PL_QUOTIENT };
 typedef struct pl_operation {
     unsigned short what, a, b;
@@ -397,8 +408,8 @@ typedef struct pl_place {
     unsigned short row, column, number, negative;
 } pl_place;
 
-/* The shape of the two descriptors below.  A program that loads models compiled apart from it looks at the first two
- * entries before it reads any other: they stay where they are, whatever comes. */
+/* The version of the two descriptors pl_model and pl_modelf.  A program that loads models compiled elsewhere checks the
+ * first two entries before it reads any other; these two never move. */
 enum { PL_MODEL_VERSION = 2 };
 
 #define PL_REAL double
@@ -410,11 +421,11 @@ enum { PL_MODEL_VERSION = 2 };
 #include "doubles.h"
 #undef PL_REAL
 
-/* As pl_guards_advance, but h sooner where it is sure that no guard is met: chord_error has 8 units in the last place
- * of |guard_row| + 3 |guard_tangent| more, for what rounding may hide where the step begins. */
+/* The same as pl_guards_advance over h, faster in an event-free step.  Its chord_error is larger by 8 units in the last
+ * place of |guard_row| + 3 |guard_tangent|, to cover rounding at the start of the step. */
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
-/* None: w has been the same since t = 0. */
+/* Sets no lead: w has been the same since t = 0. */
 static inline void pl_lead_start(pl_lead *lead)
 {
     lead->turn.hi = lead->turn.lo = 0;
