@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* access.h: init, set, get, time, status and hold: a state as it is given and as it is kept.  Included by the file of
- * the model, which defines before it
+/* access.h: NAME_init, NAME_set, NAME_get, NAME_time, NAME_status and NAME_hold, which convert between states of the
+ * spec and of the step.  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with members y, t0, k, with a status status, with low words rest or carry
  *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set

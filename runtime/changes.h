@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* changes.h: a linear model over part of a step: x' = A x by Taylor's series, x being the states and what acts on
- * them; from change to change where loads change their formula, or of independent blocks one after the other.
- * Included by the file of the model, which defines before it
+/* changes.h: a linear model over part of a step: x' = A x by Taylor's series, x being the states, load states and
+ * inputs; split where loads change their formula, and block by block where blocks are independent. Included by the file
+ * of the model, which defines before it
  *
  *     PL_TYPE                    the model, with member segment
  *     PL_STATES, PL_SIZE         the states; length of x

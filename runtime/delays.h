@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* delays.h: a model whose inputs act later than they are given: around its core, which has the delayed ones as inputs
- * of their own, what keeps the samples.  Included by the file of the model, which defines before it
+/* delays.h: delayed inputs: it stores samples of the inputs, and gives the core, whose further inputs are the delayed
+ * ones, those of the past.  Included by the file of the model, which defines before it
  *
  *     PL(name), PL_CORE(name)    the prefix of the model and of its core before a name
  *     PL_TYPE                    the model, with members core, past[PL_INPUTS][PL_RING], newest, and with ramps ends

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* descriptor.h: NAME_model, the table by which programs drive any model: names, sizes and functions.  Included by the
+/* descriptor.h: NAME_model, the table of names, sizes and functions by which a program runs any model.  Included by the
  * file of the model, which defines before it
  *
  *     PL_TYPE, PL_NAME           the model; its name in quotes

@@ -16,7 +16,7 @@
  *     PL(passing)                a pl_divided of cubics of each
  *     PL(slope_matrix)[][][]     of each segment: A [1/s], x' = A x where no force changes but by its derivatives
  *     PL(acting)(s, start, slope, tau, acting)       what acts, tau [s] after now
- *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      what is left over
+ *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      the remainder
  *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of all that is watched the value and
  *                                h times the slope; the sizes of the terms of the value
  *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme; PL_IN_MODES: of normal.h

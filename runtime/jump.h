@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* jump.h: NAME_jump, many steps at once, by powers of the transfer matrix in double-double, from change to change of
- * the loads.  Included by the file of the model, which defines before it
+/* jump.h: NAME_jump, many steps at once, by powers of the transfer matrix in double-double, split where loads change
+ * their formula.  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with members y, with segments segment, with low words rest or carry
  *     PL_STATES, PL_LOAD_STATES  the states; the load states that a step reads

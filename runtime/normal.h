@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* normal.h: steps in normal modes: exact in what each mode does by itself, and under known loads; other forces on the
- * modes are polynomials in time, through forces at the ends of past steps (exponential Adams methods: predict,
- * evaluate, correct; Hochbruck and Ostermann, Acta Numerica 2010, section 2.5), or through those at Lobatto nodes of
- * the step, found by sweeps (exponential collocation; section 2.2).  Included by the file of the model, which defines
- * before it
+/* normal.h: steps in normal modes: each mode by itself is exact, under known loads too; other modal forces are
+ * polynomials in time, through the forces at the ends of past steps (exponential Adams methods: predict, evaluate,
+ * correct; Hochbruck and Ostermann, Acta Numerica 2010, section 2.5), or through those at Lobatto nodes of the step,
+ * found by sweeps (exponential collocation; section 2.2).  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with members y, k, eta[PL_WIDTH], rate[PL_WIDTH], status, which, known, and
  *                                force[][PL_WIDTH], past[][2][PL_WIDTH], f[][PL_FUNCTIONS] of points or else nodes; of
@@ -28,7 +27,7 @@
  *     PL(waves)(s, wave)                 values of known loads now
  * PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in event_split.h PL(on_modes)(which, left, force):
  * those
- *                                of what is left over
+ *                                of the remainder
  *     PL(modes_of)(which, q, mode), PL(of_modes)(which, mode, q)   modes of coordinates, and back
  *     PL(node_modes)(s, which, node, force, wave, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
  *     PL(forces_ahead)(s, force)         of collocation: those at the nodes that go on from the step before

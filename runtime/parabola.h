@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* parabola.h: states inside a step of a scheme whose remainders are those of points in it: what is exact goes on under
- * the parabola through what is left over at both ends and in the middle, where the state is that under the chord.  Off
- * by the fourth power of h, as a step of the fourth order is over all, times the third derivative of what is left over;
- * what it misses at the end of the step is taken back by the cube of the time, so that values meet those of the steps.
- * Included by the file of the model behind its step, which defines before it
+/* parabola.h: NAME_at of a scheme with a nonlinear remainder: the linear part is exact under a parabola in time through
+ * the remainder at both ends and in the middle of the step.  Off by the fourth power of h, as a step of the fourth
+ * order is over all, times the third derivative of the remainder; what it misses at the end of the step is taken back
+ * by the cube of the time, so that values meet those of the steps. Included by the file of the model behind its step,
+ * which defines before it
  *
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_FORCE_COLUMN on of each of
@@ -14,7 +14,7 @@
  *
  *     PL(vector_now)(s, u, x)              x at the start of the step, nothing left over
  *     PL(go_on)(s, which, tau, x)          e^{A tau} x
- *     PL(left_at)(s, which, point, u, y, left)   what is left over at state y */
+ *     PL(left_at)(s, which, point, u, y, left)   the remainder at state y */
 #include "numbers.h"
 
 /* x, part of h after now, of remainders at 0, 1/2 and 1 h */

@@ -190,8 +190,7 @@ void pl_switching_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_con
                           PL_REAL *work);
 
 /* The same functions for a double-double x: `size` high parts, then as many low parts.  m->A, m->Phi and the rungs,
- * here e^{A d} - I, are double-double too: of each matrix size x size high parts, then as many low parts.  Crossings
- * are those of the high parts. */
+ * here e^{A d} - I, are double-double too: of each matrix size x size high parts, then as many low parts. */
 void pl_switching_compensated_start(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_switching_compensated_step(const pl_switching *m, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                                    PL_REAL *work);

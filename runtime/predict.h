@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* predict.h: predictors of a quadrature: a step of Runge and Kutta of fourth order in y' = A y + B r, r what is left
- * over, the part of loads and inputs exact.  Included by the file of the model, which defines before it
+/* predict.h: predictors of a quadrature: a Runge-Kutta step of fourth order for y' = A y + B r, r being the nonlinear
+ * remainder; loads and inputs act exactly.  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_FORCES       states; forces that are left over

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* radau.h: steps by Radau IIA collocation (Hairer and Wanner 1996, IV.8), as long as a tolerance lets them be: several
- * h, whose states the polynomial gives, or a part of h.  Unknown are the highest derivatives k of the coordinates at
- * the nodes.  Included by the file of each model, which defines before it, and has no more of it behind:
+/* radau.h: steps by Radau IIA collocation (Hairer and Wanner 1996, IV.8), as long as a tolerance allows: several h, at
+ * which its polynomial is evaluated, or a part of h.  Unknown are the highest derivatives k of the coordinates at the
+ * nodes.  Included by the file of each model, which defines before it, and has no more of it behind:
  *
  *     PL(name), PL_TYPE          the model's prefix before a name; its type, with the members start, poly, gain, at,
  *                                at_low, size, per, want, scale, unit, back, stop, ready beside y, rest, t0, k, status

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* retune.h: a linear step from other params: NAME_retune, NAME_use, and the state at any time.  Independent block by
+/* retune.h: coefficients of a linear step from other params: NAME_retune, NAME_use, and NAME_at.  Independent block by
  * independent block of the model, each as large as it is, in groups of one shape whose factors an instance has in one
  * table.  Included by the model's file, which defines before it
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* run.h: NAME_run, many steps in one call; states so small that they would be denormal are set to 0.  Included by the
- * file of the model, which defines before it
+/* run.h: NAME_run, many steps in one call; it sets states to 0 that are so small that they would become denormal.
+ * Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with members y, k
  *     PL_INSIDE                  1: a series serves several steps: members served, valid, PL(inside)(s)

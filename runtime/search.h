@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* search.h: events of a piecewise-linear model: the region of a state, and a step from event to event, by crossings.c,
- * where something sticks, slips or bounces by guards.c; within a step also from change to change of loads that change
- * their formula in time.  There the number of a region in pl_contact has its segment of
- * time as the last interval, so that a change goes to the region with the same intervals in the next segment; what has
- * left its interval by that, the search finds at the start of the stretch.
+ * or with friction and impacts by guards.c; a step is also split where loads change their formula.  There the number of
+ * a region in pl_contact has its segment of time as the last interval, so that a change goes to the region with the
+ * same intervals in the next segment; what has left its interval by that, the search finds at the start of the stretch.
  *
  * Included by the file of the model behind its tables, for each of its independent parts, which defines before it
  *

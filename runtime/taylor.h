@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* taylor.h: steps by the Taylor series of the solution, of fixed order or as long as a tolerance lets it be: one that
- * serves several steps is summed; one that does not serve a whole step is made anew on the way.  Included by the file
- * of each model, which defines before it what reach.h asks, where there is a tolerance, and
+/* taylor.h: steps by the Taylor series of the solution, of fixed order or as long as a tolerance allows: a series may
+ * serve several steps of h, or a part of one, after which it is expanded again.  Included by the file of each model,
+ * which defines before it what reach.h asks, where there is a tolerance, and
  *
  *     PL_TYPE                    with members y, rest, t0, k, status, and by what follows
  *     PL_ADAPTIVE                a tolerance says how long a series serves: series, base, next, left, served, valid,

@@ -10,7 +10,7 @@
  *     gave up       the method said so, or wanted more right-hand sides than most_evaluations
  *     refused       it cannot be set up for this model; of ours: plgen says so
  *     linear only   it is for linear models
- *     as exact      nothing is left over for this scheme: it is the exact step
+ *     as exact      there is no remainder for this scheme: it is the exact step
  *
  * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared
  * object of variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the

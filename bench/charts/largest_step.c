@@ -157,7 +157,7 @@ static void linear_model(FILE *csv, const struct problem *p)
 	free_entry(csv, &(struct free_subject){&motion, NULL, "flow"}, fastest, "exact");
 	free_entry(csv, &(struct free_subject){&motion, NULL, "pl"}, fastest, "pl");
 	for (int k = 0; k < REMAINDER_SCHEMES; k++)
-		entry(csv, p->name, remainder_schemes[k], "any", "", "nothing is left over: as exact");
+		entry(csv, p->name, remainder_schemes[k], "any", "", "there is no remainder: as exact");
 }
 
 /* ---- histories ---- */

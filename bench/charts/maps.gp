@@ -74,7 +74,7 @@ do for [form=1:forms] {
 	set origin 0.75, 0.0; set size 0.25, 0.45
 	eval legend_only
 	array said = ["Colour: the amplitude's change", 'within one true period 2π/w', \
-		'dots: from damped to growing or back', 'wA/w = 1: nothing is left over, exact']
+		'dots: from damped to growing or back', 'wA/w = 1: there is no remainder, exact']
 	do for [k=1:4] { set label 10 + k said[k] at screen 0.752,0.450 - 0.025*k font ',9' textcolor rgb '#202020' }
 	set colorbox vertical user origin 0.80,0.035 size 0.03,0.285
 	unset cblabel

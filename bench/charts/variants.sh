@@ -85,7 +85,7 @@ energy() {
 	done
 }
 
-# case_of CASE METHOD STEP SPEC [plgen options]: of hard; SPEC -: nothing is left over for that scheme. With
+# case_of CASE METHOD STEP SPEC [plgen options]: of hard; SPEC -: there is no remainder for that scheme. With
 # CHARTS_PROBLEMS in the environment the cases alone
 case_of() {
 	of=$1 method=$2 step=$3 spec=$4

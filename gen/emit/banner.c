@@ -110,7 +110,7 @@ void banner_linear(const struct emitter *e)
 		say(e, " * %s is approximated; each constant is its closed form, correctly rounded.\n",
 		    e->model->shortened                ? "Scheme exact: modes are dropped, nothing else"
 		    : e->model->scheme == SCHEME_EXACT ? "Scheme exact: nothing"
-						       : "Nothing is left over: nothing");
+						       : "There is no remainder: nothing");
 	if (e->model->shortened)
 		banner_shortening(e);
 	banner_growth(e);
@@ -267,7 +267,7 @@ void banner_collocated(const struct emitter *e)
 	tell_no_phi(e);
 }
 
-/* The modes, what is left over in them, how a step goes */
+/* The modes, the remainder in them, how a step goes */
 void banner_normal(const struct emitter *e)
 {
 	const struct normal *m = e->step->normal;
@@ -518,6 +518,20 @@ static void banner_state(const struct emitter *e)
 		    e->model->written->system.states);
 }
 
+/* What --fast would try: blocks of rows for a linear model, rotated phasors for loads that are not polynomials */
+static void banner_fast(const struct emitter *e)
+{
+	const struct request *asked = &e->model->asked;
+	bool rows = !asked->rows && !asked->single && is_linear_alone(e->step) && !e->step->is.tuned &&
+		    !step_objection(e->step, CAN_ROWS);
+	bool phasors = !asked->refresh && !e->step->refresh && e->step->program->wave_multiplications &&
+		       !step_objection(e->step, CAN_REFRESH);
+	if (!asked->fast && !asked->phasors && (rows || phasors))
+		say(e, " * For long runs plgen --fast adds tables where they pay:%s%s%s.\n",
+		    rows ? " outputs by blocks of rows" : "", rows && phasors ? "," : "",
+		    phasors ? " rotated phasors of the loads" : "");
+}
+
 /* How NAME_run goes, where it has a choice */
 static void banner_run(const struct emitter *e)
 {
@@ -529,6 +543,7 @@ static void banner_run(const struct emitter *e)
 		say(e, " * $n_run takes %d rows at a time, those of an expansion.\n", e->model->truncation.over);
 	else if (e->step->no.rows)
 		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no.rows);
+	banner_fast(e);
 }
 
 /* Functions that there are not, and why; what one of them needs */
@@ -543,7 +558,7 @@ static void banner_functions(const struct emitter *e)
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);
 	else if (e->step->layout.powers == PARABOLA)
-		banner_sentence(e, "%s", spell(e, "$n_at is of fourth order: a parabola through what is left over at "
+		banner_sentence(e, "%s", spell(e, "$n_at is of fourth order: a parabola through the remainder at "
 						  "both ends and in the middle."));
 }
 

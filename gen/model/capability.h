@@ -10,11 +10,11 @@
 enum { MOST_ROW_LOADS = 16 };       /* each column takes numbers of its own to build, powers of t large ones */
 
 enum flow {                         /* how a state goes on, without events */
-	FLOW_LINEAR,                /* e^{A tau}: nothing is left over */
+	FLOW_LINEAR,                /* e^{A tau}: there is no remainder */
 	FLOW_RECIPE,                /* a list of actions on stages and remainders */
 	FLOW_SERIES,                /* the Taylor series of the solution */
 	FLOW_COLLOCATION,           /* polynomials that solve the equations at nodes; beside them a series, or none */
-	FLOW_NORMAL                 /* normal modes, and what is left over as forces on them */
+	FLOW_NORMAL                 /* normal modes, and the remainder as forces on them */
 };
 enum flow flow_of(const struct model *model);
 struct descriptor {                 /* what a step is made of, as its model says */

@@ -33,7 +33,7 @@ struct model_contacts {             /* of regions and of other schemes: gen/mode
 };
 struct model_params {               /* tunable ones: gen/model/tunable */
 	const struct tuning *tuning; /* and how linear equations follow from them; NULL: there are none */
-	/* the instance has them: what is left over and outputs read them, or they act like held inputs */
+	/* the instance has them: the remainder and outputs read them, or they act like held inputs */
 	bool kept;
 	struct leads leads;         /* what the instance has behind them */
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */

@@ -356,7 +356,7 @@ void build_outputs(struct building *b)
 	struct model *model = b->model;
 	struct linear *system = &model->system;
 	mpq_t *inverse = inverse_of_leading(system), *highest = rationals((size_t)(model->n * system->states));
-	/* what is left over is left by this one */
+	/* the remainder is left by this one */
 	struct linear first = model->schedule.operators ? operator_system(model, 0) : *system;
 	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);

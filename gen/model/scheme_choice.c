@@ -323,7 +323,7 @@ static void keep_loads(struct building *b, const char *why)
 	b->request = request;
 }
 
-/* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
+/* Exact where there is no remainder and no scheme was asked for; the equations for all time where something is. */
 static bool choose_scheme(struct building *b)
 {
 	struct model *model = b->model;

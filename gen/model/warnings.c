@@ -319,7 +319,7 @@ static void check_softness(struct jacobian *j)
 	if (worst.here <= worst.operator)
 		return;
 	say_warning(b->spec->operators.given ? b->spec->operators.at : scheme_place(b),
-		    format("what is left over then drives the motion%s; fix the operator where the model is stiffest",
+		    format("the remainder then drives the motion%s; fix the operator where the model is stiffest",
 			   growth_text(model, worst.here - worst.operator)),
 		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the "
 		    "operator's %.4g",
@@ -383,7 +383,7 @@ static void check_need(const struct building *b, bool left)
 				    ? format("that of scheme %s is each coordinate's own terms", scheme->name)
 			    : scheme->collocates ? format("scheme %s takes the whole right side as it is", scheme->name)
 			    : scheme->expands ? format("scheme %s expands the whole right side", scheme->name)
-					      : "nothing is left over");
+					      : "there is no remainder");
 	if (left && !model->remainder.loads)
 		return;
 	if (scheme->holds_coupling && !model->remainder.loads)

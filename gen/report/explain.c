@@ -181,7 +181,7 @@ static void person_step(FILE *to, const struct step *step)
 	else if (step->taylor.expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
 	else if (step->layout.powers == PARABOLA)
-		fprintf(to, "%s_at: what is exact under a parabola through what is left over, of fourth order in h.\n",
+		fprintf(to, "%s_at: what is exact under a parabola through the remainder, of fourth order in h.\n",
 			model->name);
 	else if (step->normal)
 		fprintf(to, "%s_at: the step's modes under the polynomial of its forces, by series of %d terms.\n",

@@ -70,9 +70,9 @@ struct step {                       /* everything that is emitted for one model 
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	/* what users see of tables: over the states as written; itself, where those are stepped */
 	const struct step *shown;
-	int branches;               /* 1 where nothing is left over */
+	int branches;               /* 1 where there is no remainder */
 	struct branch *branch;
-	int tables;                 /* of each; 1 where nothing is left over */
+	int tables;                 /* of each; 1 where there is no remainder */
 	struct program *program;
 	enum step_form form;        /* any but FORM_AUTO */
 	struct linear_step linear;

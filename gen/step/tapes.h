@@ -20,7 +20,7 @@ enum linear_table {
 	TABLE_FACTOR,               /* of load states that change their formula: state x column */
 	TABLE_DIRECT,               /* likewise of outputs: place of an output x column */
 	TABLE_FORCED,               /* likewise of what the step leaves out: state x column */
-	TABLE_LEFT,                 /* what is left over: force column */
+	TABLE_LEFT,                 /* the remainder: force column */
 	TABLE_SEEN,                 /* what an output sees of the modes */
 	LINEAR_TABLES
 };
@@ -37,7 +37,7 @@ const mpq_t *direct_factors(const struct step *step, const struct output *output
 /* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
 void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
 bool has_second_word(const struct product *p, const struct step *step);
-tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not what is left over */
+tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not the remainder */
 int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */
 int place_of_output(const struct model *model, const struct output *output); /* highest derivatives stand behind */
 bool differs_in_time(const mpq_t *factor, int segments);

@@ -793,7 +793,7 @@ static struct model *model_of(const char *scheme)
     if (!model)
         complain("not accepted: ", first_error());
     else if (model->remainder.force_columns == 0)
-        complain("", "nothing is left over");
+        complain("", "there is no remainder");
     return model && model->remainder.force_columns ? model : NULL;
 }
 

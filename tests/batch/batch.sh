@@ -264,8 +264,8 @@ done
 
 by_itself models/two_masses.spec 'where it crosses a breakpoint is a matter of its own'
 by_itself models/impact_oscillator.spec 'where it crosses a breakpoint is a matter of its own'
-by_itself models/pendulum.spec 'what is left over is not linear in the state'
-by_itself models/vanderpol_stiff.spec 'what is left over is not linear in the state'
+by_itself models/pendulum.spec 'the remainder is not linear in the state'
+by_itself models/vanderpol_stiff.spec 'the remainder is not linear in the state'
 by_itself tests/tunable/changes.spec 'loads change their formula inside a step'
 by_itself tests/tunable/sweep.spec 'its loads may have a frequency of its own'
 by_itself tests/relative/row.spec 'beyond 16 states a step loops over its tables'

@@ -72,7 +72,7 @@ refused() {
 refused 'powers of the step leave the range of float' "$here/polynomials.spec" --real float
 refused 'the selftest has held inputs and ramps' "$here/polynomials.spec" --selftest
 sed 's/= u$/- x^3 = u/' cubic.spec >left.spec
-refused 'what is left over reads held inputs and ramps' left.spec
+refused 'the remainder reads held inputs and ramps' left.spec
 sed 's/= u$/+ abs(x) = u/' cubic.spec >regions.spec
 refused 'where a piecewise-linear model crosses a breakpoint' regions.spec
 tap_end

@@ -162,7 +162,7 @@ static void judge(const struct system *s, const char *scheme)
     ok(good, "%s: so from another state at 3.75 s (largest difference %.2g)", m->name, a.worst);
 }
 
-/* Between two steps of etd1 and pl what is left over is held, so NAME_at is etd1 over a part of the step. */
+/* Between two steps of etd1 and pl the remainder is held, so NAME_at is etd1 over a part of the step. */
 static void between(const struct system *s)
 {
     const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_etd1_0",

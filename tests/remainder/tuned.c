@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tunable params of what is left over: an instance that takes other values against the model with these values written,
+/* Tunable params of the remainder: an instance that takes other values against the model with these values written,
  * against CVODE on equations by hand, and what it refuses. */
 #include "tap.h"
 #include "truth.h"

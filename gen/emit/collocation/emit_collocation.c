@@ -126,8 +126,8 @@ static void emit_entry_table(const struct emitter *e)
 		row[3 * k + 1] = m->entry[k].of;
 		row[3 * k + 2] = m->entry[k].twice;
 	}
-	say(e, "\n/* Of each entry of the Jacobian: row, coordinate, whether it is by the coordinate and not by what\n"
-	       " * is one below its highest derivative */\n");
+	say(e, "\n/* Entries of the Jacobian: row, coordinate; 1: derivative by the coordinate, 0: by its derivative\n"
+	       " * that is one below the highest */\n");
 	emit_integer_rows(e, "short", format("entry[%d][3]", rows), rows, 3, row);
 }
 
@@ -154,11 +154,12 @@ static void emit_stage_tables(const struct emitter *e)
 {
 	const struct collocation *x = e->step->collocation;
 	const int sizes[] = { x->stages, x->stages };
-	emit_array(e, "Of a step, as parts of it", "node", 1, sizes, x->node, NULL);
-	emit_array(e, "Integrals from 0 to each node of what is 1 at one node and 0 at the others", "once", 2, sizes,
+	emit_array(e, "Collocation nodes, as fractions of a step", "node", 1, sizes, x->node, NULL);
+	emit_array(e, "Integrals from 0 to each node of the Lagrange polynomials of the nodes", "once", 2, sizes,
 		   x->once, NULL);
-	emit_array(e, "... integrated twice", "twice", 2, sizes, x->twice, NULL);
-	emit_array(e, "The same in powers of time, from the constant on", "monomial", 2, sizes, x->monomial, NULL);
+	emit_array(e, "The same, integrated twice", "twice", 2, sizes, x->twice, NULL);
+	emit_array(e, "Coefficients of the Lagrange polynomials, from the constant on", "monomial", 2, sizes,
+		   x->monomial, NULL);
 	emit_entry_table(e);
 	if (splits(e))
 		emit_mode_tables(e);

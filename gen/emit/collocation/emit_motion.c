@@ -318,7 +318,7 @@ static void emit_known(const struct emitter *e, const struct reads *r)
 	const struct knowns known = knowns_of(e, r);
 	if (drive)
 		emit_drive_table(e);
-	open_function(e, "What the equations read beside the state, tau after now; conditions on t hold as at inside",
+	open_function(e, "Loads, inputs and functions of time, tau after now; conditions on t are those of inside",
 		      "static void $n_known(const $n *s, double tau, double inside, int segment, const double u[],\n"
 		      "    const double slope[], double node[%d])", known.count ? known.count : 1);
 	if (drive)

@@ -236,7 +236,7 @@ static void emit_unrolled_slope(const struct emitter *e)
 
 void emit_predictor(const struct emitter *e)
 {
-	open_function(e, "dz = A z + B r, r what is left over",
+	open_function(e, "dz = A z + B r, r being the nonlinear remainder",
 		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
 		      "double dz[$N_STATES])", e->model->remainder.force_columns);
 	if (e->step->program->loops)

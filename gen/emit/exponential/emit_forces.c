@@ -124,9 +124,10 @@ void emit_to_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const char **table = ARRAY(const char *, (size_t)m->blocks);
 	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_schedule_table(e, format("to_modes%d", b + 1), "Modes from coordinates, by columns",
+		table[b] = emit_schedule_table(e, format("to_modes%d", b + 1),
+					   "Modal coordinates from coordinates: the inverse mode shapes, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->to, b, true));
-	open_function(e, "The modes of coordinates, or of their velocities",
+	open_function(e, "Modal coordinates of coordinates, or modal velocities of velocities",
 		      "static void $n_modes_of(int which, const double q[%d], double mode[%d])", m->modes, m->width);
 	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++) {
@@ -144,9 +145,10 @@ void emit_from_modes(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const char **table = ARRAY(const char *, (size_t)m->blocks);
 	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_schedule_table(e, format("from_modes%d", b + 1), "Coordinates from modes, by columns",
+		table[b] = emit_schedule_table(e, format("from_modes%d", b + 1),
+					   "Coordinates from modal coordinates: mode shapes, by columns",
 					   m->block[b].modes, m->block[b].rows, sorted(e, m->from, b, false));
-	open_function(e, "Coordinates from their modes, or velocities",
+	open_function(e, "Coordinates of modal coordinates, or velocities of modal velocities",
 		      "static void $n_of_modes(int which, const double mode[%d], double q[%d])", m->width, m->modes);
 	say(e, "    double x[%d];\n"
 	       "    int i;\n", m->width);
@@ -239,13 +241,13 @@ static void add_block(const struct emitter *e, struct summands *s, int matrix, i
 	case SHAPE_ZERO:
 		return;
 	case SHAPE_DIAGONAL:
-		name = emit_schedule_table(e, name, "What is left over of a mode: a force on itself", 0, rows->rows,
+		name = emit_schedule_table(e, name, "Remainder of a mode: a force on itself", 0, rows->rows,
 				       diagonal_of(e, value, row));
 		add_summand(s, format("%s[i] * x%d[%d + i]", name, matrix + 1, rows->place));
 		return;
 	case SHAPE_DENSE:
 		value = block_columns(e, value, rows, first_mode(e, row), columns, first_mode(e, column));
-		name = emit_schedule_table(e, name, "What is left over: forces on modes, by columns", columns->modes,
+		name = emit_schedule_table(e, name, "Remainder: forces on modes, by columns", columns->modes,
 				       rows->rows, value);
 		for (int j = 0; j < columns->modes; j++)
 			add_summand(s, format("%s[%d][i] * x%d[%d]", name, j, matrix + 1, columns->place + j));
@@ -305,7 +307,7 @@ static void emit_rest_forces(const struct emitter *e)
 		return;
 	for (int k = 0; k < split->rests; k++)
 		form[k] = split->rest[k].form;
-	open_function(e, "What is not linear in the states, before it is multiplied with a function of time",
+	open_function(e, "Nonlinear terms, each without its factor that depends on time alone",
 		      "static void $n_rest(const $n *s, const double y[$N_STATES], double left[%d])", split->rests);
 	emit_locals_of(e, r.state, "y");
 	emit_param_locals(e, r.param);
@@ -338,7 +340,7 @@ static void add_force_on(const struct emitter *e, struct summands *sum, int k, i
 	for (int b = 0; b < m->operators; b++)
 		for (int j = 0; j < own->modes; j++)
 			row[b * own->rows + j] = m->from[(b * n + coord) * n + first + j];
-	const char *name = emit_schedule_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
+	const char *name = emit_schedule_table(e, format("rest%d", k + 1), "Modal forces of a unit force", 0,
 					   own->rows, row);
 	add_summand(&sum[block], format("%s[i] * %s", name, force));
 }
@@ -421,7 +423,7 @@ void emit_forces(const struct emitter *e)
 				add_block(e, &sum[b], k, b, c);
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
-	open_function(e, "Forces on the modes: what is left over, loads among it",
+	open_function(e, "Forces on the modes: the remainder, with the loads that are part of it",
 		      "static void $n_mode_forces(const $n *s, int which, const double f[], const double eta[%d],\n"
 		      "    const double rate[%d], double force[%d])", m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
@@ -442,7 +444,7 @@ void emit_forces_on_modes(const struct emitter *e)
 	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
 	for (int c = 0; c < model->remainder.force_columns; c++)
 		add_force_on(e, sum, c, coordinate_of_row(model, model->remainder.row[c]), format("left[%d]", c));
-	open_function(e, "What is left over, on the modes",
+	open_function(e, "The remainder as forces on the modes",
 		      "static void $n_on_modes(int which, const double left[%d], double force[%d])",
 		      model->remainder.force_columns, m->width);
 	say(e, "    int i;\n");

@@ -88,8 +88,8 @@ static void emit_node_tables(const struct emitter *e)
 	}
 	emit_stage_table(e, "Modes at each node from those at the step's start", "flow", m->collocation.stages, 4,
 			 flow);
-	emit_stage_table(e, "... and from forces at all nodes", "weight", m->collocation.stages,
-			 2 * (m->collocation.stages + 1), weight);
+	emit_stage_table(e, "... and from modal forces at all nodes: weights of the collocation", "weight",
+			 m->collocation.stages, 2 * (m->collocation.stages + 1), weight);
 	emit_stage_table(e, "... and from known loads at its start", "of_wave", m->collocation.stages,
 			 2 * wave_values(e), wave);
 }
@@ -252,7 +252,7 @@ static void emit_swing(const struct emitter *e)
 	struct summands sum = { 0 };
 	if (count == 0)
 		return;
-	emit_array(e, "Known loads: forces on modes", "swing", 3, (const int[]){ m->operators, count, m->width },
+	emit_array(e, "Modal forces of known loads", "swing", 3, (const int[]){ m->operators, count, m->width },
 		   m->wave,
 		   NULL);
 	open_function(e, NULL, "static inline void $n_swing_on(int which, double by, double wave[], double swing[],\n"
@@ -273,7 +273,7 @@ static void emit_within(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const int nodes = m->collocation.stages * m->collocation.stages,
 		  past = m->multistep.points * m->multistep.points, size[] = { m->operators, m->width };
-	emit_array(e, "Of polynomials through forces at nodes: powers from what they exceed that at the start by",
+	emit_array(e, "Coefficients of the polynomial through forces at nodes, from their differences to the first",
 		   "of_nodes", 1, &nodes, m->within.nodes, NULL);
 	if (past)
 		emit_array(e, "... and through past ones and the new one", "of_past", 1, &past, m->within.past, NULL);

@@ -51,7 +51,7 @@ bool reads_force_columns(const struct model *model)
 	return any;
 }
 
-/* Beside friction outputs alone ask what is left over, and of equations that have none: its force is no formula. */
+/* Beside friction outputs alone ask the remainder, and of equations that have none: its force is no formula. */
 static bool is_asked(const struct emitter *e, int force_column)
 {
 	return e->model->contacts.drags == 0 || reads_force_column(e->model, force_column);
@@ -207,7 +207,7 @@ void emit_remainder(const struct emitter *e)
 		emit_nodes(e, &r);
 	if (schedule.count)
 		emit_excess(e, &schedule);
-	open_function(e, "What is left over at state y: a force on each equation that has some",
+	open_function(e, "Nonlinear remainder at state y: a force on each equation that has one",
 		      "static void $n_remainder(const $n *s, int which, int node, const double u[],\n"
 		      "    const double slope[], const double y[$N_STATES], double left[%d])",
 		      e->model->remainder.force_columns);

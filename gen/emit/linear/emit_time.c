@@ -144,7 +144,7 @@ void emit_series_vector(const struct emitter *e, bool looped)
 
 void emit_vector_now(const struct emitter *e)
 {
-	open_function(e, "x: the states and what acts on them, now",
+	open_function(e, "x now: the states, load states and inputs",
 		   "static void $n_vector_now(const $n *s, const double u[], double x[%d])",
 		      e->step->layout.size);
 	emit_series_vector(e, false);
@@ -221,14 +221,14 @@ void emit_passing(const struct emitter *e)
 void emit_changes(const struct emitter *e)
 {
 	say(e, "\n"
-	       "static const pl_two $n_change[%d] = {  /* [s]: where loads change their formula */\n",
+	       "static const pl_two $n_change[%d] = {  /* times when loads change their formula [s] */\n",
 	    e->system->segments - 1);
 	for (int i = 0; i < e->system->segments - 1; i++) {
 		finite_number(e, e->system->change[i]);
 		say(e, "    %s,\n", two_text(e->system->change[i]));
 	}
 	say(e, "};\n");
-	open_function(e, "Time from now to a change", "static double $n_until(const $n *s, int change)");
+	open_function(e, "Time from now to a change [s]", "static double $n_until(const $n *s, int change)");
 	say(e, "    %sconst pl_two h = %s;\n"
 	       "    return pl_until(s->t0, s->k, h, $n_change[change]);\n", e->step->is.tuned ? "" : "static ",
 	    e->step->is.tuned ? "{s->coeffs.h, s->coeffs.h_low}" : two_text(e->model->h));
@@ -371,7 +371,7 @@ static void emit_go_on(const struct emitter *e, bool blocks)
 	close_function(e, "s which");
 }
 
-/* States under the parabola through what is left over at three points */
+/* States under the parabola through the remainder at three points */
 static void emit_parabola(const struct emitter *e, bool blocks)
 {
 	const struct layout *layout = &e->step->layout;
@@ -423,7 +423,7 @@ static void emit_second_words(const struct emitter *e)
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->branch->whole->Phi[i].low;
-	emit_array(e, format("Low parts of the transfer matrix: %s + this is it in double-double",
+	emit_array(e, format("Low parts of the transfer matrix: %s has the high parts",
 		   stepped_table(e, "Phi")), "Phi_low", 2,
 		   (const int[]){ n, n }, low, e->model->names.state);
 }
@@ -435,7 +435,7 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 	if (entries == 0)
 		return;
 	say(e, "\n"
-	       "/* Its further columns, from %d on: what load states add, and how they go on over a step */\n"
+	       "/* Further columns of the transfer matrix, from %d on: those of the load states */\n"
 	       "static const struct { unsigned short %srow, column; pl_two value; } $n_power_entry[] = {\n",
 	    e->system->states, segments ? "segment, " : "");
 	for (int i = 0; i < entries; i++) {

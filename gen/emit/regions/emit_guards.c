@@ -10,11 +10,11 @@
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
 {
 	put_wholes(e, false, "first",
-		     "Where the guards of each region begin in the list below",
+		     "First guard of each region in the list below",
 		     e->model->switching->regions + 1, g->first);
 	say(e, "\n"
-	       "/* Guards, whose events end a region: row of the guard function; event function, breakpoint and\n"
-	       " * direction as listed; the region behind, counted from this one; impact that begins there, or -1 */\n"
+	       "/* Guards, whose events end a region: number of the guard function; event function, breakpoint and\n"
+	       " * direction of its crossing; number of the next region less this; impact that begins, or -1 */\n"
 	       "static const pl_guard $o_guard[%d] = {\n", g->guards);
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
@@ -29,13 +29,14 @@ static void emit_limits(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
 	put_numbers(e, "limit",
-		     "The guard surface of each: its event comes when guard function . x rises to this limit",
+		     "Limit of each guard: its event is where the guard function rises to it",
 		     g->guards, limit);
 	put_numbers(e, "amplitude",
-		     format("Amplitude of cos and sin of loads in each event function%s; its rounding is noise",
+		     format("Amplitude of cos and sin of loads in each event function%s, which bounds its rounding",
 			    regions_change(e) ? ", segment of time by segment" : ""),
 		     s->segments * s->expressions, g->amplitude);
-	put_numbers(e, "guard_amplitude", "The same in each guard function", g->rows, g->row_amplitude);
+	put_numbers(e, "guard_amplitude", "Amplitude of cos and sin of loads in each guard function", g->rows,
+		    g->row_amplitude);
 }
 
 /* Of each row: an expression, or what it takes to hold one */
@@ -63,8 +64,8 @@ static void emit_guard_rows(const struct emitter *e, const struct guards *g)
 {
 	const char **note = guard_notes(e, g);
 	const struct { const char *name, *note; const double *value; } all[] = {
-		{ "guard_row", "Guard functions g = guard_row . x: what slips has its event function, what sticks the "
-			  "force that holds it less its limit", g->row },
+		{ "guard_row", "Guard functions g = guard_row . x: while a contact slips its event function, while it "
+			  "sticks or rests the holding force less its limit", g->row },
 		{ "guard_tangent", "Slope of each guard function along the solution: this row times x is d/3 g', "
 			       "d = h/2^halvings", g->slope },
 		{ "guard_chord_error", "Bound of its curvature: within d, g leaves its chord by at most d^2/8 |g''|, "
@@ -85,7 +86,7 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 		    "Constraint in each region, by friction that sticks or a contact at rest: a set of the assignments "
 		    "below; -1: none",
 		    e->model->switching->regions, g->hold);
-	put_wholes(e, false, "sets", "Where each set begins", g->sets + 1, g->set);
+	put_wholes(e, false, "sets", "First assignment of each set", g->sets + 1, g->set);
 	put_wholes(e, false, "held", "The state that each assignment holds", g->assignments, state);
 }
 
@@ -101,8 +102,8 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
 	put_matrix(e, "value",
-		    format("The value that it is held at: x[held] = value . x%s",
-			   is_compensated(e) ? "; second words behind the first ones" : ""),
+		    format("Value of each assignment: x[held] = value . x%s",
+			   is_compensated(e) ? "; low parts after the high parts" : ""),
 		    count, size, value, note);
 }
 
@@ -136,7 +137,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	close_table(e);
 	put_matrix(e, "speed", "Approach speed of each impact: speed . x", count, size, speed, note);
 	put_matrix(e, "back",
-		     "What puts a state that is beyond the stop by 1 back onto it, times the depth",
+		     "Correction of the state for a penetration of 1, times the depth",
 		     count, size, back, note);
 }
 

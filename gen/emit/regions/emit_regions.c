@@ -479,10 +479,10 @@ void emit_event_note(const struct emitter *e)
 void declare_region_search(const struct emitter *e)
 {
 	say(e, "\n"
-	       "/* The rest of a step in which something may happen: by the search, which takes every step */\n"
+	       "/* The search for events over a step, or over its remaining part */\n"
 	       "static void $o_seek($n *s, double x[%d]);\n", size_of_vector(e));
 	if (e->step->regions.event_check.fast_path)
-		say(e, "/* 1: it has followed all events of the step, few that are certain; 0: s is as it was */\n"
+		say(e, "/* Follows the events of a step if they are few and certain: 1; else s is unchanged: 0 */\n"
 		       "static int $o_cross($n *s, const double now[%d]);\n", size_of_vector(e));
 }
 

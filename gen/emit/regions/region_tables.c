@@ -274,7 +274,7 @@ void emit_spans(const struct emitter *e)
 static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
 	emit_of_regions(e, "double", "within",
-		     "Ends of the interval of each event function in each region", "[2]", within_text, p);
+		     "Lower and upper end of each event function's interval in each region", "[2]", within_text, p);
 	emit_of_regions(e, "int", "beyond",
 		     "Regions across those ends, below and above; -1: none that can occur", "[2]", beyond_text, p);
 	emit_spans(e);

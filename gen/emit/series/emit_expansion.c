@@ -31,7 +31,7 @@ static void emit_horner(const struct emitter *e, const char *c, int degree)
 void emit_series_ahead(const struct emitter *e)
 {
 	const char *unit = spans_steps(e) ? format("%d ", truncation_of(e)->over) : "";
-	open_function(e, format("What the series gains from its start, theta %sh later", unit),
+	open_function(e, format("Change of the state from the start of the series to theta %sh later", unit),
 		      "static void $n_ahead(const double c[%d][$c], double theta, double gain[$N_STATES])",
 		      own_expansion(e)->order + 1);
 	if (is_written_out(e, own_expansion(e)->order)) {
@@ -202,7 +202,7 @@ void emit_expansion_members(const struct emitter *e)
 
 void emit_pass_time(const struct emitter *e)
 {
-	open_function(e, "What else takes part in a step",
+	open_function(e, "Advances time, loads and inputs by a step",
 		      "static inline void $n_pass_time($n *s, const double u[])");
 	emit_step_end(e);
 	close_function(e, "u");

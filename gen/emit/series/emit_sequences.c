@@ -58,7 +58,7 @@ const char *driven_parameter(const struct emitter *e)
 void emit_inputs_now(const struct emitter *e)
 {
 	int inputs = e->system->inputs;
-	open_function(e, "Samples at the start of this step, their slopes in h",
+	open_function(e, "Input samples at the start of this step, and their change over h",
 		      "static inline void $n_inputs_now(const $n *s, const double u[], double start[], "
 		      "double slope[])");
 	for (int i = 0; i < inputs; i++) {
@@ -195,7 +195,7 @@ void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
-	begin_function(e, "What is left over: a force on each equation that has some", "forces_at",
+	begin_function(e, "Nonlinear remainder: a force on each equation that has one", "forces_at",
 		       format("double left[%d]", x->columns));
 	for (int c = 0; c < x->columns; c++)
 		recurrence_set(r, format("left[%d]", c), x->column[c], 0);

@@ -54,7 +54,7 @@ void emit_expansion_at(const struct emitter *e);
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
-void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: what is left over, alone */
+void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: the remainder, alone */
 void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */
 

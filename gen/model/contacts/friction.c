@@ -522,7 +522,7 @@ static int *transmitted_in_segments(struct building *b, const struct switching *
 	return index;
 }
 
-/* An acceleration follows from its equation, and so reads what is left over; that is computed of all equations. */
+/* An acceleration follows from its equation, and so reads the remainder; that is computed of all equations. */
 static bool reads_remainder(const struct model *model)
 {
 	bool any = false;

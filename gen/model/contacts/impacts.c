@@ -23,7 +23,7 @@ static void check_linear(const struct building *b, const struct node *node, cons
 		const struct node *tuned = form->term[i].basis.kind == BASIS_ATOM ? first_tuned(node) : NULL;
 		if (tuned)
 			error(tuned->at, "beside a series it may stand in forces, loads and the force of friction",
-			      "%s takes no tunable param beside what is left over: '%s'", what, tuned->symbol->name);
+			      "%s takes no tunable param beside the remainder: '%s'", what, tuned->symbol->name);
 		if (form->term[i].basis.kind == BASIS_ATOM)
 			error(node->start, NULL, "%s is linear in states, loads and inputs, and '%s' is not", what,
 			      text_between(node->start, node->end));

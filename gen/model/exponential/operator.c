@@ -153,7 +153,7 @@ static void nearest_root(mpq_ptr value)
 
 /* Parts of equal length in the square of the value, as stiffness and mass terms of a turning frame follow it. Each
  * operator is that at the upper end of its part, as of values that are written: softer than the model it would make
- * what is left over drive the motion. */
+ * the remainder drive the motion. */
 static void divide_range(void *context)
 {
 	struct schedule_work *w = context;
@@ -291,7 +291,7 @@ static void find_jacobian(void *context)
 	}
 }
 
-/* ---- what is left over ---- */
+/* ---- the remainder ---- */
 
 /* Inputs that the linear core carries are not left over, nor are the highest derivatives; loads are looked at apart. */
 static bool is_carried(const struct building *b, const struct basis *basis)

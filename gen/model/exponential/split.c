@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is left over, sorted: forces that are linear in coordinates and velocities with factors of time alone, waves,
+/* The remainder, sorted: forces that are linear in coordinates and velocities with factors of time alone, waves,
  * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
  */
 #include "model/building.h"

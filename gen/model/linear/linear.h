@@ -37,13 +37,13 @@ struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n
 	struct load *load;
 	int inputs;
 	struct input *input;
-	int force_columns;          /* of what is left over: one for each equation that has some */
+	int force_columns;          /* of the remainder: one for each equation that has some */
 	mpq_t **force_column;       /* its force on the equations */
 };
 struct equations {                  /* as they are written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
 	struct segment_equations *segment_equations; /* per segment */
-	/* for all time, conditions and products of time kept; NULL: nothing is left over */
+	/* for all time, conditions and products of time kept; NULL: there is no remainder */
 	struct segment_equations *whole;
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */

@@ -21,7 +21,7 @@ struct output {
 	mpq_t *state;               /* factors of y, one per state, accelerations replaced */
 	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
 	mpq_t *input[2];            /* per input: factors of u and u' */
-	mpq_t *force_column;        /* factors of what is left over, where an acceleration is read */
+	mpq_t *force_column;        /* factors of the remainder, where an acceleration is read */
 };
 struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
 	mpq_t *C, *K;
@@ -30,7 +30,7 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 	const char *text;           /* x = 2, x' = 0 */
 };
 struct operator_schedule {          /* of operators */
-	int operators;              /* 0: exact, or nothing is left over */
+	int operators;              /* 0: exact, or there is no remainder */
 	struct operator *operator;
 	const struct form *selector; /* of a schedule: what is compared with `at`; NULL: one operator */
 };
@@ -61,7 +61,7 @@ struct splitting {                  /* the remainder, sorted: see split.c */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */
 	int selector; /* function that a schedule is chosen by; -1: there is no schedule, or it is by states */
 };
-struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
+struct smoothness {                 /* of the remainder, else of the equations; where nothing is found all is 0 */
 	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
 	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
 	const struct node *node;    /* what jumps or has the kink */
@@ -72,7 +72,7 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	const struct node *singular;
 	const char *singular_where;
 };
-struct remainder {                  /* what is left over, of each operator */
+struct remainder {                  /* the remainder, of each operator */
 	int force_columns;          /* one for each equation that has some */
 	int *row;                   /* its equation */
 	struct form **slope;        /* of a scheme that collocates: [force column][state], its derivative */
@@ -89,20 +89,20 @@ struct linear operator_system(const struct model *model, int k);
 /* Every form that the remainders and the selector are made of, once, operands before what they make. */
 void visit_remainders(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
 
-/* ---- split.c: what is left over as matrices times functions of time, and the rest ---- */
+/* ---- split.c: the remainder as matrices times functions of time, and the rest ---- */
 
 void split_remainder(struct building *b);                    /* model->split; after the operators */
 
 /* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
 
-/* model->smooth; says where dry friction stands in what is left over */
+/* model->smooth; says where dry friction stands in the remainder */
 void judge_smoothness(struct building *b);
 /* or a coordinate of first order, which is one */
 bool reads_velocity(const struct model *model, const struct form *form);
 _Noreturn void tell_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
-int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
+int  order_that_holds(const struct model *model);           /* rounded down; 0: there is no remainder */
 /* A scheme of the etd family goes from crossing to crossing here: what the state chooses is compared with
  * breakpoints. */
 bool follows_crossings(const struct model *model);

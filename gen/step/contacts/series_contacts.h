@@ -56,7 +56,7 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
-int  held_force(struct sequencing *w, int force_column);    /* what is left over, with what holds: a sequence */
+int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
 
 /* divided.c: those whose way counts stand first */
 void sort_watches(struct contacts *c);

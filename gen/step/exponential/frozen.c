@@ -21,11 +21,11 @@ struct frozen {
 	int functions;
 	const double *f;            /* of time: all, the first is 1 */
 	int schedule;
-	double *matrix[2];          /* what is left over, of eta and of eta': modes x modes */
+	double *matrix[2];          /* the remainder, of eta and of eta': modes x modes */
 	double h;
 };
 
-/* ---- what is left over at a time ---- */
+/* ---- the remainder at a time ---- */
 
 static void freeze(struct frozen *z)
 {

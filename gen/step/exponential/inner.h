@@ -7,7 +7,7 @@
 #include "recipe.h"
 #include "weights.h"
 
-/* ---- normal_left.c: what is left over, in modes ---- */
+/* ---- normal_left.c: the remainder, in modes ---- */
 
 double round_real(mpfr_srcptr x);
 mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */

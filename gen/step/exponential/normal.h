@@ -7,7 +7,7 @@
 
 struct normal_mode;
 
-/* ---- normal.c: normal modes of the operators of a schedule, and what is left over in them ---- */
+/* ---- normal.c: normal modes of the operators of a schedule, and the remainder in them ---- */
 
 enum { NORMAL_BITS = 192 };         /* of modes and weights, before they are rounded */
 struct mode_block {                 /* modes that no entry of M and K couples with others */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is left over, in normal modes: V^T times matrices times V, times functions of time. Matrices that are multiples
+/* The remainder, in normal modes: V^T times matrices times V, times functions of time. Matrices that are multiples
  * of each other are one. */
 #include "inner.h"
 
@@ -118,7 +118,7 @@ void find_turns(struct normal_work *w)
 	}
 }
 
-/* ---- what is left over ---- */
+/* ---- the remainder ---- */
 
 struct pattern {                    /* of a matrix, as rationals */
 	const mpq_t **exact;        /* per schedule */

@@ -76,7 +76,7 @@ int add_weighted(struct recipe *r, int table, const char *name, long p, unsigned
 	return phi_weight;
 }
 
-/* ---- times, stages, what is left over ---- */
+/* ---- times, stages, the remainder ---- */
 
 int add_node(struct recipe *r, long p, unsigned long q)
 {

@@ -41,7 +41,7 @@ static void last_norms(const struct normal *m, const struct splitting *split, do
 	}
 }
 
-/* By what a mode or a wave turns or decays in a step at most; once nothing changes, what is left over makes modes
+/* By what a mode or a wave turns or decays in a step at most; once nothing changes, the remainder makes modes
  * faster. */
 static double angle_of_step(const struct normal_work *w)
 {

@@ -67,7 +67,7 @@ bool group_acts(const struct step *step, const struct group *g, int row, const s
 struct drift {                      /* per step, of the mode where it is largest */
 	double amplitude;           /* ln|z| - Re p h */
 	double phase;               /* |arg z - Im p h| [rad] */
-	bool known;                 /* nothing is left over, and the step does not loop over Phi */
+	bool known;                 /* there is no remainder, and the step does not loop over Phi */
 };
 struct drift drift_of(const struct step *step);
 const char *drift_text(const struct drift *drift, mpq_srcptr h);    /* over one hour of steps of h [s] */

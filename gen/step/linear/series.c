@@ -151,7 +151,7 @@ void series_plan(struct step *step)
 	struct series *series = &step->series;
 	REAL angle = WITH_BITS(BITS);
 	largest_angle(step, 0, step->branches, angle);
-	/* what is left over is a polynomial in the step, or there is none */
+	/* the remainder is a polynomial in the step, or there is none */
 	bool known = !has_remainder(step) || step->layout.powers > 0;
 	series->emitted = known && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (loads_change(&step->branch->system) && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {

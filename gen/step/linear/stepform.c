@@ -233,7 +233,7 @@ static void mark_jumps(const struct switching *s, int states, bool *reads)
 		}
 }
 
-/* Read by what is left over, by what breakpoints divide, by the choice of an operator, by jumps */
+/* Read by the remainder, by what breakpoints divide, by the choice of an operator, by jumps */
 static bool *read_elsewhere(const struct step *step)
 {
 	const struct model *model = step->model;

@@ -66,7 +66,7 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 /* An error at the step where it is beyond the range */
 struct coefficient equation_number(const struct model *model, mpq_srcptr q);
 double time_in_step(const struct model *model, mpq_srcptr fraction);      /* a part of h [s] */
-struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the force columns */
+struct slopes {                     /* y' = A y + B r: r is the remainder, or another force on the force columns */
 	struct coefficient *A, *B;  /* states x states; states x force columns */
 };
 struct slopes state_slopes(const struct step *step, int operator);

@@ -40,7 +40,7 @@ void check_divided(const struct step *step);
 struct event_split {
 	struct expansion *event_check; /* of the solution, as far as where it is heading */
 	struct expansion *ends;     /* of it the expressions' values and slopes, */
-	struct expansion *forces;   /* and what is left over, with the formulas of given intervals */
+	struct expansion *forces;   /* and the remainder, with the formulas of given intervals */
 	struct layout layout;       /* of x, each force with its derivatives: see pl_event_split */
 	double **slopes;            /* per segment of time: A of x' = A x, size x size [1/s] */
 	int multiplications, additions, calls; /* of the looks in a step */

@@ -30,7 +30,7 @@ struct expansion {
 	bool looks;                 /* at slopes further on */
 	double crowded;             /* 1/s, of loads that may cancel the highest frequency */
 	struct contacts *contacts;  /* NULL: there are none */
-	/* per force column: what is left over, as a sequence; NULL: it stands in the states' sums */
+	/* per force column: the remainder, as a sequence; NULL: it stands in the states' sums */
 	int *force, *held;          /* held: with what holds beside it */
 	bool alone;                 /* the states' own coefficients are not wanted */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
@@ -56,7 +56,7 @@ tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of t
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
-/* the same with what is left over as sequences of their own; and some of its sequences alone, up to a lower order */
+/* the same with the remainder as sequences of their own; and some of its sequences alone, up to a lower order */
 struct expansion *expansion_with_forces(const struct step *step, int order);
 struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
 				    int *column);

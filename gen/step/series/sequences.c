@@ -555,7 +555,7 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	return w->atom[atom->index] = made;
 }
 
-/* y' of a state: its row of A, loads, inputs, and what is left over, whose linear terms may cancel */
+/* y' of a state: its row of A, loads, inputs, and the remainder, whose linear terms may cancel */
 struct sum slope_of_state(struct sequencing *w, int state)
 {
 	const struct model *model = w->step->model;
