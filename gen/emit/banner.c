@@ -147,7 +147,7 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 
 static void tell_no_phi(const struct emitter *e)
 {
-	say(e, " * What rounding takes from the state is kept in rest.\n");
+	say(e, " * The state is double-double: its low parts, which hold the rounding errors, are in rest.\n");
 	if (e->step->shown->no.phi)
 		say(e, " * There is no Phi: %s.\n", e->step->shown->no.phi);
 }
@@ -436,7 +436,7 @@ static void banner_form(const struct emitter *e)
 	struct drift drift = drift_of(e->step);
 	if (kept[e->step->form])
 		say(e, " * %s%s.\n", kept[e->step->form], e->step->program->compensated
-		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
+		    ? "; factors are double-double,\n * and so is the state, whose low parts are in rest" : "");
 	if (e->step->modal)
 		banner_modes(e);
 	if (e->step->no.modal)
@@ -447,7 +447,7 @@ static void banner_form(const struct emitter *e)
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carried.count)
-		say(e, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n",
+		say(e, " * No other state depends on %s: the rounding errors of %s are carried along.\n",
 		       carried_text(e), e->step->carried.count > 1 ? "each" : "it");
 	if (drift.known)
 		say(e, " * %s.\n", drift_text(&drift, e->model->h));

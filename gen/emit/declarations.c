@@ -28,19 +28,19 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->step->modal)
 		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));
 	if (e->step->program->compensated)
-		say(e, "    double rest[$N_STATES];  /* what rounding took from y so far */\n");
+		say(e, "    double rest[$N_STATES];  /* low parts of y: accumulated rounding errors */\n");
 	if (e->step->carried.count)
-		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carried.count,
-		       carried_text(e));
+		say(e, "    double carry[%d];      /* low part of %s: accumulated rounding errors */\n",
+		    e->step->carried.count, carried_text(e));
 	if (e->step->forced && !e->step->program->compensated && !e->model->relative)
-		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
+		say(e, "    double rest[$N_STATES];  /* low parts of y at the last set */\n");
 	if (e->model->relative)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");
 	if (e->step->forced && e->model->relative)
 		say(e, "    double start[$N_STATES];  /* what loads sustained of the states as written then */\n");
 	if (e->step->is.tuned)
-		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+		say(e, "    $n_coeffs coeffs;    /* coefficients of this instance */\n");
 	emit_held_member(e);
 	if (given_inputs(e))
 		say(e, "    double u[$N_INPUTS];  /* the %s */\n",
@@ -59,7 +59,7 @@ static void emit_state_struct(const struct emitter *e)
 	emit_if_any(e->prints->members, e);
 	emit_peak_members(e);
 	if (keeps_status(e))
-		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
+		say(e, "    int status;           /* 0 or PL_... bits of plrt.h, which stay until init or set */\n");
 	say(e, "};\n\n");
 }
 

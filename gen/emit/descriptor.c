@@ -144,7 +144,7 @@ void emit_model(const struct emitter *e, int inputs, bool core)
 
 void emit_descriptor(const struct emitter *e)
 {
-	say(e, "\n/* ---- what programs read that drive any model ---- */\n\n");
+	say(e, "\n/* ---- descriptor, by which programs run any model ---- */\n\n");
 	emit_model(e, given_inputs(e), true);
 	if (tells_tolerance(e))
 		emit_allowed(e);

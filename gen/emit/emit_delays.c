@@ -42,7 +42,7 @@ static void emit_delay_struct(const struct emitter *e, int samples, bool ramps)
 	const int inputs = delays_of(e)->inputs;
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
-	       "    $n_core core;          /* what else there is of it: $n_core_...(&s->core, ...) */\n"
+	       "    $n_core core;          /* the model with delayed inputs as inputs: $n_core_...(&s->core, ...) */\n"
 	       "    double past[%d][%d];  /* samples of each input, in a ring */\n", inputs, samples);
 	if (ramps)
 		say(e, "    double ends[%d][%d];  /* where a ramp to each ended that $n_hold left */\n", inputs,

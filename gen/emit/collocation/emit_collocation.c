@@ -40,14 +40,13 @@ static int rows(const struct emitter *e)
 
 void emit_collocation_members(const struct emitter *e)
 {
-	say(e, "    double start[$N_STATES], poly[%d][$c];  /* of an internal step; its polynomial, from "
-	       "time^1 on in "
-	       "row 1 */\n"
-	       "    double gain[$N_STATES];  /* over all of it */\n"
-	       "    double at, at_low;  /* where it starts, in h since the step k - back */\n"
-	       "    double size, per;     /* its length in h; 1 over the unit of the polynomial */\n"
-	       "    double want;          /* the length that the next may have */\n"
-	       "    double scale[$c], unit[$c];  /* the largest size of each state so far; 1 over it */\n"
+	say(e, "    double start[$N_STATES], poly[%d][$c];  /* start of an internal step; its polynomial, "
+	       "from time^1 on in row 1 */\n"
+	       "    double gain[$N_STATES];  /* change of the state over the internal step */\n"
+	       "    double at, at_low;  /* its start, in h after the step k - back */\n"
+	       "    double size, per;     /* its length in h; reciprocal of the polynomial's unit of time */\n"
+	       "    double want;          /* proposed length of the next, in h */\n"
+	       "    double scale[$c], unit[$c];  /* largest size of each state so far; its reciprocal */\n"
 	       "    int back;             /* steps of h since then */\n"
 	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
 	       "extrapolated */\n",

@@ -130,7 +130,7 @@ static void emit_end(const struct emitter *e)
 {
 	enum { LATE = 2 };              /* of at least 4 */
 	int order = own_expansion(e)->order, states = e->system->states;
-	open_function(e, "The state m steps after the start of the series, and what rounding takes from it",
+	open_function(e, "The state m steps after the start of the series: high and low parts",
 		      "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
 		      "double rest[$N_STATES])", order + 1);
 	emit_powers(e, order);
@@ -183,17 +183,17 @@ static void emit_sums(const struct emitter *e)
 void emit_expansion_members(const struct emitter *e)
 {
 	if (truncation_of(e)->adaptive)
-		say(e, "    double series[%d][$c];  /* the last expansion, in powers of time over h */\n"
-		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
-		       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
-		       "    int served, valid;    /* steps since then; steps that it serves */\n"
-		       "    int most;             /* that the next one may serve; 0: nothing is known of it */\n",
+		say(e, "    double series[%d][$c];  /* the last expansion: coefficients in powers of t / h */\n"
+		       "    double base[$N_STATES];  /* low parts of the state at its start */\n"
+		       "    double next[$N_STATES], left[$N_STATES];  /* the state at its end, in two parts */\n"
+		       "    int served, valid;    /* steps since its start; steps that it covers */\n"
+		       "    int most;             /* steps that the next one may cover; 0: unknown */\n",
 		    own_expansion(e)->order + 1);
 	if (spans_steps(e))
 		emit_over_members(e);
 	if (looks_at_tolerance(e))
 		say(e, "    double scale[$c], unit[$c];  "
-		       "/* the largest size of each state so far; 1 over it */\n");
+		       "/* largest size of each state so far; its reciprocal */\n");
 	if (is_divided(e))
 		emit_divided_members(e);
 }

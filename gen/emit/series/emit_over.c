@@ -49,9 +49,9 @@ void emit_value(const struct emitter *e, const char *theta, gain_term *term, con
 
 void emit_over_members(const struct emitter *e)
 {
-	say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over %d h */\n"
-	       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
-	       "    int served;           /* steps since it began, up to %d; 0: the next step makes another */\n",
+	say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of t / (%d h) */\n"
+	       "    double next[$N_STATES], left[$N_STATES];  /* the state at its end, in two parts */\n"
+	       "    int served;           /* steps since it began, at most %d; 0: the next step expands again */\n",
 	    order_of(e) + 1, truncation_of(e)->over, truncation_of(e)->over - 1);
 }
 

@@ -46,7 +46,7 @@ void emit_held_types(const struct emitter *e)
 void emit_held_member(const struct emitter *e)
 {
 	if (held(e))
-		say(e, "    $n_coeffs coeffs;    /* its own */\n");
+		say(e, "    $n_coeffs coeffs;    /* coefficients of this instance */\n");
 	if (held_leads(e))
 		say(e, "    pl_lead lead[%d];     /* what phases have gained where $n_use changed frequencies */\n",
 		    held_leads(e));
