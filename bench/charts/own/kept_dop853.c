@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* DOP853 of the kept charts, with the model's equations in its steps. */
-#include "compensated.h"
+#include "kept.h"
 
 enum { MOST_ENTRIES = N + N % 2 };
 #define SIZE N

@@ -4,7 +4,7 @@
  * depends on x, which has no weight in any error. */
 #include <float.h>
 
-#include "compensated.h"
+#include "kept.h"
 
 enum { OWN_COORDINATES = SECOND_ORDER ? N / 2 : N, WHOLE = 2 * OWN_COORDINATES,
        MOST_COORDINATES = OWN_COORDINATES > 7 ? OWN_COORDINATES : 7 };         /* the method's own systems: 7 */

@@ -4,7 +4,7 @@
 #include <gsl/gsl_odeiv2.h>
 
 #define INLINED_SLOPE(t, y, f) model_slope(t, y, f)
-#include "compensated.h"
+#include "kept.h"
 #define JACOBIAN_H                      /* none is known in closed form */
 #define jacobian_of(p) ((void (*)(const struct problem *, double, const double *, double *, double *))((void)(p), NULL))
 #include "../dormand.c"
