@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* event_split.h: steps of a scheme with a remainder whose formulas the state chooses.  A whole step goes by the
+/* event_split.h: steps of a scheme with a nonlinear remainder that has switching functions.  A whole step goes by the
  * scheme's own tables with the formulas of given intervals, and is looked at from both ends; one that crosses a
  * breakpoint is made again in parts, from crossing to crossing, each with e^{A tau} of its own length.  Included by the
  * file of each model, which defines before it what chosen.h asks, and

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* parts.h: what is asked about a piecewise-linear model of independent parts, each of which has regions and crossings
- * of its own.
+/* parts.h: region and crossings of a piecewise-linear model of independent parts, each of which has regions and
+ * crossings of its own.
  *
  * Included by the file of the model, which defines before it
  *

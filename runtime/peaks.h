@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* peaks.h: output NAME = peak(EXPR), the largest |EXPR| so far: a step looks for larger values inside, before it moves
- * the state; or behind it, by values of NAME_at.  Included by the file of the model, which defines before it
+/* peaks.h: output NAME = peak(EXPR), the largest |EXPR| so far: larger values are searched inside each step, before the
+ * state is advanced, or after it by values of NAME_at.  Included by the file of the model, which defines before it
  *
  *     PL_PEAKS, PL(peak_output)[]       how many such outputs, and which
  *     PL_BY_VALUES                      1: by values.  PL_RAMPS: of inputs, some ramp

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* retuned.h: regions whose matrices tunable params change, so that an instance has their tables: NAME_retune, and what
- * it gathers of them for steps that stay clear.  Included by the model's file, which defines before it
+/* retuned.h: NAME_retune of a piecewise-linear model whose instances have tables of their own, as tunable params change
+ * the matrices of its regions; and coefficients of them for event-free steps.  Included by the model's file, which
+ * defines before it
  *
  *     PL(name), PL_SINGLE, PL_H          the model's prefix before a name; 1: in float; its step [s]
  *     PL_WRAPPED                         1: PL(retune) is the model's own, and calls PL(retune_all)

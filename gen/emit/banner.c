@@ -67,7 +67,8 @@ static void banner_poles(const struct emitter *e)
 #define banner_sentence(e, ...) say_words(e, format(__VA_ARGS__))
 
 #define region_number \
-	"A region's number is the sum of its intervals, each times the product of the numbers of intervals before it."
+	"The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of expression 0, " \
+	"n0 how many intervals that has."
 
 /* What the scheme is; nothing of exact */
 static void banner_scheme(const struct emitter *e)
@@ -326,21 +327,22 @@ void banner_regions(const struct emitter *e)
 	       " * every constant is its closed form, correctly rounded; "
 	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
 	if (s->segments > 1)
-		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
+		say(e, " * Loads change their formula: each of the %d segments of time has its own regions.\n",
+		    s->segments);
 	banner_expressions(e);
 	say(e, "%s", frictions_text(s, " *     "));
 	banner_impacts(e);
 	if (s->sharing)
-		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
+		say(e, " * Rigid-body modes couple %d independent parts, so these share their regions.\n",
 		    s->sharing);
 	const struct event_check *event_check = &e->step->regions.event_check;
 	banner_sentence(e, "%s",
-			event_check->fast_path ? format("A step is one product where a bound shows it clear of every "
-			"breakpoint; up to %d crossings that are certain go by the model's own Taylor polynomials, of "
-			"degree %d; all else by the search.", MOST_FAST_PATH,
+			event_check->fast_path ? format("A step that a bound shows to be free of events is one matrix "
+			"product; up to %d crossings that are certain are computed by Taylor polynomials of "
+			"degree %d; the search does all other steps.", MOST_FAST_PATH,
 				event_check->degree) : event_check->event_free ?
-			"A step is one product where a bound shows it clear of every breakpoint; all else goes by the "
-			"search." : format("Every step goes by the search: %s.", event_check->searches));
+			"A step that a bound shows to be free of events is one matrix product; the search does all "
+			"other steps." : format("Every step goes by the search: %s.", event_check->searches));
 	banner_region_number(e);
 }
 
@@ -379,9 +381,9 @@ void banner_parts(const struct emitter *e)
 		fast_path = fast_path || e->step->regions.part[p]->regions.event_check.fast_path;
 	}
 	if (fast_path)
-		banner_sentence(e, "A step of a part is one product where a bound shows it clear of every breakpoint; "
-				"up to %d crossings that are certain go by the part's own Taylor polynomials; all "
-				"else by the search.", MOST_FAST_PATH);
+		banner_sentence(e, "A step of a part that a bound shows to be free of events is one matrix product; "
+				"up to %d crossings that are certain are computed by Taylor polynomials; the "
+				"search does all other steps.", MOST_FAST_PATH);
 	banner_region_number(e);
 }
 
@@ -442,8 +444,8 @@ static void banner_form(const struct emitter *e)
 	if (e->step->no.modal)
 		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no.modal);
 	if (e->step->linear.rest)
-		say(e, " * What has decayed below %s is set to rest: looked for every 64 steps, by $n_%s.\n",
-		    e->model->asked.single ? "1e-35" : "1e-290", e->step->linear.rest->in_step ? "step" : "run");
+		say(e, " * Denormal flush: every 64 steps $n_%s sets a motion that has decayed below %s to 0.\n",
+		    e->step->linear.rest->in_step ? "step" : "run", e->model->asked.single ? "1e-35" : "1e-290");
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carried.count)

@@ -73,7 +73,7 @@ static void emit_acting(const struct emitter *e)
 		wanted[l] = layout->load[l] >= 0;
 		time = time || (wanted[l] && e->system->load[l].powers > 1);
 	}
-	open_function(e, "What acts on the states, tau after now",
+	open_function(e, "Load states and inputs, tau after now",
 		      "static void $n_acting(const $n *s, const double start[], const double slope[], double tau,\n"
 		      "    double acting[])");
 	if (time)

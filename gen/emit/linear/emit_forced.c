@@ -73,7 +73,7 @@ void emit_forced(const struct emitter *e)
 	}
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
 	tape_of_forced(formulas_tape(f), e->step, "now");
-	open_function(e, "What the loads that the step leaves out sustain now",
+	open_function(e, "Particular solution now, of loads that the step leaves out",
 		      "static void $n_forced(const $n *s, double now[$N_STATES])");
 	emit_rotated_loads(e, e->step->forced->load, false);
 	emit_formulas(f, 4);

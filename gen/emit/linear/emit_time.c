@@ -206,7 +206,7 @@ void emit_passing(const struct emitter *e)
 	const bool forced = e->step->forced != NULL;
 	emit_series_slopes(e);
 	emit_passing_algorithm(e);
-	open_function(e, "The state tau after now, from change to change of the loads on the way",
+	open_function(e, "The state tau after now; split where loads change their formula",
 		      "static %s $n_pass(const $n *s, %s%s%sdouble tau, %sdouble y[$N_STATES])",
 		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
 		      layout->powers == 1 ? "const double *left, " : "", forced ? "int whole, " : "");

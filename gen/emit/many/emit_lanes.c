@@ -243,7 +243,7 @@ static const char *bend_over_lanes(struct batch *b, int p)
 void emit_lanes_bend(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	open_function(e, "How far outputs are off their chords at most, by |states| and what else acts on them",
+	open_function(e, "Bounds of the distance of outputs from their chords, for |states|, loads and inputs",
 		      "PL_LANES_INLINE void $n_lanes_bend(const pl_lanes *state, const pl_lanes *factor, "
 		      "const double *reach, pl_lanes *bend)");
 	for (int p = 0; p < peak_outputs(e->model); p++)

@@ -103,7 +103,7 @@ static const char *term_of_series(const struct emitter *e, int state, int k)
 /* Of fixed order: all of it */
 static void emit_total(const struct emitter *e)
 {
-	open_function(e, "Where the series ends that begins at y, and what rounding takes from it",
+	open_function(e, "The end of the series that begins at y: high and low parts",
 		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
 		      "double end[$N_STATES], double rest[$N_STATES])", own_expansion(e)->order + 1);
 	for (int i = 0; i < e->system->states; i++)

@@ -206,7 +206,7 @@ void emit_ends_function(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	struct recurrences *r = series_new(e);
-	begin_function(e, "Of what is watched the value and h times its slope; the sizes of the terms of the value",
+	begin_function(e, "Watched functions: value and h times the slope; sum of sizes of the terms of the value",
 		       "ends_at", format("double e[][%d], double terms[%d]", x->columns, x->columns));
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)

@@ -120,7 +120,7 @@ static void emit_frequencies(const struct emitter *e)
 	for (int k = 0; k < held_leads(e); k++)
 		rate[k] = e->model->params.leads.lead[k].rate;
 	const struct reads reads = reads_of(e->model, held_leads(e), rate);
-	open_function(e, "Of sines, as params have them [rad/s]",
+	open_function(e, "Frequencies of loads from params [rad/s]",
 		      "static void $n_frequencies(const $n *s, double slope[%d])", held_leads(e));
 	emit_param_locals(e, reads.param);
 	for (int i = 0; i < e->system->inputs; i++)
@@ -150,7 +150,7 @@ static void emit_derive(const struct emitter *e)
 {
 	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
 	const struct reads reads = reads_of(e->model, derived, e->model->params.derived);
-	open_function(e, "What follows from params", "static void $n_derive(const double y[], double out[])");
+	open_function(e, "Numbers that follow from params", "static void $n_derive(const double y[], double out[])");
 	for (int k = 0; k < given; k++)
 		if (reads.param[k])
 			say(e, "    const double %s = y[%d];\n", param_local(e, k), k);
