@@ -9,7 +9,7 @@
 #include "measuring.h"
 #include "command.h"
 #include "model/checks.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "report/report.h"
 #include "step/certify/certify.h"
 #include "step/cost.h"
@@ -87,9 +87,9 @@ static void certify(struct choosing *c)
 		found->needed = needed_error(r, c->largest[i]);
 		a->why = a->why ? a->why : found->why;
 		if (found->known)
-			a->excess = fmax(a->excess, error_told(found) / found->needed);
+			a->error_ratio = fmax(a->error_ratio, error_reported(found) / found->needed);
 	}
-	a->bound_excess = a->why ? HUGE_VAL : a->excess;
+	a->bound_error_ratio = a->why ? HUGE_VAL : a->error_ratio;
 }
 
 /* Whether it is surely as exact as needed */
@@ -104,10 +104,10 @@ static bool try_one(struct choosing *c, bool single, bool compensated, enum step
 	a->made = c->step;
 	if (!a->refused)
 		certify(c);
-	else if (a->model->shortened && !c->written->shortened)
+	else if (a->model->truncated && !c->written->truncated)
 		return false;           /* as of all modes, which are tried too */
 	*MORE(c->choice->alternative, c->choice->alternatives) = *a;
-	return !a->refused && a->bound_excess <= 1;
+	return !a->refused && a->bound_error_ratio <= 1;
 }
 
 /* By modes alone: the plainest step shows it. */
@@ -147,14 +147,14 @@ static void try_form(struct choosing *c, enum step_form form)
 /* Its steps of states cost so much more than those of modes that only these are tried. */
 static bool is_large(const struct model *model)
 {
-	return model->system.states > LIMIT_UNROLLED_STATES && !model->shortened;
+	return model->system.states > LIMIT_UNROLLED_STATES && !model->truncated;
 }
 
 static void try_forms(struct choosing *c)
 {
 	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
 	const struct variant *v = c->variant;
-	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
+	const bool asked = c->request->form != FORM_AUTO, modes = v->model->truncated;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
 		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
 				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated &&
@@ -169,7 +169,7 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 	struct variant *v = NEW(struct variant);
 	v->model = model;
 	v->dropped = ARRAY(double, c->stepped->needs.requirements);
-	if (!model->shortened || c->request->form == FORM_MODAL)
+	if (!model->truncated || c->request->form == FORM_MODAL)
 		v->modes = step_of(c, model, FORM_MODAL);
 	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
 		v->states = step_of(c, model, FORM_DIRECT);
@@ -181,7 +181,7 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 struct dropping {
 	struct modes *modes;
 	const int *order;
-	bool statics;
+	bool static_correction;
 	double **lost;              /* per requirement, per number of modes kept */
 };
 
@@ -200,7 +200,7 @@ static struct model *model_of_modes(const struct dropping *d, int count)
 	for (int i = 0; i < count; i++)
 		kept[d->order[i]] = true;
 	target_double();
-	return modes_kept(d->modes, kept, d->statics);
+	return modes_kept(d->modes, kept, d->static_correction);
 }
 
 static void try_modes(struct choosing *c, const struct dropping *d, int count)
@@ -225,7 +225,7 @@ static const double *walk_beside(const struct choosing *c, const struct step *st
 }
 
 /* Where loads change their formula: as walked in double, from one mode on to a few more than are enough */
-static void walk_losses(struct choosing *c, struct dropping *d)
+static void walk_truncation_errors(struct choosing *c, struct dropping *d)
 {
 	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
 	for (int i = 0; i < requirements; i++)
@@ -246,9 +246,10 @@ static void drop_modes(struct choosing *c, struct dropping *d)
 	target_double();
 	d->lost = ARRAY(double *, requirements);
 	for (int i = 0; i < requirements && !loads_change(&c->stepped->system); i++)
-		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->needs.requirement[i]);
+		d->lost[i] = truncation_errors_of(d->modes, d->order, d->static_correction,
+						  &c->stepped->needs.requirement[i]);
 	if (loads_change(&c->stepped->system))
-		walk_losses(c, d);
+		walk_truncation_errors(c, d);
 	int fewest = all;
 	while (fewest > 1 && loses_less(c, d, fewest - 1))
 		fewest--;
@@ -274,15 +275,15 @@ static void try_fewer(struct choosing *c)
 	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
 	if (!modes || modes->count < 2)
 		return;
-	for (int statics = 0; statics <= is_driven(&whole->system); statics++)
+	for (int static_correction = 0; static_correction <= is_driven(&whole->system); static_correction++)
 		drop_modes(c, &(struct dropping){ .modes = modes, .order = modes_by_share(modes),
-						  .statics = statics });
+						  .static_correction = static_correction });
 }
 
 /* What the modes that are written to be dropped lose */
 static void count_written(struct choosing *c)
 {
-	const struct shortening *s = c->written->shortened;
+	const struct modal_truncation *s = c->written->truncated;
 	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
 	int *order = ARRAY(int, modes->count), kept = 0;
 	for (int which = 1; which >= 0; which--)
@@ -295,7 +296,8 @@ static void count_written(struct choosing *c)
 	target_double();
 	for (int i = 0; i < c->stepped->needs.requirements && kept < modes->count; i++)
 		c->variant->dropped[i] =
-			losses_of(modes, order, s->statics, &c->stepped->needs.requirement[i])[kept];
+			truncation_errors_of(modes, order, s->static_correction,
+					     &c->stepped->needs.requirement[i])[kept];
 }
 
 /* ---- as walked ---- */
@@ -321,13 +323,13 @@ static void walk(struct choosing *c, struct alternative *a)
 	if (!error)
 		return;
 	a->why = NULL;
-	a->excess = 0;
+	a->error_ratio = 0;
 	for (int i = 0; i < c->stepped->needs.requirements; i++) {
 		a->certificate[i].walked = true;
 		a->certificate[i].error = error[i];
-		a->excess = fmax(a->excess, error[i] / a->certificate[i].needed);
+		a->error_ratio = fmax(a->error_ratio, error[i] / a->certificate[i].needed);
 	}
-	a->as_written = a->excess <= 1 && a->bound_excess > 1;
+	a->as_written = a->error_ratio <= 1 && a->bound_error_ratio > 1;
 }
 
 /* Of operations, roughly: those of its run, and what reading its C takes */
@@ -361,7 +363,7 @@ static void try_all(struct choosing *c)
 {
 	c->choice = NEW(struct choice);
 	c->variant = variant_of(c, c->stepped);
-	const struct model *full = c->written->shortened ? c->written->shortened->modes->model : c->stepped;
+	const struct model *full = c->written->truncated ? c->written->truncated->modes->model : c->stepped;
 	struct step *exact = c->variant->states ? c->variant->states : c->variant->modes;
 	if (full != c->stepped) {
 		struct model *whole = NEW(struct model);
@@ -374,10 +376,10 @@ static void try_all(struct choosing *c)
 		c->largest[i] = c->exact ? largest_of(c->exact, i) * (1 - 0x1p-52)
 				: exact	 ? largest_of_output(exact, &c->stepped->needs.requirement[i])
 					 : 0;
-	if (c->written->shortened)
+	if (c->written->truncated)
 		count_written(c);
 	try_forms(c);
-	if (!c->written->shortened)
+	if (!c->written->truncated)
 		try_fewer(c);
 	sort_by_cost(c->choice);
 	walk_all(c);
@@ -393,9 +395,9 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 	double most = 0;
 	for (int i = 0; i < c->stepped->needs.requirements; i++) {
 		const struct certificate *found = &a->certificate[i];
-		const double excess = error_told(found) / found->needed;
-		worst = excess > most ? i : worst;
-		most = fmax(most, excess);
+		const double error_ratio = error_reported(found) / found->needed;
+		worst = error_ratio > most ? i : worst;
+		most = fmax(most, error_ratio);
 	}
 	return worst;
 }
@@ -406,7 +408,7 @@ static const struct alternative *most_exact(const struct choice *choice, double 
 	const struct alternative *best = NULL;
 	for (int i = 0; i < choice->alternatives; i++) {
 		const struct alternative *a = &choice->alternative[i];
-		if (!a->refused && !a->why && a->cost <= most && (!best || a->excess < best->excess))
+		if (!a->refused && !a->why && a->cost <= most && (!best || a->error_ratio < best->error_ratio))
 			best = a;
 	}
 	return best;
@@ -440,12 +442,12 @@ static const char *what_would_do(struct choosing *c)
 	try_all(c);
 	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
 	c->request = asked;
-	return best && best->excess <= 1 ? format("without what is asked for on the command line it can: %s",
+	return best && best->error_ratio <= 1 ? format("without what is asked for on the command line it can: %s",
 						  certified_text(best, worst_requirement(c, best)))
 					 : NULL;
 }
 
-static void tell_unmet(struct choosing *c)
+static void report_unmet(struct choosing *c)
 {
 	const struct choice *choice = c->choice;
 	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
@@ -461,11 +463,11 @@ static void tell_unmet(struct choosing *c)
 		  best->certificate[i].needed);
 }
 
-static void tell_dear(const struct choosing *c, const struct alternative *taken)
+static void report_expensive(const struct choosing *c, const struct alternative *taken)
 {
 	const struct alternative *best = most_exact(c->choice, c->stepped->needs.budget);
 	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
-					 alternative_text(best), best->cost, best->excess)
+					 alternative_text(best), best->cost, best->error_ratio)
 				: "nothing that there is takes so few";
 	say_error(c->stepped->spec->required.budget.at, fits,
 		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
@@ -484,12 +486,12 @@ static bool find_taken(struct choosing *c)
 		if (meets(&choice->alternative[i]))
 			choice->taken = i;
 	if (choice->taken < 0) {
-		tell_unmet(c);
+		report_unmet(c);
 		return false;
 	}
 	const struct alternative *taken = &choice->alternative[choice->taken];
 	if (c->stepped->needs.target && taken->cost > c->stepped->needs.budget) {
-		tell_dear(c, taken);
+		report_expensive(c, taken);
 		return false;
 	}
 	return true;

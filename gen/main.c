@@ -4,7 +4,7 @@
 #include "emit/emit.h"
 #include "model/checks.h"
 #include "model/tunable/elsewhere.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 #include "report/report.h"
 #include "step/linear/images.h"
@@ -39,7 +39,7 @@ static bool make_model(struct work *w)
 	if (!w->model)
 		return false;
 	w->spec = w->model->spec;
-	w->model = model_shorten(w->model);
+	w->model = model_truncate(w->model);
 	return w->model;
 }
 
@@ -205,7 +205,7 @@ static void print_main_text(void *context)
 	switch (options->print) {
 	case PRINT_C:        emit_code(to, w->step, options->banner, header_name(w), options->rhs); break;
 	case PRINT_HEADER:   emit_header(to, w->step, options->banner, options->rhs); break;
-	case PRINT_EXPLAIN:  explain_person(to, w->step); break;
+	case PRINT_EXPLAIN:  explain_text(to, w->step); break;
 	case PRINT_JSON:     explain_json(to, w->step); break;
 	case PRINT_PROGRAM:  explain_program(to, w->step); break;
 	case PRINT_SOLUTION: print_closed_form(to, w); break;

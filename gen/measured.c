@@ -36,14 +36,14 @@ static void try_steps(struct measuring *m, struct alternative a)
 	for (int tried = 0; tried < MOST_TRIED; tried++) {
 		const double now = strtod(round_step(h), NULL);
 		const struct alternative one = tried_step(m, a, h);
-		const double excess = one.excess;
+		const double error_ratio = one.error_ratio;
 		if (one.refused && ++refused == 2)              /* a step that is too long for it may be one reason */
 			return;
 		if (is_enough(m, &one))
 			meeting = fmax(meeting, now);
 		else
 			missing = fmin(missing, now);
-		const double by = isfinite(excess) ? pow(0.9 / excess, 1.0 / order) : 0.2;
+		const double by = isfinite(error_ratio) ? pow(0.9 / error_ratio, 1.0 / order) : 0.2;
 		if (meeting == 0)
 			h = now * fmax(fmin(by, 0.6), 0.02);
 		else if (missing == HUGE_VAL)
@@ -149,20 +149,20 @@ static void choose(struct measuring *m)
 	}
 }
 
-static void tell_unmet(const struct measuring *m)
+static void report_unmet(const struct measuring *m)
 {
 	const struct alternative *best = NULL, *any = NULL;
 	const struct place at = m->model->needs.requirement[0].need->at;
 	for (int i = 0; i < m->choice->alternatives; i++) {
 		const struct alternative *a = &m->choice->alternative[i];
 		any = any ? any : a;
-		if (!a->refused && !a->why && (!best || a->excess < best->excess))
+		if (!a->refused && !a->why && (!best || a->error_ratio < best->error_ratio))
 			best = a;
 	}
 	if (!best)
 		say_error(at, NULL, "the need cannot be measured: %s",
 			  any ? (any->refused ? any->refused : any->why) : "there is no scheme for the model");
-	else if (best->excess <= WITHIN)
+	else if (best->error_ratio <= WITHIN)
 		say_error(at, NULL,
 			  "the need cannot be met: %s meets it from the spec's start, and misses it by a factor of "
 			  "%.3g where %s", alternative_text(best), best->worst_neighbour, best->worst_name);
@@ -170,7 +170,7 @@ static void tell_unmet(const struct measuring *m)
 		say_error(at,
 			  m->request->step_open || m->model->system.inputs > 0 ? NULL : "without 'step' one is chosen",
 			  "the need cannot be met: the best that was measured, %s, misses it by a factor of %.3g",
-			  alternative_text(best), best->excess);
+			  alternative_text(best), best->error_ratio);
 }
 
 static bool is_over_budget(const struct measuring *m, const struct alternative *taken)
@@ -204,7 +204,7 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 	}
 	choose(&m);
 	if (m.choice->taken < 0) {
-		tell_unmet(&m);
+		report_unmet(&m);
 		return NULL;
 	}
 	const struct alternative *taken = &m.choice->alternative[m.choice->taken];

@@ -58,11 +58,11 @@ static void try_near(struct measuring *m, struct alternative *a, struct ready *r
 		     const char *what)
 {
 	struct alternative copy = *a;
-	const double excess = tried_from(m, &copy, ready, start, a->worst_input, false);
+	const double error_ratio = tried_from(m, &copy, ready, start, a->worst_input, false);
 	a->neighbours++;
-	if (excess <= a->worst_neighbour)
+	if (error_ratio <= a->worst_neighbour)
 		return;
-	a->worst_neighbour = excess;
+	a->worst_neighbour = error_ratio;
 	a->worst_name = what;
 }
 

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool told;               /* that standard output cannot be written */
+static bool reported;           /* that standard output cannot be written */
 
 enum { FILES = 3 };              /* C, header, depfile */
 static struct file file[FILES];
@@ -28,7 +28,7 @@ static void finish(void)
 {
 	remove_temporaries();
 	memory_close();
-	if (!told && (fflush(stdout) != 0 || ferror(stdout))) {
+	if (!reported && (fflush(stdout) != 0 || ferror(stdout))) {
 		fprintf(stderr, "plgen: error: cannot write to standard output: %s\n", strerror(errno));
 		_exit(1);
 	}
@@ -192,7 +192,7 @@ static _Noreturn void cannot_write(const struct file *failed)
 {
 	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output",
 		strerror(errno));
-	told = told || !failed->path;
+	reported = reported || !failed->path;
 	exit(1);
 }
 

@@ -2,7 +2,7 @@
 /* One step that is tried for needs that are measured: built, run beside a reference, counted, put in order. */
 #include "measuring.h"
 #include "model/checks.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "step/certify/certify.h"
 #include "step/linear/images.h"
 
@@ -22,7 +22,7 @@ static void build_now(void *context)
 	struct model *model = model_build(spec, &m->now);
 	if (model)
 		model = model_reduce(model);
-	model = model ? model_shorten(model) : NULL;
+	model = model ? model_truncate(model) : NULL;
 	model = model ? stepped_model(model, spec, &m->now) : NULL;
 	m->step = model ? step_build(model) : NULL;
 	if (!m->step || !find_requirements(model))
@@ -267,12 +267,12 @@ struct request request_of(const struct measuring *m, const struct alternative *a
 bool meets(const struct alternative *a)
 {
 	const double within = a->measured ? WITHIN : 1;
-	return !a->refused && !a->why && a->excess <= within && a->worst_neighbour <= within;
+	return !a->refused && !a->why && a->error_ratio <= within && a->worst_neighbour <= within;
 }
 
 bool is_enough(const struct measuring *m, const struct alternative *a)
 {
-	return meets(a) && a->excess <= m->within;
+	return meets(a) && a->error_ratio <= m->within;
 }
 
 /* From the spec's start, with all inputs that are tried */
@@ -283,13 +283,13 @@ static void try_inputs(struct measuring *m, struct alternative *a, struct ready 
 				MOST_SAMPLES);
 		return;
 	}
-	a->excess = 0;
+	a->error_ratio = 0;
 	a->inputs_tried = m->drive ? m->drives : 0;
-	for (int i = 0; i < m->drives && isfinite(a->excess); i++) {
-		const double excess = tried_from(m, a, ready, NULL, i, true);
-		if (excess <= a->excess)
+	for (int i = 0; i < m->drives && isfinite(a->error_ratio); i++) {
+		const double error_ratio = tried_from(m, a, ready, NULL, i, true);
+		if (error_ratio <= a->error_ratio)
 			continue;
-		a->excess = excess;
+		a->error_ratio = error_ratio;
 		a->worst_input = i;
 	}
 }
@@ -302,7 +302,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 	a->name = ready.step  ? scheme_name(ready.step->model->scheme)
 		  : a->scheme ? a->scheme : scheme_name(m->model->scheme);
 	a->certificate = ARRAY(struct certificate, m->model->needs.requirements);
-	a->excess = HUGE_VAL;
+	a->error_ratio = HUGE_VAL;
 	if (ready.r)
 		try_inputs(m, a, &ready);
 	if (is_enough(m, a))
@@ -322,8 +322,8 @@ static int by_cost(const void *left, const void *right)
 		return a->cost < b->cost ? -1 : 1;
 	if (a->measured)
 		return strcmp(a->name, b->name);
-	if (a->excess != b->excess)
-		return a->excess < b->excess ? -1 : 1;
+	if (a->error_ratio != b->error_ratio)
+		return a->error_ratio < b->error_ratio ? -1 : 1;
 	if (a->single != b->single)
 		return a->single ? -1 : 1;
 	if (a->compensated != b->compensated)

@@ -14,12 +14,13 @@
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
  *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
- *     PL_REFRESHED                1: loads have a refresh: since, PL(drop_refresh)(s)
+ *     PL_REFRESHED                1: loads have a refresh: since, PL(refresh_phasors)(s)
  *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
  *     PL_STATUS, PL_RANGES       1: member status; ranges of PL(range_state)[]: PL(range)[][2]
  *     PL_PLACES                  1: PL(place)(s) finds what follows from a state that was set
  *     PL_OWN                     1: member coeffs, which begins as PL(nominal)
- *     PL_RAMPS, PL_TAPS          1: members slope and PL(hold); of inputs through PL(taps)[] + 1 samples at most, past
+ * PL_RAMPS, PL_PAST_SAMPLES          1: members slope and PL(hold); of inputs through PL(past_samples)[] + 1 samples at
+ * most, past
  *     PL_H, PL_ELAPSED           step; time since t0 [s]
  *     PL(initial)[], PL(initial_set)[]     the first state as it is kept; the same as written */
 #include "numbers.h"
@@ -202,7 +203,7 @@ static void PL(begin_time)(PL_TYPE *s, real t)
 #endif
 #if PL_REFRESHED
     s->since = 0;
-    PL(drop_refresh)(s);
+    PL(refresh_phasors)(s);
 #endif
 #if PL_SEGMENTS > 1
     s->segment = 0;
@@ -259,7 +260,7 @@ void PL(init)(PL_TYPE *s)
 #endif
 #if PL_INPUTS > 0
     int i;
-#if PL_TAPS > 0
+#if PL_PAST_SAMPLES > 0
     int k;
 #endif
     for (i = 0; i < PL_INPUTS; i++) {
@@ -267,8 +268,8 @@ void PL(init)(PL_TYPE *s)
 #if PL_RAMPS
         s->slope[i] = 0;
 #endif
-#if PL_TAPS > 0
-        for (k = 0; k < PL_TAPS; k++) {
+#if PL_PAST_SAMPLES > 0
+        for (k = 0; k < PL_PAST_SAMPLES; k++) {
             s->past[i][k] = 0;
         }
 #endif
@@ -354,17 +355,17 @@ static void PL(stay)(PL_TYPE *s)
 
 /* ---- samples ---- */
 
-#if PL_TAPS > 0
+#if PL_PAST_SAMPLES > 0
 /* u is the next sample of an input that goes through some before it */
 static void PL(next_sample)(PL_TYPE *s, int input, real u)
 {
-    const int taps = PL(taps)[input];
+    const int past_samples = PL(past_samples)[input];
     int k;
-    for (k = 0; k + 1 < taps; k++) {
+    for (k = 0; k + 1 < past_samples; k++) {
         s->past[input][k] = s->past[input][k + 1];
     }
-    s->past[input][taps - 1] = u;
-    s->u[input] = s->past[input][(taps - 1) / 2];
+    s->past[input][past_samples - 1] = u;
+    s->u[input] = s->past[input][(past_samples - 1) / 2];
 }
 #endif
 
@@ -373,15 +374,15 @@ void PL(hold)(PL_TYPE *s, const real u[PL_INPUTS])
 {
     int i;
     for (i = 0; i < PL_INPUTS; i++) {
-#if PL_TAPS > 0
-        if (PL(taps)[i] > 1) {
+#if PL_PAST_SAMPLES > 0
+        if (PL(past_samples)[i] > 1) {
             PL(next_sample)(s, i, u[i]);
             continue;
         }
 #endif
         s->u[i] = u[i];
     }
-#if PL_PLACES && !PL_TAPS
+#if PL_PLACES && !PL_PAST_SAMPLES
     if (s->k == 0u) {
         PL(place)(s);
     }

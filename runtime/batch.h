@@ -370,7 +370,7 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
-PL_LANES_INLINE void PL(lanes_tell)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
+PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
 {
     size_t i;
     if (out && j < b->count) {
@@ -416,7 +416,7 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
 #else
                 PL(lanes_widen)(peak[g], value, PL_OUTPUTS);
 #endif
-                PL(lanes_tell)(b, j, value, out);
+                PL(lanes_report)(b, j, value, out);
             }
             out = out ? out + PL_OUTPUTS * b->count : NULL;
         }

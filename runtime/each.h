@@ -75,7 +75,7 @@ int PL(batch_status)(const PL_INSTANCES *b, size_t j)
     return PL(status)(&one);
 }
 
-static void PL(batch_tell)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
+static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
 {
     real now[PL_OUTPUTS];
     size_t i;
@@ -104,7 +104,7 @@ static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, re
         PL(step)(&one);
 #endif
         if (out || b->peak) {
-            PL(batch_tell)(b, j, &one, out);
+            PL(batch_report)(b, j, &one, out);
         }
         out = out ? out + PL_OUTPUTS * b->count : NULL;
     }

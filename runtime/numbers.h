@@ -158,14 +158,14 @@
 #ifndef PL_STRAIGHT
 #define PL_STRAIGHT 0
 #endif
-#ifndef PL_TAPS
-#define PL_TAPS 0
+#ifndef PL_PAST_SAMPLES
+#define PL_PAST_SAMPLES 0
 #endif
 #ifndef PL_TERMS
 #define PL_TERMS 0
 #endif
-#ifndef PL_UNSEEN
-#define PL_UNSEEN 0
+#ifndef PL_UNRESOLVED
+#define PL_UNRESOLVED 0
 #endif
 #ifndef PL_WATCHED
 #define PL_WATCHED 0

@@ -498,7 +498,8 @@ typedef struct pl_group {
     const unsigned short *reads;  /* of each block the params that it reads, as bits */
     int samples;                  /* number of inputs that are interpolated between samples */
     const unsigned short *sample; /* the place of each in x, and how many of its derivatives follow there */
-    const PL_REAL *tap;           /* of inputs with several samples: weights of the samples in h^m times derivative m */
+    /* of inputs with several samples: weights of the samples in h^m times derivative m */
+    const PL_REAL *sample_weight;
     int down, across;             /* strides of the table of one block, by row and by column; 0 for several blocks */
     int entries, changing;        /* entries of each of several blocks, and in each time segment; of one: columns */
     const unsigned char *entry, *load; /* row and column of each entry */

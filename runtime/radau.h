@@ -72,7 +72,7 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #else
 #include "measure.h"
 #if PL_ARGUMENTS > 0
-#include "unseen.h"
+#include "unresolved.h"
 #endif
 #endif
 

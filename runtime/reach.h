@@ -9,7 +9,7 @@
  *     PL_ORDER, PL_TOLERANCE, PL_H     of the series; relative; [s]
  *     PL_REMAINDERS              of each of the last two terms: 1, itself; 3, and two that stand in for it
  *     PL_KINDS, PL_FLOORS        as measure.h
- *     PL_UNSEEN, PL_HIDDEN       whether there is what coefficients may not show; how many functions, of each in
+ *     PL_UNRESOLVED, PL_HIDDEN       whether there is what coefficients may not show; how many functions, of each in
  *                                PL(hidden)[] the column of the argument, the kind, a power
  *     PL_BEATS                   [h] loads that may cancel each other are followed so far; 0: there are none
  *     PL_RISES, PL_RISES_FACTOR  what an exponent may gain over a series; e to it
@@ -100,9 +100,9 @@ static void PL(remainders)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUM
 
 /* ---- what coefficients may not show ---- */
 
-#if PL_UNSEEN
+#if PL_UNRESOLVED
 #if PL_HIDDEN > 0
-#include "unseen.h"
+#include "unresolved.h"
 #endif
 
 /* Whether the coefficients show what the equations do over `size` from their start */

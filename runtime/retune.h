@@ -126,17 +126,17 @@ static int PL(increments)(const pl_group *g, const pl_block *b, const pl_two *va
 /* ---- a step ---- */
 
 #if PL_SAMPLES > 1
-/* In the place of an input's derivatives, what they make of its samples: tap[k] has the parts of h^m times derivative
- * m in sample k.  They are summed in pairs. */
-static void PL(to_samples)(pl_two *d, int derivatives, const real *tap, real h)
+/* In the place of an input's derivatives, what they make of its samples: sample_weight[k] has the parts of h^m times
+ * derivative m in sample k.  They are summed in pairs. */
+static void PL(to_samples)(pl_two *d, int derivatives, const real *sample_weight, real h)
 {
     real term[PL_SAMPLES + 1];
     int k, m, apart, terms;
     for (k = 0; k <= derivatives; k++) {
         real power = 1;
         for (m = terms = 0; m <= derivatives; m++) {
-            if (tap[k * (derivatives + 1) + m] != 0) {
-                term[terms++] = tap[k * (derivatives + 1) + m] * d[m].hi / power;
+            if (sample_weight[k * (derivatives + 1) + m] != 0) {
+                term[terms++] = sample_weight[k * (derivatives + 1) + m] * d[m].hi / power;
             }
             power *= h;
         }
@@ -158,7 +158,7 @@ static void PL(to_samples)(pl_two *d, int derivatives, const real *tap, real h)
 static void PL(finish_row)(const pl_group *g, pl_two *d, int i, real h)
 {
 #if PL_SAMPLES > 1
-    const real *tap = g->tap;
+    const real *sample_weight = g->sample_weight;
 #endif
 #if PL_SAMPLES > 0
     int k;
@@ -172,8 +172,8 @@ static void PL(finish_row)(const pl_group *g, pl_two *d, int i, real h)
 #if PL_SAMPLES > 1
         const int derivatives = g->sample[2 * k + 1];
         if (derivatives > 1) {
-            PL(to_samples)(at, derivatives, tap, h);
-            tap += (derivatives + 1) * (derivatives + 1);
+            PL(to_samples)(at, derivatives, sample_weight, h);
+            sample_weight += (derivatives + 1) * (derivatives + 1);
             continue;
         }
 #endif

@@ -100,7 +100,7 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
     if (n >= PL_ROWS) {
         PL_TYPE now = *s; /* over all blocks, so that its states may be in registers */
 #if PL_REFRESHED
-        PL(drop_refresh)(&now);
+        PL(refresh_phasors)(&now);
 #endif
         for (; n >= PL_ROWS; n -= PL_ROWS) {
 #if PL_OVER

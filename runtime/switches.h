@@ -38,7 +38,7 @@ static inline real PL(shorter)(real a, real b)
     return b < a ? b : a;
 }
 
-#if PL_UNSEEN
+#if PL_UNRESOLVED
 /* Whether the series shows over `length` what the equations do, whose slopes it has over `size` */
 static inline int PL(is_shown)(const PL_TYPE *s, const real start[], const real slope[], real length, real size)
 {
@@ -132,7 +132,7 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
     if (length > 8 && length > 8 * s->want) {
         length = s->want > 1 ? 8 * s->want : 8;
     }
-#if PL_UNSEEN
+#if PL_UNRESOLVED
     while (length > PL_SHORTEST && !PL(is_shown)(s, start, slope, length, length < limit ? length : limit)) {
         length /= 2;
     }

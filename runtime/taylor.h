@@ -160,7 +160,7 @@ static real PL(part)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS])
         part /= 2;
         halvings++;
     }
-#if PL_UNSEEN
+#if PL_UNRESOLVED
     for (; halvings < 60 && !PL(shows)(c, part); halvings++) {
         part /= 2;
     }
@@ -201,7 +201,7 @@ static int PL(reach)(const PL_TYPE *s)
     while (m > 0 && !(last <= PL(last)[m - 1] && before <= PL(before_last)[m - 1])) {
         m--;
     }
-#if PL_UNSEEN
+#if PL_UNRESOLVED
     while (m > 0 && !PL(shows)((const real (*)[PL_COLUMNS])s->series, (real)m)) {
         m /= 2;
     }

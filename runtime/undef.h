@@ -223,7 +223,7 @@
 #undef PL_SWEEPS
 #undef PL_FAST_PATH
 #undef PL_TABLES
-#undef PL_TAPS
+#undef PL_PAST_SAMPLES
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE
@@ -234,7 +234,7 @@
 #undef PL_TYPE
 #undef PL_UNIT
 #undef PL_UNKNOWNS
-#undef PL_UNSEEN
+#undef PL_UNRESOLVED
 #undef PL_UNTIL
 #undef PL_VALUES
 #undef PL_VECTOR

@@ -213,9 +213,9 @@ static void stop(const char *message)
 
 static void (*spent)(const char *message) = stop;
 
-void memory_on_limit(void (*tell)(const char *message))
+void memory_on_limit(void (*report)(const char *message))
 {
-	spent = tell;
+	spent = report;
 }
 
 /* Before `size` more are asked for */

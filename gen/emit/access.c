@@ -50,8 +50,8 @@ static void emit_flags(const struct emitter *e)
 		emit_integers(e, "unsigned char", "falls", e->growths, list);
 	for (int i = 0; i < e->system->inputs; i++)
 		list[i] = e->system->input[i].hold;
-	if (most_taps_before(e))
-		emit_integers(e, "unsigned char", "taps", e->system->inputs, list);
+	if (most_samples_before(e))
+		emit_integers(e, "unsigned char", "past_samples", e->system->inputs, list);
 }
 
 /* k h: of the spec's step p/q, with p and q exact, it is one rounding away from the exact time while k p < 2^53. */
@@ -101,7 +101,7 @@ void emit_access(const struct emitter *e)
 		   { "REFRESHED", step->refresh != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
 		   { "OWN", e->model->params.held || e->step->is.tuned }, { "RAMPS", e->ramps },
-		   { "TAPS", most_taps_before(e) });
+		   { "PAST_SAMPLES", most_samples_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (step->forced && step->forced->written) {
 		say_macro(e, "COLUMNS", whole_text(step->branch->whole->columns));

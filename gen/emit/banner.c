@@ -92,15 +92,16 @@ static void banner_growth(const struct emitter *e)
 }
 
 /* Which modes are kept, and what is lost at most */
-static void banner_shortening(const struct emitter *e)
+static void banner_modal_truncation(const struct emitter *e)
 {
 	const struct model *model = e->model;
 	const char *lost = "";
 	for (int i = 0; i < model->outputs; i++)
 		lost = format("%s%s%s", lost, i ? ", " : "", loss_text(model, i));
 	banner_sentence(e, "Modes %s of %d are kept; %s. From the start and under the loads%s outputs lose at most %s "
-			"(sums of |residues|, for all time).", mode_numbers(model->shortened, true),
-			modes_of_model(model->shortened), statics_text(model), model->system.inputs ? ", inputs 0," :
+			"(sums of |residues|, for all time).", mode_numbers(model->truncated, true),
+			modes_of_model(model->truncated), static_correction_text(model),
+			model->system.inputs ? ", inputs 0," :
 			"", lost);
 }
 
@@ -109,11 +110,11 @@ void banner_linear(const struct emitter *e)
 	banner_scheme(e);
 	if (!scheme_row(e->model->scheme)->holds_coupling)
 		say(e, " * %s is approximated; each constant is its closed form, correctly rounded.\n",
-		    e->model->shortened                ? "Scheme exact: modes are dropped, nothing else"
+		    e->model->truncated                ? "Scheme exact: modes are dropped, nothing else"
 		    : e->model->scheme == SCHEME_EXACT ? "Scheme exact: nothing"
 						       : "There is no remainder: nothing");
-	if (e->model->shortened)
-		banner_shortening(e);
+	if (e->model->truncated)
+		banner_modal_truncation(e);
 	banner_growth(e);
 }
 
@@ -146,7 +147,7 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 		banner_sentence(e, region_number);
 }
 
-static void tell_no_phi(const struct emitter *e)
+static void report_no_phi(const struct emitter *e)
 {
 	say(e, " * The state is double-double: its low parts, which hold the rounding errors, are in rest.\n");
 	if (e->step->shown->no.phi)
@@ -242,7 +243,7 @@ void banner_expanded(const struct emitter *e)
 				"last are values of its series. Costs are a step's share.", truncation->over,
 				truncation->over);
 	banner_divided(e);
-	tell_no_phi(e);
+	report_no_phi(e);
 }
 
 /* What is solved at which nodes, how long an internal step is */
@@ -265,7 +266,7 @@ void banner_collocated(const struct emitter *e)
 		    e->step->collocation->iteration.multiplications, e->step->collocation->iteration.additions,
 		    e->step->collocation->iteration.calls);
 	banner_divided(e);
-	tell_no_phi(e);
+	report_no_phi(e);
 }
 
 /* The modes, the remainder in them, how a step goes */
@@ -340,7 +341,7 @@ void banner_regions(const struct emitter *e)
 			event_check->fast_path ? format("A step that a bound shows to be free of events is one matrix "
 			"product; up to %d crossings that are certain are computed by Taylor polynomials of "
 			"degree %d; the search does all other steps.", MOST_FAST_PATH,
-				event_check->degree) : event_check->event_free ?
+				event_check->degree) : event_check->is_made ?
 			"A step that a bound shows to be free of events is one matrix product; the search does all "
 			"other steps." : format("Every step goes by the search: %s.", event_check->searches));
 	banner_region_number(e);

@@ -44,10 +44,10 @@ static void emit_state_struct(const struct emitter *e)
 	emit_held_member(e);
 	if (given_inputs(e))
 		say(e, "    double u[$N_INPUTS];  /* the %s */\n",
-		    most_taps_before(e) ? "sample now" : "last sample");
-	if (most_taps_before(e))
+		    most_samples_before(e) ? "sample now" : "last sample");
+	if (most_samples_before(e))
 		say(e, "    double past[$N_INPUTS][%d];  /* samples before the next: those at and around now */\n",
-		    most_taps_before(e));
+		    most_samples_before(e));
 	if (e->ramps)
 		say(e, "    double slope[$N_INPUTS];  /* of the inputs over the last step [1/s] */\n");
 	emit_load_members(e);
@@ -83,7 +83,7 @@ static void declare_state_functions(const struct emitter *e)
 	emit_if_any(e->prints->declare_state, e);
 	if (e->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
-			most_taps_before(e) ? "the next sample, no step" : "the previous sample");
+			most_samples_before(e) ? "the next sample, no step" : "the previous sample");
 }
 
 void declare_driven_step(const struct emitter *e, const char *note)
@@ -131,14 +131,14 @@ static void declare_tables(const struct emitter *e)
 		announce(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
 	if (given_inputs(e) && !e->step->shown->no.phi)
 		announce(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
-			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
+			most_samples_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
-	if (e->model->shortened) {
+	if (e->model->truncated) {
 		const int all = e->model->written->system.states;
-		announce(e, spell(e, "extern const double $n_from_whole[$N_STATES][%d];", all),
-			"y = from_whole x, x: a state of all modes");
-		announce(e, spell(e, "extern const double $n_to_whole[%d][$N_STATES];", all),
-			"x = to_whole y, without what is dropped");
+		announce(e, spell(e, "extern const double $n_project[$N_STATES][%d];", all),
+			"y = project x, x: a state of all modes");
+		announce(e, spell(e, "extern const double $n_expand[%d][$N_STATES];", all),
+			"x = expand y, without what is dropped");
 	}
 	if (!e->model->delays)
 		announce(e, spell(e, "extern const pl_model $n_model;"), "");
@@ -165,7 +165,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	explain_functions(e);
 	declare_state_functions(e);
 	if (given_inputs(e))
-		declare_driven_step(e, most_taps_before(e) ? "one step of h; u: the next sample"
+		declare_driven_step(e, most_samples_before(e) ? "one step of h; u: the next sample"
 				       : e->ramps	   ? "one step of h; a ramp ends at u"
 							   : "one step of h with u held");
 	else

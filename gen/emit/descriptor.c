@@ -2,7 +2,7 @@
 /* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
 #include "declarations.h"
 #include "state.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 
 #include <string.h>
@@ -50,16 +50,16 @@ static void emit_rounded(const struct emitter *e, int rows, int columns, const m
 /* Between the states of all modes and those of the kept ones */
 static void emit_mode_matrices(const struct emitter *e)
 {
-	const struct shortening *s = e->model->shortened;
+	const struct modal_truncation *s = e->model->truncated;
 	const struct model *whole = e->model->written;
 	const int states = e->system->states, all = whole->system.states;
 	if (!s)
 		return;
-	say(e, "\n/* The state of a full state x, what the modes that are kept have of it: y = from_whole x. */\n"
-	       "const double $n_from_whole[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
+	say(e, "\n/* The state of a full state x, what the modes that are kept have of it: y = project x. */\n"
+	       "const double $n_project[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
 	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->names.state);
-	say(e, "\n/* The full state of a state, the part of the dropped modes left out: x = to_whole y. */\n"
-	       "const double $n_to_whole[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
+	say(e, "\n/* The full state of a state, the part of the dropped modes left out: x = expand y. */\n"
+	       "const double $n_expand[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
 	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->names.state);
 }
 

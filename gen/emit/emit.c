@@ -108,7 +108,7 @@ static bool forms_need_math(const struct emitter *e)
 		    reads_of(model, model->spec->derived, model->params.derived).math;
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
-		math = math || (left && reads_of(speaker(model), 1, &left).math);
+		math = math || (left && reads_of(written_model(model), 1, &left).math);
 	}
 	for (int k = 0; k < model->schedule.operators; k++) {
 		const struct form *const *left = (const struct form *const *)model->schedule.operator[k].left;

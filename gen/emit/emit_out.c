@@ -54,7 +54,7 @@ static void emit_direct_factors(const struct emitter *e)
 /* Rows read states as they are kept, forms the written ones. */
 static bool *kept_states(const struct emitter *e, const struct formulas *f)
 {
-	const struct model *written = speaker(e->model);
+	const struct model *written = written_model(e->model);
 	struct reads r = reads_of_formulas(f);
 	bool *kept = ARRAY(bool, (size_t)e->system->states);
 	for (int i = 0; i < written->system.states; i++)
@@ -80,8 +80,8 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 		const struct output *output = &model->output[i];
 		value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
 	}
-	const struct reads r = reads_of(speaker(model), forms, form);
-	for (int k = 0; k < speaker(model)->n; k++)
+	const struct reads r = reads_of(written_model(model), forms, form);
+	for (int k = 0; k < written_model(model)->n; k++)
 		if (r.highest[k])
 			tape_set_local(t, format("accel%d", k + 1),
 				       tape_of_row(t, e->step, model->equations.highest[k]));

@@ -292,7 +292,7 @@ static void emit_block(const struct emitter *e)
 	say(e, "    s->k += $N_ROWS;\n");
 	if (e->step->refresh)
 		say(e, "    s->since = $N_ROWS;\n"
-		       "    $n_drop_refresh(s);\n");
+		       "    $n_refresh_phasors(s);\n");
 	say(e, "    if (out != NULL) { $n_rows(start, %sout); }\n", inputs ? "u, " : "");
 	close_function(e, "");
 }

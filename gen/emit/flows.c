@@ -52,7 +52,7 @@ static void emit_event_limit(const struct emitter *e)
 /* Whether the step stands before the tables: it does not read them by itself */
 static bool starts_with_step(const struct emitter *e)
 {
-	const bool reads = e->step->regions.event_check.event_free && !has_events(e->model->switching) &&
+	const bool reads = e->step->regions.event_check.is_made && !has_events(e->model->switching) &&
 			   is_checked_by_tables(e->step);
 	return !reads && !e->model->params.retuned && !has_peaks(e) && !has_ranges(e) && e->system->segments == 1 &&
 	       !e->step->carried.count;

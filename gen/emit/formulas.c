@@ -20,7 +20,7 @@ struct formulas {
 
 static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
 {
-	const struct model *written = speaker(e->model);
+	const struct model *written = written_model(e->model);
 	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
 		return format("accel%d", basis->index + 1);
 	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
@@ -120,7 +120,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 	case TAPE_ACCUMULATE: return format("s->%s[%d]", n->part == PLACE_CARRY ? "carry" : "rest", n->index);
 	case TAPE_PARAM:    return param_local(e, n->index);
 	case TAPE_TIME:     return n->part ? f->when : "t";
-	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_grip"), n->index);
+	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_friction_force"), n->index);
 	case TAPE_ABOVE:    return format("interval[%d] > %d", n->index, n->part);
 	default: break;
 	}
@@ -182,7 +182,7 @@ tape_ref formula_sizes(struct formulas *f, const struct form *form)
 
 static void note_read(struct reads *r, const struct emitter *e, const struct tape_node *n)
 {
-	const struct model *model = speaker(e->model);
+	const struct model *model = written_model(e->model);
 	if (n->op == TAPE_COORD && n->part > 0 && n->part >= model->frame.coord[n->index]->highest)
 		r->highest[n->index] = true;
 	else if (n->op == TAPE_COORD)
@@ -208,7 +208,7 @@ void note_reads(struct reads *r, const struct emitter *e, const struct tape *t)
 
 struct reads reads_of_formulas(const struct formulas *f)
 {
-	struct reads r = reads_of(speaker(f->e->model), 0, NULL);
+	struct reads r = reads_of(written_model(f->e->model), 0, NULL);
 	note_reads(&r, f->e, f->tape);
 	return r;
 }

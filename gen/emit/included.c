@@ -430,14 +430,14 @@ static bool uses(const char *text, const char *name)
 
 bool algorithms_use(const char *text, const char *name)
 {
-	bool used = false, told = false;
+	bool used = false, reported = false;
 	const char *own = NULL;         /* which a compiler would find in the place of the runtime's */
 	for (; *text && !used; text = next_line(text)) {
-		told = told || begins(text, "#define PL(");
+		reported = reported || begins(text, "#define PL(");
 		const char *header = included_by(text);
-		if (header && !told)
+		if (header && !reported)
 			own = header;
-		header = told ? header : NULL;
+		header = reported ? header : NULL;
 		used = header && own && strcmp(own, header) == 0;
 		for (int i = 0; header && runtime_name(i) && !used; i++)
 			used = !begins(runtime_name(i), "pl") && strstr(runtime_name(i), ".h") &&

@@ -9,7 +9,7 @@
 #include "step/series/expansion.h"
 #include "step/linear/rows.h"
 
-const struct model *speaker(const struct model *model)
+const struct model *written_model(const struct model *model)
 {
 	return model->relative ? model : model->written;
 }
@@ -21,7 +21,7 @@ bool outputs_read(const struct emitter *e, int load)
 	bool read = false;
 	for (int o = 0; o < model->outputs; o++) {
 		const struct form *left = model->output[o].left;
-		read = read || (left && reads_of(speaker(model), 1, &left).load[load]);
+		read = read || (left && reads_of(written_model(model), 1, &left).load[load]);
 		read = read || !rationals_zero(columns, model->output[o].load[load]);
 	}
 	for (int i = 0; model->equations.highest && i < model->n; i++)
@@ -83,7 +83,7 @@ const char *carried_text(const struct emitter *e)
 	return list;
 }
 
-int most_taps_before(const struct emitter *e)
+int most_samples_before(const struct emitter *e)
 {
 	int most = 0;
 	for (int i = 0; i < e->system->inputs; i++) {
@@ -125,15 +125,16 @@ const char *sample_kept(const struct emitter *e, int input)
 	return param < 0 ? format("s->u[%d]", input) : param_text(e, param);
 }
 
-const char *tap_text(const struct emitter *e, int input, int tap)
+const char *sample_text(const struct emitter *e, int input, int sample)
 {
 	int hold = e->system->input[input].hold;
-	if (tap == hold)
+	if (sample == hold)
 		return sample_now(e, input);
-	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, tap);
+	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, sample);
 }
 
-/* Held: the sample that the step is given. A ramp: the previous sample, then the one given; further taps likewise. */
+/* Held: the sample that the step is given. A ramp: the previous sample, then the one given; further samples likewise.
+ * */
 const char *input_operand(const struct emitter *e, int column)
 {
 	if (e->sample)
@@ -141,7 +142,7 @@ const char *input_operand(const struct emitter *e, int column)
 	for (int i = 0; i < e->system->inputs; i++) {
 		int columns = e->system->input[i].hold + 1;
 		if (column < columns)
-			return tap_text(e, i, column);
+			return sample_text(e, i, column);
 		column -= columns;
 	}
 	return NULL;
@@ -272,19 +273,19 @@ bool has_place(const struct emitter *e)
 	return e->prints->places && e->prints->places(e);
 }
 
-bool has_unseen(const struct emitter *e)
+bool has_unresolved(const struct emitter *e)
 {
-	return e->step->taylor.unseen != NULL;
+	return e->step->taylor.unresolved != NULL;
 }
 
 bool traces(const struct emitter *e)
 {
-	return has_unseen(e) && e->step->taylor.unseen->unseens > 0;
+	return has_unresolved(e) && e->step->taylor.unresolved->unresolved_functions > 0;
 }
 
 bool crowds(const struct emitter *e)
 {
-	return has_unseen(e) && e->step->taylor.unseen->crowded > 0;
+	return has_unresolved(e) && e->step->taylor.unresolved->crowded > 0;
 }
 
 void open_algorithm(const struct emitter *e, const char *algorithm, const struct size *size)

@@ -45,7 +45,7 @@ bool has_floors(const struct emitter *e);       /* some states have an absolute 
 bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
 const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
-const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
+const struct model *written_model(const struct model *model);      /* over whose coordinates its forms are */
 const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
 const char *stepped_table(const struct emitter *e, const char *table); /* Phi or Gamma of the states as they are kept */
 /* of a velocity that is kept as a momentum; NULL: it is not */
@@ -63,7 +63,7 @@ int given_inputs(const struct emitter *e);                        /* samples of 
 const char *sample_now(const struct emitter *e, int input);       /* of the whole: what a step is given, or a param */
 const char *sample_kept(const struct emitter *e, int input);      /* the same between steps */
 int place_of_input(const struct emitter *e, int input);
-const char *tap_text(const struct emitter *e, int input, int tap); /* a sample that the step has, oldest first */
+const char *sample_text(const struct emitter *e, int input, int sample); /* a sample that the step has, oldest first */
 const char *input_operand(const struct emitter *e, int column);   /* the same, by the columns of all inputs */
 const char *own_states(const struct emitter *e);
 const char *place_in_loop(const struct emitter *e);

@@ -35,7 +35,7 @@ void emit_hand_over(const struct emitter *e);                     /* in at: y fr
 void emit_vector_now(const struct emitter *e);                    /* NAME_vector_now(s, u, x) */
 void emit_at_by(const struct emitter *e, const char *function);   /* NAME_at, by NAME_function(s, u, tau, y) */
 void emit_at_start(const struct emitter *e);
-int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
+int most_samples_before(const struct emitter *e);                  /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */

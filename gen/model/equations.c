@@ -216,7 +216,7 @@ static const char *missing_name(const struct building *b, int coord)
 }
 
 /* Of a part, or of the scene's own: counted and told where its text ends */
-static void tell_missing(const struct building *b, int missing, int all)
+static void report_missing(const struct building *b, int missing, int all)
 {
 	const struct symbol *symbol = b->model->frame.coord[missing];
 	struct place at = symbol->part ? place_end(symbol->part->source) : b->spec->end;
@@ -262,7 +262,7 @@ bool assign_equations(struct building *b)
 		say_error(b->segment_equations->residual[surplus < 0 ? written - 1 : surplus].at, NULL,
 			  "surplus equation: %s for %s", plural(all, "equation"), plural(n, "coordinate"));
 	else if (all < n)
-		tell_missing(b, missing, all);
+		report_missing(b, missing, all);
 	return all == n;
 }
 
@@ -314,7 +314,7 @@ static bool zero_column(const struct model *model, int coord)
 	return true;
 }
 
-static void tell_singular(const struct building *b, int coord)
+static void report_singular(const struct building *b, int coord)
 {
 	const struct model *model = b->model;
 	int order = order_of(model, coord);
@@ -344,7 +344,7 @@ void check_mass(const struct building *b)
 	for (int j = n - 1; j >= 0; j--)
 		if (zero_column(model, j))
 			column = j;
-	tell_singular(b, column);
+	report_singular(b, column);
 }
 
 /* The equations for all time, in which nothing is taken apart that a state multiplies. */

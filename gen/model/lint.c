@@ -31,7 +31,7 @@ struct lint {
 
 /* ---- names that nothing reads ---- */
 
-static const char *told_as(const struct symbol *s)
+static const char *reported_as(const struct symbol *s)
 {
 	return s->kind == SYMBOL_PARAM  ? "param" :
 	       s->kind == SYMBOL_MATRIX ? "matrix" : s->connected || s->kind == SYMBOL_INPUT ? "input" : "let";
@@ -46,21 +46,21 @@ static bool is_unused(const struct symbol *s)
 /* The first of them by name; what is written by a program may have thousands. */
 static void check_names(const struct spec *spec)
 {
-	enum { MOST_TOLD = 20 };
+	enum { MOST_REPORTED = 20 };
 	const struct symbol *next = NULL;
 	int unused = 0;
 	for (const struct symbol *s = spec->first; s; s = s->next) {
-		if (!is_unused(s) || unused++ > MOST_TOLD)
+		if (!is_unused(s) || unused++ > MOST_REPORTED)
 			continue;
 		next = s;
-		if (unused > MOST_TOLD)
+		if (unused > MOST_REPORTED)
 			continue;
 		const char *point = strrchr(s->name, '.');
-		say_warning(s->at, NULL, "%s '%s' is not used", told_as(s), s->part && point ? point + 1 : s->name);
+		say_warning(s->at, NULL, "%s '%s' is not used", reported_as(s), s->part && point ? point + 1 : s->name);
 	}
-	if (unused > MOST_TOLD)
-		say_warning(next->at, NULL, "%s '%s' is not used, nor %d more", told_as(next), next->name,
-			    unused - MOST_TOLD - 1);
+	if (unused > MOST_REPORTED)
+		say_warning(next->at, NULL, "%s '%s' is not used, nor %d more", reported_as(next), next->name,
+			    unused - MOST_REPORTED - 1);
 }
 
 /* ---- what is negative ---- */
@@ -372,7 +372,7 @@ static bool is_balanced(const struct lint *lint, const mpq_t *A, int i, int j, d
 	return factor[i] == 0 || fabs(factor[i] * there - factor[j] * back) <= 1e-9 * fabs(factor[i] * there);
 }
 
-static void tell_circulation(const struct lint *lint, const mpq_t *A, const char *matrix, int i, int j)
+static void report_circulation(const struct lint *lint, const mpq_t *A, const char *matrix, int i, int j)
 {
 	const struct model *model = lint->model;
 	say_warning(model->equations.residual[model->equations.owner[j]].at,
@@ -420,7 +420,7 @@ static void check_symmetry(const struct lint *lint)
 				bool M_good = is_balanced(lint, M, i, j, factor), K_good;
 				K_good = is_balanced(lint, K, i, j, factor);
 				if (!M_good || !K_good) {
-					tell_circulation(lint, M_good ? K : M, M_good ? "stiffness" : "mass",
+					report_circulation(lint, M_good ? K : M, M_good ? "stiffness" : "mass",
 							 i < j ? i : j, i < j ? j : i);
 					return;
 				}

@@ -564,11 +564,11 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		if (model->nonlinear.terms > 0)
 			statement_guard(linearise, &b);
 	}
-	bool told = request->linearise || request->solution || request->again.tunable || request->again.relative ||
+	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
 		    request->again.undivided;
-	if (!diagnostics_errors() && !told)
+	if (!diagnostics_errors() && !reported)
 		judge_smoothness(&b);
-	if (!diagnostics_errors() && !told && warnings_are_heard())
+	if (!diagnostics_errors() && !reported && warnings_are_heard())
 		warn(&b);
 	if (!diagnostics_errors() && !request->solution && !request->again.tunable)
 		silent_guard(find_nonlinear, &b);

@@ -13,7 +13,7 @@
 struct massless_slider;
 struct drag;
 struct impact;
-struct shortening;
+struct modal_truncation;
 struct switching;
 struct tuning;
 
@@ -73,7 +73,7 @@ struct model {
 	struct state_range *range;
 	/* the model is over other coordinates than the written ones; NULL: over those */
 	const struct relative *relative;
-	const struct shortening *shortened; /* it is of some modes of another; NULL: it is not */
+	const struct modal_truncation *truncated; /* it is of some modes of another; NULL: it is not */
 };
 
 struct model *model_build(struct spec *spec, const struct request *request);

@@ -360,7 +360,7 @@ void build_outputs(struct building *b)
 	struct linear first = model->schedule.operators ? operator_system(model, 0) : *system;
 	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);
-	int told = -1;                          /* the statement last told: once is enough */
+	int reported = -1;                      /* the statement last reported: once is enough */
 	for (int i = 0; i < model->outputs; i++)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
@@ -368,8 +368,8 @@ void build_outputs(struct building *b)
 		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->equations.atoms)), model->output[i].left);
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
-		if (output->statement != told && !check_output(model, output))
-			told = output->statement;
+		if (output->statement != reported && !check_output(model, output))
+			reported = output->statement;
 		make_rows(system, model->remainder.force_columns, output);
 		if (!output->value)
 			see_state(model, i, output->state);

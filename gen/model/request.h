@@ -93,7 +93,7 @@ struct wanted_modes {               /* of the statement `modes`, or of --modes *
 	struct place at;            /* source NULL: all */
 	int count, *number;
 	bool each;                  /* those numbers; else number[0] is how many, the best */
-	bool statics;               /* what is dropped follows loads and inputs at once */
+	bool static_correction;     /* what is dropped follows loads and inputs at once */
 };
 struct reduction {                  /* what --reduce found */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */

@@ -53,7 +53,7 @@ static const struct node *first_changing_term(struct building *b, int segment)
 	return term;
 }
 
-static void tell_change(void *context)
+static void report_change(void *context)
 {
 	struct change *work = context;
 	struct building *b = work->b;
@@ -127,7 +127,7 @@ static bool check_changes(struct building *b)
 {
 	for (int s = 1; s < b->model->system.segments; s++)
 		if (!same_equations(b, &b->segment_equations[s]))
-			return statement_guard(tell_change, &(struct change){ b, &b->segment_equations[s], s });
+			return statement_guard(report_change, &(struct change){ b, &b->segment_equations[s], s });
 	return true;
 }
 
@@ -230,7 +230,7 @@ static const struct atom *first_atom(const struct building *b, bool all)
 }
 
 /* Scheme exact was asked for, and what it would have to switch on it cannot */
-static void tell_atom(void *context)
+static void report_atom(void *context)
 {
 	const struct building *b = context;
 	const struct atom *atom = first_atom(b, false);
@@ -294,15 +294,15 @@ static void resolve_impacts(void *context)
 	struct building *b = context;
 	bool exact = goes_by_regions(b);
 	if (!exact && !goes_by_series(b))
-		tell_no_events(b, b->spec->when->at);
+		report_no_events(b, b->spec->when->at);
 	build_impacts(b);
 	if (diagnostics_errors())
 		abandon();
 }
 
-static void tell_friction_stands(void *context)
+static void report_friction_stands(void *context)
 {
-	tell_no_friction(context);
+	report_no_friction(context);
 }
 
 static void choose_beside_contacts(void *context)
@@ -333,7 +333,7 @@ static bool choose_scheme(struct building *b)
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
-		return statement_guard(tell_friction_stands, b);
+		return statement_guard(report_friction_stands, b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
@@ -350,7 +350,7 @@ static bool choose_scheme(struct building *b)
 		return !diagnostics_errors();
 	}
 	if (model->scheme == SCHEME_EXACT && first_atom(b, true))
-		return statement_guard(tell_atom, b);
+		return statement_guard(report_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);
 	if (!linear || b->request->loads_left || b->spec->operators.given)

@@ -107,7 +107,7 @@ static const char *growth_text(const struct model *model, double difference)
 		      nearest_double(model->h) / divisor * difference, scheme_name(model->scheme), divisor);
 }
 
-static bool is_told(const struct model *model, bool moved, double here, double there)
+static bool is_reported(const struct model *model, bool moved, double here, double there)
 {
 	bool felt = !moved || drift_of_softness(model, here - there) > DRIFT;
 	return here - there > (moved ? felt ? TWICE : TENFOLD : LITTLE) * fabs(here) && (felt || there > 0);
@@ -127,7 +127,7 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 		return;
 	for (int i = 0; i < model->n; i++) {
 		double now = (here[i] - there[i]) * worst->here, known = (worst->here - worst->operator) * here[i];
-		if (is_told(model, moved, here[i], there[i]) &&
+		if (is_reported(model, moved, here[i], there[i]) &&
 		    (worst->here == 0 || (moved ? now > known : now >= known)))
 			*worst = (struct softness){ here[i], there[i], where };
 	}

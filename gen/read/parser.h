@@ -139,8 +139,8 @@ bool is_unfinished(const struct parser *p);                 /* at the end of a l
 /* The derivative of an expression in time; an error at `at` where it has none that is known */
 struct node *slope_of(struct node *node, struct place at);
 
-/* ---- unseen.c ---- */
+/* ---- unobservable.c ---- */
 
-void leave_unseen(struct spec *spec);                       /* parts that no output can see */
+void leave_unobservable(struct spec *spec);                 /* parts that no output can see */
 
 #endif

@@ -188,7 +188,7 @@ struct scene_part {                       /* of a scene: a spec in it, as often 
 	const struct source *source;
 	const struct scene_part *inside;  /* another part; NULL: the scene */
 	bool broken;                /* it was told what is wrong */
-	bool unseen;                /* by any output: not in the model */
+	bool unobservable;          /* by any output: not in the model */
 	const char *aside;          /* statements of its text that a scene does not read; "": none */
 	int bindings;
 	struct binding *binding;
@@ -240,8 +240,8 @@ struct scene {
 	const struct part_reader *reader;
 	int parts;                  /* in the order of `use`, those inside a part after it */
 	struct scene_part **part;
-	int unseen;                 /* states of parts that no output sees, and their names */
-	const char **unseen_name;
+	int unobservable;           /* states of parts that no output sees, and their names */
+	const char **unobservable_name;
 };
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
 	const struct source *source;

@@ -267,7 +267,7 @@ struct spec *parse_spec(const struct source *source)
 	open_scene(source);
 	struct spec *spec = parse_whole(source, &reader);
 	if (spec->scene.parts && !diagnostics_errors())
-		leave_unseen(spec);
+		leave_unobservable(spec);
 	return spec;
 }
 
@@ -286,12 +286,13 @@ const char *parts_text(const struct spec *spec, int index)
 	const char *names = "";
 	for (int i = 0; i < spec->scene.parts; i++) {
 		const struct scene_part *other = spec->scene.part[i];
-		if (other->source != part->source || other->unseen != part->unseen)
+		if (other->source != part->source || other->unobservable != part->unobservable)
 			continue;
 		if (i < index)
 			return NULL;
 		names = format("%s%s%s", names, *names ? ", " : "", other->name);
 	}
-	return format("%s as %s%s%s", part->file, names, part->unseen ? ", which no output sees: not modelled" : "",
-		      !part->unseen && *part->aside ? format("; not read here: its %s", part->aside) : "");
+	return format("%s as %s%s%s", part->file, names,
+		      part->unobservable ? ", which no output sees: not modelled" : "",
+		      !part->unobservable && *part->aside ? format("; not read here: its %s", part->aside) : "");
 }

@@ -34,7 +34,7 @@ static const char *rest_text(const struct step *step, const struct series_impact
 						  series_impact->expression);
 }
 
-void person_contacts(FILE *to, const struct step *step)
+void text_contacts(FILE *to, const struct step *step)
 {
 	const struct contacts *c = step->taylor.divided->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-static void person_matrix(FILE *to, const char *name, int n, const mpq_t *A)
+static void text_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 {
 	int width = 1;
 	for (int i = 0; i < n * n; i++) {
@@ -27,7 +27,7 @@ static void person_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 	}
 }
 
-static void person_force(FILE *to, const char *what, int n, const mpq_t *force)
+static void text_force(FILE *to, const char *what, int n, const mpq_t *force)
 {
 	if (rationals_zero((size_t)n, force))
 		return;
@@ -37,19 +37,19 @@ static void person_force(FILE *to, const char *what, int n, const mpq_t *force)
 	fputs(" ]\n", to);
 }
 
-static void person_loads(FILE *to, const struct linear *system)
+static void text_loads(FILE *to, const struct linear *system)
 {
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++)
-			person_force(to, format("load %s", column_text(&system->load[l], k)), system->n,
+			text_force(to, format("load %s", column_text(&system->load[l], k)), system->n,
 				     system->load[l].force[k]);
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k < 2; k++)
-			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n,
+			text_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n,
 				     system->input[i].force[k]);
 }
 
-static void person_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
+static void text_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
 {
 	int length = resolvent_determinant(resolvent)->length;
 	mpq_t *B = rationals(length);
@@ -62,7 +62,7 @@ static void person_poles(FILE *to, const struct model *model, const struct resol
 		fprintf(to, "    %s\n", pole_row(&pole[i], 36));
 }
 
-static void person_held(FILE *to, const struct step *step)
+static void text_held(FILE *to, const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	int n = system->n;
@@ -83,7 +83,7 @@ static void person_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
-static void person_tuning(FILE *to, const struct step *step)
+static void text_tuning(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct tuning *t = tunables_of(model);
@@ -108,7 +108,7 @@ static void person_tuning(FILE *to, const struct step *step)
 			step->blocks->whole ? "another h does, too" : "the others have tables, of this h");
 }
 
-static void person_operations(FILE *to, const struct step *step)
+static void text_operations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct program *program = step->program;
@@ -137,19 +137,19 @@ static void person_operations(FILE *to, const struct step *step)
 		fprintf(to, ".\n%s", rounding_text(step));
 }
 
-void person_cost(FILE *to, const struct step *step)
+void text_cost(FILE *to, const struct step *step)
 {
-	person_operations(to, step);
+	text_operations(to, step);
 	fputs(".\n", to);
 	if (step->choice)
-		person_needs(to, step);
+		text_needs(to, step);
 }
 
-static void person_step(FILE *to, const struct step *step)
+static void text_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const char *no_at = step_objection(step, CAN_AT);
-	person_operations(to, step);
+	text_operations(to, step);
 	if (step->shown->no.phi)
 		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no.phi);
 	else
@@ -166,7 +166,7 @@ static void person_step(FILE *to, const struct step *step)
 		fputc('\n', to);
 	}
 	if (tunables_of(model))
-		person_tuning(to, step);
+		text_tuning(to, step);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
 	else if (no_at)
@@ -192,7 +192,7 @@ static void person_step(FILE *to, const struct step *step)
 }
 
 /* Stages, order and nodes; how Newton's method solves them; what an iteration costs */
-static void person_collocation(FILE *to, const struct step *step)
+static void text_collocation(FILE *to, const struct step *step)
 {
 	const struct collocation *x = step->collocation;
 	int coords = step->collocation->motion->coords;
@@ -213,7 +213,7 @@ static void person_collocation(FILE *to, const struct step *step)
 }
 
 /* What went where: the operators, then the remainder of the first; those of the others differ in linear terms only. */
-static void person_split(FILE *to, const struct step *step)
+static void text_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
@@ -234,13 +234,13 @@ static void person_split(FILE *to, const struct step *step)
 			"A: the Jacobian of the equations at %s (of an entry that still moves there, the constant "
 			"part):\n",
 			operator->text);
-		person_matrix(to, "C", model->n, operator->C);
-		person_matrix(to, "K", model->n, operator->K);
+		text_matrix(to, "C", model->n, operator->C);
+		text_matrix(to, "K", model->n, operator->K);
 		if (!scheme_row(model->scheme)->holds_coupling)
-			person_poles(to, model, step->shown->branch[k].resolvent);
+			text_poles(to, model, step->shown->branch[k].resolvent);
 	}
 	if (step->normal)
-		person_normal(to, step);
+		text_normal(to, step);
 	if (model->schedule.operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_step(step));
@@ -250,15 +250,15 @@ static void person_split(FILE *to, const struct step *step)
 	if (model->truncation.over > 1)
 		fprintf(to, ", with the error of steps of %d h: one expansion is over them", model->truncation.over);
 	if (step->collocation)
-		person_collocation(to, step);
+		text_collocation(to, step);
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
 	if (step->taylor.divided)
-		person_divided(to, step);
+		text_divided(to, step);
 	if (step->taylor.expansion)
-		person_reach(to, step);
+		text_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		model->schedule.operators > 1 ? " (with the first operator; with the others its linear terms differ)"
 					      : "");
@@ -285,7 +285,7 @@ static const char *combination_text(const struct model *written, const mpq_t *ro
 }
 
 /* What went: states that no output sees, and with them the poles that cancel in every N/B. */
-static void person_reduction(FILE *to, const struct step *step)
+static void text_reduction(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
@@ -310,7 +310,7 @@ static void person_reduction(FILE *to, const struct step *step)
 		fprintf(to, "    %s\n", pole_text(&pole[i]));
 }
 
-static void person_scene(FILE *to, const struct spec *spec)
+static void text_scene(FILE *to, const struct spec *spec)
 {
 	if (spec->scene.parts)
 		fputs("\nParts:\n", to);
@@ -319,7 +319,7 @@ static void person_scene(FILE *to, const struct spec *spec)
 			fprintf(to, "    %s\n", parts_text(spec, i));
 }
 
-void person_equations(FILE *to, const struct step *step)
+void text_equations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
@@ -329,7 +329,7 @@ void person_equations(FILE *to, const struct step *step)
 	for (int i = 0; i < spec->elements; i++)
 		fprintf(to, "    %s\n",
 			written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
-	person_scene(to, spec);
+	text_scene(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)
@@ -337,65 +337,65 @@ void person_equations(FILE *to, const struct step *step)
 	}
 }
 
-void person_course(FILE *to, const struct step *step)
+void text_course(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	if (scheme_row(model->scheme)->holds_coupling)
-		person_held(to, step);
+		text_held(to, step);
 	if (model->switching)
-		person_regions(to, step);
+		text_regions(to, step);
 	else if (has_remainder(step))
-		person_split(to, step);
+		text_split(to, step);
 	else if (!scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "%s: every constant is its closed form, correctly rounded.\n",
-			model->shortened ? "Modes are dropped, nothing else is approximated"
+			model->truncated ? "Modes are dropped, nothing else is approximated"
 					 : "Nothing is approximated");
-	if (model->shortened)
-		person_shortening(to, model);
+	if (model->truncated)
+		text_modal_truncation(to, model);
 	else if (model->written != model)
-		person_reduction(to, step);
+		text_reduction(to, step);
 	if (model->reduction.irreducible)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
 }
 
 /* In the place of poles; those of A are of the scheme */
-static void person_left_out(FILE *to, const struct step *step)
+static void text_left_out(FILE *to, const struct step *step)
 {
 	fputc('\n', to);
-	person_nonlinear(to, step);
+	text_nonlinear(to, step);
 	if (!has_remainder(step) || step->normal || step->shown->model->schedule.operators == 0 ||
 	    *step->shown->model->schedule.operator[0].text)
 		return;
 	fputs("\nOf those terms alone, which are the operator A of the scheme:\n", to);
-	person_poles(to, step->model, step->written);
+	text_poles(to, step->model, step->written);
 }
 
-void explain_person(FILE *to, const struct step *step)
+void explain_text(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
 		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
-	person_equations(to, step);
+	text_equations(to, step);
 	fprintf(to, "\n%sP(s) = M s^2 + C s + K with\n",
 		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients:\n" : "");
-	person_matrix(to, "M", model->written->n, model->written->system.M);
-	person_matrix(to, "C", model->written->n, model->written->system.C);
-	person_matrix(to, "K", model->written->n, model->written->system.K);
-	person_loads(to, &model->written->system);
-	if (model->shortened)
+	text_matrix(to, "M", model->written->n, model->written->system.M);
+	text_matrix(to, "C", model->written->n, model->written->system.C);
+	text_matrix(to, "K", model->written->n, model->written->system.K);
+	text_loads(to, &model->written->system);
+	if (model->truncated)
 		fputs("\nOf the modes that are kept:\n", to);
 	if (is_nonlinear(step))
-		person_left_out(to, step);
+		text_left_out(to, step);
 	else
-		person_poles(to, step->model, step->written);
+		text_poles(to, step->model, step->written);
 	const char *irrationals = irrationals_text(&model->equations.irrationals);
 	if (irrationals)
 		fprintf(to, "\n%s\n", irrationals);
 	fputc('\n', to);
-	person_course(to, step);
-	person_step(to, step);
+	text_course(to, step);
+	text_step(to, step);
 	if (step->choice)
-		person_needs(to, step);
+		text_needs(to, step);
 	if (!is_nonlinear(step))
-		person_linear(to, step);
+		text_linear(to, step);
 }

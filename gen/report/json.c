@@ -177,12 +177,12 @@ static void json_cost(FILE *to, const struct step *step)
 static void json_dropped(FILE *to, const struct model *model)
 {
 	const struct spec *spec = model->spec;
-	const char **name = ARRAY(const char *, (size_t)(spec->scene.unseen + model->reduction.dropped));
-	for (int i = 0; i < spec->scene.unseen; i++)
-		name[i] = spec->scene.unseen_name[i];
+	const char **name = ARRAY(const char *, (size_t)(spec->scene.unobservable + model->reduction.dropped));
+	for (int i = 0; i < spec->scene.unobservable; i++)
+		name[i] = spec->scene.unobservable_name[i];
 	for (int i = 0; i < model->reduction.dropped; i++)
-		name[spec->scene.unseen + i] = model->reduction.dropped_name[i];
-	member_names(to, "dropped", spec->scene.unseen + model->reduction.dropped, name);
+		name[spec->scene.unobservable + i] = model->reduction.dropped_name[i];
+	member_names(to, "dropped", spec->scene.unobservable + model->reduction.dropped, name);
 }
 
 static void json_scene(FILE *to, const struct spec *spec)
@@ -191,7 +191,7 @@ static void json_scene(FILE *to, const struct spec *spec)
 	for (int i = 0; i < spec->scene.parts; i++)
 		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
 			spec->scene.part[i]->name, json_text(spec->scene.part[i]->file),
-			spec->scene.part[i]->unseen ? "false" : "true");
+			spec->scene.part[i]->unobservable ? "false" : "true");
 	fputs("],\n", to);
 }
 
@@ -264,8 +264,8 @@ void explain_json(FILE *to, const struct step *step)
 	member_names(to, "outputs", model->outputs, output);
 	member_names(to, "inputs", model->spec->count.inputs, input);
 	json_dropped(to, model);
-	if (model->shortened)
-		json_shortening(to, model);
+	if (model->truncated)
+		json_modal_truncation(to, model);
 	if (model->spec->scene.parts)
 		json_scene(to, model->spec);
 	if (tunables_of(model))

@@ -61,7 +61,7 @@ int numbers_of_modes(const struct step *step)
 	       (m->steady.flow ? steady_size(step->model) * 2 * width : 0);
 }
 
-void person_normal(FILE *to, const struct step *step)
+void text_normal(FILE *to, const struct step *step)
 {
 	const struct normal *m = step->normal;
 	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. Exact: %s. All else is r: a force on each "

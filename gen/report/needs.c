@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was chosen for the needs of a spec, and from what: accuracy against cost. */
 #include "model/checks.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "report/report.h"
 #include "step/certify/certify.h"
 
@@ -11,9 +11,10 @@
 /* modes 7-12 dropped, static gain kept; NULL: all are there */
 static const char *dropped_text(const struct alternative *a)
 {
-	const struct shortening *s = a->model->shortened;
+	const struct modal_truncation *s = a->model->truncated;
 	const char *numbers = s ? mode_numbers(s, false) : "";
-	return *numbers ? format("modes %s dropped%s", numbers, s->statics ? ", static gain kept" : "") : NULL;
+	return *numbers ? format("modes %s dropped%s", numbers, s->static_correction ? ", static gain kept" : "")
+		: NULL;
 }
 
 /* Of one that is measured */
@@ -45,7 +46,7 @@ const char *certified_text(const struct alternative *a, int i)
 			      a->inputs_tried ? format("; the worst of %d inputs tried", a->inputs_tried) : "");
 	const char *dropped = dropped_text(a);
 	if (!dropped)
-		return format("certified %.2g (rounding: %s)", error_told(c), arithmetic_text(a));
+		return format("certified %.2g (rounding: %s)", error_reported(c), arithmetic_text(a));
 	if (c->walked)
 		return format("certified %.2g (%.2g for %s; %s)", c->error, c->dropped, dropped, arithmetic_text(a));
 	return format("certified %.2g = %.2g (%s) + %.2g (%s)", c->rounding + c->dropped, c->dropped, dropped,
@@ -91,11 +92,11 @@ const char *margin_text(const struct step *step, int i)
 {
 	const struct alternative *a = &step->choice->alternative[step->choice->taken];
 	const struct certificate *c = &a->certificate[i];
-	return format("%s at every sample, a margin of %.3g%s%s", certified_text(a, i), c->needed / error_told(c),
+	return format("%s at every sample, a margin of %.3g%s%s", certified_text(a, i), c->needed / error_reported(c),
 		      neighbours_text(a), contracted_text(a, i));
 }
 
-static void person_alternative(FILE *to, const struct step *step, int i)
+static void text_alternative(FILE *to, const struct step *step, int i)
 {
 	const struct alternative *a = &step->choice->alternative[i];
 	if (a->refused) {
@@ -109,12 +110,12 @@ static void person_alternative(FILE *to, const struct step *step, int i)
 	}
 	for (int k = 0; k < step->model->needs.requirements; k++)
 		fprintf(to, "%s%s", k ? ", " : "", strchr(certified_text(a, k), ' ') + 1);
-	if (a->excess <= 1 && a->worst_neighbour > 0.99) {
+	if (a->error_ratio <= 1 && a->worst_neighbour > 0.99) {
 		fprintf(to, "; misses by a factor of %.3g where %s\n", a->worst_neighbour, a->worst_name);
 		return;
 	}
-	fprintf(to, a->excess > 1 ? "; misses by a factor of %.3g\n" : "; a margin of %.3g\n",
-		a->excess > 1 ? a->excess : 1 / a->excess);
+	fprintf(to, a->error_ratio > 1 ? "; misses by a factor of %.3g\n" : "; a margin of %.3g\n",
+		a->error_ratio > 1 ? a->error_ratio : 1 / a->error_ratio);
 }
 
 /* More exact than all that is cheaper; of what there is not, the first with its reason */
@@ -127,12 +128,12 @@ static bool is_shown(const struct choice *choice, int i)
 		if (a->refused)
 			shown = !b->refused || strcmp(a->refused, b->refused) != 0;
 		else
-			shown = !a->why && (b->why || b->excess > a->excess);
+			shown = !a->why && (b->why || b->error_ratio > a->error_ratio);
 	}
 	return shown || i == choice->taken;
 }
 
-void person_needs(FILE *to, const struct step *step)
+void text_needs(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct choice *choice = step->choice;
@@ -145,7 +146,7 @@ void person_needs(FILE *to, const struct step *step)
 		measured ? ", in a second of the model's time" : "", measured ? "error" : "bound of the error");
 	for (int i = 0; i < choice->alternatives; i++)
 		if (is_shown(choice, i))
-			person_alternative(to, step, i);
+			text_alternative(to, step, i);
 		else
 			left++;
 	if (left)
@@ -163,15 +164,15 @@ static void json_tried(FILE *to, const struct alternative *a)
 
 static void json_modes(FILE *to, const struct alternative *a)
 {
-	const struct shortening *s = a->model->shortened;
+	const struct modal_truncation *s = a->model->truncated;
 	fprintf(to, "\"modes\": \"%s\", \"statics\": %s, ", s ? mode_numbers(s, true) : "all",
-		s && s->statics ? "true" : "false");
+		s && s->static_correction ? "true" : "false");
 }
 
 static void json_error(FILE *to, const struct alternative *a, int k)
 {
 	const struct certificate *c = &a->certificate[k];
-	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified", error_told(c));
+	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified", error_reported(c));
 	if (!a->measured)
 		fprintf(to, "\"walked\": %s, \"dropped\": %s, \"rounding\": %s, ", c->walked ? "true" : "false",
 			json_number(c->dropped), json_number(c->known ? c->rounding : HUGE_VAL));
@@ -196,7 +197,7 @@ void json_needs(FILE *to, const struct step *step)
 			fprintf(to, ", \"why\": \"%s\"}", json_text(a->refused ? a->refused : a->why));
 			continue;
 		}
-		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, ", a->cost, a->excess);
+		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, ", a->cost, a->error_ratio);
 		if (a->neighbours > 0)
 			fprintf(to, "\"neighbours\": %.17g, ", a->worst_neighbour);
 		fputs("\"errors\": [", to);

@@ -21,7 +21,7 @@ static const char *nonlinear_text(const struct step *step)
 	return model->nonlinear.terms <= NAMED ? text : format("%s; and %d more", text, model->nonlinear.terms - NAMED);
 }
 
-void person_nonlinear(FILE *to, const struct step *step)
+void text_nonlinear(FILE *to, const struct step *step)
 {
 	fprintf(to, "The model is not linear, so it has no poles, mode shapes, frequency responses and static gains. "
 		    "They would leave out:\n    %s\n", nonlinear_text(step));

@@ -65,15 +65,15 @@ static void print_words(FILE *to, const struct step *step, void (*print)(FILE *t
 
 /* ---- sections ---- */
 
-static const struct model *told_model(const struct step *step)
+static const struct model *reported_model(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	return model->shortened ? model : model->written;
+	return model->truncated ? model : model->written;
 }
 
 static void print_equations(FILE *to, const struct step *step)
 {
-	print_words(to, step, person_equations, "");
+	print_words(to, step, text_equations, "");
 }
 
 static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
@@ -98,7 +98,7 @@ static void print_determinant(FILE *to, const struct step *step)
 
 static void print_matrices(FILE *to, const struct step *step)
 {
-	const struct model *model = told_model(step);
+	const struct model *model = reported_model(step);
 	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", is_nonlinear(step)
 			? "Of the terms that are linear with constant coefficients: " : "");
 	for (int i = 0; i < model->n; i++)
@@ -113,7 +113,7 @@ static void print_matrices(FILE *to, const struct step *step)
 
 static void print_left_out(FILE *to, const struct step *step)
 {
-	print_words(to, step, person_nonlinear, " class=\"text\"");
+	print_words(to, step, text_nonlinear, " class=\"text\"");
 }
 
 static bool is_linear_model(const struct step *step)
@@ -143,7 +143,7 @@ static const char *entry_text(const struct mode_shape *shape, int i)
 
 static bool has_shapes(const struct step *step)
 {
-	return !is_nonlinear(step) && told_model(step)->n <= LIMIT_SHAPES;
+	return !is_nonlinear(step) && reported_model(step)->n <= LIMIT_SHAPES;
 }
 
 static void print_shapes(FILE *to, const struct step *step)
@@ -210,12 +210,12 @@ static void print_chosen(FILE *to, const struct step *step)
 		readable_text(model->h), target_name());
 	if (model->nonlinear.obstacle && model->nonlinear.why)
 		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->nonlinear.why));
-	print_words(to, step, person_course, " class=\"text\"");
+	print_words(to, step, text_course, " class=\"text\"");
 }
 
 static void print_cost(FILE *to, const struct step *step)
 {
-	print_words(to, step, person_cost, " class=\"text\"");
+	print_words(to, step, text_cost, " class=\"text\"");
 }
 
 static const struct section sections[] = {

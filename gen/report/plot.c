@@ -85,15 +85,15 @@ static const char *rays_of(double left, double high)
 /* Each with its frequency, where that does not stand on another's */
 static void print_poles(FILE *to, int count, const struct pole_report *pole, double high)
 {
-	double told = HUGE_VAL;
+	double reported = HUGE_VAL;
 	fputs("$poles << END\n", to);
 	for (int i = count - 1; i >= 0; i--) {
 		double re = mpfr_get_d(pole[i].re, MPFR_RNDN), im = mpfr_get_d(pole[i].im, MPFR_RNDN);
 		const char *text = "";
-		if (told - im > 0.08 * high || i == count - 1) {
+		if (reported - im > 0.08 * high || i == count - 1) {
 			text = format("%.4g Hz%s", mpfr_get_d(pole[i].hertz, MPFR_RNDN),
 				      pole[i].multiplicity > 1 ? format(", %d-fold", pole[i].multiplicity) : "");
-			told = im;
+			reported = im;
 		}
 		fprintf(to, "%.17g %.17g \"%s\"\n", re, im, text);
 		if (pole[i].pair)
@@ -409,11 +409,11 @@ static void print_samples(struct picture *p, int count, const int *output)
 static void plot_response(struct picture *p)
 {
 	const struct model *model = p->step->shown->model;
-	int *output = ARRAY(int, model->outputs + 1), count = 0, told = 0;
+	int *output = ARRAY(int, model->outputs + 1), count = 0, reported = 0;
 	need_responses(p->step);
 	check_pole_size(model, p->step->written);
 	for (int i = 0; i < model->outputs; i++)
-		if (is_told(&model->output[i]) && told++ < OUTPUTS)
+		if (is_reported(&model->output[i]) && reported++ < OUTPUTS)
 			output[count++] = i;
 	note_first(count, model->outputs, "outputs");
 	bool single = strcmp(target_name(), "float") == 0;

@@ -179,7 +179,7 @@ static const char *input_column_text(const struct step *step, int column)
 	for (int i = 0; i < system->inputs; column -= system->input[i++].hold + 1)
 		if (column < system->input[i].hold + 1)
 			return format("%s%s", system->input[i].name,
-				      system->input[i].hold > 1 ? format("(tap %d)", column)
+				      system->input[i].hold > 1 ? format("(sample %d)", column)
 				      : !system->input[i].hold ? "" : column ? "(end)" : "(start)");
 	return "";
 }

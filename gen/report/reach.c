@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-void person_reach(FILE *to, const struct step *step)
+void text_reach(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct reach reach = reach_of_series(step);

@@ -58,7 +58,7 @@ static long fast_path_multiplications(const struct step *step)
 {
 	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
 	long moves = 6 * step->regions.event_check.degree * (size * size + size) + 12 * size * size;
-	return !step->regions.event_check.event_free                         ? 0
+	return !step->regions.event_check.is_made                         ? 0
 	       : step->regions.event_check.fast_path
 		       ? size * size + MOST_EVENT_CHECKS * (bounds + moves)
 	       : has_events(step->model->switching) ? products_of_unmet(step)
@@ -86,7 +86,7 @@ static long bytes_of_regions(const struct step *step)
 	long rows = s->segments * s->expressions * size;
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	if (step->regions.event_check.event_free && step->model->params.retuned)
+	if (step->regions.event_check.is_made && step->model->params.retuned)
 		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
 	return bytes + ladder_bytes(step) + (step->regions.event_check.fast_path ? fast_path_bytes(step) : 0) +
@@ -111,7 +111,7 @@ static long most_of_regions(const struct step *step)
 
 /* ---- for a person ---- */
 
-static void person_expressions(FILE *to, const struct step *step)
+static void text_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	for (int i = 0; i < s->expressions; i++)
@@ -121,7 +121,7 @@ static void person_expressions(FILE *to, const struct step *step)
 }
 
 /* What chooses formulas by the state, of a series */
-void person_divided(FILE *to, const struct step *step)
+void text_divided(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->taylor.divided;
 	const char *ends = step->event_split ? "a step goes on with others where an expression passes a breakpoint"
@@ -132,7 +132,7 @@ void person_divided(FILE *to, const struct step *step)
 	for (int i = 0; i < x->expressions; i++)
 		fprintf(to, "    expression %d: %s, breakpoints %s\n", i, divided_text(step, i),
 			rising_text(&x->expression[i]));
-	person_contacts(to, step);
+	text_contacts(to, step);
 }
 
 const char *frictions_text(const struct switching *s, const char *indent)
@@ -151,7 +151,7 @@ const char *frictions_text(const struct switching *s, const char *indent)
 	return text;
 }
 
-static void person_intervals(FILE *to, const struct switching *s, int region)
+static void text_intervals(FILE *to, const struct switching *s, int region)
 {
 	fputs(" (intervals", to);
 	for (int i = 0; i < s->expressions; i++)
@@ -161,21 +161,21 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 		s->region[region].system);
 }
 
-static void person_way(FILE *to, const struct step *step, const char *of)
+static void text_way(FILE *to, const struct step *step, const char *of)
 {
 	if (step->regions.event_check.fast_path)
 		fprintf(to,
 			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
 			"degree %d, all else by the search.\n",
 			of, MOST_FAST_PATH, step->regions.event_check.degree);
-	else if (step->regions.event_check.event_free)
+	else if (step->regions.event_check.is_made)
 		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
 	else
 		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of,
 			step->regions.event_check.searches);
 }
 
-static void person_impacts(FILE *to, const struct model *model)
+static void text_impacts(FILE *to, const struct model *model)
 {
 	for (int i = 0; i < model->contacts.impacts; i++) {
 		const struct impact *impact = &model->contacts.impact[i];
@@ -188,31 +188,31 @@ static void person_impacts(FILE *to, const struct model *model)
 	}
 }
 
-static void person_of_one_part(FILE *to, const struct step *step)
+static void text_of_one_part(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	fprintf(to,
 		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
 		"is correctly rounded.\n",
 		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
-	person_expressions(to, step);
+	text_expressions(to, step);
 	fputs(frictions_text(s, "    "), to);
-	person_impacts(to, step->shown->model);
+	text_impacts(to, step->shown->model);
 	if (s->sharing)
 		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
 			s->sharing);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
 			fprintf(to, "    region %d", r % regions_at_once(s));
-			person_intervals(to, s, r);
+			text_intervals(to, s, r);
 		}
-	person_way(to, step, "A step");
+	text_way(to, step, "A step");
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
 		bytes_of_regions(step) + refresh_bytes(step), max_events(step->model), max_splits(step->model),
 		most_of_regions(step));
 }
 
-static void person_part(FILE *to, const struct step *whole, int index)
+static void text_part(FILE *to, const struct step *whole, int index)
 {
 	const struct switching *all = whole->model->switching;
 	const struct region_part *part = &all->part[index];
@@ -231,21 +231,21 @@ static void person_part(FILE *to, const struct step *whole, int index)
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
 			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
-			person_intervals(to, s, r);
+			text_intervals(to, s, r);
 		}
-	person_way(to, whole->regions.part[index], "        A step of it");
+	text_way(to, whole->regions.part[index], "        A step of it");
 }
 
-static void person_parts(FILE *to, const struct step *step)
+static void text_parts(FILE *to, const struct step *step)
 {
 	long bytes = refresh_bytes(step), most = 0;
 	fprintf(to,
 		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
 		"approximated, every constant is correctly rounded.\n",
 		step->regions.parts);
-	person_expressions(to, step);
+	text_expressions(to, step);
 	for (int p = 0; p < step->regions.parts; p++) {
-		person_part(to, step, p);
+		text_part(to, step, p);
 		bytes += bytes_of_regions(step->regions.part[p]);
 		most += most_of_regions(step->regions.part[p]);
 	}
@@ -255,9 +255,9 @@ static void person_parts(FILE *to, const struct step *step)
 		bytes, MAX_EVENTS, MAX_SPLITS, most);
 }
 
-void person_regions(FILE *to, const struct step *step)
+void text_regions(FILE *to, const struct step *step)
 {
-	(step->regions.parts ? person_parts : person_of_one_part)(to, step);
+	(step->regions.parts ? text_parts : text_of_one_part)(to, step);
 }
 
 /* ---- JSON ---- */

@@ -13,7 +13,7 @@ struct divided;
 struct switching;
 struct alternative;
 struct requirement;
-struct shortening;
+struct modal_truncation;
 struct output;
 struct resolvent;
 struct linear;
@@ -40,28 +40,28 @@ const char *rising_text(const struct divided *d);           /* likewise */
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
 bool is_nonlinear(const struct step *step);
-void person_nonlinear(FILE *to, const struct step *step);   /* what is not told of it, and why */
+void text_nonlinear(FILE *to, const struct step *step);     /* what is not told of it, and why */
 void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
 void need_linear(const struct step *step, const char *what); /* "poles"; leaves the statement where it is not linear */
 
 /* ---- reach.c: what a series costs, and how far it reaches ---- */
 
-void person_reach(FILE *to, const struct step *step);
+void text_reach(FILE *to, const struct step *step);
 void json_reach(FILE *to, const struct step *step);
 
 /* ---- regions.c: formulas that the state chooses ---- */
 
 /* What rubs, a line each, and where it sticks: its expression, and the interval of that */
 const char *frictions_text(const struct switching *s, const char *indent);
-void person_regions(FILE *to, const struct step *step);     /* of a model of straight pieces */
+void text_regions(FILE *to, const struct step *step);       /* of a model of straight pieces */
 void json_regions(FILE *to, const struct step *step);        /* members of an object */
-void person_divided(FILE *to, const struct step *step);     /* of a series */
+void text_divided(FILE *to, const struct step *step);       /* of a series */
 void json_divided(FILE *to, const struct step *step);        /* members of an object */
 
 /* ---- contacts.c: what is held beside a series, and what strikes ---- */
 
 const char *contact_text(const struct step *step, int hold);  /* friction, and where it sticks */
-void person_contacts(FILE *to, const struct step *step);
+void text_contacts(FILE *to, const struct step *step);
 void json_contacts(FILE *to, const struct step *step);
 
 /* ---- modes.c: steps in normal modes ---- */
@@ -71,7 +71,7 @@ const char *exact_in_modes(const struct step *step);
 const char *course_of_modes(const struct step *step);       /* which way a step goes */
 const char *stability_of_modes(const struct step *step);
 int  numbers_of_modes(const struct step *step);             /* in its tables, at most */
-void person_normal(FILE *to, const struct step *step);
+void text_normal(FILE *to, const struct step *step);
 void json_normal(FILE *to, const struct step *step);         /* a member of an object */
 void program_normal(FILE *to, const struct step *step);
 
@@ -81,17 +81,18 @@ const char *alternative_text(const struct alternative *a);  /* float, delta */
 const char *need_text(const struct requirement *r);         /* as written */
 const char *certified_text(const struct alternative *a, int i); /* of a requirement: the bound and its parts */
 const char *margin_text(const struct step *step, int i);    /* of the one taken, with the margin */
-void person_needs(FILE *to, const struct step *step);
+void text_needs(FILE *to, const struct step *step);
 void json_needs(FILE *to, const struct step *step);          /* members of an object */
 
-/* ---- shortened.c: a model of some modes of another ---- */
+/* ---- modal_truncation.c: a model of some modes of another ---- */
 
-const char *mode_numbers(const struct shortening *s, bool kept); /* of those that are kept, or of the others: 1-4, 6 */
-int  modes_of_model(const struct shortening *s);            /* how many it has, dropped ones too */
+/* of those that are kept, or of the others: 1-4, 6 */
+const char *mode_numbers(const struct modal_truncation *s, bool kept);
+int  modes_of_model(const struct modal_truncation *s);      /* how many it has, dropped ones too */
 const char *loss_text(const struct model *model, int output); /* tip 3.2e-05: at most, by the start and the loads */
-const char *statics_text(const struct model *model);        /* what dropped modes still do */
-void person_shortening(FILE *to, const struct model *model);
-void json_shortening(FILE *to, const struct model *model);  /* members of an object */
+const char *static_correction_text(const struct model *model); /* what dropped modes still do */
+void text_modal_truncation(FILE *to, const struct model *model);
+void json_modal_truncation(FILE *to, const struct model *model); /* members of an object */
 
 /* ---- transfer.c: transfer functions of the linear part ---- */
 
@@ -106,7 +107,7 @@ struct transfer {                   /* H(s) = scale N/D of an output over it, N 
 	struct poly N, D;
 };
 struct zero { double re, im; int multiplicity; bool pair; }; /* [1/s]; a pair: it and its conjugate */
-bool is_told(const struct output *output);                  /* it is linear in states, loads and inputs, and no peak */
+bool is_reported(const struct output *output);              /* it is linear in states, loads and inputs, and no peak */
 int  drives_of(const struct model *model, struct drive **drives); /* inputs, then loads; returns how many */
 /* by drives, then by outputs; `r`: of the model's system */
 int  transfers_of(struct resolvent *r, const struct model *model, struct transfer **list);
@@ -139,7 +140,7 @@ int  shapes_of(const struct linear *system, int count, const struct pole_report 
 int  shapes_of_step(const struct step *step, struct mode_shape **shape, const struct model **of);
 const char *zeros_text(const struct model *model, const struct transfer *t);
 const char *static_gain_text(const struct transfer *t);
-void person_linear(FILE *to, const struct step *step);
+void text_linear(FILE *to, const struct step *step);
 void json_linear(FILE *to, const struct step *step);         /* members of an object */
 
 /* ---- frf.c: frequency responses ---- */
@@ -229,10 +230,10 @@ void print_page(FILE *to, const struct step *step, const char *options);    /* H
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 
-void explain_person(FILE *to, const struct step *step);
-void person_equations(FILE *to, const struct step *step);   /* as written, and what a sketch or a scene means */
-void person_course(FILE *to, const struct step *step);      /* what is exact, and what is done with what is not */
-void person_cost(FILE *to, const struct step *step);        /* and how far a step may be off */
+void explain_text(FILE *to, const struct step *step);
+void text_equations(FILE *to, const struct step *step);     /* as written, and what a sketch or a scene means */
+void text_course(FILE *to, const struct step *step);        /* what is exact, and what is done with what is not */
+void text_cost(FILE *to, const struct step *step);          /* and how far a step may be off */
 void explain_json(FILE *to, const struct step *step);
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end);
 

@@ -124,19 +124,19 @@ static bool print_row(struct printing *p, const struct trajectory *t, mpq_srcptr
 static bool print_with(struct printing *p, int precision)
 {
 	struct trajectory *t = trajectory_start(p->model, NULL, p->model->initial, precision);
-	bool told = true;
+	bool reported = true;
 	RATIONAL time = ZERO;
-	for (; p->rows <= p->last && told; p->rows += told) {
+	for (; p->rows <= p->last && reported; p->rows += reported) {
 		mpq_set_ui(time, p->rows, 1);
 		mpq_mul(time, time, p->model->h);
 		progress("row", (int)p->rows, (int)p->last);
-		told = trajectory_reach(t, time);
-		if (!told)
+		reported = trajectory_reach(t, time);
+		if (!reported)
 			p->why = trajectory_undecided(t);
-		told = told && print_passed(p, t) && print_row(p, t, time);
+		reported = reported && print_passed(p, t) && print_row(p, t, time);
 	}
 	trajectory_free(t);
-	return told;
+	return reported;
 }
 
 static void print_trajectory(FILE *to, const struct model *model, unsigned long last)

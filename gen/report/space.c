@@ -75,7 +75,7 @@ static struct space space_of(const struct model *model)
 	s.drives = drives_of(model, &s.drive);
 	s.output = ARRAY(int, model->outputs + 1);
 	for (int i = 0; i < model->outputs; i++)
-		if (is_told(&model->output[i]))
+		if (is_reported(&model->output[i]))
 			s.output[s.outputs++] = i;
 	size_t states = (size_t)s.states, drives = (size_t)s.drives, outputs = (size_t)s.outputs;
 	s.A = state_matrix(&model->system, false);
@@ -212,7 +212,7 @@ int shapes_of_step(const struct step *step, struct mode_shape **shape, const str
 {
 	const struct model *model = step->shown->model;
 	struct pole_report *pole;
-	*of = model->shortened ? model : model->written;     /* that the poles are of */
+	*of = model->truncated ? model : model->written;     /* that the poles are of */
 	int count = poles_of(step->model, step->written, &pole);
 	return shapes_of(&(*of)->system, count, pole, shape);
 }
@@ -261,7 +261,7 @@ const char *static_gain_text(const struct transfer *t)
 	return static_gain(t, gain) ? format("%.8g", nearest_double(gain)) : "infinite";
 }
 
-static void person_shapes(FILE *to, const struct model *of, int count, const struct mode_shape *shape)
+static void text_shapes(FILE *to, const struct model *of, int count, const struct mode_shape *shape)
 {
 	const struct linear *system = &of->system;
 	fputs("\nMode shapes, the largest entry of each 1:\n", to);
@@ -276,7 +276,7 @@ static void person_shapes(FILE *to, const struct model *of, int count, const str
 	}
 }
 
-static void person_transfers(FILE *to, const struct step *step)
+static void text_transfers(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	struct transfer *t;
@@ -291,7 +291,7 @@ static void person_transfers(FILE *to, const struct step *step)
 			zeros_text(model, &t[k]));
 }
 
-void person_linear(FILE *to, const struct step *step)
+void text_linear(FILE *to, const struct step *step)
 {
 	const struct model *of;
 	struct mode_shape *shape;
@@ -299,6 +299,6 @@ void person_linear(FILE *to, const struct step *step)
 	if (of->system.n > LIMIT_SHAPES)
 		fprintf(to, "\nMode shapes are told of up to %d coordinates.\n", LIMIT_SHAPES);
 	else
-		person_shapes(to, of, count, shape);
-	person_transfers(to, step);
+		text_shapes(to, of, count, shape);
+	text_transfers(to, step);
 }

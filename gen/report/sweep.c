@@ -257,7 +257,7 @@ static bool is_steady(const struct model *model, const struct drive *drive)
 }
 
 /* At the first term that is not linear, or at the scheme that was asked for all the same */
-static _Noreturn void tell_left_over(const struct model *model)
+static _Noreturn void report_remainder(const struct model *model)
 {
 	static const char *const way = "plrun runs any model, with a record that sweeps";
 	const struct node *other = model->nonlinear.obstacle;
@@ -287,7 +287,7 @@ static void need_sweeps(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	if (has_remainder(step))
-		tell_left_over(model);
+		report_remainder(model);
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
@@ -307,7 +307,7 @@ static int columns_of(const struct model *model, int drives, const struct drive 
 	s->count = 0;
 	for (int d = 0; d < drives; d++)
 		for (int i = 0; i < model->outputs && !is_steady(model, &drive[d]); i++)
-			if (is_told(&model->output[i]))
+			if (is_reported(&model->output[i]))
 				s->of[s->count++] = (struct swept){ model->output[i].name, drive[d].name, d,
 								    output_over(model, i, &drive[d]) };
 	return s->count;

@@ -10,7 +10,7 @@
 
 /* ---- outputs and what drives them ---- */
 
-bool is_told(const struct output *output)
+bool is_reported(const struct output *output)
 {
 	return (output->form || !output->value) && !output->peak; /* without declared outputs: a state */
 }
@@ -24,7 +24,7 @@ static int segment_of_column(const struct model *model, int load, int column)
 			if (mpq_sgn(system->load[load].force[column][s * system->n + i]) != 0)
 				return s;
 		for (int i = 0; i < model->outputs; i++)
-			if (is_told(&model->output[i]) &&
+			if (is_reported(&model->output[i]) &&
 			    mpq_sgn(model->output[i].load[load][column * system->segments + s]) != 0)
 				return s;
 	}
@@ -94,7 +94,7 @@ int transfers_of(struct resolvent *r, const struct model *model, struct transfer
 	for (int d = 0; d < drives; d++)
 		for (int i = 0; i < model->outputs; i++) {
 			progress("transfer function", d * model->outputs + i, drives * model->outputs);
-			if (is_told(&model->output[i]))
+			if (is_reported(&model->output[i]))
 				(*list)[count++] = transfer_of(r, model, i, &drive[d]);
 		}
 	progress_end();

@@ -251,7 +251,7 @@ static void find_slopes(struct step *step)
 	int states = step->branch->system.states, *column = ARRAY(int, states);
 	for (int i = 0; i < states; i++)
 		column[i] = i;
-	if (step->taylor.unseen && step->taylor.unseen->looks)
+	if (step->taylor.unresolved && step->taylor.unresolved->looks)
 		step->taylor.slopes = part_of_expansion(step, step->taylor.expansion, 1, states, column);
 }
 
@@ -260,7 +260,7 @@ static void divide_step(struct step *step)
 	step->taylor.divided = step->taylor.expansion->expressions > 0 ? step->taylor.expansion : NULL;
 	check_divided(step);
 	const struct expansion *x = step->taylor.expansion;
-	step->taylor.unseen = x->unseens > 0 || x->looks || x->crowded > 0 ? x : NULL;
+	step->taylor.unresolved = x->unresolved_functions > 0 || x->looks || x->crowded > 0 ? x : NULL;
 }
 
 static void build_expanded_step(struct step *step)
@@ -334,7 +334,7 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 {
 	static const struct model *last;
 	static struct resolvent *made;
-	const struct model *written = model->shortened ? model : model->written;
+	const struct model *written = model->truncated ? model : model->written;
 	if (written != last || !made)
 		made = resolvent_of(&written->system);
 	last = written;

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-void tell_range(const struct step *step)
+void report_range(const struct step *step)
 {
 	error(step->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
 }

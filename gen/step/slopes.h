@@ -48,7 +48,7 @@ struct load_slopes {                /* the columns of A that change from segment
 	int first, columns;         /* of x; first -1: no load acts */
 	double **segment;           /* states x columns [x/s]; 0 of loads that the step leaves out */
 };
-_Noreturn void tell_range(const struct step *step);          /* an error at the step: a number overflows */
+_Noreturn void report_range(const struct step *step);        /* an error at the step: a number overflows */
 /* size x size [x/s], loads as in the first segment, and the second words of the same; */
 double *slopes_of(const struct step *step, int branch);
 							     /* infinite beyond the range */
@@ -71,11 +71,11 @@ int leap_entries_of(const struct step *step, const struct leap *leap, struct lea
 
 /* ---- hold.c: what inputs do between samples ---- */
 
-void tap_weight(int hold, int power, int tap, mpq_ptr weight);     /* of (s/h)^power in that of a tap */
-void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
+void sample_weight(int hold, int power, int sample, mpq_ptr weight); /* of (s/h)^power in that of a sample */
+void sample_derivative(int hold, int power, int sample, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
 /* what |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
-double tap_reach(int hold, int power);
-void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
+double sample_reach(int hold, int power);
+void sample_slope(int hold, int sample, mpq_ptr slope);      /* h u' at the step's end, per sample */
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
 

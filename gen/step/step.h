@@ -35,7 +35,7 @@ struct absent {                     /* why it is not there, where a reader would
 	const char *phi;            /* e^{A h}, which a collocated step does not need */
 };
 struct event_check {                /* of regions: whether a step is first checked for events over the whole of h, */
-	bool event_free, fast_path; /* and for few crossings, by Taylor polynomials of this degree */
+	bool is_made, fast_path;    /* and for few crossings, by Taylor polynomials of this degree */
 	int degree;
 	const char *searches;       /* why a step is not checked, and goes by the search */
 };
@@ -60,7 +60,7 @@ struct region_step {                /* steps of piecewise-linear ones */
 struct taylor_step {                /* what goes by Taylor series; else all NULL */
 	struct expansion *expansion;
 	struct expansion *divided;  /* whose expressions choose formulas by the state; NULL: none does */
-	const struct expansion *unseen; /* what polynomials may not show of it bounds them; NULL: nothing does */
+	const struct expansion *unresolved; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
 };
 struct step {                       /* everything that is emitted for one model */

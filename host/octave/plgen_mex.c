@@ -73,26 +73,26 @@ static int takes_steps(const struct loaded *m)
 
 static mxArray *description(const struct loaded *m, int id)
 {
-    mxArray *told = mxCreateStructMatrix(1, 1, 0, NULL), *list;
+    mxArray *reported = mxCreateStructMatrix(1, 1, 0, NULL), *list;
     const int inputs = OF(m, inputs), params = OF(m, params);
     int i;
-    field(told, "id", mxCreateDoubleScalar(id));
-    field(told, "single", mxCreateDoubleScalar(m->single));
-    field(told, "h", mxCreateDoubleScalar(m->single ? (double)FLOATS(m)->h : m->model->h));
-    field(told, "states", names_of(OF(m, state_names), OF(m, states)));
-    field(told, "inputs", names_of(OF(m, input_names), inputs));
-    field(told, "outputs", names_of(OF(m, output_names), OF(m, outputs)));
-    field(told, "tunable", names_of(OF(m, param_names), params));
+    field(reported, "id", mxCreateDoubleScalar(id));
+    field(reported, "single", mxCreateDoubleScalar(m->single));
+    field(reported, "h", mxCreateDoubleScalar(m->single ? (double)FLOATS(m)->h : m->model->h));
+    field(reported, "states", names_of(OF(m, state_names), OF(m, states)));
+    field(reported, "inputs", names_of(OF(m, input_names), inputs));
+    field(reported, "outputs", names_of(OF(m, output_names), OF(m, outputs)));
+    field(reported, "tunable", names_of(OF(m, param_names), params));
     list = mxCreateDoubleMatrix(1, (mwSize)params, mxREAL);
     for (i = 0; i < params; i++)
         mxGetPr(list)[i] = m->single ? (double)FLOATS(m)->param_values[i] : m->model->param_values[i];
-    field(told, "values", list);
+    field(reported, "values", list);
     list = mxCreateDoubleMatrix(1, (mwSize)inputs, mxREAL);
     for (i = 0; i < inputs; i++)
         mxGetPr(list)[i] = OF(m, start_samples)[i];
-    field(told, "ahead", list);
-    field(told, "can_retune", mxCreateDoubleScalar(takes_steps(m)));
-    return told;
+    field(reported, "ahead", list);
+    field(reported, "can_retune", mxCreateDoubleScalar(takes_steps(m)));
+    return reported;
 }
 
 static mxArray *open_model(const mxArray *file, const mxArray *symbol)

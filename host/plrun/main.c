@@ -121,7 +121,7 @@ static int run_once(struct start *s)
 {
 	const struct options *o = &s->options;
 	const struct machine *m = s->machine;
-	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .told = true };
+	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .reported = true };
 	struct watchers w = { NULL, NULL, NULL };
 	struct stats stats = stats_new(m->outputs);
 	uint64_t every = steps_between(o, m);

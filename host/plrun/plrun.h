@@ -281,7 +281,7 @@ struct job {
 	const struct record *record;            /* NULL: no inputs */
 	const double *params;                   /* NULL: as the model has them */
 	double h, until;                        /* until < 0: to the end of the record */
-	bool resampled, told;                   /* told: progress is */
+	bool resampled, reported;               /* reported: progress is */
 	uint64_t steps;                         /* these two by plan_run */
 };
 char *plan_run(struct job *job);                        /* NULL, or why not */

@@ -108,7 +108,7 @@ static struct sizes sizes_new(const struct job *job)
 {
 	size_t n = (size_t)job->machine->states;
 	struct sizes z = { .small = -1 };
-	if (!job->told || !job->machine->allowed)
+	if (!job->reported || !job->machine->allowed)
 		return z;
 	z.y = need(calloc(4 * n + 1, sizeof *z.y));
 	z.allowed = z.y + n;
@@ -147,7 +147,7 @@ static void take_sizes(struct sizes *z, const struct job *job, struct instance *
 		judge(z, job, s, k);
 }
 
-static void tell_sizes(const struct sizes *z, const struct machine *m)
+static void report_sizes(const struct sizes *z, const struct machine *m)
 {
 	if (z->small < 0)
 		return;
@@ -169,10 +169,10 @@ static bool is_at_zero(const struct job *job, struct instance *s)
 	return zero;
 }
 
-static void tell(const struct job *job, uint64_t k)
+static void report(const struct job *job, uint64_t k)
 {
 	char line[120];
-	if (!job->told || (k & 63) || !progress_wanted())
+	if (!job->reported || (k & 63) || !progress_wanted())
 		return;
 	snprintf(line, sizeof line, "t = %.6g of %.6g s (%.0f %%)", (double)k * job->h, (double)job->steps * job->h,
 		 100.0 * (double)k / (double)job->steps);
@@ -199,10 +199,10 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 		}
 		instance_out(s, out);
 		each(who, k, out);
-		tell(job, k);
+		report(job, k);
 	}
-	tell_sizes(&sizes, job->machine);
-	if (job->told && !error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
+	report_sizes(&sizes, job->machine);
+	if (job->reported && !error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
 		say_note("nothing starts and nothing drives the model, so every state has stayed 0: give it an initial "
 			 "value (init x = 1) or a load");
 	free(sizes.y);

@@ -39,7 +39,7 @@ typedef struct fmu_data {
     double t0;                       /* [s]; time is t0 + steps FMU_H */
     uint64_t steps;
     int mode;                        /* enum fmu_mode */
-    int told;                        /* bits of the model's status that were logged */
+    int reported;                    /* bits of the model's status that were logged */
     int retunes;                     /* 1: the params are not yet those of the model's state */
     int starts;                      /* 1: nor are the start values, time and inputs */
     int moved;                       /* 1: the start is at another time, or from other states, than the spec's */
@@ -351,8 +351,8 @@ static enum fmu_result fmu_set(fmu_instance *i, const uint32_t *reference, size_
 static enum fmu_result fmu_look(fmu_instance *i)
 {
     fmu_data *d = &i->data;
-    const int status = FMU_MODEL.status(&d->state), fresh = status & ~d->told;
-    d->told |= status;
+    const int status = FMU_MODEL.status(&d->state), fresh = status & ~d->reported;
+    d->reported |= status;
     if (status & PL_NOT_FINITE) {
         return fmu_say(i, FMU_ERROR, "at %.9g s a state is infinite, or not a number", fmu_time(d));
     }

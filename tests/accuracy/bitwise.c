@@ -17,7 +17,7 @@
 #include "cases.h"
 #include "random_spec.h"
 #include "rationals.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "report/report.h"
 #include "step/linear/images.h"
 #include "step/linear/inner.h"

@@ -218,7 +218,7 @@ static void judge(size_t count, int outputs)
 }
 
 /* In each lane: what is not a number stays none in peaks, and is above all */
-static int lanes_tell(void)
+static int lanes_report(void)
 {
     enum { LANES = sizeof(pl_lanes) / sizeof(double) };
     const pl_lanes two = pl_lanes_all(2), three = pl_lanes_all(3), below = pl_lanes_all(-3);
@@ -249,7 +249,7 @@ int main(void)
         judge(count, 1);
     }
     printf("# worst %.3g\n", worst);
-    return !(worst < 1e-12 && m_status(&first) == 0 && lanes_tell());
+    return !(worst < 1e-12 && m_status(&first) == 0 && lanes_report());
 }
 END
 for compiler in "${CC:-cc} -std=c99 -O0 $warnings" "${CC:-cc} -std=c99 -O2 $warnings" "$run_cc"; do

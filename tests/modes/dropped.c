@@ -2,7 +2,7 @@
 /* dropped SPEC MODES PREFIX [ header ]: C of what the outputs of a model lose when the MODES that matter most are kept,
  * as a model of its own. */
 #include "emit/emit.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model of modes against the whole model, both as C: from_whole times a state of the whole is the state of the one
- * that is smaller, at any time and from any start, under loads and inputs; to_whole gives back what starts in the kept
+/* A model of modes against the whole model, both as C: project times a state of the whole is the state of the one
+ * that is smaller, at any time and from any start, under loads and inputs; expand gives back what starts in the kept
  * modes; and outputs. -DALL: nothing is dropped, outputs are the same. -DSETTLES=T: after T what is dropped is at rest,
  * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ
  * by no more, inputs 0. */
@@ -33,7 +33,7 @@ static void project(const double *x, double *y)
     for (i = 0; i < K; i++) {
         y[i] = 0;
         for (j = 0; j < N; j++)
-            y[i] += part_from_whole[i][j] * x[j];
+            y[i] += part_project[i][j] * x[j];
     }
 }
 
@@ -43,7 +43,7 @@ static void restore(const double *y, double *x)
     for (i = 0; i < N; i++) {
         x[i] = 0;
         for (j = 0; j < K; j++)
-            x[i] += part_to_whole[i][j] * y[j];
+            x[i] += part_expand[i][j] * y[j];
     }
 }
 
@@ -78,7 +78,7 @@ static void advance_part(part *s, int n)
 #endif
 }
 
-/* from_whole times the whole's state, step by step */
+/* project times the whole's state, step by step */
 static void same_states(void)
 {
     double x[N], y[K], z[K], worst[K] = {0}, size = 0;
@@ -204,10 +204,10 @@ static void inverse_matrices(void)
         for (j = 0; j < K; j++) {
             double sum = 0, size = 0;
             for (k = 0; k < N; k++) {
-                sum += part_from_whole[i][k] * part_to_whole[k][j];
-                size += fabs(part_from_whole[i][k] * part_to_whole[k][j]);
+                sum += part_project[i][k] * part_expand[k][j];
+                size += fabs(part_project[i][k] * part_expand[k][j]);
             }
-            judge(fabs(sum - (i == j)), fmax(size, 1), 1e-14, "from_whole to_whole, row", i);
+            judge(fabs(sum - (i == j)), fmax(size, 1), 1e-14, "project expand, row", i);
         }
 }
 

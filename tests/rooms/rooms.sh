@@ -69,8 +69,8 @@ judge walled '^wall' 'what a folder alone calls is private to it'
 cp included log
 [ ! -s included ]
 result $? 'no inner header is included from outside'
-{ cat walled; echo 'declares step/linear step/linear/forms.h drop_refresh'; } >wall
-notices wall '^wall: step/linear/forms.h declares drop_refresh' 'what stands before the wall is noticed'
+{ cat walled; echo 'declares step/linear step/linear/forms.h leave_out_refresh'; } >wall
+notices wall '^wall: step/linear/forms.h declares leave_out_refresh' 'what stands before the wall is noticed'
 
 # Numbers are rounded before they are printed.
 grep 'gen_emit_' listing | grep -E ' U (mpfr|mpfi)_' | sed 's/^.*gen_emit_/emit\//' >log

@@ -44,7 +44,7 @@
 #define PL_KINDS MODEL_KINDS
 #define PL_KIND(i) ((i) % 2)
 #define PL_FLOORS 0
-#define PL_UNSEEN 0
+#define PL_UNRESOLVED 0
 #define PL_SLOPES 0
 #define PL_OVER 1
 #define PL_PARTS 1

@@ -23,7 +23,7 @@
 #include "../emitted/worse.h"
 #include "emit/steps.h"
 #include "model/linear/inner.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 
 #include <ctype.h>

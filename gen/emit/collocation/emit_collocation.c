@@ -229,11 +229,11 @@ static void emit_switching_limits(const struct emitter *e)
 	say(e, "#define PL_MEASURED %d  /* columns behind the states whose last terms count too */\n"
 	       "#define PL_WORTH %s  /* so many series a step of the collocation costs */\n"
 	       "#define PL_CHOICES %d\n"
-	       "#define PL_UNSEEN %d\n"
+	       "#define PL_UNRESOLVED %d\n"
 	       "#define PL_SLOPES %d\n", e->step->taylor.expansion->measured, shortest(worth(e)), has_choices(e),
-	    has_unseen(e), e->step->taylor.slopes != NULL);
-	if (has_unseen(e))
-		emit_unseen_sizes(e);
+	    has_unresolved(e), e->step->taylor.slopes != NULL);
+	if (has_unresolved(e))
+		emit_unresolved_sizes(e);
 }
 
 /* Formulas that the state chooses, for passage.h */
@@ -261,7 +261,8 @@ static void emit_include(const struct emitter *e)
 		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
 		   { "WAYS", d ? d->expressions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
-		   { "ARGUMENTS", traces(e) ? e->step->taylor.unseen->unseens : 0 }, { "FLOORS", has_floors(e) });
+		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
+		   { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (is_divided(e))

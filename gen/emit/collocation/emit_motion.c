@@ -30,15 +30,15 @@ enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
 static const struct form **forms_of(const struct emitter *e, enum motion_part part, int *count)
 {
 	const struct motion *m = motion(e);
-	const struct expansion *d = e->step->taylor.divided, *u = e->step->taylor.unseen;
+	const struct expansion *d = e->step->taylor.divided, *u = e->step->taylor.unresolved;
 	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
 	const bool by_series = meets_contacts(e) && part != THE_ARGUMENTS;
 	*count = by_series ? 0 : part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
-		 : part == THE_ARGUMENTS ? (u ? u->unseens : 0) : m->coords + entries;
+		 : part == THE_ARGUMENTS ? (u ? u->unresolved_functions : 0) : m->coords + entries;
 	const struct form **form = ARRAY(const struct form *, (size_t)*count + 1);
 	for (int i = 0; i < *count; i++)
 		form[i] = part == THE_EXPRESSIONS ? d->expression[i].form
-			  : part == THE_ARGUMENTS ? u->unseen[i].form
+			  : part == THE_ARGUMENTS ? u->unresolved[i].form
 			  : i < m->coords	  ? m->force[i] : m->entry[i - m->coords].slope;
 	return form;
 }

@@ -74,7 +74,7 @@ static void emit_series_impacts(const struct emitter *e)
 	const struct contacts *c = contacts(e);
 	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, "
 	       "without restitution, how many; restitution; of the expression for a guard of 1 */\n"
-	       "static const pl_event_impact $n_event_strike[%d] = {\n",
+	       "static const pl_event_impact $n_event_impacts[%d] = {\n",
 		       c->series_impacts > 0 ? c->series_impacts : 1);
 	for (int i = 0; i < c->series_impacts; i++) {
 		const struct series_impact *s = &c->series_impact[i];
@@ -98,7 +98,7 @@ static void emit_events(const struct emitter *e, const char *name, const char *d
 {
 	const struct contacts *c = contacts(e);
 	say(e, "static const pl_events $n_%s = {\n"
-	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_strike,\n"
+	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_impacts,\n"
 	       "    $n_event_place[0],\n"
 	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
 	       "};\n", name, divided, watch, c->holds, c->series_impacts, c->conflicts);

@@ -90,7 +90,7 @@ static void emit_refresh(const struct emitter *e)
 		growth = growth || (e->phasor[l] >= 0 && e->growth[l] >= 0 && e->phase[l] >= 0);
 	}
 	open_function(e, "A refresh now: functions of the loads, from phases that lose nothing however long a run is",
-		      "static void $n_drop_refresh($n *s)");
+		      "static void $n_refresh_phasors($n *s)");
 	if (time)
 		say(e, "    const double t = $n_time(s);\n");
 	if (growth)

@@ -15,8 +15,8 @@ bool *loads_of_step(const struct emitter *e)
 	return wanted;
 }
 
-/* The slope at the end of the step of an input that goes through further taps, where something reads it */
-static void emit_tap_slope(const struct emitter *e, int input)
+/* The slope at the end of the step of an input that goes through further samples, where something reads it */
+static void emit_sample_slope(const struct emitter *e, int input)
 {
 	int hold = e->system->input[input].hold;
 	struct summands s = { 0 };
@@ -24,9 +24,9 @@ static void emit_tap_slope(const struct emitter *e, int input)
 	if (!reads_input_slope(e->model, input))
 		return;
 	for (int c = 0; c <= hold; c++) {
-		tap_slope(hold, c, slope);
+		sample_slope(hold, c, slope);
 		if (mpq_sgn(slope) != 0)
-			add_summand(&s, scaled(round_rational(slope), tap_text(e, input, c)));
+			add_summand(&s, scaled(round_rational(slope), sample_text(e, input, c)));
 	}
 	say(e, "    s->slope[%d] = (%s) / %s;\n", input, sum_of(&s, 18), step_length(e));
 }
@@ -38,7 +38,7 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 	for (int i = 0; i < inputs; i++) {
 		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
 		if (e->system->input[i].hold > 1) {
-			emit_tap_slope(e, i);
+			emit_sample_slope(e, i);
 			say(e, "    $n_next_sample(s, %d, u[%d]);\n", i, i);
 			continue;
 		}
@@ -157,7 +157,7 @@ void emit_step_end(const struct emitter *e)
 		emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");
 	if (e->step->refresh)
-		say(e, "    if (++s->since == %d) { $n_drop_refresh(s); }\n",
+		say(e, "    if (++s->since == %d) { $n_refresh_phasors(s); }\n",
 		    e->step->refresh->steps);
 	if (e->step->linear.rest && e->step->linear.rest->in_step)
 		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");

@@ -65,7 +65,7 @@ static void store_derivatives(const struct emitter *e, int input, int at)
 	for (int m = 0; m <= hold; m++) {
 		struct summands s = { 0 };
 		for (int c = 0; c <= hold; c++) {
-			tap_derivative(hold, m, c, one, weight);
+			sample_derivative(hold, m, c, one, weight);
 			if (mpq_sgn(weight) != 0)
 				add_summand(&s, scaled(round_rational(weight), input_operand(e, before + c)));
 		}
@@ -488,7 +488,7 @@ static void emit_pass_steps(const struct emitter *e)
 	emit_load_advance(e, "n");
 	say(e, "    s->k += n;\n");
 	if (e->step->refresh)
-		say(e, "    $n_drop_refresh(s);\n");
+		say(e, "    $n_refresh_phasors(s);\n");
 	close_function(e, "");
 }
 

@@ -155,13 +155,13 @@ static void emit_factor_places(const struct batch *b)
 
 static void emit_sample_reaches(const struct emitter *e)
 {
-	int inputs = e->system->inputs, columns = most_taps_before(e) + 1;
+	int inputs = e->system->inputs, columns = most_samples_before(e) + 1;
 	int *degree = ARRAY(int, (size_t)inputs);
 	double *reach = ARRAY(double, (size_t)(inputs * columns));
 	for (int i = 0; i < inputs; i++) {
 		degree[i] = e->system->input[i].hold;
 		for (int m = 0; m <= degree[i]; m++)
-			reach[i * columns + m] = tap_reach(degree[i], m);
+			reach[i * columns + m] = sample_reach(degree[i], m);
 	}
 	emit_int_list(e, "sample_degree", inputs, degree);
 	emit_int_list(e, "sample_column", inputs, e->step->layout.input);

@@ -148,7 +148,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		put_matrices(e, all[i].name, all[i].note, e->step->branches, all[i].rows, size,
 			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
-	if (e->model->params.retuned && e->step->regions.event_check.event_free)
+	if (e->model->params.retuned && e->step->regions.event_check.is_made)
 		emit_own_check(e, pieces, expression);
 	if (g)
 		emit_numbers_of_guards(e, g);
@@ -184,7 +184,7 @@ void emit_regions(const struct emitter *e)
 	if (e->step->regions.event_check.fast_path) {
 		emit_fast_path_tables(e, &pieces, expression_names(e));
 		emit_crossing(e, &pieces);
-	} else if (e->step->regions.event_check.event_free && !g && is_checked_by_tables(e->step)) {
+	} else if (e->step->regions.event_check.is_made && !g && is_checked_by_tables(e->step)) {
 		emit_spans(e);
 	}
 	emit_search(e, ladder_text(e, g));
@@ -295,7 +295,7 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->regions.parts },
-		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.event_free },
+		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.is_made },
 		{ "CAPPED", capped_entries(e) }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -336,7 +336,7 @@ static void emit_friction_force(const struct emitter *e)
 {
 	if (!e->model->params.retuned)
 		emit_friction_forces(e);
-	open_function(e, NULL, "static double $n_grip(const $n *s, int which)");
+	open_function(e, NULL, "static double $n_friction_force(const $n *s, int which)");
 	say(e, "    double force;\n");
 	declare_region_vector(e);
 	emit_load_states(e, needed_loads(e), false);
@@ -431,7 +431,7 @@ static const char *event_text(const struct emitter *e)
 /* How most steps are seen to have none, and what else there is before the search */
 static void note_clear_steps(const struct emitter *e, const char *function, const char *second)
 {
-	if (e->step->regions.event_check.event_free)
+	if (e->step->regions.event_check.is_made)
 		note(e, "1. The whole step is tried: x becomes e^{A h} x. Within it %s leaves the chord through its "
 			"ends by at most h^2/8 times its largest second derivative, which a row times |x| bounds (as "
 			"%s does). Where the chord keeps further than that from %s, nothing happens: that is the step.",
@@ -489,7 +489,7 @@ void declare_region_search(const struct emitter *e)
 void emit_region_step(const struct emitter *e)
 {
 	open_function(e, NULL, "%s", head_of_step(e));
-	if (e->step->regions.event_check.event_free && !has_guards(e))
+	if (e->step->regions.event_check.is_made && !has_guards(e))
 		emit_whole_step(e);
 	else
 		emit_searched_step(e);

@@ -240,7 +240,8 @@ static void emit_algorithm(const struct emitter *e)
 		   { "PARTS", has_offset(e) }, { "STRAIGHT", is_straight(e) },
 		   { "WRITTEN_OUT", is_written_out(e, x->order) }, { "SERVES", most_served(e) },
 		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
-		   { "UNSEEN", t->adaptive && has_unseen(e) }, { "SLOPES", t->adaptive && e->step->taylor.slopes },
+		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
+		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
 		   { "AT", e->step->series.emitted });
 	if (is_divided(e))
 		emit_divided_macros(e);
@@ -258,7 +259,7 @@ void emit_expansion_step(const struct emitter *e)
 {
 	emit_model_functions(e);
 	emit_reach_tables(e);
-	if (truncation_of(e)->adaptive && has_unseen(e))
+	if (truncation_of(e)->adaptive && has_unresolved(e))
 		emit_hidden_table(e);
 	if (spans_steps(e))
 		emit_over_table(e);

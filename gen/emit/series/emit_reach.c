@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far a Taylor series holds, what its coefficients may not show (functions that are all but constant over most of
- * their range, loads that may cancel): what reach.h, measure.h and unseen.h of the runtime are told. */
+ * their range, loads that may cancel): what reach.h, measure.h and unresolved.h of the runtime are told. */
 #include "inner.h"
 #include "emit/state.h"
 #include "step/collocation/collocation.h"
@@ -80,53 +80,54 @@ void emit_reach_sizes(const struct emitter *e)
 	       "#define PL_NOW y\n", shortest(round_rational(truncation_of(e)->tolerance)));
 	if (shares_kinds(e))
 		say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
-	if (truncation_of(e)->adaptive && has_unseen(e))
-		emit_unseen_sizes(e);
+	if (truncation_of(e)->adaptive && has_unresolved(e))
+		emit_unresolved_sizes(e);
 }
 
 /* ---- what coefficients may not show ---- */
 
-static const struct expansion *unseens(const struct emitter *e)
+static const struct expansion *unresolved_functions(const struct emitter *e)
 {
-	return e->step->taylor.unseen;
+	return e->step->taylor.unresolved;
 }
 
 /* How many h of loads that may cancel each other are followed: so much of the phase of the fastest */
 static double crowded_length(const struct emitter *e, double phase)
 {
-	return phase / (unseens(e)->crowded * mpq_get_d(e->model->h));
+	return phase / (unresolved_functions(e)->crowded * mpq_get_d(e->model->h));
 }
 
 /* The argument of each, by its kind */
-static void emit_unseen_table(const struct emitter *e, const char *name, bool columns)
+static void emit_unresolved_table(const struct emitter *e, const char *name, bool columns)
 {
-	const struct expansion *x = unseens(e);
-	int *row = ARRAY(int, 3 * (size_t)x->unseens);
-	for (int i = 0; i < x->unseens; i++) {
-		row[3 * i] = columns ? x->unseen[i].column : i;
-		row[3 * i + 1] = (int)x->unseen[i].kind;
-		row[3 * i + 2] = x->unseen[i].power;
+	const struct expansion *x = unresolved_functions(e);
+	int *row = ARRAY(int, 3 * (size_t)x->unresolved_functions);
+	for (int i = 0; i < x->unresolved_functions; i++) {
+		row[3 * i] = columns ? x->unresolved[i].column : i;
+		row[3 * i + 1] = (int)x->unresolved[i].kind;
+		row[3 * i + 2] = x->unresolved[i].power;
 	}
 	say(e, "\n/* Of functions that coefficients may not show: where the argument stands, the kind, a power */\n");
-	emit_integer_rows(e, "int", format("%s[%d][3]", name, x->unseens), x->unseens, 3, row);
+	emit_integer_rows(e, "int", format("%s[%d][3]", name, x->unresolved_functions), x->unresolved_functions, 3,
+			  row);
 }
 
 /* ---- what reach.h is told ---- */
 
-void emit_unseen_sizes(const struct emitter *e)
+void emit_unresolved_sizes(const struct emitter *e)
 {
-	const double rise = 0.5 * unseens(e)->order;
+	const double rise = 0.5 * unresolved_functions(e)->order;
 	say(e, "#define PL_HIDDEN %d\n"
 	       "#define PL_BEATS %s\n"
 	       "#define PL_RISES %s\n"
-	       "#define PL_RISES_FACTOR %s\n", traces(e) ? unseens(e)->unseens : 0,
+	       "#define PL_RISES_FACTOR %s\n", traces(e) ? unresolved_functions(e)->unresolved_functions : 0,
 	    shortest(crowds(e) ? crowded_length(e, rise) : 0), shortest(rise), shortest(exp(rise)));
 }
 
 void emit_hidden_table(const struct emitter *e)
 {
 	if (traces(e))
-		emit_unseen_table(e, "hidden", true);
+		emit_unresolved_table(e, "hidden", true);
 }
 
 /* ---- along a step of the collocation ---- */
@@ -139,5 +140,5 @@ double crowded_steps(const struct emitter *e)
 void emit_arguments(const struct emitter *e)
 {
 	if (traces(e))
-		emit_unseen_table(e, "argument", false);
+		emit_unresolved_table(e, "argument", false);
 }

@@ -30,10 +30,10 @@ void emit_floors(const struct emitter *e);      /* which, over the tolerance: wh
 
 /* ---- emit_reach.c: how far what coefficients do not show is followed ---- */
 
-bool has_unseen(const struct emitter *e);
+bool has_unresolved(const struct emitter *e);
 bool traces(const struct emitter *e);                            /* some of it by its argument */
 bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
-void emit_unseen_sizes(const struct emitter *e);                 /* of what a series may not show, for reach.h */
+void emit_unresolved_sizes(const struct emitter *e);             /* of what a series may not show, for reach.h */
 void emit_hidden_table(const struct emitter *e);
 void emit_arguments(const struct emitter *e);                    /* what shows those along a step by collocation */
 double crowded_steps(const struct emitter *e);                    /* how long, in h, such a step is at most */

@@ -256,8 +256,8 @@ void emit_retuned(const struct emitter *e)
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
 		   { "BOUNDED", bounded },
-		   { "EVENT_FREE", e->step->regions.event_check.event_free });
-	if (e->step->regions.event_check.event_free)
+		   { "EVENT_FREE", e->step->regions.event_check.is_made });
+	if (e->step->regions.event_check.is_made)
 		emit_gathering(e);
 	say_include(e, "retuned.h");
 }

@@ -131,8 +131,8 @@ struct lists {
 };
 struct listed {
 	struct lists place, entry;
-	int taps;
-	const char *tap;
+	int sample_weights;
+	const char *sample_weight;
 };
 
 static int add_place(struct lists *l, int place)
@@ -172,8 +172,8 @@ static void emit_lists(const struct emitter *e, const struct listed *l)
 		emit_integers(e, "unsigned short", "places", l->place.count, l->place.place);
 	if (l->entry.count)
 		emit_integers(e, "unsigned char", "alike_entry", l->entry.count, l->entry.place);
-	if (l->taps)
-		say(e, "\nstatic const double $n_tap[%d] = {%s};\n", l->taps, l->tap);
+	if (l->sample_weights)
+		say(e, "\nstatic const double $n_sample_weight[%d] = {%s};\n", l->sample_weights, l->sample_weight);
 }
 
 static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l,
@@ -202,13 +202,14 @@ static void emit_blocks(const struct emitter *e, const char *const *text)
 /* ---- groups of blocks ---- */
 
 /* What each of its samples gets of an input's derivatives, in units of the step */
-static void add_taps(struct listed *l, int hold)
+static void add_sample_weights(struct listed *l, int hold)
 {
 	RATIONAL weight = ZERO, one = RATIO(1, 1);
 	for (int i = 0; i < (hold + 1) * (hold + 1); i++) {
-		tap_derivative(hold, i % (hold + 1), i / (hold + 1), one, weight);
-		l->tap = format("%s%s%s", l->taps ? l->tap : "", l->taps ? ", " : "", shortest(round_rational(weight)));
-		l->taps++;
+		sample_derivative(hold, i % (hold + 1), i / (hold + 1), one, weight);
+		l->sample_weight = format("%s%s%s", l->sample_weights ? l->sample_weight : "",
+					  l->sample_weights ? ", " : "", shortest(round_rational(weight)));
+		l->sample_weights++;
 	}
 }
 
@@ -223,7 +224,7 @@ static int add_samples(struct listed *l, const struct emitter *e, const struct g
 		add_place(&l->place, g->states + g->loads + place);
 		add_place(&l->place, hold);
 		if (hold > 1)
-			add_taps(l, hold);
+			add_sample_weights(l, hold);
 		samples++;
 	}
 	return samples;
@@ -245,13 +246,14 @@ static const char *group_text(const struct emitter *e, const struct tuned_block 
 	const struct group *g = first->group;
 	const struct group_shape shape = shape_of_group(e, g);
 	const bool alike = g->kind == GROUP_ALIKE, by_columns = g->kind == GROUP_COLUMNS;
-	const int number = (int)(first - blocks_of_step(e)->block), taps = l->taps;
+	const int number = (int)(first - blocks_of_step(e)->block), sample_weights = l->sample_weights;
 	const int from = l->place.count, samples = add_samples(l, e, g);
 	const char *entry = alike ? add_alike(l, e, g, false, shape.rows) : "NULL";
 	const char *load = alike ? add_alike(l, e, g, true, shape.changing) : "NULL";
 	return format("{%d, %s_block + %d, %s, %d, %s, %s, %d, %d, %d, %d, %s, %s}", g->blocks, e->name, number,
 		      blocks_of_step(e)->solved ? "NULL" : format("%s_reads + %d", e->name, number), samples,
-		      list_text(e, samples, from), l->taps > taps ? format("%s_tap + %d", e->name, taps) : "NULL",
+		      list_text(e, samples, from), l->sample_weights > sample_weights
+		      ? format("%s_sample_weight + %d", e->name, sample_weights) : "NULL",
 		      alike ? 0 : by_columns ? 1 : shape.columns, alike ? 0 : by_columns ? shape.columns : 1,
 		      alike ? shape.rows : 0, shape.changing, entry, load);
 }

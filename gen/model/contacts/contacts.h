@@ -84,7 +84,7 @@ bool closes_by_jump(struct building *b, const struct impact *impact, int segment
 void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
 /* Why a scheme cannot treat friction or impacts */
-_Noreturn void tell_no_events(const struct building *b, struct place at);
+_Noreturn void report_no_events(const struct building *b, struct place at);
 
 /* ---- events.c: what is held in regions, and what begins there ---- */
 

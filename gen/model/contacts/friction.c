@@ -34,9 +34,9 @@ bool holds_friction(const struct building *b)
 	return first_friction(b) != NULL;
 }
 
-void tell_no_friction(const struct building *b)
+void report_no_friction(const struct building *b)
 {
-	tell_no_events(b, first_friction(b)->node->at);
+	report_no_events(b, first_friction(b)->node->at);
 }
 
 /* ---- where it sticks ---- */
@@ -287,7 +287,7 @@ static bool hold_form(struct holding *h, const struct form *v, bool place)
 }
 
 /* What friction cannot hold beside what is held */
-static void tell_held(const struct holding *h, const struct stuck *stuck)
+static void report_held(const struct holding *h, const struct stuck *stuck)
 {
 	const struct form *v = free_of_holds(h, stuck->velocity);
 	const struct node *node = stuck->atom->node;
@@ -315,7 +315,7 @@ static bool find_holds(const struct building *b, const struct switching *s, int 
 			continue;
 		possible = hold_form(&h, stuck[k].velocity, false);
 		if (!possible && stuck[k].atom)
-			tell_held(&h, &stuck[k]);
+			report_held(&h, &stuck[k]);
 	}
 	for (int k = 0; k < count && possible; k++)
 		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);

@@ -168,7 +168,7 @@ bool impacts_change(const struct building *b)
 	return changes;
 }
 
-void tell_no_events(const struct building *b, struct place at)
+void report_no_events(const struct building *b, struct place at)
 {
 	const enum scheme scheme = b->model->scheme;
 	if ((stops_at_events(scheme) || scheme == SCHEME_EXACT) && impacts_change(b))
@@ -227,7 +227,7 @@ static bool reads_highest(const struct building *b, const struct form *form)
 	return any;
 }
 
-static _Noreturn void tell_again(const struct when *when, const char *why)
+static _Noreturn void report_again(const struct when *when, const char *why)
 {
 	error(when->guard->start, "x' = -0.8*x' turns back what x >= 0.1 has met",
 	      "its own jump triggers this 'when' again at once: %s", why);
@@ -239,13 +239,13 @@ static void check_jump(struct building *b, const struct when *when, const struct
 	RATIONAL ratio = ZERO, rest = ZERO;
 	bool known = is_along(b, behind(b, impact_law, impact_law->guard), impact_law->guard, ratio, rest);
 	if (known && mpq_sgn(rest) > 0)
-		tell_again(when, "behind it the guard is true, by a constant");
+		report_again(when, "behind it the guard is true, by a constant");
 	bool stays = known && mpq_sgn(rest) == 0;
 	if (stays && !reads_highest(b, impact_law->speed) && !is_constant(impact_law->speed) &&
 	    is_along(b, behind(b, impact_law, impact_law->speed), impact_law->speed, ratio, rest) &&
 	    mpq_sgn(rest) == 0 &&
 	    mpq_sgn(ratio) > 0)
-		tell_again(when, "behind it the guard goes on as it came");
+		report_again(when, "behind it the guard goes on as it came");
 }
 
 /* ---- bounces ---- */
@@ -389,7 +389,7 @@ static void check_alike(void *context)
 }
 
 /* A contact that rests stays what it is when a load changes its formula. */
-static void tell_bounce_changes(const struct building *b, const struct when *when, int segment, bool bounces)
+static void report_bounce_changes(const struct building *b, const struct when *when, int segment, bool bounces)
 {
 	error(when->at, "one that turns the speed of its guard does so at all times, or at none",
 	      "what jumps here is a bounce %s t = %s and none %s it", bounces ? "from" : "before",
@@ -411,7 +411,7 @@ static void build_impact(void *context)
 		else
 			bounces = find_bounce(b, impact_law);
 		if (s > 0 && bounces != impact->bounces)
-			tell_bounce_changes(b, when, s, bounces);
+			report_bounce_changes(b, when, s, bounces);
 		impact->bounces = bounces;
 		check_jump(b, when, impact_law);
 		if (bounces)

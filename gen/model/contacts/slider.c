@@ -99,7 +99,7 @@ static void put_in_others(const struct slider_row *r, const struct form *slider_
 	}
 }
 
-static _Noreturn void tell_drives(const struct node *node)
+static _Noreturn void report_drives(const struct node *node)
 {
 	error(node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
 	      "this friction drives what slides instead of holding it");
@@ -111,7 +111,7 @@ static void check_borne(const struct slider_row *r, const struct form *slider_fo
 	struct basis place = { .kind = BASIS_COORD, .index = r->coord };
 	const struct form_term *term = form_find(slider_force, &place);
 	if (term && mpq_sgn(term->factor) * mpq_sgn(rate_factor(r->velocity, r->coord)) > 0)
-		tell_drives(r->atom->node);
+		report_drives(r->atom->node);
 }
 
 /* c f + rest = 0: q = -rest/c */
@@ -165,7 +165,7 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 	mpq_div(ratio, along, damping);
 	mpq_mul(k, ratio, r->factor);
 	if (mpq_sgn(k) < 0)
-		tell_drives(r->atom->node);
+		report_drives(r->atom->node);
 	rest = form_difference(rest, form_single(rate, damping));
 	struct form *drive = form_difference(form_difference(r->velocity, form_single(rate, along)),
 					     form_scale(rest, ratio));

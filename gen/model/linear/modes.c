@@ -231,7 +231,7 @@ static int by_frequency(const void *a, const void *b)
 	return x < y ? -1 : x > y ? 1 : p->first - q->first;
 }
 
-static void list_modes(struct modes *modes, const struct survey *survey)
+static void list_modes(struct modes *modes, const struct participation *participation)
 {
 	modes->count = invariants_count(modes->basis->invariants);
 	modes->mode = ARRAY(struct mode, modes->count + 1);
@@ -241,7 +241,7 @@ static void list_modes(struct modes *modes, const struct survey *survey)
 		*mode = (struct mode){ .first = i, .columns = part->columns, .moves = modes->basis->moves };
 		mode->states = part->columns * (mode->moves ? 2 : 1);
 		mode->weight = mode->moves || part->real ? part->columns : part->columns / 2;
-		survey_poles(survey, mode);
+		participation_of_poles(participation, mode);
 	}
 	qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_frequency);
 }
@@ -258,8 +258,8 @@ struct modes *modes_of(const struct model *model, const char **why)
 		return NULL;
 	struct modes *modes = NEW(struct modes);
 	*modes = (struct modes){ .model = model, .basis = basis };
-	struct survey *survey = survey_of(modes);
-	list_modes(modes, survey);
+	struct participation *participation = participation_of(modes);
+	list_modes(modes, participation);
 	const double largest = largest_eigenvalue(basis);
 	for (int i = 0; i < modes->count; i++) {
 		const struct invariant *part = invariant_part(basis->invariants, modes->mode[i].first);
@@ -270,8 +270,8 @@ struct modes *modes_of(const struct model *model, const char **why)
 	for (int i = 0, number = 1; i < modes->count; number += modes->mode[i++].weight)
 		modes->mode[i].number = number;
 	for (int i = 0; i < modes->count && !*why; i++)
-		survey_mode(survey, &modes->mode[i]);
-	survey_free(survey);
+		participation_of_mode(participation, &modes->mode[i]);
+	participation_free(participation);
 	find_shares(modes);
 	return *why ? NULL : modes;
 }

@@ -7,7 +7,7 @@
  * own, 0 at those of the other rows, and small elsewhere: written states that lie in the space are rows of it, and
  * what a row is a combination of stands in the row. */
 #include "model/reads.h"
-#include "shortening.h"
+#include "modal_truncation.h"
 #include "model/tunable/tuning.h"
 
 #include <math.h>

@@ -195,7 +195,7 @@ static void check_face(struct building *b, const struct switching *s, int below,
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
 		if (vanishes_on(&b->collector, jump, e, segment_of_region(s, below), at))
 			continue;
-		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
+		report_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
 	}
 }
 

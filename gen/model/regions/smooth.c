@@ -369,7 +369,7 @@ static const char *surface_text(const struct model *model, const struct form *g)
 	return text;
 }
 
-void tell_friction(const struct node *node, const char *where)
+void report_friction(const struct node *node, const char *where)
 {
 	error(node->start,
 	      "dry friction, which sticks and slips, is written friction(v, F) in place of F*sgn(v); a force that is "
@@ -407,7 +407,7 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 	if (is_harmless_time(model, surface->g, order))
 		return;
 	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
-		tell_friction(surface->test, surface_text(model, surface->g));
+		report_friction(surface->test, surface_text(model, surface->g));
 	bool timed = linear_in_time(surface->g, &factor, &phase), whole = order % 10 == 0 || order == SURE;
 	if (!whole && !timed && !smooth->singular) {
 		smooth->singular = surface->whole->node;

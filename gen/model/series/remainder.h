@@ -99,7 +99,7 @@ void split_remainder(struct building *b);                    /* model->split; af
 void judge_smoothness(struct building *b);
 /* or a coordinate of first order, which is one */
 bool reads_velocity(const struct model *model, const struct form *form);
-_Noreturn void tell_friction(const struct node *node, const char *where);
+_Noreturn void report_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
 int  order_that_holds(const struct model *model);           /* rounded down; 0: there is no remainder */

@@ -4,7 +4,7 @@
  * what is done to them on the way to its entries is recorded (base/traced.c). Functions and conditions of params are
  * params of their own (derived.c); where they hold more, they are refused before. */
 #include "inner.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 
 /* ---- places ---- */
 
@@ -92,7 +92,7 @@ static const struct tunable *suspect(struct elsewhere *s, bool (*same)(const str
 	return &t->param[first];
 }
 
-void tell_difference(struct elsewhere *s, const struct difference *difference)
+void report_difference(struct elsewhere *s, const struct difference *difference)
 {
 	const struct tunable *why = suspect(s, difference->same);
 	error(why->at, difference->note, "with another value of '%s' %s", why->symbol->name, difference->text);
@@ -119,7 +119,7 @@ static void look(struct elsewhere *s)
 		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model");
 	for (int i = 0; i < s->differences; i++)
 		if (!s->difference[i].same(pattern(s), s->found))
-			tell_difference(s, &s->difference[i]);
+			report_difference(s, &s->difference[i]);
 	s->other = s->other ? s->other : s->found;
 	s->seen[s->places] = keep(s, s->read(s, s->found));
 	s->places++;

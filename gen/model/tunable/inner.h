@@ -10,7 +10,7 @@
 
 /* Waves, their order, times at which they change; any_rate: frequencies may differ */
 bool same_loads(const struct linear *a, const struct linear *b, bool any_rate);
-_Noreturn void tell_difference(struct elsewhere *s, const struct difference *difference);
+_Noreturn void report_difference(struct elsewhere *s, const struct difference *difference);
 void look_elsewhere(struct elsewhere *s);
 mpq_srcptr entry_seen(const struct elsewhere *s, int place, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);

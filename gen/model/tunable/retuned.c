@@ -8,7 +8,7 @@
 #include "model/capability.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 
 #include <string.h>
 
@@ -105,7 +105,7 @@ static mpq_t *read_rows(struct elsewhere *s, const struct model *model)
 		s->entries = (ptrdiff_t)l.rows * t->x.size;
 	}
 	if (l.rows != t->rows)
-		tell_difference(s, &of_regions[1]);
+		report_difference(s, &of_regions[1]);
 	return l.entry;
 }
 

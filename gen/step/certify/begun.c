@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a way through crossings: where it begins. */
 #include "model/contacts/contacts.h"
-#include "struck.h"
+#include "event_state.h"
 
 /* ---- the start ---- */
 

@@ -23,7 +23,7 @@ struct certificate {                /* of one requirement, in the output's unit 
 	bool walked;
 	double error;
 };
-double error_told(const struct certificate *c);             /* as walked, or bounded */
+double error_reported(const struct certificate *c);         /* as walked, or bounded */
 /* `exact`: the same step with the numbers of double */
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
 double needed_error(const struct requirement *r, double largest);       /* of the output */
@@ -31,7 +31,8 @@ double needed_error(const struct requirement *r, double largest);       /* of th
 double largest_of_output(const struct step *exact, const struct requirement *r);
 /* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.
  * To be called with the target double */
-double *losses_of(struct modes *modes, const int *order, bool statics, const struct requirement *r);
+double *truncation_errors_of(struct modes *modes, const int *order, bool static_correction,
+			     const struct requirement *r);
 
 struct alternative {                /* one way to step a model with needs */
 	bool single, compensated;
@@ -50,9 +51,9 @@ struct alternative {                /* one way to step a model with needs */
 	const char *refused;        /* why there is no such step; NULL: there is */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */
-	double excess;              /* the largest of error over need; at most 1: all needs are met */
+	double error_ratio;         /* the largest of error over need; at most 1: all needs are met */
 	/* so whatever a compiler contracts; else the C refuses one that does, where it has to: `as_written` */
-	double bound_excess;
+	double bound_error_ratio;
 	bool as_written;
 	struct certificate *certificate; /* per requirement */
 	struct step *made;          /* as it was tried */

@@ -4,7 +4,7 @@
  * while it is more than rounding is not known, and more bits are asked for. */
 #include "model/contacts/contacts.h"
 #include "certify.h"
-#include "struck.h"
+#include "event_state.h"
 
 #include <float.h>
 #include <limits.h>

@@ -31,7 +31,7 @@ struct extent extent_of_step_map(const struct step *step, long steps, const stru
 bool is_lasting(const struct step_map *k, long steps);
 double lasting_output(const struct step_map *k, const struct spread *spread, double h); /* inputs 0: its largest size */
 void lasting_sizes(const struct spread *spread, struct step_map *k, double h);      /* of the states */
-/* what samples of an input in its bound do to the output at most; columns from `first` on are its taps */
+/* what samples of an input in its bound do to the output at most; columns from `first` on are its samples */
 double lasting_input(const struct linear *system, const struct spread *spread, const struct step_map *k, int input,
 		     int first);
 

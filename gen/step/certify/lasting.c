@@ -148,12 +148,12 @@ void lasting_sizes(const struct spread *spread, struct step_map *k, double h)
 double lasting_input(const struct linear *system, const struct spread *spread, const struct step_map *k, int input,
 		     int first)
 {
-	const int taps = system->input[input].hold + 1;
+	const int samples = system->input[input].hold + 1;
 	SCRATCH double *sum = ARRAY(double, k->n), *most = ARRAY(double, k->n);
 	double out = fabs(k->feed[0][input]);
 	reach_of_row(spread, k->Phi, k->row, false, sum, most);
 	for (int i = 0; i < k->n; i++)
-		for (int c = first; c < first + taps; c++)
+		for (int c = first; c < first + samples; c++)
 			out += sum[i] * fabs(k->input[i * k->inputs + c]);
 	return out * k->most[first] * (1 + 1e-9);
 }

@@ -2,7 +2,7 @@
 /* Of a way through crossings: the first event of a piece, and what is behind it. */
 #include "model/contacts/contacts.h"
 #include "certify.h"
-#include "struck.h"
+#include "event_state.h"
 
 #include <math.h>
 

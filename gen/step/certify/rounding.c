@@ -270,7 +270,7 @@ long samples_until(const struct requirement *r, mpq_srcptr h)
 	return count;
 }
 
-double error_told(const struct certificate *c)
+double error_reported(const struct certificate *c)
 {
 	return c->walked ? c->error : c->rounding + c->dropped;
 }

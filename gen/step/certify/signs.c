@@ -2,7 +2,7 @@
 /* Of a way through crossings: signs of rows over x, each of which is enclosed apart from 0 or not known; and sliders
  * without mass. */
 #include "model/contacts/contacts.h"
-#include "struck.h"
+#include "event_state.h"
 
 #include <math.h>
 

@@ -262,20 +262,20 @@ static void add_inputs(const struct spread *spread, struct step_map *k)
 }
 
 /* What a sample of an input does to the output m steps after it is given: to states by column `first` and on, one for
- * each tap, the last of which is the sample itself; sum of sizes over m < steps, of a sample in its bound. It is
+ * each sample, the last of which is the one given; sum of sizes over m < steps, of a sample in its bound. It is
  * attained: the signs of the samples may be any. Each is added to `trace`, where there is one. */
 double sum_of_input(const struct linear *system, long steps, const struct step_map *k, int input, int first,
 			   double *trace)
 {
-	const int taps = system->input[input].hold + 1, n = k->n;
+	const int samples = system->input[input].hold + 1, n = k->n;
 	const struct sparse Phi = sparse_of(n, n, k->Phi);
 	SCRATCH double *x = ARRAY(double, n), *next = ARRAY(double, n);
 	double sum = 0;
 	for (long m = 0; m < steps; m++) {
-		const int tap = m < taps ? taps - 1 - (int)m : -1;
-		double out = m == (taps - 1) / 2 ? k->feed[0][input] : 0;  /* that at the step's end */
+		const int sample = m < samples ? samples - 1 - (int)m : -1;
+		double out = m == (samples - 1) / 2 ? k->feed[0][input] : 0; /* that at the step's end */
 		for (int i = 0; i < n; i++)
-			next[i] = tap >= 0 ? k->input[i * k->inputs + first + tap] : 0;
+			next[i] = sample >= 0 ? k->input[i * k->inputs + first + sample] : 0;
 		sparse_add(&Phi, x, next);
 		for (int i = 0; i < n; i++)
 			out += k->row[i] * next[i];

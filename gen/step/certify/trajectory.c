@@ -6,7 +6,7 @@
 #include "inner.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
-#include "struck.h"
+#include "event_state.h"
 
 /* ---- a piece ---- */
 

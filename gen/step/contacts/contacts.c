@@ -208,7 +208,7 @@ static int bare_rate(struct sequencing *w, const struct form *rate)
 	return sequence_of_sum(w, &sum);
 }
 
-static _Noreturn void tell_held_twice(struct place at)
+static _Noreturn void report_held_twice(struct place at)
 {
 	error(at, "a piecewise-linear model takes several",
 	      "beside what is not piecewise linear one friction, stop or 'when' is for each value of an expression");
@@ -226,7 +226,7 @@ static void make_hold(struct constraints *all, int index)
 				    : divide_guard(w, &model->contacts.impact[h->impact], factor);
 	for (int i = 0; i < index; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
-			tell_held_twice(h->node ? h->node->at : model->contacts.impact[h->impact].when->at);
+			report_held_twice(h->node ? h->node->at : model->contacts.impact[h->impact].when->at);
 	hold->expression = d.expression;
 	hold->breakpoint = d.breakpoint;
 	hold->above = d.above;
@@ -479,7 +479,7 @@ static void watch_impact(struct constraints *all, int index)
 	struct division d = divide_guard(w, impact, factor);
 	for (int i = 0; i < all->c->holds && !impact->bounces; i++)
 		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
-			tell_held_twice(impact->when->at);
+			report_held_twice(impact->when->at);
 	*series_impact =
 		(struct series_impact){ .expression = d.expression, .breakpoint = d.breakpoint, .upward = d.above,
 				   .hold = NONE, .jump = all->c->assignments, .still = all->c->assignments,

@@ -24,7 +24,7 @@ static double *slopes_in(const struct step *step, const struct layout *layout, i
 	for (size_t i = 0; i < cells; i++) {
 		A[i] = round_rational(exact[i]);
 		if (!isfinite(A[i]))
-			tell_range(step);
+			report_range(step);
 	}
 	return A;
 }

@@ -288,7 +288,7 @@ static const char *growth_text(const struct stability *s)
 		      s->span, s->growth);
 }
 
-static _Noreturn void tell_growth(const struct step *step, const struct stability *once,
+static _Noreturn void report_growth(const struct step *step, const struct stability *once,
 				  const struct stability *again)
 {
 	const char *twice = again ? format("; with forces evaluated twice %s", growth_text(again)) : "";
@@ -310,7 +310,7 @@ static void choose_evaluations(struct normal_work *w)
 		return;
 	if (normal->multistep.points == 0) {
 		if (!(once.growth <= MOST))
-			tell_growth(w->step, &once, NULL);
+			report_growth(w->step, &once, NULL);
 		return;
 	}
 	again = stability_of(w->step, true);
@@ -319,7 +319,7 @@ static void choose_evaluations(struct normal_work *w)
 		normal->stability = again;
 	}
 	if (!(normal->stability.growth <= MOST))
-		tell_growth(w->step, &once, &again);
+		report_growth(w->step, &once, &again);
 }
 
 /* ---- the whole ---- */

@@ -86,7 +86,7 @@ static bool is_cheaper(const struct step *step)
 static void take_modal(struct step *step, struct modal *modal)
 {
 	if (step->refresh) {
-		drop_refresh(step, "modes take their loads as they are");
+		leave_out_refresh(step, "modes take their loads as they are");
 		step->program = linear_program(step);
 	}
 	step->modal = modal;

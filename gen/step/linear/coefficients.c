@@ -267,13 +267,13 @@ static void input_by_residues(struct filling *f, int input, int column)
 	by_residues_from(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h));
 }
 
-/* One tap's share of u and its derivatives at the start */
+/* One sample's share of u and its derivatives at the start */
 static void input_by_taylor(struct filling *f, int input, int column)
 {
 	int at = f->layout.input[input], hold = f->system->input[input].hold;
 	RATIONAL weight = ZERO;
 	for (int m = 0; m <= hold; m++) {
-		tap_derivative(hold, m, column, f->model->h, weight);
+		sample_derivative(hold, m, column, f->model->h, weight);
 		if (mpq_sgn(weight) != 0)
 			add_entry(f, f->tau, at + m, weight);
 	}

@@ -1,36 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an input does between samples: a polynomial of an odd degree d through the d + 1 samples around the step, its
- * taps, at the times (c - (d - 1)/2) h from the step's start, c = 0 .. d. A ramp is that of degree 1. Held is degree
+ * samples, at the times (c - (d - 1)/2) h from the step's start, c = 0 .. d. A ramp is that of degree 1. Held is degree
  * 0. */
 #include "step/step.h"
 
-/* The factor of (s/h)^power in Lagrange's polynomial of a tap: 1 there, 0 at the others */
-void tap_weight(int hold, int power, int tap, mpq_ptr weight)
+/* The factor of (s/h)^power in Lagrange's polynomial of a sample: 1 there, 0 at the others */
+void sample_weight(int hold, int power, int sample, mpq_ptr weight)
 {
 	int before = hold > 0 ? (hold - 1) / 2 : 0;
 	RATIONALS *factor = rationals(hold + 2);
 	RATIONAL lower = ZERO;
 	mpq_set_ui(factor[0], 1, 1);
 	for (int c = 0, degree = 0; c <= hold; c++) {
-		if (c == tap)
+		if (c == sample)
 			continue;
 		for (int m = ++degree; m >= 0; m--) {   /* times (s/h - node)/(own node - node) */
 			mpq_set_si(lower, before - c, 1);
 			mpq_mul(factor[m], factor[m], lower);
 			if (m > 0)
 				mpq_add(factor[m], factor[m], factor[m - 1]);
-			mpq_set_si(lower, tap - c, 1);
+			mpq_set_si(lower, sample - c, 1);
 			mpq_div(factor[m], factor[m], lower);
 		}
 	}
 	mpq_set(weight, factor[power]);
 }
 
-/* d^power u / d s^power at the step's start, per tap: power! h^-power times its factor */
-void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative)
+/* d^power u / d s^power at the step's start, per sample: power! h^-power times its factor */
+void sample_derivative(int hold, int power, int sample, mpq_srcptr h, mpq_ptr derivative)
 {
 	RATIONAL times = ZERO;
-	tap_weight(hold, power, tap, derivative);
+	sample_weight(hold, power, sample, derivative);
 	for (int k = 1; k <= power; k++) {
 		mpq_set_si(times, k, 1);
 		mpq_mul(derivative, derivative, times);
@@ -39,24 +39,24 @@ void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivati
 }
 
 /* What |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
-double tap_reach(int hold, int power)
+double sample_reach(int hold, int power)
 {
 	RATIONAL one = RATIO(1, 1), derivative = ZERO, sum = ZERO;
 	for (int c = 0; c <= hold; c++) {
-		tap_derivative(hold, power, c, one, derivative);
+		sample_derivative(hold, power, c, one, derivative);
 		mpq_abs(derivative, derivative);
 		mpq_add(sum, sum, derivative);
 	}
 	return round_rational(sum);
 }
 
-/* h u' at the step's end, per tap */
-void tap_slope(int hold, int tap, mpq_ptr slope)
+/* h u' at the step's end, per sample */
+void sample_slope(int hold, int sample, mpq_ptr slope)
 {
 	RATIONAL weight = ZERO, times = ZERO;
 	mpq_set_ui(slope, 0, 1);
 	for (int m = 1; m <= hold; m++) {
-		tap_weight(hold, m, tap, weight);
+		sample_weight(hold, m, sample, weight);
 		mpq_set_si(times, m, 1);
 		mpq_mul(weight, weight, times);
 		mpq_add(slope, slope, weight);

@@ -8,7 +8,7 @@
 
 /* ---- refresh.c: functions of loads every so many steps, tables between ---- */
 
-void drop_refresh(struct step *step, const char *why);
+void leave_out_refresh(struct step *step, const char *why);
 
 /* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
 

@@ -89,15 +89,15 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	return *kept = image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
-/* The factor of s^power in the polynomial of a tap */
-static void power_weight(int hold, int power, int tap, mpq_srcptr h, mpq_ptr weight)
+/* The factor of s^power in the polynomial of a sample */
+static void power_weight(int hold, int power, int sample, mpq_srcptr h, mpq_ptr weight)
 {
-	tap_weight(hold, power, tap, weight);
+	sample_weight(hold, power, sample, weight);
 	for (int k = 0; k < power; k++)
 		mpq_div(weight, weight, h);
 }
 
-/* Held: u. Else the polynomial through the taps, and u' its derivative; a column is one tap's share. */
+/* Held: u. Else the polynomial through the samples, and u' its derivative; a column is one sample's share. */
 struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int index, int column,
 				   mpq_srcptr h)
 {

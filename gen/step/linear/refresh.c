@@ -134,7 +134,7 @@ void check_refresh(struct step *step)
 		step->no.refresh = not_asked && !against ? not_asked : against;
 }
 
-void drop_refresh(struct step *step, const char *why)
+void leave_out_refresh(struct step *step, const char *why)
 {
 	note_aside(step, why);
 	step->no.refresh = why;

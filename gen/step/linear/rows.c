@@ -110,7 +110,7 @@ static struct coefficient value_of(const struct step *step, const struct share *
 	mpq_mul(t, t, step->model->h);
 	c = started_value(count, share->list, t, two_words, at, "a number of a row");
 	if (!isfinite(c.value))
-		tell_range(step);
+		report_range(step);
 	return c;
 }
 

@@ -245,7 +245,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 				size_of_bounded(step, pieces->rows[k] + e * step->layout.size);
 	for (int i = 0; i < g.rows; i++)
 		g.row_amplitude[i] = size_of_bounded(step, g.row + i * step->layout.size);
-	if (step->regions.event_check.event_free)
+	if (step->regions.event_check.is_made)
 		add_rounding(step, &g);
 	return g;
 }

@@ -27,7 +27,7 @@ int rung_halvings(const struct branch *branch, int rung);   /* of h, to its leng
 /* the same in two words: 2 x size */
 void row_in_words(const struct step *step, const struct output *output, int segment, double *row);
 
-/* ---- gathered.c: what stays of x, in the tables of an instance ---- */
+/* ---- folded.c: what stays of x, in the tables of an instance ---- */
 
 /* Of a step that is checked for events over h and has no fast path: `added` and `still` of each piece, `edge` */
 void gather(const struct step *step, struct pieces *pieces);

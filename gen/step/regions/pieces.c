@@ -20,7 +20,7 @@ static double *finite_slopes(const struct step *step, int branch)
 	double *A = slopes_of(step, branch);
 	for (int i = 0; i < cells; i++)
 		if (!isfinite(A[i]))
-			tell_range(step);
+			report_range(step);
 	return A;
 }
 
@@ -433,11 +433,11 @@ struct pieces pieces_of(const struct step *step)
 	}
 	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);
-	if (step->regions.event_check.event_free)
+	if (step->regions.event_check.is_made)
 		fill_check(step, &pieces);
 	if (step->regions.event_check.fast_path)
 		fill_fast_path(step, &pieces);
-	else if (step->regions.event_check.event_free && step->model->params.retuned)
+	else if (step->regions.event_check.is_made && step->model->params.retuned)
 		gather(step, &pieces);
 	return pieces;
 }

@@ -45,7 +45,7 @@ struct pieces {
 	/* Where a step is checked for events over h: */
 	bool *bounded;              /* per entry of x: never above 1, and with the fast path part of `still` */
 	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
-	double *edge;               /* of a retuned model: see gathered.c */
+	double *edge;               /* of a retuned model: see folded.c */
 	/* With the fast path: */
 	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
 	int degree;
@@ -63,7 +63,7 @@ void row_over_x(const struct step *step, const struct output *output, int segmen
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
 
-/* ---- gathered.c: what stays of x, in the tables of an instance ---- */
+/* ---- folded.c: what stays of x, in the tables of an instance ---- */
 
 bool is_bounded_load(const struct step *step, int load);    /* it has load states that are never above 1 */
 /* sqrt(a^2 + b^2) is at most the larger and so much of the smaller, 2^1/2 - 1 */

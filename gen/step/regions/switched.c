@@ -92,13 +92,13 @@ static void plan_check(struct step *step)
 {
 	bool any = false;
 	step->regions.event_check.searches = no_check(step);
-	step->regions.event_check.event_free = !step->regions.event_check.searches;
+	step->regions.event_check.is_made = !step->regions.event_check.searches;
 	/* crossings go by tables of fixed numbers */
-	step->regions.event_check.fast_path = step->regions.event_check.event_free && !step->model->params.retuned &&
+	step->regions.event_check.fast_path = step->regions.event_check.is_made && !step->model->params.retuned &&
 				   !has_events(step->model->switching);
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (!step->regions.event_check.event_free)
+	if (!step->regions.event_check.is_made)
 		return;
 	int expressions = step->model->switching->expressions;
 	step->program->multiplications =

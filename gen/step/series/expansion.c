@@ -101,13 +101,13 @@ static void read_off(const struct step *step, struct expansion *x)
 /* ---- the whole ---- */
 
 /* Their arguments, and behind these columns what bounds a series but is no part of its error */
-static void place_unseen(struct sequencing *w)
+static void place_unresolved(struct sequencing *w)
 {
 	struct expansion *x = w->x;
 	x->measured = x->columns;
-	for (int i = 0; i < x->unseens; i++) {
-		int sequence = sequence_of_form(w, x->unseen[i].form);
-		x->unseen[i].column = column_of_sequence(x, sequence, x->order);
+	for (int i = 0; i < x->unresolved_functions; i++) {
+		int sequence = sequence_of_form(w, x->unresolved[i].form);
+		x->unresolved[i].column = column_of_sequence(x, sequence, x->order);
 	}
 }
 
@@ -181,10 +181,10 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
 	rank_breakpoints(w->x);
-	w->x->unseen = unseen_of(model, &w->x->unseens, &w->x->looks);
+	w->x->unresolved = unresolved_of(model, &w->x->unresolved_functions, &w->x->looks);
 	w->x->crowded = model->truncation.adaptive ? crowded_frequency(system) : 0;
-	place_unseen(w);
-	find_newest(w->x);
+	place_unresolved(w);
+	find_implicit(w->x);
 	read_off(step, w->x);
 	return w->x;
 }

@@ -9,7 +9,7 @@
 
 struct contacts;
 struct divided;
-struct unseen;
+struct unresolved;
 
 struct expansion {
 	int order;                  /* of the series in its unit of time, h or several of them */
@@ -25,8 +25,8 @@ struct expansion {
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	int measured;               /* the first of them: their last terms count as those of states do */
-	int unseens;                /* what bounds how far a series serves beside its last terms */
-	struct unseen *unseen;
+	int unresolved_functions;   /* what bounds how far a series serves beside its last terms */
+	struct unresolved *unresolved;
 	bool looks;                 /* at slopes further on */
 	double crowded;             /* 1/s, of loads that may cancel the highest frequency */
 	struct contacts *contacts;  /* NULL: there are none */
@@ -79,19 +79,19 @@ struct reach {                      /* estimates, at t = 0 from the initial valu
 };
 struct reach reach_of_series(const struct step *step);
 
-/* ---- unseen.c: what coefficients at one time may not show ---- */
+/* ---- unresolved.c: what coefficients at one time may not show ---- */
 
-enum unseen_kind {                  /* what of the argument a series has to follow: */
-	UNSEEN_RISE,                /* exp: how far it rises, */
-	UNSEEN_SPREAD,              /* sinh, cosh: how far it goes off 0, */
-	UNSEEN_TURN,                /* tanh: how near it comes to 0, */
-	UNSEEN_TEETH,               /* high powers of sin and cos: how far it goes, */
-	UNSEEN_ARC,                 /* atan: likewise, */
-	UNSEEN_DIVISOR              /* log, and what is divided by: by which factor it falls */
+enum unresolved_kind {              /* what of the argument a series has to follow: */
+	UNRESOLVED_RISE,            /* exp: how far it rises, */
+	UNRESOLVED_SPREAD,          /* sinh, cosh: how far it goes off 0, */
+	UNRESOLVED_TURN,            /* tanh: how near it comes to 0, */
+	UNRESOLVED_TEETH,           /* high powers of sin and cos: how far it goes, */
+	UNRESOLVED_ARC,             /* atan: likewise, */
+	UNRESOLVED_DIVISOR          /* log, and what is divided by: by which factor it falls */
 };
-struct unseen {
+struct unresolved {
 	const struct form *form;
-	enum unseen_kind kind;
+	enum unresolved_kind kind;
 	int power;                  /* of TEETH */
 	int column;                 /* as of an expression */
 };

@@ -20,9 +20,9 @@ int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);
 tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
 int sequence_operands(const struct sequence *s, int **operand);
 
-/* ---- newest.c: how the newest coefficients enter the next ones ---- */
+/* ---- implicit.c: how the newest coefficients enter the next ones ---- */
 
-void find_newest(struct expansion *x);
+void find_implicit(struct expansion *x);
 
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
 
@@ -31,7 +31,7 @@ void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum
 mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
 
 /* *looks: there is what no argument bounds, or what is steep: the slope inside and at the end is looked at too */
-struct unseen *unseen_of(const struct model *model, int *count, bool *looks);
+struct unresolved *unresolved_of(const struct model *model, int *count, bool *looks);
 double crowded_frequency(const struct linear *system);      /* 1/s: the highest of loads that may cancel; 0: of few */
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The coefficients of a series as nodes of a tape, each from those before it (Griewank and Walther, Evaluating
  * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
- * by its gains (newest.c). */
+ * by its gains (implicit.c). */
 #include "inner.h"
 #include "step/tapes.h"
 

@@ -169,7 +169,7 @@ static void schedule(const struct expansion *x)
 }
 
 /* Sums before what they are in come first: operands are made before what is made of them, but for integrals. */
-void find_newest(struct expansion *x)
+void find_implicit(struct expansion *x)
 {
 	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false);
 	for (int i = 0; i < x->count; i++) {

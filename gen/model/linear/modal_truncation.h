@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models of fewer states with the same outputs, or nearly the same. */
-#ifndef PLGEN_MODEL_SHORTENING_H
-#define PLGEN_MODEL_SHORTENING_H
+#ifndef PLGEN_MODEL_MODAL_TRUNCATION_H
+#define PLGEN_MODEL_MODAL_TRUNCATION_H
 
 #include "model/model.h"
 
@@ -11,7 +11,7 @@ struct model *model_reduce(struct model *model);             /* itself where not
 /* Are the states of both the same combinations of the same written ones? */
 bool same_reduction(const struct model *a, const struct model *b);
 
-/* ---- modes.c, survey.c: the modes of a linear model, and what each of them gives to the outputs ---- */
+/* ---- modes.c, participation.c: the modes of a linear model, and what each of them gives to the outputs ---- */
 
 /* A mode is an invariant part of y' = A y that is real and as small as it can be: z = left y, z' = block z + left b u,
  * and right z is its share of y; left right = 1. It has the two states of a pair of poles, or the one of a real pole;
@@ -43,10 +43,10 @@ struct modes {
 	struct mode *mode;          /* by number */
 	struct mode_basis *basis;   /* modes.c */
 };
-struct shortening {                 /* of a model of modes */
+struct modal_truncation {           /* of a model of modes */
 	const struct modes *modes;
 	const bool *kept;           /* per mode */
-	bool statics;               /* what is dropped still follows loads and inputs at once */
+	bool static_correction;     /* what is dropped still follows loads and inputs at once */
 	/* z = to y of the whole model's states y, and from z is what is kept of y: states x the whole's, and back */
 	mpq_t *to, *from;
 };
@@ -55,7 +55,7 @@ struct modes *modes_of(const struct model *model, const char **why);
 /* by falling share, rigid ones that are seen before all others: indices into `mode` */
 int *modes_by_share(const struct modes *modes);
 
-/* ---- shorten.c: the model of some of its modes ---- */
+/* ---- modal_truncation.c: the model of some of its modes ---- */
 
 /*
  * To try subsets of modes, and to go on with one:
@@ -77,12 +77,12 @@ int *modes_by_share(const struct modes *modes);
  * What is dropped has rigid modes, or a load has a pole of it: that part is not kept.
  * NULL: a mode is not found (mode_refine), or, of modes_dropped, none is dropped.
  */
-struct model *modes_kept(struct modes *modes, const bool *kept, bool statics);
-struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics);
+struct model *modes_kept(struct modes *modes, const bool *kept, bool static_correction);
+struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_correction);
 /* The largest that output can lose by what is dropped, from the start and by loads, at any time; HUGE_VAL: no bound.
  * In double precision. */
-double modes_loss(const struct modes *modes, const bool *kept, bool statics, int output);
+double modes_loss(const struct modes *modes, const bool *kept, bool static_correction, int output);
 /* What the statement `modes` or --modes asks for; the model itself where neither does. NULL: it was said why not */
-struct model *model_shorten(struct model *model);
+struct model *model_truncate(struct model *model);
 
 #endif

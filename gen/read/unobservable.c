@@ -116,7 +116,7 @@ static void follow(struct sight *sight, const struct tie *tie)
 }
 
 /* A part is unseen if it has coordinates of its own, and none of them is seen. */
-static void find_unseen_parts(struct sight *sight)
+static void find_unobservable_parts(struct sight *sight)
 {
 	struct spec *spec = sight->spec;
 	for (int i = 0; i < spec->scene.parts; i++) {
@@ -126,7 +126,7 @@ static void find_unseen_parts(struct sight *sight)
 				any = true;
 				seen = seen || sight->seen[s->number];
 			}
-		spec->scene.part[i]->unseen = any && !seen;
+		spec->scene.part[i]->unobservable = any && !seen;
 	}
 }
 
@@ -134,15 +134,15 @@ static void find_unseen_parts(struct sight *sight)
 
 static bool goes(struct sight *sight, const struct symbol *symbol)
 {
-	bool unseen = symbol->part && symbol->part->unseen;
+	bool unobservable = symbol->part && symbol->part->unobservable;
 	if (symbol->kind == SYMBOL_COORD)
 		return !sight->seen[symbol->number];
 	if (symbol->kind != SYMBOL_LET)
-		return unseen && (symbol->kind == SYMBOL_INPUT || symbol->kind == SYMBOL_PARAM);
+		return unobservable && (symbol->kind == SYMBOL_INPUT || symbol->kind == SYMBOL_PARAM);
 	struct list list = read_by(sight, symbol->value, NULL);
 	for (int i = 0; i < list.count; i++)
-		unseen = unseen || !sight->seen[list.coord[i]->number];
-	return unseen;
+		unobservable = unobservable || !sight->seen[list.coord[i]->number];
+	return unobservable;
 }
 
 static bool accelerates(const struct node *node, const struct symbol *coord)
@@ -163,12 +163,12 @@ static bool has_velocity(const struct spec *spec, const struct symbol *coord)
 	return found;
 }
 
-static void name_unseen(struct spec *spec, const struct symbol *coord)
+static void name_unobservable(struct spec *spec, const struct symbol *coord)
 {
 	int count = coord->length ? coord->length : 1;
 	for (int k = 0; k < (has_velocity(spec, coord) ? 2 : 1) * count; k++) {
 		const char *prime = k < count ? "" : "'";
-		*MORE(spec->scene.unseen_name, spec->scene.unseen) =
+		*MORE(spec->scene.unobservable_name, spec->scene.unobservable) =
 			coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
 				      : format("%s%s", coord->name, prime);
 	}
@@ -182,7 +182,7 @@ static void drop_symbols(struct sight *sight, const bool *gone)
 	for (struct symbol *s = spec->first, **link = &spec->first; s; s = s->next) {
 		bool drop = gone[s->number] && s->kind != SYMBOL_PARAM;
 		if (drop && s->kind == SYMBOL_COORD)
-			name_unseen(spec, s);
+			name_unobservable(spec, s);
 		if (gone[s->number]) {
 			s->tuning.tuned = false;
 			s->tuning.number = 0;
@@ -252,20 +252,20 @@ static void drop_ties(struct sight *sight, const struct tie *tie)
 }
 
 /* A part inside one that is told is not told as well; nor are the coordinates of either. */
-static void tell(const struct sight *sight)
+static void report(const struct sight *sight)
 {
 	const struct spec *spec = sight->spec;
 	for (int i = 0; i < spec->scene.parts; i++) {
 		const struct scene_part *part = spec->scene.part[i];
-		if (part->unseen && !(part->inside && part->inside->unseen))
+		if (part->unobservable && !(part->inside && part->inside->unobservable))
 			say_note(part->at, "part '%s' is not modelled: no output sees it", part->name);
 	}
 	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_COORD && !sight->seen[s->number] && !(s->part && s->part->unseen))
+		if (s->kind == SYMBOL_COORD && !sight->seen[s->number] && !(s->part && s->part->unobservable))
 			say_note(s->at, "'%s' is not modelled: no output sees it", s->name);
 }
 
-void leave_unseen(struct spec *spec)
+void leave_unobservable(struct spec *spec)
 {
 	size_t symbols = (size_t)spec->count.symbols + 1;
 	struct sight sight = { .spec = spec, .seen = ARRAY(bool, symbols), .met = ARRAY(int, symbols) };
@@ -274,8 +274,8 @@ void leave_unseen(struct spec *spec)
 		return;
 	const struct tie *tie = ties_of(&sight);
 	follow(&sight, tie);
-	find_unseen_parts(&sight);
-	tell(&sight);
+	find_unobservable_parts(&sight);
+	report(&sight);
 	bool *gone = ARRAY(bool, symbols);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		gone[s->number] = goes(&sight, s);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a way through crossings does where contacts are. */
-#ifndef PLGEN_STRUCK_H
-#define PLGEN_STRUCK_H
+#ifndef PLGEN_EVENT_STATE_H
+#define PLGEN_EVENT_STATE_H
 
 #include "trajectory.h"
 

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* unseen.h: how far a polynomial follows what its coefficients may not show, functions that are all but constant over
- * most of their range; part of what a model's file includes for its steps.  Of the argument of each its polynomial
+/* unresolved.h: how far a polynomial follows what its coefficients may not show, functions that are all but constant
+ * over most of their range; part of what a model's file includes for its steps.  Of the argument of each its polynomial
  * bounds where it goes: over one length it may come nearer to where the function bends by so much as the order
  * resolves, and then the last terms tell what follows. */
 #include "numbers.h"
 
-#ifndef PLRT_UNSEEN_H
-#define PLRT_UNSEEN_H
+#ifndef PLRT_UNRESOLVED_H
+#define PLRT_UNRESOLVED_H
 /* exp; sinh, cosh; tanh; high powers of sin and cos; atan; what is divided by, and of log */
-enum { PL_UNSEEN_RISE, PL_UNSEEN_SPREAD, PL_UNSEEN_TURN, PL_UNSEEN_TEETH, PL_UNSEEN_ARC, PL_UNSEEN_DIVISOR };
+enum { PL_UNRESOLVED_RISE, PL_UNRESOLVED_SPREAD, PL_UNRESOLVED_TURN, PL_UNRESOLVED_TEETH, PL_UNRESOLVED_ARC,
+      PL_UNRESOLVED_DIVISOR };
 #endif
 
 #if PL_SINGLE
@@ -64,23 +65,23 @@ static int PL(follows)(const real *c, int stride, int degree, real size, int kin
 {
     const real start = pl_magnitude(c[0]), moves = PL(moves)(c, stride, degree, size);
     real bound[2], near, far;
-    if (kind == PL_UNSEEN_TEETH) {
+    if (kind == PL_UNRESOLVED_TEETH) {
         return moves <= rise;
     }
-    if (moves <= (kind < PL_UNSEEN_ARC ? rise / 2 : (real)0.75 * start)) {
+    if (moves <= (kind < PL_UNRESOLVED_ARC ? rise / 2 : (real)0.75 * start)) {
         return 1;
     }
     PL(bounds)(c, stride, degree, size, bound);
     near = bound[0] > 0 ? bound[0] : bound[1] < 0 ? -bound[1] : 0;
     far = bound[1] > -bound[0] ? bound[1] : -bound[0];
     switch (kind) {
-    case PL_UNSEEN_RISE:
+    case PL_UNRESOLVED_RISE:
         return bound[1] <= PL_GONE || bound[1] <= c[0] + rise;
-    case PL_UNSEEN_SPREAD:
+    case PL_UNRESOLVED_SPREAD:
         return far <= start + rise;
-    case PL_UNSEEN_TURN:
+    case PL_UNRESOLVED_TURN:
         return near >= PL_FLAT || near >= start - rise / 2;
-    case PL_UNSEEN_ARC:
+    case PL_UNRESOLVED_ARC:
         return 1 + start * start <= factor * (1 + near * near);
     default:
         return start <= factor * near;

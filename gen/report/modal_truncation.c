@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of a model of some modes of another: which are kept, and what is lost by the others. */
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 #include "report/report.h"
 
 #include <math.h>
 
 /* The numbers of the modes that are kept, or of the others: 1-4, 6 */
-const char *mode_numbers(const struct shortening *s, bool kept)
+const char *mode_numbers(const struct modal_truncation *s, bool kept)
 {
 	const char *text = "";
 	const struct modes *modes = s->modes;
@@ -27,7 +27,7 @@ const char *mode_numbers(const struct shortening *s, bool kept)
 	return text;
 }
 
-int modes_of_model(const struct shortening *s)
+int modes_of_model(const struct modal_truncation *s)
 {
 	const struct mode *last = &s->modes->mode[s->modes->count - 1];
 	return last->number + last->weight - 1;
@@ -43,18 +43,18 @@ static double rounded_up(double x)
 /* tip 3.2e-05 */
 const char *loss_text(const struct model *model, int output)
 {
-	const struct shortening *s = model->shortened;
-	const double loss = modes_loss(s->modes, s->kept, s->statics, output);
+	const struct modal_truncation *s = model->truncated;
+	const double loss = modes_loss(s->modes, s->kept, s->static_correction, output);
 	const char *name = model->output[output].name;
 	return isfinite(loss) ? format("%s %.3g", name, rounded_up(loss))
 			      : format("%s without a bound (something dropped grows, or a load has its pole)", name);
 }
 
 /* What the others still do */
-const char *statics_text(const struct model *model)
+const char *static_correction_text(const struct model *model)
 {
 	const struct linear *system = &model->system;
-	if (!model->shortened->statics)
+	if (!model->truncated->static_correction)
 		return "the others are left out";
 	if (!system->loads && !system->inputs)
 		return "nothing drives the others";
@@ -70,11 +70,12 @@ static double ratio_of(const struct mode *mode)
 }
 
 /* Each mode, and what it gives */
-void person_shortening(FILE *to, const struct model *model)
+void text_modal_truncation(FILE *to, const struct model *model)
 {
-	const struct shortening *s = model->shortened;
+	const struct modal_truncation *s = model->truncated;
 	const struct modes *modes = s->modes;
-	fprintf(to, "Modes %s of %d are kept; %s.\n", mode_numbers(s, true), modes_of_model(s), statics_text(model));
+	fprintf(to, "Modes %s of %d are kept; %s.\n", mode_numbers(s, true), modes_of_model(s),
+		static_correction_text(model));
 	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]",
 		"damping ratio", "");
 	for (int i = 0; i < modes->count; i++) {
@@ -101,9 +102,9 @@ void person_shortening(FILE *to, const struct model *model)
 }
 
 /* Members of an object */
-void json_shortening(FILE *to, const struct model *model)
+void json_modal_truncation(FILE *to, const struct model *model)
 {
-	const struct shortening *s = model->shortened;
+	const struct modal_truncation *s = model->truncated;
 	fputs("  \"mode_shares\": [\n", to);
 	for (int i = 0; i < s->modes->count; i++) {
 		const struct mode *mode = &s->modes->mode[i];
@@ -114,8 +115,8 @@ void json_shortening(FILE *to, const struct model *model)
 			mode->seen ? "true" : "false", s->kept[i] ? "true" : "false", json_number(mode->share),
 			i + 1 < s->modes->count ? "," : "");
 	}
-	fprintf(to, "  ],\n  \"static\": %s,\n  \"lost\": [", s->statics ? "true" : "false");
+	fprintf(to, "  ],\n  \"static\": %s,\n  \"lost\": [", s->static_correction ? "true" : "false");
 	for (int i = 0; i < model->outputs; i++)
-		fprintf(to, "%s%s", i ? ", " : "", json_number(modes_loss(s->modes, s->kept, s->statics, i)));
+		fprintf(to, "%s%s", i ? ", " : "", json_number(modes_loss(s->modes, s->kept, s->static_correction, i)));
 	fputs("],\n", to);
 }

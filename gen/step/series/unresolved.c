@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What coefficients at one time may not show: functions that are all but constant over most of their range, as tanh and
  * exp are, and what is divided by. Where they bend follows from their arguments, whose polynomials are at hand; so
- * these have a column each, and bound how far a series serves (emit/emit_unseen.c). */
+ * these have a column each, and bound how far a series serves (emit/series/emit_reach.c). */
 #include "inner.h"
 
 #include <math.h>
@@ -88,7 +88,7 @@ struct finding {
 	const struct model *model;
 	bool *seen;                 /* per atom */
 	int count;
-	struct unseen *unseen;
+	struct unresolved *unresolved;
 	bool looks;
 };
 
@@ -98,32 +98,32 @@ static bool divides(const struct form *exponent)
 	return !is_constant(exponent) || (exponent->terms == 1 && mpq_sgn(exponent->term->factor) < 0);
 }
 
-static bool hides(const struct atom *atom, enum unseen_kind *kind)
+static bool hides(const struct atom *atom, enum unresolved_kind *kind)
 {
 	switch (atom->kind) {
-	case ATOM_RECIPROCAL: *kind = UNSEEN_DIVISOR; return true;
-	case ATOM_POWER:      *kind = UNSEEN_DIVISOR; return divides(atom->operand[1]);
+	case ATOM_RECIPROCAL: *kind = UNRESOLVED_DIVISOR; return true;
+	case ATOM_POWER:      *kind = UNRESOLVED_DIVISOR; return divides(atom->operand[1]);
 	case ATOM_CALL:       break;
 	default:              return false;
 	}
 	switch (atom->function) {
-	case FN_EXP:  *kind = UNSEEN_RISE; return true;
+	case FN_EXP:  *kind = UNRESOLVED_RISE; return true;
 	case FN_SINH:
-	case FN_COSH: *kind = UNSEEN_SPREAD; return true;
-	case FN_TANH: *kind = UNSEEN_TURN; return true;
-	case FN_ATAN: *kind = UNSEEN_ARC; return true;
-	case FN_LOG:  *kind = UNSEEN_DIVISOR; return true;
+	case FN_COSH: *kind = UNRESOLVED_SPREAD; return true;
+	case FN_TANH: *kind = UNRESOLVED_TURN; return true;
+	case FN_ATAN: *kind = UNRESOLVED_ARC; return true;
+	case FN_LOG:  *kind = UNRESOLVED_DIVISOR; return true;
 	default:      return false;
 	}
 }
 
-static void add_unseen(struct finding *f, const struct form *form, enum unseen_kind kind, int power)
+static void add_unresolved(struct finding *f, const struct form *form, enum unresolved_kind kind, int power)
 {
-	f->looks = f->looks || kind < UNSEEN_ARC;
+	f->looks = f->looks || kind < UNRESOLVED_ARC;
 	for (int i = 0; i < f->count; i++)
-		if (f->unseen[i].form == form && f->unseen[i].kind == kind && f->unseen[i].power >= power)
+		if (f->unresolved[i].form == form && f->unresolved[i].kind == kind && f->unresolved[i].power >= power)
 			return;
-	*MORE(f->unseen, f->count) = (struct unseen){ .form = form, .kind = kind, .power = power };
+	*MORE(f->unresolved, f->count) = (struct unresolved){ .form = form, .kind = kind, .power = power };
 }
 
 /* Powers so high that terms of the first orders are nothing where their base is small */
@@ -135,18 +135,18 @@ static void find_in_product(struct finding *f, const struct atom *atom)
 		const struct atom *of = base->terms == 1 ? base->term[0].basis.atom : NULL;
 		bool wave = of && of->kind == ATOM_CALL && (of->function == FN_SIN || of->function == FN_COS);
 		if (wave && atom->exponent[i] >= OF_WAVES)
-			add_unseen(f, of->operand[0], UNSEEN_TEETH, (int)atom->exponent[i]);
+			add_unresolved(f, of->operand[0], UNRESOLVED_TEETH, (int)atom->exponent[i]);
 		f->looks = f->looks || (!wave && atom->exponent[i] >= HIGH);
 	}
 }
 
 static void find_in_atom(struct finding *f, const struct atom *atom)
 {
-	enum unseen_kind kind;
+	enum unresolved_kind kind;
 	if (atom->kind == ATOM_PRODUCT)
 		find_in_product(f, atom);
-	if (hides(atom, &kind) && !(kind == UNSEEN_DIVISOR && stays_near(atom->operand[0])))
-		add_unseen(f, atom->operand[0], kind, 1);
+	if (hides(atom, &kind) && !(kind == UNRESOLVED_DIVISOR && stays_near(atom->operand[0])))
+		add_unresolved(f, atom->operand[0], kind, 1);
 	else if (atom->kind == ATOM_POWER || (atom->kind == ATOM_CALL && atom->function == FN_SQRT))
 		f->looks = true;
 }
@@ -165,14 +165,14 @@ static void find_in_form(struct finding *f, const struct form *form)
 	}
 }
 
-struct unseen *unseen_of(const struct model *model, int *count, bool *looks)
+struct unresolved *unresolved_of(const struct model *model, int *count, bool *looks)
 {
 	struct finding f = { .model = model, .seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms)) };
 	for (int e = 0; e < model->remainder.force_columns && model->truncation.adaptive; e++)
 		find_in_form(&f, model->schedule.operator[0].left[e]);
 	*count = f.count;
 	*looks = f.looks;
-	return f.unseen;
+	return f.unresolved;
 }
 
 /* Of several loads that may cancel the highest frequency; of one that grows its rate: what it is says nothing of what

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What outputs lose with the modes that are dropped, at every sample. */
 #include "inner.h"
-#include "model/linear/shortening.h"
+#include "model/linear/modal_truncation.h"
 
 #include <math.h>
 
@@ -93,16 +93,16 @@ static void build_loss(void *context)
 }
 
 /* What is lost with one mode, as a step in double; NULL: it is not found */
-static struct step *step_of_loss(struct modes *modes, int mode, bool statics)
+static struct step *step_of_loss(struct modes *modes, int mode, bool static_correction)
 {
-	SCRATCH bool *step_map = ARRAY(bool, modes->count);
+	SCRATCH bool *kept = ARRAY(bool, modes->count);
 	for (int i = 0; i < modes->count; i++)
-		step_map[i] = i != mode;
-	struct building_loss b = { .error = modes_dropped(modes, step_map, statics) };
+		kept[i] = i != mode;
+	struct building_loss b = { .error = modes_dropped(modes, kept, static_correction) };
 	return b.error && silent_guard(build_loss, &b) ? b.step : NULL;
 }
 
-double *losses_of(struct modes *modes, const int *order, bool statics, const struct requirement *r)
+double *truncation_errors_of(struct modes *modes, const int *order, bool static_correction, const struct requirement *r)
 {
 	const struct linear *system = &modes->model->system;
 	const long steps = samples_until(r, modes->model->h);
@@ -113,7 +113,7 @@ double *losses_of(struct modes *modes, const int *order, bool statics, const str
 	struct loss loss = no_loss(system, good && !lasts ? steps : 0);
 	loss.lasts = lasts;
 	for (int c = modes->count - 1; c >= 0; c--) {
-		const struct step *step = good ? step_of_loss(modes, order[c], statics) : NULL;
+		const struct step *step = good ? step_of_loss(modes, order[c], static_correction) : NULL;
 		good = step && add_loss(step, r, &loss);
 		lost[c] = good ? size_of_loss(&loss, system, r) : HUGE_VAL;
 	}

@@ -247,11 +247,11 @@ static void project_start(const struct selection *s, mpq_t *initial)
 }
 
 /* Matrices between the states of the model and those of the selection: z = to y, and y = from z of what is kept */
-static struct shortening *shortening_of(const struct selection *s, bool statics)
+static struct modal_truncation *modal_truncation_of(const struct selection *s, bool static_correction)
 {
 	const int states = s->modes->model->system.states, n = s->states;
-	struct shortening *of = NEW(struct shortening);
-	*of = (struct shortening){ .modes = s->modes, .kept = s->of, .statics = statics };
+	struct modal_truncation *of = NEW(struct modal_truncation);
+	*of = (struct modal_truncation){ .modes = s->modes, .kept = s->of, .static_correction = static_correction };
 	of->to = rationals((size_t)n * (size_t)states);
 	of->from = rationals((size_t)n * (size_t)states);
 	for (int i = 0; i < s->modes->count; i++) {
@@ -267,7 +267,7 @@ static struct shortening *shortening_of(const struct selection *s, bool statics)
 }
 
 /* `direct`: what outputs read of loads and inputs at once comes with them. */
-static struct model *model_of(const struct selection *s, bool direct, bool statics)
+static struct model *model_of(const struct selection *s, bool direct, bool static_correction)
 {
 	const struct model *model = s->modes->model;
 	struct model *shorter = NEW(struct model);
@@ -288,7 +288,7 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 	project_start(s, shorter->initial);
 	shorter->equations.highest = ARRAY(struct output *, s->coords);
 	shorter->output = rows_over(s, direct);
-	shorter->shortened = shortening_of(s, statics);
+	shorter->truncated = modal_truncation_of(s, static_correction);
 	shorter->reduction.place = ARRAY(int, model->system.states);
 	for (int i = 0; i < model->system.states; i++)
 		shorter->reduction.place[i] = -1;       /* no written state is a state */
@@ -304,18 +304,18 @@ static bool follow_dropped(struct modes *modes, const bool *kept, struct output 
 	return good;
 }
 
-struct model *modes_kept(struct modes *modes, const bool *kept, bool statics)
+struct model *modes_kept(struct modes *modes, const bool *kept, bool static_correction)
 {
 	struct selection s = { .modes = modes, .of = kept };
 	if (!select_modes(&s) || s.states == 0)
 		return NULL;
-	struct model *shorter = model_of(&s, true, statics);
-	if (statics && !follow_dropped(modes, kept, shorter->output, false))
+	struct model *shorter = model_of(&s, true, static_correction);
+	if (static_correction && !follow_dropped(modes, kept, shorter->output, false))
 		return NULL;
 	return shorter;
 }
 
-struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
+struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_correction)
 {
 	bool *dropped = ARRAY(bool, modes->count);
 	struct selection s = { .modes = modes, .of = dropped };
@@ -324,17 +324,17 @@ struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
 	if (!select_modes(&s) || s.states == 0)
 		return NULL;
 	struct model *error = model_of(&s, false, false);
-	if (statics && !follow_dropped(modes, kept, error->output, true))
+	if (static_correction && !follow_dropped(modes, kept, error->output, true))
 		return NULL;
 	return error;
 }
 
-double modes_loss(const struct modes *modes, const bool *kept, bool statics, int output)
+double modes_loss(const struct modes *modes, const bool *kept, bool static_correction, int output)
 {
 	double sum = 0;
 	for (int i = 0; i < modes->count; i++)
 		if (!kept[i])
-			sum += statics ? modes->mode[i].transient[output] : modes->mode[i].size[output];
+			sum += static_correction ? modes->mode[i].transient[output] : modes->mode[i].size[output];
 	return sum * (1 + 1e-9);        /* for the rounding of all that */
 }
 
@@ -389,11 +389,11 @@ static void put_listed(struct modes *modes, bool *kept, const struct wanted_mode
 			      "mode %d is rigid and seen by an output: it has to be kept", modes->mode[i].number);
 }
 
-struct shortened { struct model *model, *shorter; };
+struct truncated { struct model *model, *shorter; };
 
-static void shorten(void *context)
+static void truncate_modes(void *context)
 {
-	struct shortened *s = context;
+	struct truncated *s = context;
 	const struct wanted_modes *wanted = &s->model->modes;
 	const char *why;
 	struct modes *modes = modes_of(s->model, &why);
@@ -409,15 +409,15 @@ static void shorten(void *context)
 		any = any || kept[i];
 	if (!any)
 		error(wanted->at, NULL, "nothing would be left: no output sees a mode that anything reaches");
-	s->shorter = modes_kept(modes, kept, wanted->statics);
+	s->shorter = modes_kept(modes, kept, wanted->static_correction);
 	if (!s->shorter)
 		error(wanted->at, NULL, "modes cannot be left out: two poles are too close for double precision");
 }
 
-struct model *model_shorten(struct model *model)
+struct model *model_truncate(struct model *model)
 {
-	struct shortened s = { model, NULL };
+	struct truncated s = { model, NULL };
 	if (!model->modes.at.source)
 		return model;
-	return statement_guard(shorten, &s) ? s.shorter : NULL;
+	return statement_guard(truncate_modes, &s) ? s.shorter : NULL;
 }

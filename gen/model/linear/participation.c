@@ -5,7 +5,7 @@
 #include <complex.h>
 #include <math.h>
 
-#define UNSEEN 1e-13                /* of what it is a sum of: less is rounding */
+#define UNOBSERVABLE 1e-13          /* of what it is a sum of: less is rounding */
 
 struct picture {                    /* of one mode, to tell its size by */
 	int k, columns;             /* states; coordinates, where modes are coordinates */
@@ -16,7 +16,7 @@ struct picture {                    /* of one mode, to tell its size by */
 	bool hidden;                /* the output does not see it */
 };
 
-struct survey {                     /* of all modes */
+struct participation {              /* of all modes */
 	const struct model *model;
 	const struct mode_basis *basis;
 	double *A, *D;              /* of the basis */
@@ -46,7 +46,7 @@ static double *projected(int n, int k, const double *Y, const double *A, const d
 }
 
 /* T, right and left of coordinates X and Y^T: m'' = -Theta m - C m' */
-static void lift(const struct survey *s, struct picture *p, const double *X, const double *Y)
+static void lift(const struct participation *s, struct picture *p, const double *X, const double *Y)
 {
 	const int n = s->model->n, c = p->columns, k = p->k, states = 2 * n;
 	const int *velocity = s->model->system.velocity;
@@ -64,7 +64,7 @@ static void lift(const struct survey *s, struct picture *p, const double *X, con
 	}
 }
 
-static struct picture picture_of(const struct survey *s, const struct mode *mode)
+static struct picture picture_of(const struct participation *s, const struct mode *mode)
 {
 	const int states = s->model->system.states, n = s->basis->moves ? s->model->n : states;
 	struct picture p = { .k = mode->states, .columns = mode->columns, .moves = mode->moves };
@@ -165,7 +165,7 @@ static double along(const struct picture *p, const double *w)
 /* ---- loads ---- */
 
 /* left W^-1 force: what drives z; what is nothing beside its terms is 0 */
-static void drive(const struct survey *s, const struct picture *p, const mpq_t *force, double *b)
+static void drive(const struct participation *s, const struct picture *p, const mpq_t *force, double *b)
 {
 	const struct linear *system = &s->model->system;
 	const int n = system->n;
@@ -181,7 +181,7 @@ static void drive(const struct survey *s, const struct picture *p, const mpq_t *
 			sum += p->left[r * system->states + state] * column[i];
 			size += fabs(p->left[r * system->states + state] * column[i]);
 		}
-		b[r] = fabs(sum) <= UNSEEN * size ? 0 : sum;
+		b[r] = fabs(sum) <= UNOBSERVABLE * size ? 0 : sum;
 	}
 }
 
@@ -240,7 +240,8 @@ struct course {                     /* of z through the segments of time, for on
 };
 
 /* What the loads give in segment s: adds P q to the jump with `sign`, and what is forced to *sum */
-static bool survey_loads(const struct survey *s, const struct picture *p, int segment, double at, double sign,
+static bool participation_of_loads(const struct participation *s, const struct picture *p, int segment, double at,
+				   double sign,
 			 double *jump, double *sum)
 {
 	const struct linear *system = &s->model->system;
@@ -267,7 +268,8 @@ static bool survey_loads(const struct survey *s, const struct picture *p, int se
 }
 
 /* Sizes in one output of what starts and loads give */
-static void survey_output(const struct survey *s, const struct picture *p, const double *start, double *size,
+static void participation_of_output(const struct participation *s, const struct picture *p, const double *start,
+				    double *size,
 			  double *transient)
 {
 	const struct linear *system = &s->model->system;
@@ -280,8 +282,8 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 		double sum = 0;
 		for (int i = 0; i < p->k; i++)
 			jump[i] = segment ? 0 : start[i];
-		good = (!segment || survey_loads(s, p, segment - 1, at, 1, jump, NULL)) &&
-		       survey_loads(s, p, segment, at, -1, jump, &sum);
+		good = (!segment || participation_of_loads(s, p, segment - 1, at, 1, jump, NULL)) &&
+		       participation_of_loads(s, p, segment, at, -1, jump, &sum);
 		*transient += peak_of(p, jump);
 		most = sum > most ? sum : most;
 	}
@@ -290,7 +292,7 @@ static void survey_output(const struct survey *s, const struct picture *p, const
 }
 
 /* A step of an input: |c T^-1 B| that it comes to, and the way there; a jump of u' likewise */
-static double survey_input(const struct survey *s, const struct picture *p, const struct input *input)
+static double participation_of_input(const struct participation *s, const struct picture *p, const struct input *input)
 {
 	const int k = p->k;
 	SCRATCH double *B = ARRAY(double, k);
@@ -314,7 +316,7 @@ static double survey_input(const struct survey *s, const struct picture *p, cons
 	return sum;
 }
 
-static void see_output(const struct survey *s, struct picture *p, int output)
+static void see_output(const struct participation *s, struct picture *p, int output)
 {
 	const int states = s->model->system.states;
 	const mpq_t *row = s->model->output[output].state;
@@ -326,12 +328,12 @@ static void see_output(const struct survey *s, struct picture *p, int output)
 			sum += term;
 			size += fabs(term);
 		}
-		p->c[j] = fabs(sum) <= UNSEEN * size ? 0 : sum;
+		p->c[j] = fabs(sum) <= UNOBSERVABLE * size ? 0 : sum;
 		p->hidden = p->hidden && p->c[j] == 0;
 	}
 }
 
-void survey_mode(const struct survey *s, struct mode *mode)
+void participation_of_mode(const struct participation *s, struct mode *mode)
 {
 	const struct model *model = s->model;
 	const int states = model->system.states, inputs = model->system.inputs;
@@ -344,7 +346,7 @@ void survey_mode(const struct survey *s, struct mode *mode)
 			start[r] += term;
 			size += fabs(term);
 		}
-		start[r] = fabs(start[r]) <= UNSEEN * size ? 0 : start[r];
+		start[r] = fabs(start[r]) <= UNOBSERVABLE * size ? 0 : start[r];
 	}
 	mode->size = ARRAY(double, model->outputs + 1);
 	mode->transient = ARRAY(double, model->outputs + 1);
@@ -352,10 +354,10 @@ void survey_mode(const struct survey *s, struct mode *mode)
 	for (int o = 0; o < model->outputs; o++) {
 		see_output(s, &p, o);
 		if (!p.hidden)
-			survey_output(s, &p, start, &mode->size[o], &mode->transient[o]);
+			participation_of_output(s, &p, start, &mode->size[o], &mode->transient[o]);
 		mode->seen = mode->seen || mode->size[o] > 0;
 		for (int i = 0; i < inputs; i++) {
-			mode->by_input[o * inputs + i] = survey_input(s, &p, &model->system.input[i]);
+			mode->by_input[o * inputs + i] = participation_of_input(s, &p, &model->system.input[i]);
 			mode->seen = mode->seen || mode->by_input[o * inputs + i] > 0;
 		}
 	}
@@ -365,7 +367,7 @@ void survey_mode(const struct survey *s, struct mode *mode)
 /* ---- the whole ---- */
 
 /* Poles of its largest size; the sum of all squared, where modes are coordinates */
-void survey_poles(const struct survey *s, struct mode *mode)
+void participation_of_poles(const struct participation *s, struct mode *mode)
 {
 	const struct invariant *part = invariant_part(s->basis->invariants, mode->first);
 	mode->re = part->re;
@@ -380,20 +382,20 @@ void survey_poles(const struct survey *s, struct mode *mode)
 	picture_free(&p);
 }
 
-struct survey *survey_of(const struct modes *modes)
+struct participation *participation_of(const struct modes *modes)
 {
 	const struct model *model = modes->model;
 	const struct mode_basis *basis = modes->basis;
 	const size_t n = (size_t)model->n, states = (size_t)model->system.states;
-	struct survey *s = NEW(struct survey);
-	*s = (struct survey){ .model = model, .basis = basis };
+	struct participation *s = NEW(struct participation);
+	*s = (struct participation){ .model = model, .basis = basis };
 	s->A = doubles_of(basis->moves ? n * n : states * states, basis->A);
 	s->D = basis->moves ? doubles_of(n * n, basis->D) : NULL;
 	s->inverse = doubles_of(n * n, basis->inverse);
 	return s;
 }
 
-void survey_free(struct survey *s)
+void participation_free(struct participation *s)
 {
 	discard(s->A);
 	discard(s->D);
