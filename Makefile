@@ -68,8 +68,8 @@ check: tests
 # After each change, in half a minute from a built tree: units, rooms, lines, a model of each kind by closed forms, an
 # eighth of the cases of bad input
 QUICK = runtime_double runtime_float memory mtx math walk modes poles number atoms program positive digits rooms \
-	docs_lines compilers values history_sdcsf remainder_figures switching_figures radau_numbers_3 friction_closed \
-	contacts_closed delays peaks
+	docs_lines docs_words compilers values history_sdcsf remainder_figures switching_figures radau_numbers_3 \
+	friction_closed contacts_closed delays peaks
 quick: tests
 	DEAR=skip EVERY=8 sh tests/check.sh $(BUILD) $(QUICK) errors
 
