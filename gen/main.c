@@ -19,6 +19,7 @@
 struct work {
 	struct options options;
 	struct spec *spec;
+	const struct spec *given;       /* of which `spec` has the linear equations; NULL: it is the one given */
 	struct model *model;
 	struct model *stepped;          /* the one that is stepped: it, or over other coordinates */
 	struct step *step;              /* NULL: the closed form is printed, and nothing is stepped */
@@ -103,9 +104,13 @@ static const struct source *source_of(struct work *w)
 	request->linearise = place_of_views(&w->options);
 	if (!source || !request->linearise)
 		return source;
+	struct request equations = *request;    /* no scheme, closed form or modes of the nonlinear ones */
+	request->linearise = equations.scheme = equations.tolerance = equations.modes = NULL;
+	equations.solution = false;
 	w->spec = parse_spec(source);
-	struct model *model = diagnostics_errors() ? NULL : model_build(w->spec, request);
-	request->linearise = NULL;
+	leave_step_open(w);
+	equations.step = request->step;
+	struct model *model = diagnostics_errors() ? NULL : model_build(w->spec, &equations);
 	if (!model)
 		return diagnostics_errors() ? NULL : source;
 	if (!model->equations.linearised && w->options.at)
@@ -113,14 +118,17 @@ static const struct source *source_of(struct work *w)
 	if (!model->equations.linearised)
 		return source;
 	request->definitions = 0;
-	request->scheme = request->tolerance = NULL;
+	w->given = w->spec;
 	return source_text(format("%s, linearised", source->name), model->equations.linearised);
 }
 
 static bool make(struct work *w)
 {
 	const struct source *source = source_of(w);
-	return source && make_of(w, source);
+	bool made = source && make_of(w, source);
+	if (made && w->given)                   /* what the linear equations were made of was read all the same */
+		w->spec->data = w->given->data;
+	return made;
 }
 
 /* ---- where the spec says how exact it has to be ---- */

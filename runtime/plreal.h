@@ -51,8 +51,7 @@ static inline PL_REAL pl_accumulate(PL_REAL sum, PL_REAL term, PL_REAL small, PL
 
 /* ---- root.c: lengths of steps --------------------------------------------------------------------------- */
 
-/* Returns the n-th root of a within 6 %; a > 0 is a normal number, n >= 1.  It needs no pow, and its bits are the same
- * on every target. */
+/* Returns the n-th root of a within 6 %, the same bits on every target; a > 0 is a normal number, n >= 1. */
 PL_REAL pl_root(PL_REAL a, int n);
 
 /* ---- dense.c: linear equations -------------------------------------------------------------------------- */

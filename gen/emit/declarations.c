@@ -139,6 +139,8 @@ static void declare_tables(const struct emitter *e)
 			"y = project x, x: a state of all modes");
 		announce(e, spell(e, "extern const double $n_expand[%d][$N_STATES];", all),
 			"x = expand y, without what is dropped");
+		say(e, "#define $n_from_whole $n_project\n"      /* the names that both had before */
+		       "#define $n_to_whole $n_expand\n");
 	}
 	if (!e->model->delays)
 		announce(e, spell(e, "extern const pl_model $n_model;"), "");

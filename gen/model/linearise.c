@@ -26,29 +26,51 @@ static int state_called(const struct model *model, const char *name, size_t leng
 	return -1;
 }
 
+/* Of NAME=EXPR at `text`: the state that it names; what is no state, or was given, is an error at `place`. */
+static int state_given(const struct linearising *l, const char *text, size_t name, struct place place, bool *given)
+{
+	if (!text[name])
+		error(place, NULL, "--at takes rest, or NAME=EXPR with commas between");
+	while (name > 0 && text[name - 1] == ' ')
+		name--;
+	const int state = state_called(l->b->model, text, name);
+	if (state < 0)
+		error(place, "states are coordinates, and their velocities: --at x=0.1,x'=2",
+		      "no state is called '%.*s'", (int)name, text);
+	if (given[state])
+		error(place, NULL, "%s is given twice", l->b->model->names.state[state]);
+	given[state] = true;
+	return state;
+}
+
+/* Up to the comma that no bracket holds */
+static size_t end_of_value(const char *text, size_t end)
+{
+	for (int depth = 0; text[end] && (text[end] != ',' || depth > 0); end++)
+		depth += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
+	return end;
+}
+
 /* NAME=EXPR,... in `at` */
 static void take_values(struct linearising *l, const char *at)
 {
 	struct source *source = source_argument(at);
-	for (const char *text = source->text; *text; text += *text == ',') {
-		const size_t name = strcspn(text, "="), offset = (size_t)(text - source->text);
-		const int state = state_called(l->b->model, text, name);
-		struct place place = { source, offset };
-		if (!text[name])
-			error(place, NULL, "--at takes rest, or NAME=EXPR with commas between");
-		if (state < 0)
-			error(place, "states are coordinates, and their velocities: --at x=0.1,x'=2",
-			      "no state is called '%.*s'", (int)name, text);
-		size_t end = name + 1;
-		for (int depth = 0; text[end] && (text[end] != ',' || depth > 0); end++)
-			depth += text[end] == '(' ? 1 : text[end] == ')' ? -1 : 0;
-		struct source *value = source_argument(format("%.*s", (int)(end - name - 1), text + name + 1));
-		struct node *node = parse_argument(l->b->spec, value, 0);
+	bool *given = ARRAY(bool, (size_t)l->states);
+	const char *text = source->text;
+	do {
+		text += strspn(text, ", ");
+		const size_t name = strcspn(text, "="), end = end_of_value(text, name);
+		struct place place = { source, (size_t)(text - source->text) };
+		mpq_ptr value = l->state[state_given(l, text, name, place, given)];
+		struct source *written = source_argument(format("%.*s", (int)(end - name - 1), text + name + 1));
+		struct node *node = parse_argument(l->b->spec, written, 0);
 		if (!node)
 			abandon();
-		collect_constant(&l->b->collector, node, l->state[state]);
+		collect_constant(&l->b->collector, node, value);
+		if (beyond_range(value))
+			error(place, NULL, "the value is beyond the range of %s", target_name());
 		text += end;
-	}
+	} while (*text);
 	find_residuals(l);
 }
 
@@ -260,6 +282,18 @@ static void print_outputs(FILE *to, struct linearising *l)
 		print_output(to, l, &model->output[i]);
 }
 
+/* The deviations with which the model starts: its initial values less the point */
+static void print_initials(FILE *to, const struct linearising *l)
+{
+	const struct model *model = l->b->model;
+	RATIONAL value = ZERO;
+	for (int i = 0; i < l->states; i++) {
+		mpq_sub(value, model->initial[i], l->state[i]);
+		if (mpq_sgn(value) != 0)
+			fprintf(to, "init %s = %s\n", plain_name(model->names.state[i]), number_text(value));
+	}
+}
+
 /* ---- the whole ---- */
 
 /* Without what depends on time alone, which no equilibrium is sought for */
@@ -340,9 +374,11 @@ void linearise(void *building)
 	l.looks = true;
 	FILE *to = need_memory(open_memstream(&text, &length));
 	print_declarations(to, &l);
+	print_initials(to, &l);
 	print_equations(to, &l);
 	print_outputs(to, &l);
-	fprintf(to, "step %s\n", number_text(model->h));
+	if (mpq_sgn(model->h) > 0)
+		fprintf(to, "step %s\n", number_text(model->h));
 	fclose(to);
 	model->equations.linearised = format("%s", text);
 	free(text);

@@ -183,7 +183,7 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 			void *who)
 {
 	struct sizes sizes = sizes_new(job);
-	const bool starts_at_zero = is_at_zero(job, s);
+	const bool starts_at_zero = job->reported && is_at_zero(job, s);
 	char *error = NULL;
 	instance_out(s, out);
 	each(who, 0, out);
@@ -202,7 +202,7 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 		report(job, k);
 	}
 	report_sizes(&sizes, job->machine);
-	if (job->reported && !error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
+	if (!error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
 		say_note("nothing starts and nothing drives the model, so every state has stayed 0: give it an initial "
 			 "value (init x = 1) or a load");
 	free(sizes.y);

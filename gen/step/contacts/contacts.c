@@ -58,8 +58,7 @@ struct constraints {
 
 static int rate_state(const struct sequencing *w, const struct basis *basis)
 {
-	const struct model *model = w->step->model;
-	if (basis->kind != BASIS_COORD || basis->order < model->frame.coord[basis->index]->highest)
+	if (basis->kind != BASIS_COORD || basis->order < w->step->model->frame.coord[basis->index]->highest)
 		return NONE;
 	return basis->order > 1 ? w->system->velocity[basis->index] : basis->index;
 }
@@ -265,11 +264,9 @@ static void make_slip(struct constraints *all, int index)
 		return;
 	const struct drag *drag = &w->step->model->contacts.drag[h->drag];
 	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
-	h->slips = new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE,
-						      .state = NONE, .expression = hold->expression,
-						      .breakpoint = hold->breakpoint,
-						      .a = hold->above ? force : back,
-						      .b = hold->above ? back : force });
+	h->slips = new_sequence(w, (struct sequence){
+		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .expression = hold->expression,
+		.breakpoint = hold->breakpoint, .a = hold->above ? force : back, .b = hold->above ? back : force });
 }
 
 static int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other)
