@@ -17,6 +17,9 @@ enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PR
 struct options {
 	const char *spec, *output, *depfile, *solution;
 	const char *value;              /* of --response, --plot */
+	const char *params;             /* a file with values of params, which come before those of -D; */
+	int definitions;
+	const char **definition;        /* NAME=EXPR */
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */

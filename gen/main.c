@@ -96,13 +96,25 @@ static const char *place_of_views(const struct options *o)
 	return o->at ? o->at : views && !o->amplitude ? "rest" : NULL;
 }
 
+/* Values of params from the file and the command line; false: it was said why not */
+static bool define(struct work *w)
+{
+	struct definitions *all = &w->options.request.definitions;
+	const bool read = !w->options.params || definitions_read(w->options.params, all);
+	for (int i = 0; read && i < w->options.definitions; i++)
+		definitions_add(w->options.definition[i], all);
+	return read;
+}
+
 /* The spec, or that of its linear equations; NULL: it was said why not */
 static const struct source *source_of(struct work *w)
 {
 	struct request *request = &w->options.request;
 	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
+	if (!source || !define(w))
+		return NULL;
 	request->linearise = place_of_views(&w->options);
-	if (!source || !request->linearise)
+	if (!request->linearise)
 		return source;
 	struct request equations = *request;    /* no scheme, closed form or modes of the nonlinear ones */
 	request->linearise = equations.scheme = equations.tolerance = equations.modes = NULL;
@@ -117,7 +129,7 @@ static const struct source *source_of(struct work *w)
 		stand_aside(w->spec->name_at, "--at", "the model is linear");
 	if (!model->equations.linearised)
 		return source;
-	request->definitions = 0;
+	request->definitions.count = 0;
 	w->given = w->spec;
 	return source_text(format("%s, linearised", source->name), model->equations.linearised);
 }
@@ -345,6 +357,8 @@ static void print_depfile(const struct work *w)
 	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
 	if (strcmp(options->spec, "-") != 0)
 		fprintf(f->to, " %s", escaped(options->spec));
+	if (options->params)
+		fprintf(f->to, " %s", escaped(options->params));
 	for (int i = 0; i < w->spec->data.files; i++)
 		fprintf(f->to, " %s", escaped(w->spec->data.file[i]));
 	fputc('\n', f->to);

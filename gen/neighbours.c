@@ -7,24 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-static const char *value_of_param(const struct measuring *m, const struct symbol *s)
+static const char *value_of_param(const struct symbol *s)
 {
-	const size_t length = strlen(s->name);
-	for (int i = m->request->definitions; i-- > 0;) {
-		const char *text = m->request->definition[i];
-		if (strncmp(text, s->name, length) == 0 && text[length] == '=')
-			return text + length + 1;
-	}
 	return s->value ? text_between(s->value->start, s->value->end) : NULL;
 }
 
-static struct request with_param(const struct measuring *m, struct request as, const struct symbol *s, const char *by)
+static struct request with_param(struct request as, const struct symbol *s, const char *by)
 {
-	const char **definition = ARRAY(const char *, as.definitions + 1);
-	for (int i = 0; i < as.definitions; i++)
-		definition[i] = as.definition[i];
-	definition[as.definitions++] = format("%s=%s*(%s)", s->name, by, value_of_param(m, s));
-	as.definition = definition;
+	struct definitions more = { 0 };
+	for (int i = 0; i < as.definitions.count; i++)
+		*MORE(more.definition, more.count) = as.definitions.definition[i];
+	definitions_add(format("%s=%s*(%s)", s->name, by, value_of_param(s)), &more);
+	as.definitions = more;
 	return as;
 }
 
@@ -38,9 +32,9 @@ static void find_amplitudes(struct measuring *m, const struct alternative *a)
 	if (!here)
 		return;
 	for (const struct symbol *s = m->model->spec->first; s; s = s->next) {
-		if (s->kind != SYMBOL_PARAM || !value_of_param(m, s) || m->amplitudes == 16)
+		if (s->kind != SYMBOL_PARAM || !value_of_param(s) || m->amplitudes == 16)
 			continue;
-		const struct request other = with_param(m, as, s, "1.1");
+		const struct request other = with_param(as, s, "1.1");
 		const struct step *there = built(m, &other, NULL);
 		if (!there || !differ_in_loads(here->model, there->model))
 			continue;
@@ -94,7 +88,7 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 		const char *why = NULL, *by = k % 2 ? "1.1" : "0.9";
 		if (k % 2)
 			name_neighbour(a, s->name);
-		struct request as = with_param(m, request_of(m, a), s, by), wide = as;
+		struct request as = with_param(request_of(m, a), s, by), wide = as;
 		wide.single = false;
 		struct ready ready = ready_of(m, &as, &why);
 		ready.roads.r = ready_of(m, &wide, &why).r;

@@ -123,12 +123,20 @@ static void take_refresh(struct options *options, const char *value)
 
 static void take_definition(struct options *options, const char *value)
 {
-	struct request *request = &options->request;
 	const char *equals = strchr(value, '=');
 	if (!equals || equals == value || equals[1] == 0)
 		wrong_usage(format("-D takes NAME=EXPR, found '%s'", value));
-	*MORE(request->definition, request->definitions) = value;
+	*MORE(options->definition, options->definitions) = value;
 	note_in_banner(options, format("-D %s", value));
+}
+
+static void take_params(struct options *options, const char *value)
+{
+	if (!ends_in(value, ".json") && !ends_in(value, ".csv"))
+		wrong_usage(format("--params takes FILE.json or FILE.csv, found '%s'", value));
+	if (options->params)
+		wrong_usage("--params is given twice");
+	options->params = value;
 }
 
 static void take_reduce(struct options *options, const char *value)
@@ -249,6 +257,7 @@ static const struct row {
 	  .take = take_refresh },
 	{ "anchors", "N", .take = take_refresh },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", .take = take_definition },
+	{ "params", "FILE", "values of params from FILE.json or FILE.csv; those of -D win", .take = take_params },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
 	{ "reduce", NULL, "leave out what the outputs cannot see", .take = take_reduce },
 	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", .text = AT(request.modes) },
@@ -426,6 +435,8 @@ static void note_all(struct options *options)
 	const struct request *request = &options->request;
 	note_value(options, "--scheme", request->scheme);
 	note_value(options, "--tolerance", request->tolerance);
+	const char *slash = options->params ? strrchr(options->params, '/') : NULL;
+	note_value(options, "--params", slash ? slash + 1 : options->params);
 	note_value(options, "--modes", request->modes ? format("\"%s\"", request->modes) : NULL);
 	note_value(options, "--step", request->step);
 	note_value(options, "--prefix", request->prefix);
@@ -498,7 +509,8 @@ static void check_spelling(const struct options *options, const char *const *pat
 
 static void check_names(const struct options *options)
 {
-	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu };
+	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
+			       options->params };
 	enum { PATHS = sizeof path / sizeof *path };
 	check_spelling(options, path, PATHS);
 	for (int i = 0; i < PATHS; i++)

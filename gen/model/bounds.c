@@ -137,6 +137,8 @@ static void evaluate_param_range(void *context)
 	*work->range = range;
 	if (work->b->request->again.tunable)    /* built with other values, to learn what follows from them */
 		return;
+	if (param->symbol->made.progress != COLLECTED)  /* it was said what is wrong with the value */
+		return;
 	param_value(param->symbol, value);
 	if (mpq_cmp(value, range->low) < 0 || mpq_cmp(value, range->high) > 0)
 		error(param->at, "the spec's own value has to be there", "param '%s' is %s, outside of its range",

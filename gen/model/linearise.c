@@ -62,8 +62,7 @@ static void take_values(struct linearising *l, const char *at)
 		const size_t name = strcspn(text, "="), end = end_of_value(text, name);
 		struct place place = { source, (size_t)(text - source->text) };
 		mpq_ptr value = l->state[state_given(l, text, name, place, given)];
-		struct source *written = source_argument(format("%.*s", (int)(end - name - 1), text + name + 1));
-		struct node *node = parse_argument(l->b->spec, written, 0);
+		struct node *node = parse_argument(l->b->spec, source, place.offset + name + 1, place.offset + end);
 		if (!node)
 			abandon();
 		collect_constant(&l->b->collector, node, value);

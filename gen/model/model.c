@@ -12,21 +12,21 @@
 
 /* ---- params, lets ---- */
 
-static void define_override(struct building *b, const char *text)
+static void define_override(struct building *b, const struct definition *d)
 {
-	const char *equals = strchr(text, '=');
-	char *name = format("%.*s", (int)(equals - text), text);
-	struct source *source = source_argument(text);
-	struct symbol *symbol = spec_find(b->spec, name);
+	struct symbol *symbol = spec_find(b->spec, d->name);
 	if (symbol && symbol->broken)
 		return;
 	if (!symbol || symbol->kind != SYMBOL_PARAM) {
-		const char *note = symbol ? "-D gives a param another value" : spec_suggestion(b->spec, name);
-		say_error((struct place){ source, 0 }, note, symbol ? "'%s' is not a param" : "no param is named '%s'",
-			  name);
+		const char *note = symbol ? "-D and --params give a param another value"
+					  : spec_suggestion(b->spec, d->name);
+		say_error(d->at, note, symbol ? "'%s' is not a param" : "no param is named '%s'", d->name);
 		return;
 	}
-	struct node *value = parse_argument(b->spec, source, (size_t)(equals - text) + 1);
+	const struct place given = symbol->value->start;        /* when a model is built again, by this one itself */
+	if (given.source == d->at.source && (given.offset < d->from || given.offset >= d->until))
+		say_error(d->at, NULL, "'%s' is given already", d->name);
+	struct node *value = parse_argument(b->spec, d->at.source, d->from, d->until);
 	if (value)
 		symbol->value = value;
 	else
@@ -549,8 +549,8 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	if (request->linearise)                 /* params are those of the spec */
 		forget_tunables(spec);
 	begin_model(&b);
-	for (int i = 0; i < request->definitions; i++)
-		define_override(&b, request->definition[i]);
+	for (int i = 0; i < request->definitions.count; i++)
+		define_override(&b, &request->definitions.definition[i]);
 	set_tunables(&b);
 	if (!request->again.relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
@@ -588,7 +588,7 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
 	struct place at = { source_argument(text), 0 };
-	struct node *node = parse_argument(model->spec, at.source, 0);
+	struct node *node = parse_argument(model->spec, at.source, 0, at.source->length);
 	if (!node)
 		abandon();
 	collect_constant(&collector, node, value);

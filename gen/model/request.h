@@ -42,8 +42,7 @@ struct request {                    /* what the user asks for on the command lin
 	const char *linearise;      /* where: rest, or states and their values; NULL: nowhere */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
-	int definitions;
-	const char **definition;    /* NAME=EXPR */
+	struct definitions definitions;
 	/* Where it is asked for, command line or spec: found when the model is built */
 	struct place scheme_at;     /* source NULL: it is not */
 	struct node *scheme_order, *scheme_over; /* of a series; NULL: not given */

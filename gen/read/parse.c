@@ -302,17 +302,22 @@ static void read_argument(void *context)
 	argument->value = value;
 }
 
-struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over)
+static struct node *parse_part(struct spec *spec, struct lexer lexer, struct node **over)
 {
-	struct argument argument = { .parser = { .spec = spec, .own = spec }, .over = over };
-	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->scene.uses, false };
+	struct argument argument = { .parser = { .spec = spec, .own = spec, .lexer = lexer }, .over = over };
+	argument.parser.lexer.points = spec->scene.uses;
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }
 
-struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
+struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over)
 {
-	return parse_scheme_order(spec, source, from, NULL);
+	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = source->length }, over);
+}
+
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from, size_t until)
+{
+	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = until }, NULL);
 }
 
 struct listing {

@@ -272,14 +272,28 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
-/* an expression from the command line */
-struct node *parse_argument(struct spec *spec, const struct source *source, size_t from);
+/* an expression from the command line; `until`: where it ends */
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from, size_t until);
 /* Behind the name of a scheme: its order, and NULL or what follows the word `over` */
 struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over);
 struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
 void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
+
+/* ---- params.c: other values of params than the spec's ---- */
+
+struct definition {
+	const char *name;
+	struct place at;            /* of the name; in the same text, */
+	size_t from, until;         /* the value */
+};
+struct definitions {                /* of a name that is there again the last counts */
+	int count;
+	struct definition *definition;
+};
+bool definitions_read(const char *path, struct definitions *to); /* FILE.json, FILE.csv; false: it says what is wrong */
+void definitions_add(const char *text, struct definitions *to); /* NAME=EXPR of the command line */
 
 /* ---- use.c: parts of a scene, for a reader ---- */
 

@@ -138,7 +138,7 @@ static const struct row {
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
-	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL },
+	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL }, { "params", "FILE", NULL, NULL },
 	{ "refresh", "N", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
 	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
 };

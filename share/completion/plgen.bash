@@ -26,7 +26,7 @@ _plgen() {
         --real) mapfile -t COMPREPLY < <(compgen -W 'double float' -- "$current"); return ;;
         --accuracy) mapfile -t COMPREPLY < <(compgen -W 'compensated' -- "$current"); return ;;
         --loads) mapfile -t COMPREPLY < <(compgen -W 'exact remainder' -- "$current"); return ;;
-        -o | --depfile | --input | --sweep | --plot)
+        -o | --depfile | --params | --input | --sweep | --plot)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
             --column | --time | -D) return ;;

@@ -92,6 +92,15 @@ result $? 'standard input: parts are relative to the working directory'
     "$plgen" chain_other.spec 2>>log | sed -e '1,/^ \*\/$/d' | diff - defined >>log
 result $? '-D gives a param of a part another value, and what is made of it'
 
+echo '{"left": {"e": 5e-1, "one": {"e": "0.5*e"}}, "w": 7}' >values.json
+printf 'name,value\r\n# as above\nleft.one.e, "0.5*e"\nw,7\nleft.e,5e-1\n' >values.csv
+"$plgen" -D left.e=0.5 -D 'left.one.e=0.5*e' -D w=3 chain.spec 2>log | sed -e '1,/^ \*\/$/d' >defined
+for kind in json csv; do
+    "$plgen" --depfile d --params values.$kind -D w=3 chain.spec 2>>log | sed -e '1,/^ \*\/$/d' >from_file
+    diff from_file defined >>log && [ -s defined ] && grep -q " values.$kind" d
+    result $? "--params FILE.$kind is as -D for each of its values, of which -D wins; the dependency file has it"
+done
+
 # is_needed NAME NEED: with this need the same choice is made as of one text, and the same C
 cp "$root"/models/*.spec . || exit 99
 is_needed() {

@@ -276,9 +276,8 @@ static const struct step *generator(const struct tuned *m, const char *text, con
                                 .form = m->direct ? FORM_DIRECT : FORM_DELTA,
                                 .single = BITS == 24,
                                 .step = p ? exact(h) : NULL};
-    request->definition = ARRAY(const char *, (size_t)m->model->params);
     for (int k = 0; k < m->model->params && p; k++)
-        request->definition[request->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
+        definitions_add(format("%s=%s", m->model->param_names[k], exact(p[k])), &request->definitions);
     struct model *model = made(text, request);
     return model ? step_build(model) : NULL;
 }

@@ -119,11 +119,9 @@ static const char *random_text(uint64_t seed)
 static struct model *model_of(const char *text, const struct spec *tunables, const mpq_t *values)
 {
     struct request *request = NEW(struct request);
-    for (int k = 0; tunables && k < tunables->tunables - tunables->derived; k++) {
-        ENLARGE(request->definition, (size_t)k + 1);
-        request->definition[request->definitions++] =
-            format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
-    }
+    for (int k = 0; tunables && k < tunables->tunables - tunables->derived; k++)
+        definitions_add(format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k])),
+                        &request->definitions);
     struct spec *spec = spec_of("spec", text);
     struct model *model = spec ? model_build(spec, request) : NULL;
     return model && !tunables ? find_tuning(model, request) : model;

@@ -46,7 +46,7 @@ struct node *asked_or_written(struct building *b, const char *asked, struct node
 	if (!asked)
 		return written;
 	struct source *source = source_argument(asked);
-	struct node *node = parse_argument(b->spec, source, 0);
+	struct node *node = parse_argument(b->spec, source, 0, source->length);
 	*at = (struct place){ source, 0 };
 	if (!node)
 		abandon();
