@@ -36,11 +36,12 @@ static double *widened(const float *value, int count)
 	(m)->size = (d)->size; \
 	(m)->states = (d)->states; \
 	(m)->inputs = (d)->inputs; \
-	(m)->outputs = (d)->outputs; \
+	(m)->outputs = (m)->own_outputs = (d)->outputs; \
 	(m)->params = (d)->params; \
 	(m)->h = (double)(d)->h; \
 	(m)->input_names = (d)->input_names; \
 	(m)->output_names = (d)->output_names; \
+	(m)->state_names = (d)->state_names; \
 	(m)->param_names = (d)->param_names; \
 	(m)->ahead = (d)->start_samples; \
 	(m)->has_status = (d)->status != NULL; \
@@ -122,15 +123,23 @@ void machine_close(struct machine *m)
 	free(m);
 }
 
+void machine_show(struct machine *m, const struct view *v)
+{
+	m->shown = v->source;
+	m->outputs = v->columns;
+	m->output_names = v->name;
+}
+
 /* ---- an instance ---- */
 
 struct instance *instance_new(const struct machine *m)
 {
 	struct instance *i = need(calloc(1, sizeof *i));
-	int most = m->inputs > m->outputs ? m->inputs : m->outputs;
+	int most = m->inputs > m->own_outputs ? m->inputs : m->own_outputs;
 	most = m->states > most ? m->states : most;
 	i->machine = m;
 	i->state = need(calloc(1, m->size));
+	i->all = need(calloc((size_t)(m->own_outputs + m->states) + 1, sizeof *i->all));
 	if (m->single)
 		i->narrow = need(calloc((size_t)(most > m->params ? most : m->params) + 1, sizeof(float)));
 	if (m->single)
@@ -144,6 +153,7 @@ void instance_free(struct instance *i)
 {
 	free(i->state);
 	free(i->narrow);
+	free(i->all);
 	free(i);
 }
 
@@ -187,7 +197,7 @@ void instance_step(struct instance *i, const double *u)
 		m->model->step(i->state, m->inputs ? u : NULL);
 }
 
-void instance_out(struct instance *i, double *out)
+static void own_out(struct instance *i, double *out)
 {
 	const struct machine *m = i->machine;
 	if (!m->single) {
@@ -195,8 +205,19 @@ void instance_out(struct instance *i, double *out)
 		return;
 	}
 	m->modelf->out(i->state, i->narrow);
-	for (int k = 0; k < m->outputs; k++)
+	for (int k = 0; k < m->own_outputs; k++)
 		out[k] = (double)i->narrow[k];
+}
+
+void instance_out(struct instance *i, double *out)
+{
+	const struct machine *m = i->machine;
+	own_out(i, m->shown ? i->all : out);
+	if (!m->shown)
+		return;
+	instance_get(i, i->all + m->own_outputs);
+	for (int k = 0; k < m->outputs; k++)
+		out[k] = i->all[m->shown[k]];
 }
 
 void instance_get(struct instance *i, double *y)

@@ -13,6 +13,7 @@ struct start {
 	struct toolchain *tools;
 	struct code *code;
 	struct machine *machine;
+	struct view view;
 	double *params;                         /* NULL: none is changed */
 };
 
@@ -103,6 +104,7 @@ struct watchers {
 	struct rows *rows;
 	struct picture *picture;
 	struct stats *stats;
+	struct psd *psd;
 };
 
 static void watch_all(void *who, uint64_t k, const double *out)
@@ -114,6 +116,8 @@ static void watch_all(void *who, uint64_t k, const double *out)
 		picture_add(w->picture, k, out);
 	if (w->stats)
 		stats_add(w->stats, k, out);
+	if (w->psd)
+		psd_add(w->psd, k, out);
 }
 
 /* Rows on a terminal, beside a picture, would hide what is said about it. */
@@ -122,7 +126,7 @@ static int run_once(struct start *s)
 	const struct options *o = &s->options;
 	const struct machine *m = s->machine;
 	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .reported = true };
-	struct watchers w = { NULL, NULL, NULL };
+	struct watchers w = { NULL, NULL, NULL, NULL };
 	struct stats stats = stats_new(m->outputs);
 	uint64_t every = steps_between(o, m);
 	job.record = o->input ? record_read(o, m) : NULL;
@@ -135,21 +139,27 @@ static int run_once(struct start *s)
 		record_say(job.record, job.h);
 	struct output *output;
 	FILE *to = output_open(o->output, &output);
-	if (o->stats)
+	if (o->window)
+		w.psd = psd_new(m, o, job.h, job.steps);
+	else if (o->stats)
 		w.stats = &stats;
 	else if (!o->plot || o->output || !isatty(STDOUT_FILENO))
 		w.rows = rows_new(to, m, job.h, every);
-	if (o->plot)
-		w.picture = picture_new(m, job.h, every);
+	if (o->plot && !o->window)
+		w.picture = picture_new(m, &s->view, job.h, every);
 	error = run_steps(&job, watch_all, &w);
 	progress_end();
 	if (w.rows)
 		rows_end(w.rows);
 	if (w.stats)
 		stats_print(to, w.stats, m, job.h);
+	if (w.psd)
+		psd_print(to, w.psd);
 	output_done(output, to);
 	if (w.picture)
-		picture_draw(w.picture, o->plot_file);
+		picture_draw(w.picture, o);
+	if (w.psd && o->plot)
+		psd_draw(w.psd, &s->view, o);
 	if (error)
 		fprintf(stderr, "%s: error: %s\n", m->name, error);
 	return error ? WRONG_DATA : 0;
@@ -158,8 +168,10 @@ static int run_once(struct start *s)
 static int run_sweep(struct start *s, struct workers w)
 {
 	struct output *output;
+	if (s->options.plot)
+		picture_check(&s->view, &s->options);
 	FILE *to = output_open(w.rank == 0 ? s->options.output : NULL, &output);
-	int status = sweep_run(s->tools, &s->options, s->code, s->machine, to, w);
+	int status = sweep_run(s->tools, &s->options, s->code, s->machine, &s->view, to, w);
 	output_done(output, to);
 	return status;
 }
@@ -181,6 +193,9 @@ int main(int argc, char **argv)
 	s.machine = machine_of(s.tools, s.code, &error);
 	if (!s.machine)
 		fail(WRONG_DATA, error);
+	s.view = view_of(s.machine, s.options.show);
+	if (s.options.show)
+		machine_show(s.machine, &s.view);
 	check_end(&s);
 	set_params(&s);
 	status = s.options.sweep ? run_sweep(&s, w) : run_once(&s);

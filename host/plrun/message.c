@@ -113,15 +113,22 @@ static long milliseconds(void)
 	return 1000 * (long)t.tv_sec + t.tv_nsec / 1000000;
 }
 
+static bool always;                    /* lines, also where no terminal is: in a log, one in two seconds */
+
+void progress_always(void)
+{
+	always = true;
+}
+
 bool progress_wanted(void)
 {
 	static int terminal = -1;
 	static long last;
 	if (terminal < 0) {
 		terminal = isatty(STDERR_FILENO);
-		last = milliseconds() + 800;    /* what takes less than a second needs no line */
+		last = milliseconds() + (always ? -10000 : 800);   /* what takes less than a second needs no line */
 	}
-	if (!terminal || milliseconds() - last < 200)
+	if (!(terminal || always) || milliseconds() - last < (terminal ? 200 : 2000))
 		return false;
 	last = milliseconds();
 	return true;
@@ -129,9 +136,10 @@ bool progress_wanted(void)
 
 void progress(const char *line)
 {
-	fprintf(stderr, "\rplrun: %s\033[K", line);
+	const bool terminal = isatty(STDERR_FILENO);
+	fprintf(stderr, terminal ? "\rplrun: %s\033[K" : "plrun: %s\n", line);
 	fflush(stderr);
-	shown = true;
+	shown = terminal;
 }
 
 void progress_end(void)

@@ -57,7 +57,32 @@ static void take_time(struct options *o, const char *value) { o->time = value; }
 static void take_output(struct options *o, const char *value) { o->output = value; }
 static void take_stats(struct options *o, const char *value) { (void)value; o->stats = true; }
 static void take_peak(struct options *o, const char *value) { (void)value; o->peak = true; }
+static void take_show(struct options *o, const char *value) { o->show = value; }
+static void take_psd(struct options *o, const char *value) { read_window(o, value); }
+static void take_dark(struct options *o, const char *value) { (void)value; o->look.dark = true; }
+static void take_paper(struct options *o, const char *value) { (void)value; o->look.paper = true; }
+static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
+
+static void take_log(struct options *o, const char *value)
+{
+	o->look.log_x = *value == 'x';
+	o->look.log_y = strcmp(value + o->look.log_x, "y") == 0;
+	o->look.log = true;
+	if (strlen(value) != (size_t)(o->look.log_x + o->look.log_y))
+		wrong_usage(format("--log takes x, y or xy, found '%s'", value));
+}
+
+static void take_size(struct options *o, const char *value)
+{
+	char *copy = need(strdup(value)), *by = strchr(copy, 'x');
+	if (by)
+		*by = 0;
+	if (!by || !read_number(copy, &o->look.width) || !read_number(by + 1, &o->look.height) ||
+	    !(o->look.width >= 20 && o->look.width <= 10000 && o->look.height >= 20 && o->look.height <= 10000))
+		wrong_usage(format("--size takes WIDTHxHEIGHT, each from 20 to 10000, found '%s'", value));
+	free(copy);
+}
 
 /* A file, or ranges: of several every combination */
 static void take_sweep(struct options *o, const char *value)
@@ -90,11 +115,23 @@ static void take_jobs(struct options *o, const char *value)
 	o->jobs = (int)jobs;
 }
 
+/* It would be a command of gnuplot. */
+static void refuse_controls(const char *value, const char *what)
+{
+	for (const char *c = value; *c; c++)
+		if ((unsigned char)*c < ' ' || *c == 127)
+			wrong_usage(format("%s of the picture has a control character in it", what));
+}
+
+static void take_title(struct options *o, const char *value)
+{
+	refuse_controls(value, "--title: the title");
+	o->look.title = value;
+}
+
 static void take_plot(struct options *o, const char *value)
 {
-	for (const char *c = value ? value : ""; *c; c++)
-		if ((unsigned char)*c < ' ' || *c == 127)
-			wrong_usage("--plot: the name of the picture has a control character in it");
+	refuse_controls(value ? value : "", "--plot: the name");
 	o->plot = true;
 	o->plot_file = value;
 }
@@ -127,6 +164,14 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
 	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
+	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x", take_show },
+	{ "log", "x|y|xy", "... logarithmic axes", take_log },
+	{ "title", "TEXT", "... the title (default: the model's name)", take_title },
+	{ "size", "WxH", "... in pixels, with --paper in millimetres", take_size },
+	{ "dark", NULL, "... light on dark", take_dark },
+	{ "paper", NULL, "... for print: a column of 85 mm; .pdf has its fonts inside", take_paper },
+	{ "psd", "[WINDOW]", "in the place of rows power spectral densities: hann:1024:50 is window:steps:overlap [%]",
+	  take_psd },
 	{ "stats", NULL, "in the place of rows a line for each output: final, mean, rms, least, largest, peak and when",
 	  take_stats },
 	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares;",
@@ -136,6 +181,7 @@ static const struct row {
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
+	{ "progress", NULL, "how far it is on standard error, also where that is no terminal", take_progress },
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
 	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL }, { "params", "FILE", NULL, NULL },
@@ -195,11 +241,12 @@ static const char *value_of(struct words *w, const struct row *row, const char *
 		return NULL;
 	}
 	if (row->argument[0] == '[') {
-		if (!given && is_picture(next)) {
+		const bool plot = row->take == take_plot;
+		if (!given && (plot ? is_picture(next) : is_window(next))) {
 			w->next++;
 			return next;
 		}
-		if (given && !is_picture(given))
+		if (given && plot && !is_picture(given))
 			wrong_usage(format("--plot draws .svg, .png or .pdf, found '%s'", given));
 		return given;
 	}
@@ -243,8 +290,26 @@ static void take_word(struct options *o, const char *word)
 	o->until = time_of("T", word);
 }
 
+static void check_look(const struct options *o)
+{
+	const struct look *l = &o->look;
+	const char *of_files = l->dark ? "--dark" : l->paper ? "--paper" : l->width > 0 ? "--size" : NULL;
+	const char *any = of_files ? of_files : l->title ? "--title" : l->log ? "--log" : NULL;
+	if (any && !o->plot)
+		wrong_usage(format("%s is of a picture: --plot FILE draws it", any));
+	if (of_files && !o->plot_file)
+		wrong_usage(format("%s is of a picture in a file: --plot FILE.svg", of_files));
+	if (l->dark && l->paper)
+		wrong_usage("--paper is light, and --dark is not");
+	if (l->log && o->ranges == 2)
+		wrong_usage("--log: the axes of a map are logarithmic where its ranges are, K=A:B:N:log");
+	if (l->paper && strcmp(strrchr(o->plot_file, '.'), ".svg") == 0)
+		say_note("an SVG names its fonts and has none inside; a .pdf has");
+}
+
 static void check(const struct options *o)
 {
+	check_look(o);
 	if (!o->spec)
 		wrong_usage("no spec is given");
 	if (!o->sweep && (o->peak || o->resume || o->jobs))
@@ -253,6 +318,12 @@ static void check(const struct options *o)
 		wrong_usage("--plot draws a sweep over one range, or two");
 	if (o->sweep && o->stats)
 		wrong_usage("--stats is of one run; a line of a sweep has them of its own");
+	if (o->window && (o->sweep || o->stats))
+		wrong_usage(format("--psd and %s: one at a time", o->sweep ? "--sweep" : "--stats"));
+	if (o->window && o->every >= 0)
+		wrong_usage("--psd takes every step: rows that are further apart would fold high frequencies onto low ones");
+	if (o->window && o->show && strchr(o->show, ':'))
+		wrong_usage("--psd is over frequency: --show takes no X:Y with it");
 	if (o->sweep && o->every >= 0)
 		wrong_usage("--every is for the rows of one run; a sweep looks at every step");
 	if (o->sweep && strcmp(o->spec, "-") == 0)

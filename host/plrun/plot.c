@@ -1,60 +1,57 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures by gnuplot. Of a run: a panel for each output over one axis of time; a long run is kept as the least and the
- * largest value of each output in buckets of equal length, more of them than a picture has points across. Of a sweep: a
- * panel for each output over the range, or a map over two. */
+/* Pictures. Of a run: panels over one axis of time, or of one column over another; a long run is kept as the least and
+ * the largest value of each column in buckets of equal length, more of them than a picture has points across, and as
+ * the first of each, which is a point over another column. Of a sweep: panels over the range, or maps over two. */
 #define _GNU_SOURCE
 #include "plrun.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUCKETS = 8192, PANELS = 12 };   /* BUCKETS: even */
+enum { BUCKETS = 8192, PANELS = 12, FIRST = 0, LEAST, LARGEST, KEPT };      /* BUCKETS: even */
 
 struct picture {
 	const struct machine *machine;
+	const struct view *view;
 	double h;
 	uint64_t every;                 /* steps from one sample to the next */
-	int panels;
+	int columns;
 	uint64_t stride;                /* samples of a bucket */
 	size_t buckets;
-	double *least, *largest;        /* BUCKETS x panels */
+	double *value[KEPT];            /* BUCKETS x columns */
 };
 
-struct picture *picture_new(const struct machine *m, double h, uint64_t every)
+struct picture *picture_new(const struct machine *m, const struct view *v, double h, uint64_t every)
 {
 	struct picture *p = need(calloc(1, sizeof *p));
-	*p = (struct picture){ .machine = m, .h = h, .every = every, .stride = 1 };
-	p->panels = m->outputs < PANELS ? m->outputs : PANELS;
-	p->least = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
-	p->largest = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
+	*p = (struct picture){ .machine = m, .view = v, .h = h, .every = every, .stride = 1, .columns = v->columns };
+	for (int kept = 0; kept < KEPT; kept++)
+		p->value[kept] = need(calloc((size_t)BUCKETS * (size_t)p->columns + 1, sizeof(double)));
 	return p;
 }
 
-/* Bucket `from` with what is in [least, largest] too */
+static double *bucket_of(const struct picture *p, int kept, size_t bucket)
+{
+	return p->value[kept] + bucket * (size_t)p->columns;
+}
+
+/* A bucket with what is in [least, largest] too */
 static void widen(struct picture *p, size_t bucket, const double *least, const double *largest)
 {
-	double *low = p->least + bucket * (size_t)p->panels, *high = p->largest + bucket * (size_t)p->panels;
-	for (int i = 0; i < p->panels; i++) {
+	double *low = bucket_of(p, LEAST, bucket), *high = bucket_of(p, LARGEST, bucket);
+	for (int i = 0; i < p->columns; i++) {
 		low[i] = least[i] < low[i] ? least[i] : low[i];
 		high[i] = largest[i] > high[i] ? largest[i] : high[i];
 	}
 }
 
-static void begin_bucket(struct picture *p, size_t bucket, const double *least, const double *largest)
-{
-	size_t n = (size_t)p->panels;
-	memmove(p->least + bucket * n, least, n * sizeof *least);
-	memmove(p->largest + bucket * n, largest, n * sizeof *largest);
-}
-
 static void halve(struct picture *p)
 {
-	size_t n = (size_t)p->panels;
-	for (size_t b = 0; b < BUCKETS; b++) {
-		if (b % 2 == 0)
-			begin_bucket(p, b / 2, p->least + b * n, p->largest + b * n);
-		else
-			widen(p, b / 2, p->least + b * n, p->largest + b * n);
+	const size_t size = (size_t)p->columns * sizeof(double);
+	for (size_t b = 0; b < BUCKETS; b += 2) {
+		widen(p, b, bucket_of(p, LEAST, b + 1), bucket_of(p, LARGEST, b + 1));
+		for (int kept = 0; kept < KEPT; kept++)
+			memmove(bucket_of(p, kept, b / 2), bucket_of(p, kept, b), size);
 	}
 	p->buckets = BUCKETS / 2;
 	p->stride *= 2;
@@ -70,29 +67,23 @@ void picture_add(void *who, uint64_t k, const double *out)
 		halve(p);
 	size_t bucket = (size_t)(k / p->stride);
 	if (bucket == p->buckets) {
-		begin_bucket(p, bucket, out, out);
+		for (int kept = 0; kept < KEPT; kept++)
+			memcpy(bucket_of(p, kept, bucket), out, (size_t)p->columns * sizeof *out);
 		p->buckets++;
 	} else {
 		widen(p, bucket, out, out);
 	}
 }
 
-/* ---- gnuplot's words ---- */
+/* ---- a run ---- */
 
-static void print_quoted(FILE *to, const char *text)
-{
-	for (putc('\'', to); *text; text++)
-		fprintf(to, *text == '\'' ? "''" : "%c", *text);
-	putc('\'', to);
-}
-
-static void print_row(FILE *to, const struct picture *p, size_t bucket, const double *value)
+static void print_row(FILE *to, const struct picture *p, size_t bucket, int kept)
 {
 	char text[LONGEST];
 	*put_time(text, bucket * p->stride * p->every, p->h, p->machine->single) = 0;
 	fputs(text, to);
-	for (int i = 0; i < p->panels; i++) {
-		*put_shortest(text, value[bucket * (size_t)p->panels + (size_t)i], p->machine->single) = 0;
+	for (int i = 0; i < p->columns; i++) {
+		*put_shortest(text, bucket_of(p, kept, bucket)[i], p->machine->single) = 0;
 		fprintf(to, " %s", text);
 	}
 	putc('\n', to);
@@ -103,151 +94,191 @@ static void print_data(FILE *to, const struct picture *p)
 {
 	fputs("$data << END\n", to);
 	for (size_t b = 0; b < p->buckets; b++) {
-		print_row(to, p, b, p->least);
+		print_row(to, p, b, LEAST);
 		if (p->stride > 1)
-			print_row(to, p, b, p->largest);
+			print_row(to, p, b, LARGEST);
 	}
+	fputs("END\n", to);
+	if (p->stride == 1)
+		return;
+	fputs("$first << END\n", to);
+	for (size_t b = 0; b < p->buckets; b++)
+		print_row(to, p, b, FIRST);
 	fputs("END\n", to);
 }
 
-/* Nothing of the file's name is in the script: the picture comes out of gnuplot's standard output. */
-static void print_terminal(FILE *to, int panels, const char *file)
+static double extreme_of(const struct picture *p, int kept, int column)
 {
-	int height = 120 + (panels == 1 ? 360 : 180 * panels);
-	const char *end = file ? file + strlen(file) - 3 : "";
-	if (!file)
-		return;
-	if (strcmp(end, "pdf") == 0)
-		fprintf(to, "set term pdfcairo noenhanced size %.1fin,%.1fin font 'sans,10'\n", 9.0, height / 100.0);
-	else
-		fprintf(to, "set term %s noenhanced size 900,%d font 'sans,11' background '#ffffff'\n",
-			strcmp(end, "png") == 0 ? "pngcairo" : "svg", height);
-}
-
-static void print_panels(FILE *to, const struct picture *p)
-{
-	double end = (double)((p->buckets ? p->buckets - 1 : 0) * p->stride * p->every) * p->h;
-	fprintf(to, "set multiplot layout %d,1 title ", p->panels);
-	print_quoted(to, p->machine->name);
-	fprintf(to, " noenhanced\nset grid lt 1 lc rgb '#dddddd'\nset lmargin 12\nset rmargin 3\nunset key\n"
-		    "set xrange [0:%g]\nset offsets 0,0,graph 0.05,graph 0.05\nset format y '%%.3g'\n",
-		end > 0 ? end : 1.0);
-	for (int i = 0; i < p->panels; i++) {
-		fputs("set ylabel ", to);
-		print_quoted(to, p->machine->output_names[i]);
-		fprintf(to, " noenhanced\n%splot $data using 1:%d with %s lc rgb '#1f5fa8' lw 1.2\n",
-			i == p->panels - 1 ? "set xlabel 't [s]'\n" : "", i + 2, p->buckets > 1 ? "lines" : "points");
+	double most = 0;
+	for (size_t b = 0; b < p->buckets; b++) {
+		const double value = bucket_of(p, kept, b)[column];
+		if (b == 0 || (kept == LEAST ? value < most : value > most))
+			most = value;
 	}
-	fputs("unset multiplot\n", to);
+	return most;
 }
 
-static void write_picture(const struct said *said, const char *file)
+/* A logarithm has a picture of what is above 0. */
+static void check_log(const struct picture *p, char axis, int column)
 {
-	struct output *output;
-	FILE *to = output_open(file, &output);
-	fwrite(said->out, 1, said->out_length, to);
-	output_done(output, to);
+	const char *name = p->machine->output_names[column];
+	if (extreme_of(p, LARGEST, column) <= 0)
+		fail(WRONG_DATA, format("--log %c: '%s' is nowhere above 0", axis, name));
+	if (extreme_of(p, LEAST, column) <= 0)
+		say_note(format("--log %c: '%s' is drawn where it is above 0", axis, name));
 }
 
-static void check_display(const char *file)
+static void print_log(FILE *to, const struct look *look)
 {
-	const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
-	if (!file && !(display && *display) && !(wayland && *wayland))
-		fail(WRONG_DATA, "there is no display for a window: --plot FILE.svg draws a file");
+	fprintf(to, "%sset logscale x\n%sset logscale y\n", look->log_x ? "" : "un", look->log_y ? "" : "un");
 }
 
-/* -d: gnuplot without what the user has it do at its start */
-static void draw(FILE *script, const char *file)
+static void print_time(FILE *to, const struct picture *p, const struct look *look, bool last)
 {
-	const char *window[] = { "gnuplot", "-d", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-d", "-", NULL };
-	struct said said = { 0 };
-	char *error = run_command(file ? drawn : window, script, &said);
-	if (!error && said.status)
-		error = format("gnuplot could not draw:\n%s", said.err);
-	if (error)
-		fail(WRONG_DATA, error);
-	if (file)
-		write_picture(&said, file);
-	fclose(script);
+	const double each = (double)(p->stride * p->every) * p->h;
+	const double end = p->buckets > 1 ? (double)(p->buckets - 1) * each : 1;
+	print_log(to, look);
+	fprintf(to, "set xrange [%g:%g]\nset offsets 0,0,%s\n", look->log_x ? each : 0, end,
+		look->log_y ? "0,0" : "graph 0.05,graph 0.05");
+	script_label(to, "xlabel", last ? "t [s]" : "");
 }
 
-static void say_panels(int panels, const struct machine *m)
+static void print_over(FILE *to, const struct picture *p, const struct look *look, int column)
 {
-	if (panels < m->outputs)
-		say_note(format("the first %d of %d outputs are drawn", panels, m->outputs));
+	print_log(to, look);
+	fputs("set xrange [*:*]\nset offsets graph 0.03,graph 0.03,graph 0.05,graph 0.05\n", to);
+	script_label(to, "xlabel", axis_label(p->machine, column));
+	if (look->log_x)
+		check_log(p, 'x', column);
 }
 
-void picture_draw(struct picture *p, const char *file)
+static void print_tics(FILE *to, const struct picture *p, const struct look *look, const struct panel *panel)
 {
-	FILE *script = need(tmpfile());
-	check_display(file);
-	say_panels(p->panels, p->machine);
-	print_terminal(script, p->panels, file);
-	print_data(script, p);
-	print_panels(script, p);
-	draw(script, file);
+	double least = extreme_of(p, LEAST, panel->y[0]), most = extreme_of(p, LARGEST, panel->y[0]);
+	for (int k = 1; k < panel->curves; k++) {
+		const double low = extreme_of(p, LEAST, panel->y[k]), high = extreme_of(p, LARGEST, panel->y[k]);
+		least = low < least ? low : least;
+		most = high > most ? high : most;
+	}
+	fputs("set ytics autofreq\n", to);
+	if (!look->log_y)
+		script_tics(to, 'y', least, most);
+}
+
+/* Points of a run that is longer than the buckets: each is a state that was, and a line between two would be none. */
+static void print_panel(FILE *to, const struct picture *p, const struct look *look, const struct panel *panel,
+			bool last)
+{
+	const struct machine *m = p->machine;
+	const char *data = panel->x >= 0 && p->stride > 1 ? "$first" : "$data";
+	if (panel->x < 0)
+		print_time(to, p, look, last);
+	else
+		print_over(to, p, look, panel->x);
+	script_label(to, "ylabel", panel->curves == 1 ? axis_label(m, panel->y[0]) : "");
+	print_tics(to, p, look, panel);
+	for (int k = 0; k < panel->curves; k++) {
+		if (look->log_y)
+			check_log(p, 'y', panel->y[k]);
+		script_curve(to, k, format("%s using %d:%d", data, panel->x + 2, panel->y[k] + 2),
+			     panel->curves > 1 ? m->output_names[panel->y[k]] : NULL,
+			     data[1] == 'f' ? 0 : p->buckets * (p->stride > 1 ? 2 : 1));
+	}
+	putc('\n', to);
+}
+
+static int panels_of(const struct view *v)
+{
+	if (v->panels > PANELS)
+		say_note(format("the first %d of %d panels are drawn", PANELS, v->panels));
+	return v->panels < PANELS ? v->panels : PANELS;
+}
+
+void picture_draw(struct picture *p, const struct options *o)
+{
+	struct script *s = script_new(&o->look, o->plot_file, p->machine->name, NULL);
+	const int panels = panels_of(p->view);
+	bool over = false;
+	print_data(script_data(s), p);
+	for (int i = 0; i < panels; i++) {
+		const struct panel *panel = &p->view->panel[i];
+		const bool last = i == panels - 1 || panel[1].x >= 0;
+		over = over || panel->x >= 0;
+		print_panel(script_panel(s, panel_height(p->view, panel, last)), p, &o->look, panel, last);
+	}
+	if (over && p->stride > 1)
+		say_note(format("one output over another: a point in %llu steps",
+				(unsigned long long)(p->stride * p->every)));
+	script_draw(s);
 }
 
 /* ---- sweeps ---- */
 
-static void print_label(FILE *to, char axis, const char *text)
-{
-	fprintf(to, "set %clabel ", axis);
-	print_quoted(to, text);
-	fputs(" noenhanced\n", to);
-}
-
-/* Curves of one output over one range: they differ in points and dashes, too. Columns: run, the param, the values. */
-static void print_curves(FILE *to, const struct machine *m, int output, bool peak)
+/* Columns: run, the param, the values. */
+static void print_curves(FILE *to, const struct machine *m, const struct panel *panel, const struct options *o)
 {
 	static const char *const what[] = { "final", "rms", "peak" };
-	static const char *const style[] = { "pt 7 dt 1 lc rgb '#1f5fa8'", "pt 4 dt 2 lc rgb '#d55e00'",
-					     "pt 8 dt 4 lc rgb '#333333'" };
-	print_label(to, 'y', m->output_names[output]);
-	for (int k = 0; k < 2 + peak; k++)
-		fprintf(to, "%s $data using 2:%d with linespoints title '%s' ps 0.5 lw 1.2 %s", k ? "," : "plot",
-			3 + k * m->outputs + output, what[k], style[k]);
+	const int kinds = 2 + o->peak;
+	script_label(to, "ylabel", panel->curves == 1 ? axis_label(m, panel->y[0]) : "");
+	for (int k = 0; k < panel->curves * kinds; k++) {
+		const int column = panel->y[k / kinds];
+		script_curve(to, k, format("$data using 2:%d", 3 + k % kinds * m->outputs + column),
+			     panel->curves == 1 ? what[k % kinds]
+						: format("%s of %s", what[k % kinds], m->output_names[column]),
+			     o->range[0].count < 12 ? o->range[0].count : 12);
+	}
 	putc('\n', to);
 }
 
-static void print_map(FILE *to, const struct machine *m, int output, bool peak)
+static void print_map(FILE *to, const struct machine *m, const struct panel *panel, const struct options *o)
 {
-	fputs("set title ", to);
-	print_quoted(to, format("%s of %s", peak ? "peak" : "rms", m->output_names[output]));
-	fprintf(to, " noenhanced\nsplot $data using 2:3:%d with pm3d notitle\n",
-		4 + (1 + peak) * m->outputs + output);
+	script_label(to, "title", format("%s of %s", o->peak ? "peak" : "rms", axis_label(m, panel->y[0])));
+	fprintf(to, "splot $data using 2:3:%d with pm3d notitle\n", 4 + (1 + o->peak) * m->outputs + panel->y[0]);
 }
 
-static void print_axis(FILE *to, char axis, const struct range *r, bool map)
+static void print_range(FILE *to, char axis, const struct range *r, bool log)
 {
 	const bool up = r->from < r->to;
-	fprintf(to, "set %crange [%.17g:%.17g]\n", axis, up ? r->from : r->to, up ? r->to : r->from);
-	fprintf(to, "set %clabel offset %d,0\n", axis, axis == 'y' && map ? -3 : 0);
-	if (r->log)
-		fprintf(to, "set logscale %c\n", axis);
-	print_label(to, axis, r->name);
+	const double from = up ? r->from : r->to, end = up ? r->to : r->from;
+	fprintf(to, "set %crange [%.17g:%.17g]\n", axis, from, end);
+	if (log)
+		script_log_tics(to, axis, from, end);
+	script_label(to, format("%clabel", axis), r->name);
 }
 
-void picture_sweep(const struct machine *m, const struct options *o, const char *lines)
+void picture_check(const struct view *v, const struct options *o)
 {
-	FILE *script = need(tmpfile());
-	const int panels = m->outputs < PANELS ? m->outputs : PANELS;
+	const int kinds = 2 + o->peak;
+	for (int i = 0; i < v->panels; i++) {
+		if (v->panel[i].x >= 0)
+			fail(WRONG_USAGE, "--show: one output over another is a picture of one run");
+		if (v->panel[i].curves > 1 && o->ranges == 2)
+			fail(WRONG_USAGE, "--show: a map shows one output; a comma begins another map");
+		if (v->panel[i].curves * kinds > PICTURE_CURVES)
+			fail(WRONG_USAGE, format("--show: a panel has at most %d curves, and each output of a sweep "
+						 "is %d", PICTURE_CURVES, kinds));
+	}
+}
+
+void picture_sweep(const struct machine *m, const struct view *v, const struct options *o, const char *lines)
+{
+	struct script *s = script_new(&o->look, o->plot_file, m->name, NULL);
+	const int panels = panels_of(v);
 	const bool map = o->ranges == 2;
-	check_display(o->plot_file);
-	say_panels(panels, m);
-	print_terminal(script, map ? 2 * panels : panels, o->plot_file);
-	fprintf(script, "set datafile separator ','\n$data << END\n%sEND\n", lines);
-	fprintf(script, "set multiplot layout %d,1 title ", panels);
-	print_quoted(script, m->name);
-	fputs(" noenhanced\nset grid lt 1 lc rgb '#dddddd'\nset lmargin 12\nset key outside right\n"
-	      "set format y '%.3g'\n", script);
-	for (size_t i = 0; i < o->ranges; i++)
-		print_axis(script, i ? 'y' : 'x', &o->range[i], map);
-	if (map)
-		fputs("set view map\nset pm3d interpolate 4,4\nset format cb '%.3g'\nset palette defined "
-		      "(0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n", script);
-	for (int i = 0; i < panels; i++)
-		(map ? print_map : print_curves)(script, m, i, o->peak);
-	fputs("unset multiplot\n", script);
-	draw(script, o->plot_file);
+	fprintf(script_data(s), "set datafile separator ','\n$data << END\n%sEND\n%s", lines,
+		map ? "set view map\nset pm3d interpolate 4,4\nset palette defined "
+		      "(0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\nset lmargin 15\n"
+		      "set rmargin 12\nunset grid\n" : "");
+	for (int i = 0; i < panels; i++) {
+		const bool last = map || i == panels - 1;
+		FILE *to = script_panel(s, map ? 2 : panel_height(v, &v->panel[i], last) + 0.15);
+		for (size_t r = 0; r < o->ranges; r++)
+			print_range(to, r ? 'y' : 'x', &o->range[r], o->range[r].log || o->look.log_x);
+		if (o->look.log_y)
+			fputs("set logscale y\n", to);
+		if (!last)
+			script_label(to, "xlabel", "");
+		(map ? print_map : print_curves)(to, m, &v->panel[i], o);
+	}
+	script_draw(s);
 }

@@ -25,9 +25,12 @@
  *     table.c     CSV as spreadsheets write it, a line at a time, with places
  *     record.c    a table as samples of the inputs, resampled where its times are not those of the steps
  *     run.c       steps, and what watches them
+ *     show.c      which outputs and states are shown, and in which panels
  *     rows.c      the rows of a run as CSV
  *     plot.c      ... as a picture
+ *     psd.c       ... as power spectral densities
  *     stats.c     ... as a line for each output: final and mean value, rms, extremes
+ *     gnuplot.c   what draws pictures
  *     grid.c      the table of a sweep over ranges
  *     sweep.c     lines of params, and what a run with each comes to
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
@@ -43,6 +46,7 @@
 #define PLRUN_H
 
 #include "plrt.h"
+#include "host/picture.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -76,6 +80,7 @@ _Noreturn void fail_at(struct place at, const char *note, const char *message); 
 bool progress_wanted(void);                             /* a terminal, and a fifth of a second since the last line */
 void progress(const char *line);
 void progress_end(void);                                /* takes the line away */
+void progress_always(void);                             /* where there is no terminal, too: lines */
 
 /* ---- text.c ---- */
 
@@ -97,6 +102,12 @@ struct range {                          /* of a sweep: NAME=FROM:TO:COUNT[:log] 
 	size_t count;
 	bool log;
 };
+struct look {                           /* of a picture */
+	bool log_x, log_y, log, dark, paper;    /* log: said which */
+	const char *title;
+	double width, height;                   /* [px], of a paper [mm]; 0: as it comes */
+};
+struct cosines;                         /* psd.c */
 struct options {
 	const char *spec, *output;
 	double until, every;                    /* [s]; below 0: not given */
@@ -111,6 +122,12 @@ struct options {
 	struct range *range;
 	size_t ranges;                          /* 0: of the file */
 	bool peak, resume, stats;
+	const char *show;                       /* NULL: the outputs */
+	struct look look;
+	const struct cosines *window;           /* of a power spectral density; NULL: none */
+	unsigned long segment;                  /* steps; 0: as the run is long */
+	double overlap;                         /* parts of a segment */
+	const char *chart;                      /* --chart; NULL: a run */
 	int jobs;                               /* 0: as many as there are cores */
 };
 void read_options(int argc, char **argv, struct options *o);
@@ -198,10 +215,12 @@ struct machine {
 	void (*allowed)(const void *s, double *y);
 	void (*allowedf)(const void *s, float *y);
 	const char *name;
-	int states, inputs, outputs, params;
+	int states, inputs, outputs, params;    /* outputs: those that are shown */
+	int own_outputs;                        /* of the model */
+	const int *shown;                       /* per output of its own, or behind them of a state; NULL: all as they are */
 	size_t size;
 	double h;
-	const char *const *input_names, *const *output_names, *const *param_names;
+	const char *const *input_names, *const *output_names, *const *state_names, *const *param_names;
 	const int *ahead;                       /* of each input: samples that it has had before the first step */
 	int most_ahead;
 	double *param_values;
@@ -210,10 +229,30 @@ struct machine *machine_open(const char *path, const char *name, char **error); 
 struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error);
 void machine_close(struct machine *m);
 
+/* ---- show.c ---- */
+
+struct panel {
+	int x;                                  /* a column; -1: t */
+	int curves, y[PICTURE_CURVES];          /* columns */
+};
+struct view {
+	int panels, columns;
+	struct panel *panel;
+	int *source;                            /* per column: an output of the model, or behind them a state */
+	const char **name;
+};
+struct view view_of(const struct machine *m, const char *text);     /* text: of --show, or NULL */
+void machine_show(struct machine *m, const struct view *v);         /* what it has from now on as outputs */
+const char *axis_label(const struct machine *m, int column);
+const char *psd_label(const struct machine *m, int column);
+/* In heights of a curve over t, with room for a legend and for what stands at the axis below */
+double panel_height(const struct view *v, const struct panel *p, bool labelled);
+
 struct instance {
 	const struct machine *machine;
 	void *state;
 	float *narrow;                          /* of models in float: room for any vector */
+	double *all;                            /* where a choice is shown: outputs, then states */
 };
 struct instance *instance_new(const struct machine *m); /* as `init` leaves it */
 void instance_free(struct instance *i);
@@ -296,11 +335,36 @@ watch rows_add;
 void rows_end(struct rows *r);
 
 struct picture;
-struct picture *picture_new(const struct machine *m, double h, uint64_t every); /* of every so many steps */
+struct picture *picture_new(const struct machine *m, const struct view *v, double h, uint64_t every);
 watch picture_add;
+void picture_draw(struct picture *p, const struct options *o);
+void picture_check(const struct view *v, const struct options *o);  /* may it be of a sweep? */
 /* `lines`: of a sweep over one range or two, as printed, without their names; an empty one before each scan */
-void picture_sweep(const struct machine *m, const struct options *o, const char *lines);
-void picture_draw(struct picture *p, const char *file); /* NULL: a window */
+void picture_sweep(const struct machine *m, const struct view *v, const struct options *o, const char *lines);
+
+/* ---- gnuplot.c ---- */
+
+struct script;
+struct script *script_new(const struct look *look, const char *file, const char *title, const char *subtitle);
+FILE *script_data(struct script *s);                    /* what stands before the panels */
+FILE *script_panel(struct script *s, double height);    /* the next one, in heights of a curve over t */
+/* Few enough numbers at an axis for any height; of a logarithmic one 1, 2, 5 of each decade where there are few */
+void script_tics(FILE *to, char axis, double from, double end);
+void script_log_tics(FILE *to, char axis, double from, double end);
+void script_label(FILE *to, const char *what, const char *text);        /* set ylabel 'text' */
+/* Curve k of a panel; one with a title has dashes and marks of its own */
+void script_curve(FILE *to, int k, const char *data, const char *title, size_t points);
+void script_draw(struct script *s);
+
+/* ---- psd.c ---- */
+
+struct psd;
+bool is_window(const char *text);
+void read_window(struct options *o, const char *text);  /* NULL: the default */
+struct psd *psd_new(const struct machine *m, const struct options *o, double h, uint64_t steps);
+watch psd_add;
+void psd_print(FILE *to, const struct psd *p);
+void psd_draw(const struct psd *p, const struct view *v, const struct options *o);
 
 /* ---- stats.c ---- */
 
@@ -328,7 +392,7 @@ struct workers {
 
 struct sweep;
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	      FILE *to, struct workers w);              /* exit status */
+	      const struct view *v, FILE *to, struct workers w);        /* exit status */
 char *sweep_line(struct sweep *s, size_t row);          /* computed, by any thread; ends with a newline */
 
 struct journal;

@@ -151,7 +151,7 @@ static void report_sizes(const struct sizes *z, const struct machine *m)
 {
 	if (z->small < 0)
 		return;
-	const char *name = (m->single ? m->modelf->state_names : m->model->state_names)[z->small];
+	const char *name = m->state_names[z->small];
 	say_note(format("before t = %.3g s %s was at most %.2g, less than the %.2g that a step may be wrong by, since "
 			"its largest value counts: 'tolerance of %s = ...', or 'absolute' behind the tolerance, "
 			"measures it otherwise", z->from, name, z->size, z->missed, name));

@@ -12,6 +12,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 struct variant {
 	size_t row;                             /* the first that has it */
@@ -31,6 +32,8 @@ struct sweep {
 	const struct toolchain *tools;
 	const struct options *options;
 	const struct machine *machine;          /* at the values of the command line */
+	const struct view *view;
+	time_t began;
 	const struct record *record;
 	struct param *param;
 	size_t params, rows, rows_room;
@@ -43,7 +46,7 @@ struct sweep {
 	char **line, *drawn;                    /* drawn: the lines for a picture */
 	size_t drawn_length;
 	FILE *to_draw;                          /* NULL: there is none */
-	size_t written, done, failed;
+	size_t written, done, before, failed;   /* before: done when it began */
 };
 
 /* ---- the table ---- */
@@ -217,6 +220,8 @@ static void build_variant(struct sweep *s, struct variant *v)
 	struct code *c = generate(s->tools, &with, definition, count, true, &v->error, &status);
 	if (c) {
 		v->machine = machine_of(s->tools, c, &v->error);
+		if (v->machine && o->show)
+			machine_show(v->machine, s->view);
 		free(c->text);
 		free(c);
 	}
@@ -390,6 +395,14 @@ static void write_done(struct sweep *s)
 		fail(WRONG_DATA, format("cannot write the lines: %s", strerror(errno)));
 }
 
+/* With the time that is left, once it can be told from the runs that are done */
+static char *progress_text(const struct sweep *s)
+{
+	const double took = difftime(time(NULL), s->began), done = (double)(s->done - s->before);
+	char *text = format("%zu of %zu runs", s->done, s->rows);
+	return took < 3 ? text : format("%s, %.0f s left", text, took / done * (double)(s->rows - s->done));
+}
+
 static void deliver(void *who, size_t row, char *line)
 {
 	struct sweep *s = who;
@@ -398,7 +411,7 @@ static void deliver(void *who, size_t row, char *line)
 	s->done++;
 	write_done(s);
 	if (s->done < s->rows && progress_wanted())
-		progress(format("%zu of %zu runs", s->done, s->rows));
+		progress(progress_text(s));
 }
 
 static void add_file(struct hash *h, const char *path)
@@ -428,6 +441,7 @@ static char *key_of(const struct sweep *s, const struct code *c)
 	hash_text(&h, shortest(o->until, false));
 	hash_text(&h, o->time ? o->time : "");
 	hash_text(&h, o->peak ? "peak" : "");
+	hash_text(&h, o->show ? o->show : "");
 	for (size_t i = 0; i < o->passed_count; i++)
 		hash_text(&h, o->passed[i]);
 	for (size_t i = 0; i < o->definitions; i++)
@@ -453,6 +467,8 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 	say_when_interrupted("\nplrun: interrupted; the same command with --resume goes on here\n");
 	for (size_t i = 0; i < s->rows; i++)
 		s->done += s->line[i] != NULL;
+	s->before = s->done;
+	s->began = time(NULL);
 	if (s->options->resume)
 		say_note(format("%zu of %zu runs are done", s->done, s->rows));
 	print_names(s);
@@ -460,9 +476,9 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 }
 
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	      FILE *to, struct workers w)
+	      const struct view *v, FILE *to, struct workers w)
 {
-	struct sweep s = { .tools = t, .options = o, .machine = m, .to = to };
+	struct sweep s = { .tools = t, .options = o, .machine = m, .view = v, .to = to };
 	s.record = o->input ? record_read(o, m) : NULL;
 	read_table(&s, c);
 	find_variants(&s);
@@ -474,7 +490,7 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 	journal_end(s.journal);
 	if (s.to_draw) {
 		fclose(s.to_draw);
-		picture_sweep(m, o, s.drawn);
+		picture_sweep(m, v, o, s.drawn);
 	}
 	if (s.failed)
 		fprintf(stderr, "plrun: error: %zu of %zu runs failed: see the column status\n", s.failed, s.rows);

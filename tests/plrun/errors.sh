@@ -80,6 +80,59 @@ refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one ra
 $usage" swing.spec 1 --sweep s.csv --plot
 refuses 'statistics of a sweep' 2 "plrun: error: --stats is of one run; a line of a sweep has them of its own
 $usage" swing.spec 1 --sweep s.csv --stats
+refuses 'a picture of nothing' 2 "plrun: error: --dark is of a picture: --plot FILE draws it
+$usage" swing.spec 1 --dark
+refuses 'the size of a window' 2 "plrun: error: --size is of a picture in a file: --plot FILE.svg
+$usage" swing.spec 1 --size 400x300 --plot
+for size in 400 400x 10x400 x3 400x1e9; do
+	refuses "a size of $size" 2 "plrun: error: --size takes WIDTHxHEIGHT, each from 20 to 10000, found '$size'
+$usage" swing.spec 1 --plot a.svg --size $size
+done
+refuses 'axes that are none' 2 "plrun: error: --log takes x, y or xy, found 'yx'
+$usage" swing.spec 1 --plot a.svg --log yx
+refuses 'a paper in the dark' 2 "plrun: error: --paper is light, and --dark is not
+$usage" swing.spec 1 --plot a.svg --paper --dark
+refuses 'a title with commands' 2 "plrun: error: --title: the title of the picture has a control character in it
+$usage" swing.spec 1 --plot a.svg --title "$(printf 'a\nb')"
+form="note: z,acc are two panels, z+zf two curves in one, x:x' is x' over x"
+refuses 'what is not there to be shown' 2 "--show:1:3: error: no output or state is named 'xx'
+x,xx
+  ^
+note: did you mean 'x'?" swing.spec 1 --show x,xx
+refuses 'nothing like it' 2 "--show:1:1: error: no output or state is named 'speed'
+speed
+^
+note: there are x, x'" swing.spec 1 --show speed
+refuses 'a panel without a curve' 2 "--show:1:3: error: expected the name of an output or a state
+x+
+  ^
+$form" swing.spec 1 --show x+
+refuses 'one over another over a third' 2 "--show:1:5: error: expected ',' or '+', found ':'
+x:x':x
+    ^
+$form" swing.spec 1 --show "x:x':x"
+refuses 'too many curves' 2 "--show:1:16: error: a panel has at most 8 curves
+x+x+x+x+x+x+x+x+x
+               ^
+note: a comma begins another panel" swing.spec 1 --show x+x+x+x+x+x+x+x+x
+refuses 'one over another in a sweep' 2 "plrun: error: --show: one output over another is a picture of one run" \
+	swing.spec 1 --sweep k=1:2:3 --show "x:x'" --plot a.svg
+refuses 'a window that is none' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hat': windows are hann, \
+hamming, blackman, flattop, boxcar
+$usage" swing.spec 1 --psd=hat
+refuses 'a segment of 1000 steps' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hann:1000': a segment \
+is a power of two of steps, from 16 to 1048576
+$usage" swing.spec 1 --psd hann:1000
+refuses 'an overlap of all' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hann:64:100': segments \
+overlap by 0 to 95 percent
+$usage" swing.spec 1 --psd hann:64:100
+refuses 'a segment longer than the run' 1 "plrun: error: --psd: a segment of 64 steps is longer than the run, which has \
+11 rows" swing.spec 1 --psd hann:64
+refuses 'densities of rows that are apart' 2 "plrun: error: --psd takes every step: rows that are further apart would \
+fold high frequencies onto low ones
+$usage" swing.spec 1 --psd --every 0.2
+refuses 'densities of a sweep' 2 "plrun: error: --psd and --sweep: one at a time
+$usage" swing.spec 1 --psd --sweep k=1:2:3
 for range in k= k=1 k=1:2 k=1:b:3 k=1:2:3:lin k=1:2:3:log:4; do
 	form="--sweep takes FILE.csv or NAME=FROM:TO:COUNT[:log]"
 	refuses "a sweep over $range" 2 "plrun: error: $form, found '$range'

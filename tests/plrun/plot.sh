@@ -11,7 +11,7 @@ fi
 run "$models/sdcsf.spec" 2 >plain.csv
 run "$models/sdcsf.spec" 2 --plot "it's a.svg" >rows.csv
 same plain.csv rows.csv 'the rows are written, too'
-grep -q '<path' "it's a.svg" && [ "$(grep -c "rgb( 31,  95, 168)" "it's a.svg")" -ge 4 ]
+grep -q '<path' "it's a.svg" && [ "$(grep -c "rgb( 31, 111, 224)" "it's a.svg")" -ge 4 ]
 result $? 'svg: a line for each output'
 grep -q "x1'" "it's a.svg" || grep -q 'x1&apos;\|x1&#39;' "it's a.svg"
 result $? 'svg: the names of the outputs'
@@ -43,6 +43,64 @@ grep -q 'xrange \[0:30\]' script
 result $? 'with --every a picture ends where the rows end'
 [ "$(cat arguments)" = '-d -' ] && [ "$(cat thin.svg)" = drawn ] && ! grep -q 'thin\|set output' script
 result $? 'gnuplot without start files, and without the name of the file'
+
+# ---- what is shown, and where ----
+# script OPTION ...: what gnuplot is given, in `script`
+script() {
+	(PATH=$PWD/own:$PATH; run "$@" >rows.csv)
+}
+run "$models/sdcsf.spec" 2 >all.csv
+script "$models/sdcsf.spec" 2 --show "x2',x1+x2,x1:x1'" --plot shown.svg
+cut -d, -f 1-5 all.csv | awk -F, -v OFS=, '{ print $1, $5, $2, $3, $4 }' >expected
+same expected rows.csv '--show: rows have the columns, in the order in which they are named, each once'
+sed -n '/^\$data/,/^END/{//d;p}' script >points
+sed '1d; s/,/ /g' rows.csv >expected
+[ "$(wc -l <points)" -eq 201 ] && cmp expected points >>log 2>&1
+result $? '--show: a picture has all points'
+# panels in their order: columns, and the curves of one in the order in which they are named
+grep '^plot' script | sed 's/ with \([^$]*\)//g; s/plot //' >panels
+printf '%s\n' '$data using 1:2' '$data using 1:3$data using 1:4' '$data using 3:5' | diff - panels >log
+result $? '--show: panels, and curves of one panel, in their order'
+grep '^plot' script | sed -n 2p | grep -o "dt [^ ]* pt [0-9]*\|rgb '[^']*'\|title '[^']*'" >found
+printf '%s\n' 'dt 1 pt 7' "rgb '#1f6fe0'" "title 'x1'" 'dt (12,5) pt 5' "rgb '#be3028'" "title 'x2'" | diff - found >log
+result $? 'curves of one panel differ in colour, dash and mark'
+run "$models/sdcsf.spec" 2 --show "x1+x2,x1:x1'" --plot shown.svg --title "A & B's <title>" --dark --size 640x500 >rows.csv
+{
+	xmllint --noout shown.svg && grep -q 'width="640" height="500"' shown.svg && grep -q '#14171c\|rgb( *20, *23, *28)' \
+		shown.svg && grep -q 'A &amp; B' shown.svg && ! grep -q '>sdcsf<' shown.svg
+	# the key stands above the frame of its panel: gnuplot draws its texts first, at smaller y than any tic of the axis
+	grep -o '<title>x[12]</title>' shown.svg | tr -d '\n'
+} >log 2>&1
+grep -qx '<title>x1</title><title>x2</title>' log
+result $? 'svg: size, colours, title and the curves in their order'
+awk '/translate\(/ { split($0, part, /[(,)]/); y = part[3] }
+	/>x1<|>x2</ { if (/<text|<tspan|>x[12]</ && !/title/ && !key) key = y }
+	/>-*0\.[0-9]*</ && !top { top = y }
+	END { print "key at", key, "first tic at", top; exit !(key > 0 && top > 0 && key < top) }' shown.svg >log
+result $? 'svg: the legend is above its panel'
+printf 'model decay\ncoord x\noutput x, y = x - 1\nx'"'"' + x = 0\ninit x = 1\nstep 0.1\n' >decay.spec
+script decay.spec 5 --show x --plot log.svg --log xy
+grep -q '^set logscale x' script && grep -q '^set logscale y' script && grep -q 'xrange \[0.1:5\]' script
+result $? '--log xy: from the first row after t = 0'
+run decay.spec 5 --show y --plot log.svg --log y >rows.csv
+[ $? -eq 1 ] && grep -q "^plrun: error: --log y: 'y' is nowhere above 0$" said
+result $? '--log y of what is nowhere above 0'
+script "$models/scs.spec" 300 --show "x1:x1'" --plot cloud.svg
+grep -q '^plot \$first using 2:3 with points' script && grep -q '^note: .*a point in 4 steps$' said &&
+	[ "$(sed -n '/^\$first/,/^END/{//d;p}' script | wc -l)" -eq 7501 ]
+result $? 'one over another in a long run: points, all of which are rows'
+sed 1d rows.csv | awk -F, 'NR % 4 == 1 { print $1, $2, $3 }' >expected
+sed -n '/^\$first/,/^END/{//d;p}' script | cmp - expected >log
+result $? 'one over another in a long run: every fourth row'
+run "$models/sdcsf.spec" 2 --paper --plot paper.pdf >rows.csv && grep -aq '/FontFile' paper.pdf &&
+	grep -aq '/MediaBox \[ 0 0 24[01]' paper.pdf
+result $? '--paper: a PDF of 85 mm, fonts inside'
+run "$models/sdcsf.spec" 2 --sweep k1=50:150:5 --show x1+x2 --plot sweep.svg >rows.csv
+[ "$(head -n 1 rows.csv)" = 'run,k1,final x1,final x2,rms x1,rms x2,status' ] &&
+	grep -o '<title>[a-z]* of x[12]</title>' sweep.svg | tr -d '\n' >log &&
+	grep -qx '<title>final of x1</title><title>rms of x1</title><title>final of x2</title><title>rms of x2</title>' log
+result $? '--show in a sweep: columns and curves'
+
 mkdir home && echo 'system "touch started"' | tee home/.gnuplot >.gnuplot
 (HOME=$work/home XDG_CONFIG_HOME=$work/home; export HOME XDG_CONFIG_HOME
 	run "$models/scs.spec" 1 --plot start.svg >rows.csv) && [ -s start.svg ] && [ ! -f started ]

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Beside SciPy: lsim on a recorded road and a ramp, solve_ivp on a pendulum and on the lines of a sweep.
+# Against SciPy: lsim on a recorded road and a ramp, solve_ivp on a pendulum and on the lines of a sweep, welch on power
+# spectral densities.
 #
 #     scipy.sh PLRUN PLGEN SOURCE_ROOT
 . "${0%/*}/begin.sh"
@@ -41,7 +42,7 @@ cat >beside.py <<'X'
 import sys
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.signal import lsim, StateSpace
+from scipy.signal import get_window, lsim, StateSpace, welch
 
 
 def car(k=18000.0, c=1200.0, m=300.0, mw=30.0, kt=150000.0):
@@ -87,6 +88,25 @@ for line in lines:
 say('a sweep by lsim', mine, np.array(other), 1e-8)
 
 
+def density(name, run, **how):
+    """Column 1 of densities against welch; their sum against the mean square of its segments (Parseval)"""
+    y, mine = rows(run)[:, 1], rows(name)
+    f, other = welch(y, fs=1 / 0.002, detrend='constant', scaling='density', **how)
+    say('frequencies of ' + name, mine[:, :1], f[:, None], 1e-12)
+    say('densities of ' + name, mine[:, 1:], other[:, None], 1e-9)
+    n, w = how['nperseg'], get_window(how['window'], how['nperseg'])
+    parts = [y[k:k + n] - np.mean(y[k:k + n]) for k in range(0, len(y) - n + 1, n - how['noverlap'])]
+    square = np.mean([np.sum((w * part)**2) / np.sum(w**2) for part in parts])
+    say('the sum of ' + name, np.array([[np.sum(mine[:, 1]) * (f[1] - f[0])]]), np.array([[square]]), 1e-9)
+
+
+density('psd_hann.csv', 'ramp_out.csv', window='hann', nperseg=1024, noverlap=512)
+density('psd_flattop.csv', 'ramp_out.csv', window='flattop', nperseg=256, noverlap=64)
+density('psd_boxcar.csv', 'ramp_out.csv', window='boxcar', nperseg=512, noverlap=0)
+density('psd_hamming.csv', 'ramp_out.csv', window='hamming', nperseg=16, noverlap=15)
+density('psd_blackman.csv', 'ramp_out.csv', window='blackman', nperseg=2048, noverlap=1024)
+
+
 def pendulum(length=1.0, d=0.1, until=10.0):
     t = 0.01 * np.arange(int(round(until / 0.01)) + 1)
     return solve_ivp(lambda t, y: [y[1], -d * y[1] - 9.81 / length * np.sin(y[0])], [0, until], [2.0, 0.0],
@@ -105,6 +125,9 @@ say('a sweep by solve_ivp', mine, np.array(other), 1e-7)
 X
 run car.spec --input road.csv --time Zeit --column road=Profil >road_out.csv || cat said
 run car.spec --input ramp.csv >ramp_out.csv || cat said
+for how in hann:1024:50 flattop:256:25 boxcar:512:0 hamming:16:94 blackman:2048; do
+	run car.spec --input ramp.csv --psd $how --show body >psd_${how%%:*}.csv || cat said
+done
 run held.spec --input ramp.csv >held_out.csv || cat said
 run car.spec --input ramp.csv --sweep params.csv --peak >sweep_out.csv || cat said
 run pendulum.spec 10 >pendulum_out.csv || cat said
@@ -117,6 +140,6 @@ while read -r how name; do
 		bad) result 1 "$name" ;;
 	esac
 done <told
-[ "$(grep -c '^good\|^bad' told)" -eq 6 ]
+[ "$(grep -c '^good\|^bad' told)" -eq 21 ]
 result $? 'all were compared'
 tap_end
