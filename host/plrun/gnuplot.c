@@ -91,17 +91,19 @@ void script_tics(FILE *to, char axis, double from, double end)
 {
 	const double size = pow(10, floor(log10((end - from) / 4))), more = (end - from) / 4 / size;
 	if (end > from && size > 0)
-		fprintf(to, "set %ctics %.3g\n", axis, size * (more <= 1 ? 1 : more <= 2 ? 2 : more <= 5 ? 5 : 10));
+		fprintf(to, "set %ctics %.3g\n", axis,
+			size * (more <= 1 ? 1 : more <= 2 ? 2 : more <= 5 ? 5 : 10));
 }
 
 void script_log_tics(FILE *to, char axis, double from, double end)
 {
 	static const int digit[] = { 1, 2, 5 };
 	const int most = end < 100 * from ? 3 : 1;      /* of a decade */
+	const char *between = "";
 	fprintf(to, "set logscale %c\nset %ctics (", axis, axis);
 	for (int decade = (int)floor(log10(from)); decade <= log10(end); decade++)
-		for (int k = 0; k < most; k++)
-			fprintf(to, "%s%de%d", decade == (int)floor(log10(from)) && k == 0 ? "" : ", ", digit[k], decade);
+		for (int k = 0; k < most; k++, between = ", ")
+			fprintf(to, "%s%de%d", between, digit[k], decade);
 	fputs(")\n", to);
 }
 
@@ -156,13 +158,13 @@ static void print_terminal(FILE *to, const struct script *s, const struct sheet 
 	if (!s->file)
 		return;
 	if (strcmp(end, "pdf") == 0)
-		fprintf(to, "set term pdfcairo noenhanced size %.3fcm,%.3fcm font 'sans,%s' fontscale 1 background '%s'\n",
-			sheet->width * (paper ? 0.025 : 0.0254), sheet->height * (paper ? 0.025 : 0.0254),
+		fprintf(to, "set term pdfcairo noenhanced size %.3fcm,%.3fcm font 'sans,%s' fontscale 1 background "
+			    "'%s'\n", sheet->width * (paper ? 0.025 : 0.0254), sheet->height * (paper ? 0.025 : 0.0254),
 			paper ? "8" : "9", inks->paper);
 	else if (strcmp(end, "png") == 0)
-		fprintf(to, "set term pngcairo noenhanced size %.0f,%.0f font 'sans,%.1f' linewidth %.2f pointscale %.2f "
-			    "background '%s'\n", sheet->width * png, sheet->height * png, paper ? 8 * png : 11.0, png, png,
-			inks->paper);
+		fprintf(to, "set term pngcairo noenhanced size %.0f,%.0f font 'sans,%.1f' linewidth %.2f "
+			    "pointscale %.2f background '%s'\n", sheet->width * png, sheet->height * png,
+			paper ? 8 * png : 11.0, png, png, inks->paper);
 	else
 		fprintf(to, "set term svg noenhanced size %.0f,%.0f font 'sans,%.1f' background '%s'\n",
 			sheet->width * svg, sheet->height * svg, paper ? 10.5 : 12.0, inks->paper);
@@ -171,9 +173,9 @@ static void print_terminal(FILE *to, const struct script *s, const struct sheet 
 static void print_look(FILE *to, const struct script *s, const struct sheet *sheet)
 {
 	const struct inks *inks = s->look->dark ? &dark : &light;
-	fprintf(to, "set encoding utf8\nset grid lt 1 lc rgb '%s'\nset border lc rgb '%s'\nset lmargin %d\nset rmargin 3\n"
-		    "set key outside top left horizontal Left reverse samplen 4 textcolor rgb '%s'\n", inks->grid,
-		inks->frame, sheet->width < 500 ? 10 : 12, inks->text);
+	fprintf(to, "set encoding utf8\nset grid lt 1 lc rgb '%s'\nset border lc rgb '%s'\nset lmargin %d\n"
+		    "set rmargin 3\nset key outside top left horizontal Left reverse samplen 4 textcolor rgb '%s'\n",
+		inks->grid, inks->frame, sheet->width < 500 ? 10 : 12, inks->text);
 	for (const char *const *part = (const char *const[]){ "xtics", "ytics", "cbtics", "xlabel", "ylabel", "title",
 	     NULL }; *part; part++)
 		fprintf(to, "set %s textcolor rgb '%s'\n", *part, inks->text);

@@ -164,7 +164,8 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
 	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
-	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x", take_show },
+	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x",
+	  take_show },
 	{ "log", "x|y|xy", "... logarithmic axes", take_log },
 	{ "title", "TEXT", "... the title (default: the model's name)", take_title },
 	{ "size", "WxH", "... in pixels, with --paper in millimetres", take_size },
@@ -321,7 +322,8 @@ static void check(const struct options *o)
 	if (o->window && (o->sweep || o->stats))
 		wrong_usage(format("--psd and %s: one at a time", o->sweep ? "--sweep" : "--stats"));
 	if (o->window && o->every >= 0)
-		wrong_usage("--psd takes every step: rows that are further apart would fold high frequencies onto low ones");
+		wrong_usage("--psd takes every step: rows that are further apart would fold high frequencies "
+			    "onto low ones");
 	if (o->window && o->show && strchr(o->show, ':'))
 		wrong_usage("--psd is over frequency: --show takes no X:Y with it");
 	if (o->sweep && o->every >= 0)

@@ -217,7 +217,7 @@ struct machine {
 	const char *name;
 	int states, inputs, outputs, params;    /* outputs: those that are shown */
 	int own_outputs;                        /* of the model */
-	const int *shown;                       /* per output of its own, or behind them of a state; NULL: all as they are */
+	const int *shown;                       /* per output: its own, or behind them a state; NULL: all of its own */
 	size_t size;
 	double h;
 	const char *const *input_names, *const *output_names, *const *state_names, *const *param_names;

@@ -13,7 +13,8 @@
 enum { LEAST = 16, LONGEST_SEGMENT = 1 << 20, AVERAGES = 8 };
 #define TWO_PI 6.283185307179586476925
 
-/* a[0] - a[1] cos(x) + a[2] cos(2 x) ..., x = 2 pi j/L: Harris, Proc. IEEE 66, 1978; flat top: D'Antona, Ferrero 2006 */
+/* a[0] - a[1] cos(x) + a[2] cos(2 x) ..., x = 2 pi j/L: Harris, Proc. IEEE 66, 1978; the flat top: D'Antona and
+ * Ferrero, Digital Signal Processing for Measurement Systems, 2006 */
 static const struct cosines {
 	const char *name, *text;
 	double a[5];
@@ -210,9 +211,9 @@ static char *method_of(const struct psd *p)
 	double sum = 0;
 	for (size_t j = 0; j < p->length; j++)
 		sum += p->window[j];
-	return format("PSD by Welch's method, one-sided: %s window of %zu steps, mean of %zu segment%s that overlap by "
-		      "%zu steps, each less its mean; a line is %.3g Hz wide", p->kind->text, p->length, p->segments,
-		      p->segments == 1 ? "" : "s", p->length - p->shift,
+	return format("one-sided PSD (Welch): %s, %zu segment%s of %zu steps, overlap %.3g %%, means removed, line "
+		      "width %.3g Hz", p->kind->text, p->segments, p->segments == 1 ? "" : "s", p->length,
+		      100 * (double)(p->length - p->shift) / (double)p->length,
 		      (double)p->length * p->squares / (sum * sum) * frequency_of(p, 1));
 }
 
@@ -235,8 +236,8 @@ static void say_limits(const struct psd *p)
 			say_note(format("the motion of '%s' is not a steady one: its mean square is %.2g in the first "
 					"segment and %.2g in the last", name, p->first[i], p->last[i]));
 		if (most < 3 && density_of(p, (size_t)i, most) > 0)
-			say_note(format("the spectrum of '%s' is largest below %.2g Hz: segments of %.3g s are too short "
-					"for what is slow in it", name, frequency_of(p, 3),
+			say_note(format("the spectrum of '%s' is largest below %.2g Hz: segments of %.3g s are too "
+					"short for the lowest frequencies", name, frequency_of(p, 3),
 					(double)p->length * p->h));
 	}
 }

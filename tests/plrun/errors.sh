@@ -117,17 +117,16 @@ x+x+x+x+x+x+x+x+x
 note: a comma begins another panel" swing.spec 1 --show x+x+x+x+x+x+x+x+x
 refuses 'one over another in a sweep' 2 "plrun: error: --show: one output over another is a picture of one run" \
 	swing.spec 1 --sweep k=1:2:3 --show "x:x'" --plot a.svg
-refuses 'a window that is none' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hat': windows are hann, \
-hamming, blackman, flattop, boxcar
+form='--psd takes WINDOW[:STEPS[:PERCENT]], found'
+refuses 'a window that is none' 2 "plrun: error: $form 'hat': windows are hann, hamming, blackman, flattop, boxcar
 $usage" swing.spec 1 --psd=hat
-refuses 'a segment of 1000 steps' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hann:1000': a segment \
-is a power of two of steps, from 16 to 1048576
+refuses 'a segment of 1000 steps' 2 "plrun: error: $form 'hann:1000': a segment is a power of two of steps, from 16 to \
+1048576
 $usage" swing.spec 1 --psd hann:1000
-refuses 'an overlap of all' 2 "plrun: error: --psd takes WINDOW[:STEPS[:PERCENT]], found 'hann:64:100': segments \
-overlap by 0 to 95 percent
+refuses 'an overlap of all' 2 "plrun: error: $form 'hann:64:100': segments overlap by 0 to 95 percent
 $usage" swing.spec 1 --psd hann:64:100
-refuses 'a segment longer than the run' 1 "plrun: error: --psd: a segment of 64 steps is longer than the run, which has \
-11 rows" swing.spec 1 --psd hann:64
+refuses 'a segment longer than the run' 1 "plrun: error: --psd: a segment of 64 steps is longer than the run, which \
+has 11 rows" swing.spec 1 --psd hann:64
 refuses 'densities of rows that are apart' 2 "plrun: error: --psd takes every step: rows that are further apart would \
 fold high frequencies onto low ones
 $usage" swing.spec 1 --psd --every 0.2

@@ -61,14 +61,15 @@ result $? '--show: a picture has all points'
 grep '^plot' script | sed 's/ with \([^$]*\)//g; s/plot //' >panels
 printf '%s\n' '$data using 1:2' '$data using 1:3$data using 1:4' '$data using 3:5' | diff - panels >log
 result $? '--show: panels, and curves of one panel, in their order'
-grep '^plot' script | sed -n 2p | grep -o "dt [^ ]* pt [0-9]*\|rgb '[^']*'\|title '[^']*'" >found
-printf '%s\n' 'dt 1 pt 7' "rgb '#1f6fe0'" "title 'x1'" 'dt (12,5) pt 5' "rgb '#be3028'" "title 'x2'" | diff - found >log
+grep '^plot' script | sed -n 2p | grep -o "dt [^ ]* pt [0-9]*\|rgb '[^']*'\|title '[^']*'" | tr '\n' ' ' >found
+echo "dt 1 pt 7 rgb '#1f6fe0' title 'x1' dt (12,5) pt 5 rgb '#be3028' title 'x2' " | tr -d '\n' | diff - found >log
 result $? 'curves of one panel differ in colour, dash and mark'
-run "$models/sdcsf.spec" 2 --show "x1+x2,x1:x1'" --plot shown.svg --title "A & B's <title>" --dark --size 640x500 >rows.csv
+run "$models/sdcsf.spec" 2 --show "x1+x2,x1:x1'" --plot shown.svg --title "A & B's <title>" --dark \
+	--size 640x500 >rows.csv
 {
-	xmllint --noout shown.svg && grep -q 'width="640" height="500"' shown.svg && grep -q '#14171c\|rgb( *20, *23, *28)' \
-		shown.svg && grep -q 'A &amp; B' shown.svg && ! grep -q '>sdcsf<' shown.svg
-	# the key stands above the frame of its panel: gnuplot draws its texts first, at smaller y than any tic of the axis
+	xmllint --noout shown.svg && grep -q 'width="640" height="500"' shown.svg &&
+		grep -q '#14171c\|rgb( *20, *23, *28)' shown.svg && grep -q 'A &amp; B' shown.svg &&
+		! grep -q '>sdcsf<' shown.svg || echo 'the look is another one'
 	grep -o '<title>x[12]</title>' shown.svg | tr -d '\n'
 } >log 2>&1
 grep -qx '<title>x1</title><title>x2</title>' log
@@ -97,8 +98,8 @@ run "$models/sdcsf.spec" 2 --paper --plot paper.pdf >rows.csv && grep -aq '/Font
 result $? '--paper: a PDF of 85 mm, fonts inside'
 run "$models/sdcsf.spec" 2 --sweep k1=50:150:5 --show x1+x2 --plot sweep.svg >rows.csv
 [ "$(head -n 1 rows.csv)" = 'run,k1,final x1,final x2,rms x1,rms x2,status' ] &&
-	grep -o '<title>[a-z]* of x[12]</title>' sweep.svg | tr -d '\n' >log &&
-	grep -qx '<title>final of x1</title><title>rms of x1</title><title>final of x2</title><title>rms of x2</title>' log
+	grep -o '<title>[a-z]* of x[12]<' sweep.svg | sed 's/<[a-z]*>*//g' | tr '\n' , >log &&
+	grep -qx 'final of x1,rms of x1,final of x2,rms of x2,' log
 result $? '--show in a sweep: columns and curves'
 
 mkdir home && echo 'system "touch started"' | tee home/.gnuplot >.gnuplot
