@@ -95,8 +95,10 @@ static struct words command_of(const struct fmu *fmu, const char *headers, const
 	add(&w, "-s");
 	add(&w, "-fvisibility=hidden");         /* two FMUs in one program share nothing but what the standard names */
 	add(&w, format("-DFMI%d_OVERRIDE_FUNCTION_PREFIX", fmu->version));
-	if (headers)
-		add(&w, format("-I%s", headers));
+	if (headers) {
+		add(&w, "-include");
+		add(&w, format("%s/fmi%dFunctions.h", headers, fmu->version));
+	}
 	for (int i = 0; i < FMU_SOURCES; i++)
 		add(&w, inside(folder, fmu->source[i]));
 	add(&w, "-o");
@@ -115,8 +117,7 @@ static bool compile(const struct words *w)
 	if (error)
 		return complain(format("cannot run '%s'", w->word[0]), strerror(error));
 	if (status != 0)
-		return complain(format("the compiler '%s' could not make the FMU's shared object", w->word[0]),
-				"--fmu-binary=DIR names the folder of the standard's headers");
+		return complain(format("the compiler '%s' could not make the FMU's shared object", w->word[0]), NULL);
 	return true;
 }
 

@@ -27,7 +27,7 @@ struct options {
 	const char *fmu;                /* the FMU that is written instead; NULL: none */
 	int fmu_version;                /* 2 or 3; 0: not said */
 	bool fmu_binary;                /* with the compiled one; */
-	const char *fmu_headers;        /* the folder of the standard's headers; NULL: the compiler knows it */
+	const char *fmu_headers;        /* the folder of the standard's own headers; NULL: the runtime's count */
 	bool rhs;
 	bool bundle;                    /* with the runtime inside */
 	bool strict;                    /* warnings are errors */

@@ -58,7 +58,8 @@ static struct wording wording_of(const struct fmu_variable *v)
 		[FMU_INPUT] = { "input", "continuous", NULL },
 		[FMU_OUTPUT] = { "output", "continuous", NULL },
 		[FMU_PARAM] = { "parameter", "tunable", "exact" },
-		[FMU_STATE] = { "local", "continuous", "exact" }
+		[FMU_STATE] = { "local", "continuous", "exact" },
+		[FMU_CONSTANT] = { "local", "constant", "exact" }
 	};
 	return wording[v->kind];
 }
@@ -72,8 +73,10 @@ static void print_variable(FILE *to, const struct fmu *f, int reference)
 	const char *start = starts ? format(" start=\"%s\"", shortest(v->start)) : "";
 	const char *range = v->range ? format(" min=\"%s\" max=\"%s\"", shortest(round_rational(v->range->low)),
 					      shortest(round_rational(v->range->high))) : "";
-	const char *common = format("name=\"%s\" valueReference=\"%d\" causality=\"%s\" variability=\"%s\"%s",
-				    attribute_text(v->name), reference, w.causality, w.variability, initial);
+	const char *description = v->description ? format(" description=\"%s\"", attribute_text(v->description)) : "";
+	const char *common = format("name=\"%s\" valueReference=\"%d\" causality=\"%s\" variability=\"%s\"%s%s",
+				    attribute_text(v->name), reference, w.causality, w.variability, initial,
+				    description);
 	if (f->version == 3)
 		fprintf(to, "    <Float64 %s%s%s/>\n", common, range, start);
 	else
@@ -90,12 +93,11 @@ static void print_variables(FILE *to, const struct fmu *f)
 }
 
 /* A line for each output: of FMI 3.0 by its value reference, of FMI 2.0 by its place, from 1 */
-static void print_outputs(FILE *to, const struct fmu *f, const char *indent, const char *element)
+static void print_outputs(FILE *to, const struct fmu *f, const char *element)
 {
 	for (int i = 0; i < f->variables.count; i++)
 		if (f->variables.variable[i].kind == FMU_OUTPUT)
-			fprintf(to, f->version == 3 ? "%s<%s valueReference=\"%d\"/>\n" : "%s<%s index=\"%d\"/>\n",
-				indent, element, f->version == 3 ? i : i + 1);
+			fprintf(to, "      <%s=\"%d\"/>\n", element, f->version == 3 ? i : i + 1);
 }
 
 static bool has_outputs(const struct fmu *f)
@@ -106,17 +108,18 @@ static bool has_outputs(const struct fmu *f)
 	return false;
 }
 
+/* What is set acts in the steps that follow, so between steps outputs depend on no input; at the start on anything. */
 static void print_structure(FILE *to, const struct fmu *f)
 {
 	fputs("  <ModelStructure>\n", to);
 	if (f->version == 3) {
-		print_outputs(to, f, "    ", "Output");
-		print_outputs(to, f, "    ", "InitialUnknown");
+		print_outputs(to, f, "Output dependencies=\"\" valueReference");
+		print_outputs(to, f, "InitialUnknown valueReference");
 	} else if (has_outputs(f)) {
 		fputs("    <Outputs>\n", to);
-		print_outputs(to, f, "      ", "Unknown");
+		print_outputs(to, f, "Unknown dependencies=\"\" index");
 		fputs("    </Outputs>\n    <InitialUnknowns>\n", to);
-		print_outputs(to, f, "      ", "Unknown");
+		print_outputs(to, f, "Unknown index");
 		fputs("    </InitialUnknowns>\n", to);
 	}
 	fputs("  </ModelStructure>\n", to);

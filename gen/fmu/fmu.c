@@ -32,12 +32,21 @@ static uint64_t hash_of(uint64_t hash, const char *text)
 	return hash;
 }
 
+/* The numbers of fmu_constant, each with a comma behind it */
+static const char *constants_text(const struct fmu_variables *v)
+{
+	const char *text = "";
+	for (int i = v->count - v->constants; i < v->count; i++)
+		text = format("%s%s, ", text, shortest(v->variable[i].start));
+	return text;
+}
+
 /* What the importer must have read to make an instance: a number of all that is compiled, so a description of another
  * version of the model does not fit. */
 static uint64_t mark_of(const struct fmu *f, const char *code, const char *header)
 {
 	uint64_t hash = hash_of(0xcbf29ce484222325, f->version == 3 ? "3" : "2");
-	const char *text[] = { code, header, runtime_text("plfmu.h") };
+	const char *text[] = { code, header, runtime_text("plfmu.h"), constants_text(&f->variables) };
 	for (size_t i = 0; i < sizeof text / sizeof *text; i++)
 		hash = hash_of(hash, text[i]);
 	return hash;
@@ -62,13 +71,16 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      "#define FMU_TOKEN \"%s\"\n"
 		      "#define FMU_MARK 0x%016llx\n"
 		      "%s"
-		      "enum { FMU_STATES = %d, FMU_INPUTS = %d, FMU_OUTPUTS = %d, FMU_PARAMS = %d };\n\n"
+		      "enum { FMU_STATES = %d, FMU_INPUTS = %d, FMU_OUTPUTS = %d, FMU_PARAMS = %d,\n"
+		      "       FMU_CONSTANTS = %d };\n"
+		      "static const double fmu_constant[] = {%s0.0};\n\n"
 		      "#endif\n",
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
 		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
 		      step->model->spec->count.inputs, step->model->outputs,
-		      tunables_of(step->model) ? tunables_of(step->model)->given : 0);
+		      tunables_of(step->model) ? tunables_of(step->model)->given : 0, f->variables.constants,
+		      constants_text(&f->variables));
 }
 
 static void add_text(struct fmu *f, const char *name, const char *text)
@@ -95,6 +107,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	f->token = format("{%08x-%04x-%04x-%04x-%04x%08x}", (unsigned)(mark >> 32), (unsigned)(mark >> 16 & 0xffff),
 			  (unsigned)(mark & 0xffff), (unsigned)(more >> 48), (unsigned)(more >> 32 & 0xffff),
 			  (unsigned)(more & 0xffffffff));
+	const char *face = version == 3 ? "fmi3.h" : "fmi2.h";
 	f->source[0] = version == 3 ? "fmi3.c" : "fmi2.c";
 	f->source[1] = format("%s_pl.c", f->name);
 	add_text(f, "modelDescription.xml", model_description(f));
@@ -105,6 +118,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	add_text(f, format("sources/%s", fmu_header_name(model)), header);
 	add_text(f, format("sources/%s", f->source[1]), code);
 	add_text(f, format("sources/%s", f->source[0]), runtime_text(f->source[0]));
+	add_text(f, format("sources/%s", face), runtime_text(face));
 	add_text(f, "sources/plfmu.h", runtime_text("plfmu.h"));
 	return f;
 }

@@ -25,18 +25,19 @@ void archive_write(FILE *to, const struct archive *a);
 
 /* ---- variables.c: what the importer sees ---- */
 
-enum fmu_kind { FMU_TIME, FMU_INPUT, FMU_OUTPUT, FMU_PARAM, FMU_STATE };
+enum fmu_kind { FMU_TIME, FMU_INPUT, FMU_OUTPUT, FMU_PARAM, FMU_STATE, FMU_CONSTANT };
 struct fmu_variable {               /* its place in the list is its value reference */
 	enum fmu_kind kind;
 	const char *name;           /* as no other */
-	double start;               /* of inputs, params and states */
+	double start;               /* of inputs, params, states and constants */
+	const char *description;    /* the comment of the line that declares it; NULL: none */
 	const struct param_range *range; /* of a param that has one; else NULL */
 };
 struct fmu_variables {
-	int count;
+	int count, constants;       /* constants: of these, the last ones */
 	struct fmu_variable *variable;
 };
-/* in the order of runtime/fmi/plfmu.h: time, inputs, outputs, params, states */
+/* in the order of runtime/fmi/plfmu.h: time, inputs, outputs, tunable params, states, params that nothing changes */
 struct fmu_variables variables_of(const struct step *step);
 
 /* ---- description.c: modelDescription.xml, and of FMI 3.0 sources/buildDescription.xml ---- */

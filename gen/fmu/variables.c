@@ -14,13 +14,49 @@ static bool is_taken(const struct fmu_variables *v, const char *name)
 	return false;
 }
 
+/* The comment at the end of a line: without # and white space; NULL: there is none */
+static const char *comment_behind(struct place at)
+{
+	const char *text = at.source->text + at.offset, *end = text + strcspn(text, "\r\n");
+	for (bool quoted = false; text < end && (*text != '#' || quoted); text++)
+		quoted = quoted != (*text == '"');
+	while (text < end && strchr("# \t", *text))
+		text++;
+	while (end > text && strchr(" \t", end[-1]))
+		end--;
+	return end > text ? format("%.*s", (int)(end - text), text) : NULL;
+}
+
+/* What the spec says of a name where it is declared; of an output that is called like a coordinate, either */
+static const char *description_of(const struct spec *spec, const char *name)
+{
+	const char *text = NULL;
+	for (const struct symbol *s = spec->first; s; s = s->next)
+		if (s->number > 0 && strcmp(s->name, name) == 0 && comment_behind(s->at))
+			text = comment_behind(s->at);
+	return text;
+}
+
 /* As it is; `otherwise` where that is another's, with _ as often as it takes */
 static void add(struct fmu_variables *v, enum fmu_kind kind, const char *name, const char *otherwise, double start)
 {
 	const char *own = is_taken(v, name) ? otherwise : name;
 	while (is_taken(v, own))
 		own = format("%s_", own);
-	v->variable[v->count++] = (struct fmu_variable){ kind, own, start, NULL };
+	v->variable[v->count++] = (struct fmu_variable){ .kind = kind, .name = own, .start = start };
+}
+
+/* Params that are numbers of the model, and follow from no tunable one */
+static void add_constants(struct fmu_variables *v, const struct spec *spec)
+{
+	RATIONAL value = ZERO;
+	for (const struct symbol *s = spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_PARAM || s->tuning.tuned)
+			continue;
+		param_value(s, value);
+		add(v, FMU_CONSTANT, s->name, format("param.%s", s->name), round_rational(value));
+		v->constants++;
+	}
 }
 
 struct fmu_variables variables_of(const struct step *step)
@@ -29,8 +65,9 @@ struct fmu_variables variables_of(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	const struct tuning *tuning = tunables_of(model);
 	const int params = tuning ? tuning->given : 0;
-	const int all = 1 + model->spec->count.inputs + model->outputs + params + system->states;
-	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, all) };
+	const int all = 1 + model->spec->count.inputs + model->outputs + params + system->states +
+			model->spec->count.params;
+	struct fmu_variables v = { 0, 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
 	for (int i = 0; i < model->spec->count.inputs; i++)
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
@@ -45,5 +82,10 @@ struct fmu_variables variables_of(const struct step *step)
 	for (int i = 0; i < system->states; i++)
 		add(&v, FMU_STATE, format("state.%s", shown->names.state[i]), format("state.%s", shown->names.state[i]),
 		    round_rational(shown->initial[i]));
+	add_constants(&v, model->spec);
+	for (int i = 0; i < v.count; i++) {
+		const size_t before = v.variable[i].kind == FMU_STATE ? strlen("state.") : 0;
+		v.variable[i].description = description_of(model->spec, v.variable[i].name + before);
+	}
 	return v;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* A model as an FMU for co-simulation of FMI 2.0: plfmu.h with the standard's names, and stubs for what it declares and
- * this FMU does not offer.  The standard's three headers come from the importer. */
+ * this FMU does not offer. */
 #include "plfmu.h"
 
-#include "fmi2Functions.h"
+#include "fmi2.h"
 
 static fmi2Status status_of(enum fmu_result result)
 {
@@ -27,18 +27,18 @@ static fmi2Status absent(fmi2Component c, const char *function)
 
 /* ---- creation ---- */
 
-const char *fmi2GetTypesPlatform(void)
+FMI2_Export const char *FMI2(GetTypesPlatform)(void)
 {
     return fmi2TypesPlatform;
 }
 
-const char *fmi2GetVersion(void)
+FMI2_Export const char *FMI2(GetVersion)(void)
 {
     return fmi2Version;
 }
 
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
-                               const fmi2String categories[])
+FMI2_Export fmi2Status FMI2(SetDebugLogging)(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
+    const fmi2String categories[])
 {
     return c ? status_of(fmu_logging((fmu_instance *)c, loggingOn != 0, nCategories, categories)) : fmi2Error;
 }
@@ -52,9 +52,9 @@ static fmi2Component refused(const fmi2CallbackFunctions *functions, fmi2String 
     return NULL;
 }
 
-fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
-                              fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
-                              fmi2Boolean visible, fmi2Boolean loggingOn)
+FMI2_Export fmi2Component FMI2(Instantiate)(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
+    fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+    fmi2Boolean loggingOn)
 {
     fmu_instance *i;
     (void)fmuResourceLocation;
@@ -75,15 +75,15 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     return i;
 }
 
-void fmi2FreeInstance(fmi2Component c)
+FMI2_Export void FMI2(FreeInstance)(fmi2Component c)
 {
     free(c);
 }
 
 /* ---- from mode to mode ---- */
 
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
-                               fmi2Boolean stopTimeDefined, fmi2Real stopTime)
+FMI2_Export fmi2Status FMI2(SetupExperiment)(fmi2Component c, fmi2Boolean toleranceDefined,
+    fmi2Real tolerance, fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
     fmu_instance *i = (fmu_instance *)c;
     (void)toleranceDefined;
@@ -97,22 +97,22 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                                       : fmu_out_of_place(i, "fmi2SetupExperiment"));
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+FMI2_Export fmi2Status FMI2(EnterInitializationMode)(fmi2Component c)
 {
     return c ? status_of(fmu_enter((fmu_instance *)c, "fmi2EnterInitializationMode")) : fmi2Error;
 }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+FMI2_Export fmi2Status FMI2(ExitInitializationMode)(fmi2Component c)
 {
     return c ? status_of(fmu_leave((fmu_instance *)c, "fmi2ExitInitializationMode")) : fmi2Error;
 }
 
-fmi2Status fmi2Terminate(fmi2Component c)
+FMI2_Export fmi2Status FMI2(Terminate)(fmi2Component c)
 {
     return c ? status_of(fmu_end((fmu_instance *)c, "fmi2Terminate")) : fmi2Error;
 }
 
-fmi2Status fmi2Reset(fmi2Component c)
+FMI2_Export fmi2Status FMI2(Reset)(fmi2Component c)
 {
     if (!c) {
         return fmi2Error;
@@ -123,20 +123,22 @@ fmi2Status fmi2Reset(fmi2Component c)
 
 /* ---- values: all are Real ---- */
 
-fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+FMI2_Export fmi2Status FMI2(GetReal)(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+    fmi2Real value[])
 {
     return c ? status_of(fmu_get((fmu_instance *)c, vr, nvr, value)) : fmi2Error;
 }
 
-fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[])
+FMI2_Export fmi2Status FMI2(SetReal)(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+    const fmi2Real value[])
 {
     return c ? status_of(fmu_set((fmu_instance *)c, vr, nvr, value)) : fmi2Error;
 }
 
 /* ---- a step: done when it returns, so nothing is ever pending ---- */
 
-fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
-                      fmi2Boolean noSetFMUStatePriorToCurrentPoint)
+FMI2_Export fmi2Status FMI2(DoStep)(fmi2Component c, fmi2Real currentCommunicationPoint,
+    fmi2Real communicationStepSize, fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
     bool early;
     (void)noSetFMUStatePriorToCurrentPoint;
@@ -147,7 +149,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
                               &early));
 }
 
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
+FMI2_Export fmi2Status FMI2(GetRealStatus)(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
 {
     if (!c || s != fmi2LastSuccessfulTime) {
         return fmi2Discard;
@@ -156,7 +158,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *
     return fmi2OK;
 }
 
-fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
+FMI2_Export fmi2Status FMI2(GetBooleanStatus)(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
 {
     if (!c || s != fmi2Terminated) {
         return fmi2Discard;
@@ -165,7 +167,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
     return fmi2OK;
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value)
+FMI2_Export fmi2Status FMI2(GetStatus)(fmi2Component c, const fmi2StatusKind s, fmi2Status *value)
 {
     (void)c;
     (void)s;
@@ -173,7 +175,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *va
     return fmi2Discard;
 }
 
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value)
+FMI2_Export fmi2Status FMI2(GetIntegerStatus)(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value)
 {
     (void)c;
     (void)s;
@@ -181,7 +183,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Int
     return fmi2Discard;
 }
 
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value)
+FMI2_Export fmi2Status FMI2(GetStringStatus)(fmi2Component c, const fmi2StatusKind s, fmi2String *value)
 {
     (void)c;
     (void)s;
@@ -191,17 +193,17 @@ fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2Stri
 
 /* ---- saved states ---- */
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+FMI2_Export fmi2Status FMI2(GetFMUstate)(fmi2Component c, fmi2FMUstate *FMUstate)
 {
     return c && FMUstate ? status_of(fmu_save((fmu_instance *)c, FMUstate)) : fmi2Error;
 }
 
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
+FMI2_Export fmi2Status FMI2(SetFMUstate)(fmi2Component c, fmi2FMUstate FMUstate)
 {
     return c ? status_of(fmu_restore((fmu_instance *)c, FMUstate)) : fmi2Error;
 }
 
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+FMI2_Export fmi2Status FMI2(FreeFMUstate)(fmi2Component c, fmi2FMUstate *FMUstate)
 {
     (void)c;
     if (FMUstate) {
@@ -211,7 +213,7 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
     return fmi2OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
+FMI2_Export fmi2Status FMI2(SerializedFMUstateSize)(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
 {
     (void)FMUstate;
     if (!c || !size) {
@@ -221,13 +223,14 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, si
     return fmi2OK;
 }
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size)
+FMI2_Export fmi2Status FMI2(SerializeFMUstate)(fmi2Component c, fmi2FMUstate FMUstate,
+    fmi2Byte serializedState[], size_t size)
 {
     return c ? status_of(fmu_serialize((fmu_instance *)c, FMUstate, serializedState, size)) : fmi2Error;
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
-                                   fmi2FMUstate *FMUstate)
+FMI2_Export fmi2Status FMI2(DeSerializeFMUstate)(fmi2Component c, const fmi2Byte serializedState[],
+    size_t size, fmi2FMUstate *FMUstate)
 {
     if (!c || !FMUstate) {
         return fmi2Error;
@@ -243,7 +246,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
 #endif
 
 #define ABSENT(function, parameters) \
-    fmi2Status fmi2##function parameters \
+    FMI2_Export fmi2Status FMI2(function) parameters \
     { \
         return absent(c, "fmi2" #function); \
     }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* A model as an FMU for co-simulation of FMI 3.0: plfmu.h with the standard's names, and stubs for what it declares and
- * this FMU does not offer.  The standard's three headers come from the importer. */
+ * this FMU does not offer. */
 #include "plfmu.h"
 
-#include "fmi3Functions.h"
+#include "fmi3.h"
 
 static fmi3Status status_of(enum fmu_result result)
 {
@@ -26,13 +26,13 @@ static fmi3Status absent(fmi3Instance instance, const char *function)
 
 /* ---- creation ---- */
 
-const char *fmi3GetVersion(void)
+FMI3_Export const char *FMI3(GetVersion)(void)
 {
     return fmi3Version;
 }
 
-fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
-                               const fmi3String categories[])
+FMI3_Export fmi3Status FMI3(SetDebugLogging)(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+    const fmi3String categories[])
 {
     return instance ? status_of(fmu_logging((fmu_instance *)instance, loggingOn, nCategories, categories)) : fmi3Error;
 }
@@ -46,13 +46,11 @@ static fmi3Instance refused(fmi3LogMessageCallback logMessage, fmi3InstanceEnvir
     return NULL;
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
-                                         fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-                                         fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
-                                         const fmi3ValueReference requiredIntermediateVariables[],
-                                         size_t nRequiredIntermediateVariables,
-                                         fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
-                                         fmi3IntermediateUpdateCallback intermediateUpdate)
+FMI3_Export fmi3Instance FMI3(InstantiateCoSimulation)(fmi3String instanceName, fmi3String instantiationToken,
+    fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+    fmi3Boolean earlyReturnAllowed, const fmi3ValueReference requiredIntermediateVariables[],
+    size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
     fmu_instance *i;
     (void)resourcePath;
@@ -77,10 +75,9 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     return i;
 }
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
-                                          fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-                                          fmi3InstanceEnvironment instanceEnvironment,
-                                          fmi3LogMessageCallback logMessage)
+FMI3_Export fmi3Instance FMI3(InstantiateModelExchange)(fmi3String instanceName,
+    fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage)
 {
     (void)instanceName;
     (void)instantiationToken;
@@ -90,12 +87,11 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String in
     return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
 }
 
-fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,
-                                               fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
-                                               fmi3InstanceEnvironment instanceEnvironment,
-                                               fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
-                                               fmi3LockPreemptionCallback lockPreemption,
-                                               fmi3UnlockPreemptionCallback unlockPreemption)
+FMI3_Export fmi3Instance FMI3(InstantiateScheduledExecution)(fmi3String instanceName,
+    fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+    fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
+    fmi3UnlockPreemptionCallback unlockPreemption)
 {
     (void)instanceName;
     (void)instantiationToken;
@@ -108,15 +104,15 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
     return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
 }
 
-void fmi3FreeInstance(fmi3Instance instance)
+FMI3_Export void FMI3(FreeInstance)(fmi3Instance instance)
 {
     free(instance);
 }
 
 /* ---- from mode to mode ---- */
 
-fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
-                                       fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+FMI3_Export fmi3Status FMI3(EnterInitializationMode)(fmi3Instance instance, fmi3Boolean toleranceDefined,
+    fmi3Float64 tolerance, fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     fmu_instance *i = (fmu_instance *)instance;
     enum fmu_result result;
@@ -131,17 +127,17 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     return status_of(result == FMU_OK ? fmu_initialize(i, startTime) : result);
 }
 
-fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
+FMI3_Export fmi3Status FMI3(ExitInitializationMode)(fmi3Instance instance)
 {
     return instance ? status_of(fmu_leave((fmu_instance *)instance, "fmi3ExitInitializationMode")) : fmi3Error;
 }
 
-fmi3Status fmi3Terminate(fmi3Instance instance)
+FMI3_Export fmi3Status FMI3(Terminate)(fmi3Instance instance)
 {
     return instance ? status_of(fmu_end((fmu_instance *)instance, "fmi3Terminate")) : fmi3Error;
 }
 
-fmi3Status fmi3Reset(fmi3Instance instance)
+FMI3_Export fmi3Status FMI3(Reset)(fmi3Instance instance)
 {
     if (!instance) {
         return fmi3Error;
@@ -152,8 +148,8 @@ fmi3Status fmi3Reset(fmi3Instance instance)
 
 /* ---- values: all are Float64 ---- */
 
-fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          fmi3Float64 values[], size_t nValues)
+FMI3_Export fmi3Status FMI3(GetFloat64)(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+    size_t nValueReferences, fmi3Float64 values[], size_t nValues)
 {
     if (!instance || nValues != nValueReferences) {
         return fmi3Error;
@@ -161,8 +157,8 @@ fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
     return status_of(fmu_get((fmu_instance *)instance, valueReferences, nValueReferences, values));
 }
 
-fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                          const fmi3Float64 values[], size_t nValues)
+FMI3_Export fmi3Status FMI3(SetFloat64)(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+    size_t nValueReferences, const fmi3Float64 values[], size_t nValues)
 {
     if (!instance || nValues != nValueReferences) {
         return fmi3Error;
@@ -172,9 +168,10 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
 
 /* ---- a step ---- */
 
-fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
-                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
-                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+FMI3_Export fmi3Status FMI3(DoStep)(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
+    fmi3Float64 communicationStepSize, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+    fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn,
+    fmi3Float64 *lastSuccessfulTime)
 {
     fmu_instance *i = (fmu_instance *)instance;
     fmi3Status status;
@@ -201,17 +198,17 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 
 /* ---- saved states ---- */
 
-fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+FMI3_Export fmi3Status FMI3(GetFMUState)(fmi3Instance instance, fmi3FMUState *FMUState)
 {
     return instance && FMUState ? status_of(fmu_save((fmu_instance *)instance, FMUState)) : fmi3Error;
 }
 
-fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
+FMI3_Export fmi3Status FMI3(SetFMUState)(fmi3Instance instance, fmi3FMUState FMUState)
 {
     return instance ? status_of(fmu_restore((fmu_instance *)instance, FMUState)) : fmi3Error;
 }
 
-fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+FMI3_Export fmi3Status FMI3(FreeFMUState)(fmi3Instance instance, fmi3FMUState *FMUState)
 {
     (void)instance;
     if (FMUState) {
@@ -221,7 +218,8 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
     return fmi3OK;
 }
 
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUState, size_t *size)
+FMI3_Export fmi3Status FMI3(SerializedFMUStateSize)(fmi3Instance instance, fmi3FMUState FMUState,
+    size_t *size)
 {
     (void)FMUState;
     if (!instance || !size) {
@@ -231,13 +229,14 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUSta
     return fmi3OK;
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size)
+FMI3_Export fmi3Status FMI3(SerializeFMUState)(fmi3Instance instance, fmi3FMUState FMUState,
+    fmi3Byte serializedState[], size_t size)
 {
     return instance ? status_of(fmu_serialize((fmu_instance *)instance, FMUState, serializedState, size)) : fmi3Error;
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size,
-                                   fmi3FMUState *FMUState)
+FMI3_Export fmi3Status FMI3(DeserializeFMUState)(fmi3Instance instance, const fmi3Byte serializedState[],
+    size_t size, fmi3FMUState *FMUState)
 {
     if (!instance || !FMUState) {
         return fmi3Error;
@@ -253,7 +252,7 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte seriali
 #endif
 
 #define ABSENT(function, parameters) \
-    fmi3Status fmi3##function parameters \
+    FMI3_Export fmi3Status FMI3(function) parameters \
     { \
         return absent(instance, "fmi3" #function); \
     }

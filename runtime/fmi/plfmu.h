@@ -5,11 +5,13 @@
  *     fmu_state, fmu_real, fmu_model        types: of its state, of its numbers, of its descriptor
  *     FMU_MODEL                             its descriptor
  *     FMU_STATES, FMU_INPUTS, ...           how many there are
+ *     fmu_constant                          values of the params that nothing changes
  *     FMU_H                                 step [s], as a double whatever the model's type
  *     FMU_TOKEN, FMU_MARK                   what the importer has to name; the same as a number
  *     FMU_CROSSED(s)                        crossings of its breakpoints since the start; not there: it has none
  *
- * Value references: 0 time, then the inputs, the outputs, the tunable params and the states, in the model's order.
+ * Value references: 0 time, then the inputs, the outputs, the tunable params, the states and the other params, in the
+ * model's order.
  *
  * All that a simulation changes is one struct without pointers, so a saved state is a copy of its bytes.  Memory is
  * asked for when an instance is made, and when the importer asks for a state to be saved and brings none; never in a
@@ -257,12 +259,14 @@ static enum fmu_result fmu_end(fmu_instance *i, const char *function)
 
 /* ---- values ---- */
 
-enum fmu_kind { FMU_KIND_TIME, FMU_KIND_INPUT, FMU_KIND_OUTPUT, FMU_KIND_PARAM, FMU_KIND_STATE, FMU_KIND_NONE };
+enum fmu_kind {
+    FMU_KIND_TIME, FMU_KIND_INPUT, FMU_KIND_OUTPUT, FMU_KIND_PARAM, FMU_KIND_STATE, FMU_KIND_CONSTANT, FMU_KIND_NONE
+};
 
 /* Which a value reference names; *index: the place among its kind */
 static enum fmu_kind fmu_find(uint32_t reference, uint32_t *index)
 {
-    static const uint32_t count[] = {1, FMU_INPUTS, FMU_OUTPUTS, FMU_PARAMS, FMU_STATES};
+    static const uint32_t count[] = {1, FMU_INPUTS, FMU_OUTPUTS, FMU_PARAMS, FMU_STATES, FMU_CONSTANTS};
     int kind;
     for (kind = FMU_KIND_TIME; kind < FMU_KIND_NONE; kind++) {
         if (reference < count[kind]) {
@@ -297,6 +301,7 @@ static enum fmu_result fmu_get(fmu_instance *i, const uint32_t *reference, size_
         case FMU_KIND_OUTPUT: value[k] = (double)out[at]; break;
         case FMU_KIND_PARAM: value[k] = (double)i->data.params[at]; break;
         case FMU_KIND_STATE: value[k] = (double)y[at]; break;
+        case FMU_KIND_CONSTANT: value[k] = fmu_constant[at]; break;
         case FMU_KIND_NONE: return fmu_no_such(i, reference[k]);
         }
     }
@@ -326,6 +331,7 @@ static enum fmu_result fmu_set_one(fmu_instance *i, uint32_t reference, double v
         return FMU_OK;
     case FMU_KIND_TIME:
     case FMU_KIND_OUTPUT:
+    case FMU_KIND_CONSTANT:
         return fmu_say(i, FMU_ERROR, "the variable of value reference %lu cannot be set", (unsigned long)reference);
     case FMU_KIND_NONE: break;
     }

@@ -346,7 +346,7 @@ static void try_params(const struct fmu *f, const model *m)
 static void try_errors(const struct fmu *f, const model *m)
 {
 	double value = 0;
-	unsigned time_at = 0, none = state_at(m, m->states), out = output_at(m, 0);
+	unsigned time_at = 0, none = 1000000, out = output_at(m, 0);
 	judge(!make(f, "another"), "another token is refused");
 	void *i = started(f, m, NULL);
 	int before = logged;
@@ -360,6 +360,27 @@ static void try_errors(const struct fmu *f, const model *m)
 	judge(be_silent(f, i) && stub_fails(f, i) && logged == before, "no message where none is wanted");
 	judge(get(f, i, &time_at, 1, &value) && value == 0 && step(f, i, 0, m->h) && get(f, i, &time_at, 1, &value) &&
 	      (real)value == m->h, "and the time is as it was");
+	end(f, i);
+}
+
+/* What the description says: outputs depend on no input between steps; a param that is not tunable has its value */
+static void try_dependencies(const struct fmu *f, const model *m)
+{
+	const char *constant = getenv("CONSTANT");
+	double u[MOST], before[MOST], after[MOST], value = 0;
+	unsigned at[MOST], first = state_at(m, m->states);
+	void *i = started(f, m, NULL);
+	bool good = i && run(f, i, NULL, m, 0, 10, 1);
+	for (int k = 0; k < m->outputs; k++)
+		at[k] = output_at(m, k);
+	fill(u, m->inputs, 40);
+	good = good && get(f, i, at, (size_t)m->outputs, before) && set_inputs(f, i, m, u) &&
+	       get(f, i, at, (size_t)m->outputs, after);
+	judge(good && memcmp(before, after, (size_t)m->outputs * sizeof *before) == 0,
+	      "inputs that are set change no output before a step");
+	if (constant)
+		judge(get(f, i, &first, 1, &value) && value == atof(constant) && !set(f, i, &first, 1, &value),
+		      "a param that is not tunable has its value, and is not set");
 	end(f, i);
 }
 
@@ -453,5 +474,6 @@ int main(int argc, char **argv)
 	try_start(&f[0], m[0]);
 	try_params(&f[0], m[0]);
 	try_errors(&f[0], m[0]);
+	try_dependencies(&f[0], m[0]);
 	return failures > 0;
 }
