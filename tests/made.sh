@@ -2,6 +2,15 @@
 # shellcheck shell=sh
 # Sourced by what makes one file of many models, each $work/NAME.c beside its header, with a line NAME in $work/names.
 
+# specs_of FOLDER ...: specs and their data files to $work, those of specs.cases too; later folders do not hide earlier
+# ones
+specs_of() {
+	[ $# -gt 0 ] || return 0
+	(shift && specs_of "$@")
+	cp -R "$1"/. "$work"
+	[ ! -e "$1/specs.cases" ] || awk -v into="$work/" -f "${0%/*}/../cases.awk" "$1/specs.cases" >"$work/names"
+}
+
 # made ENDING: these files one after the other, but for the lines that include their own header
 made() {
 	(cd "$work" && sed "s/$/.$1/" names | xargs awk 'FNR == 1 {

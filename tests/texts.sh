@@ -33,7 +33,11 @@ each='--header
 --step 1/100 --selftest --real float'
 
 commands() {
-	find "$tests/../models" "$tests" -name '*.spec' | grep -v '/errors/' | LC_ALL=C sort |
+	find "$tests" -name specs.cases -o -name orders.cases | while IFS= read -r file; do
+		folder=$work/specs/$(echo "${file#"$tests/"}" | tr / _)
+		mkdir -p "$folder" && awk -v into="$folder/" -f "$tests/cases.awk" "$file" >"$folder/names"
+	done
+	find "$tests/../models" "$tests" "$work/specs" -name '*.spec' | grep -v '/errors/' | LC_ALL=C sort |
 		while IFS= read -r spec; do
 		printf '%s\n' "$each" | while IFS= read -r options; do
 			printf '%s|%s|%s\n' "${spec%/*}" "${spec##*/}" "$options"

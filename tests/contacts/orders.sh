@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# orders.sh PLGEN SOURCE [FIRST EVERY]: scheme taylor of orders 4, 6 and 8 on the models of orders/ (each EVERY-th of
+# orders.sh PLGEN SOURCE [FIRST EVERY]: scheme taylor of orders 4, 6 and 8 on the models of orders.cases (each EVERY-th of
 # them from FIRST on, counted from 0), with stops, friction and impacts beside curves, beside order 24 at 600 steps a
 # second. Errors (orders.c) of some 16 steps, h to 2.5 h, tell the order (orders.awk); one run before tells at which h
 # they come down to what is still well above rounding. From 24 starts, with MERGE=1 or LONG=1 in the environment 48.
@@ -91,9 +91,9 @@ order() {
 }
 
 at=$((every - first))
-for spec in "$source"/tests/contacts/orders/*.spec; do
-	name=${spec##*/}
-	name=${name%.spec}
+awk -f "$source/tests/cases.awk" "$source/tests/contacts/orders.cases" >names
+for name in $(cat names); do
+	spec=$name.spec
 	[ $((at % every)) -ne 0 ] || ! chosen "$name" || order "$name"
 	at=$((at + 1))
 done

@@ -75,10 +75,7 @@ cp -R "$source/tests/fuzz/corpus/parts" .
 # the corpus, in one batch
 if [ -n "$corpus" ]; then
 	batch_new
-	# a blank line before the next is not part of a spec
-	awk '/^=== / { if (name) close(name); name = $2 ".spec"; blank = ""; print $2; next }
-		name && /^$/ { blank = blank "\n"; next }
-		name { printf "%s", blank >name; blank = ""; print >name }' "$corpus" >names
+	awk -f "$source/tests/cases.awk" "$corpus" >names
 	merging || { awk 'NR % 2' names >half && mv half names; }
 	names=$(cat names)
 	for name in $names; do

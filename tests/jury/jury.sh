@@ -42,14 +42,10 @@ fi
 page=$root/doc/jury.md
 runtime_archive "$root/runtime"
 
-# Each case as files: NAME.spec, beside its matrices, NAME.jury with what follows its spec, and in NAME.topic where it
-# stands
+# Each case as files: NAME.spec, beside its matrices, and NAME.jury with what follows its spec
 here=$work/cases
 mkdir cases && ln -s "$root"/tests/jury/*.mtx cases || exit 99
-awk '/^=== / { name = "cases/" $2; part = ".spec"; next }
-	name == "" { next }
-	/^---$/ { part = ".jury"; topic = FILENAME; sub(/.*\//, "", topic); print topic >(name ".topic"); next }
-	NF > 0 { print >(name part) }' "$root"/tests/jury/*.cases || exit 99
+awk -v into=cases/ -v rest=jury -f "$root/tests/cases.awk" "$root"/tests/jury/*.cases >names || exit 99
 
 # key NAME WORD: what stands behind the word in NAME.jury
 key() {
@@ -58,7 +54,8 @@ key() {
 
 # link NAME: to the file in which it stands
 link() {
-	echo "[$1](../tests/jury/$(cat "$here/$1.topic"))"
+	topic=$(grep -l "^=== $1\$" "$root"/tests/jury/*.cases)
+	echo "[$1](../tests/jury/${topic##*/})"
 }
 
 # run_c NAME SCHEME: rows.csv of the compiled C, or status 2 where plgen refuses the scheme

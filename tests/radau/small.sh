@@ -82,8 +82,8 @@ result $? 'plrun: with an absolute tolerance of its own it is not'
 
 # ---- from rest in all states a series measures none by the rounding that it is ----
 
-awk '/^=== /{ on = $2 == "ring_modulator"; next } /^---$/ { on = 0 } on' "$root/tests/jury/testset.cases" >ring.spec
+awk -v only=ring_modulator -f "$root/tests/cases.awk" "$root/tests/jury/testset.cases" >>log
 CC=${run_cc%% *} CFLAGS=${run_cc#* } XDG_CACHE_HOME=$work/cache \
-    "$plrun" --scheme taylor --tolerance 1e-12 ring.spec 3e-6 >out.csv 2>log && [ "$(wc -l <out.csv)" -eq 5 ]
+    "$plrun" --scheme taylor --tolerance 1e-12 ring_modulator.spec 3e-6 >out.csv 2>log && [ "$(wc -l <out.csv)" -eq 5 ]
 result $? 'taylor: a circuit at rest starts'
 tap_end

@@ -4,9 +4,9 @@
 #
 #     variants.sh PLGEN LIST NAME_variants.c NAME_variants.h FOLDER ...
 #
-# A line of LIST is `NAME SCHEMES STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and
-# becomes the models NAME_SCHEME_0, NAME_SCHEME_1, ... for each of its steps ('-': the spec's own scheme, the spec's own
-# step).  Options:
+# A line of LIST is `NAME SCHEMES STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, each
+# with its specs.cases, and becomes the models NAME_SCHEME_0, NAME_SCHEME_1, ... for each of its steps ('-': the spec's
+# own scheme, the spec's own step).  Options:
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
 #     order=N         of scheme taylor, which N makes fixed
@@ -30,14 +30,7 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 . "${0%/*}/../made.sh"
 
-# What the variants are made from: the specs and their data files, later folders do not hide earlier ones.
-copy() {
-    [ $# -gt 0 ] || return 0
-    (shift && copy "$@")
-    cp -R "$1"/. "$work"
-}
-copy "$@"
-
+specs_of "$@"
 : >"$work/names"
 grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     as=$name

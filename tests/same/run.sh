@@ -8,6 +8,13 @@ list_runs() {
 		"$root/tests/same/runs.list"
 }
 
+# spec_of_cases FOLDER/NAME.spec: NAME.spec here, as FOLDER/specs.cases or FOLDER.cases has it
+spec_of_cases() {
+	for cases in "${1%/*}/specs.cases" "${1%/*}.cases"; do
+		[ ! -e "$cases" ] || awk -v only="$(basename "$1" .spec)" -f "$root/tests/cases.awk" "$cases"
+	done | sed 's/$/.spec/'
+}
+
 # emit PLGEN RUN: model.c and model.h of a line of list_runs, here; a PLGEN that has no --fast has its tables always
 emit() {
 	emit_spec=${2%% *}
@@ -17,7 +24,9 @@ emit() {
 			emit_options=${emit_options%%--fast*}${emit_options#*--fast} ;;
 	esac
 	rm -f model.c model.h
-	eval "\"\$1\" --prefix made $emit_options -o model.c \"\$root/\$emit_spec\""
+	emit_path=$root/$emit_spec
+	[ -e "$emit_path" ] || emit_path=$(spec_of_cases "$emit_path")
+	eval "\"\$1\" --prefix made $emit_options -o model.c \"\$emit_path\""
 }
 
 # told_by OUT RUNTIME ARCHIVE COMPILER ...: OUT, a program that tells what the model here does

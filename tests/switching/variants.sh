@@ -4,8 +4,8 @@
 #
 #     variants.sh PLGEN LIST NAME_variants.c NAME_variants.h FOLDER ...
 #
-# A line of LIST is `NAME STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and becomes the
-# models NAME_0, NAME_1, ... for each of its steps ('-': the spec's own step).  Options:
+# A line of LIST is `NAME STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, each with its
+# specs.cases, and becomes the models NAME_0, NAME_1, ... for each of its steps ('-': the spec's own step).  Options:
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     edit=SCRIPT     the spec after `sed SCRIPT`
 #     anything else   for plgen
@@ -26,6 +26,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 . "${0%/*}/../made.sh"
 
+specs_of "$@"
+mkdir "$work/edited"
 : >"$work/names"
 grep -v -e '^#' -e '^$' "$list" | while read -r name steps options; do
     as=$name
@@ -38,13 +40,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name steps options; do
             *) given="$given $option" ;;
         esac
     done
-    spec=$work/$name.spec
-    for folder; do
-        if [ -e "$folder/$name.spec" ]; then
-            sed -e "$edit" "$folder/$name.spec" >"$spec"
-            break
-        fi
-    done
+    spec=$work/edited/$name.spec
+    sed -e "$edit" "$work/$name.spec" >"$spec"
     i=0 steps=$steps,
     while [ "$steps" ]; do
         step=${steps%%,*} steps=${steps#*,}
