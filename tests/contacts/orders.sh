@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# orders.sh PLGEN SOURCE [FIRST EVERY]: scheme taylor of orders 4, 6 and 8 on the models of orders.cases (each EVERY-th of
-# them from FIRST on, counted from 0), with stops, friction and impacts beside curves, beside order 24 at 600 steps a
+# orders.sh PLGEN SOURCE [FIRST EVERY]: scheme taylor of orders 4, 6 and 8 on the models of orders.cases (each EVERY-th
+# of them from FIRST on, counted from 0), with stops, friction and impacts beside curves, beside order 24 at 600 steps a
 # second. Errors (orders.c) of some 16 steps, h to 2.5 h, tell the order (orders.awk); one run before tells at which h
 # they come down to what is still well above rounding. From 24 starts, with MERGE=1 or LONG=1 in the environment 48.
 # TABLE=1: a row for doc/accuracy.md. $CC compiles, $PLRT is the runtime.

@@ -6,8 +6,7 @@
 #     lines.sh SOURCE_ROOT
 #
 # Not looked at: what programs write (doc/charts, doc/gallery, doc/combinations.md, *.csv) or read as data
-# (*.list, *.mtx, *.txt of tests), and specs of tests/errors (*.cases) and tests/fuzz, where a line may be what is
-# tested.
+# (*.list, *.mtx, *.txt of tests), and cases of tests/errors and tests/fuzz, where a line may be what is tested.
 set -u
 root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
@@ -46,7 +45,7 @@ look share share
 look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086
 look tests tests '(' $code ')'
-look specs tests -name '*.spec' ! -path '*/tests/fuzz/*'
+look specs tests '(' -name '*.spec' -o -name specs.cases -o -name orders.cases ')' ! -path '*/tests/fuzz/*'
 look doc doc ! -path '*/doc/charts/*' ! -path '*/doc/gallery/*' ! -name '*.csv' ! -name combinations.md
 look top . -maxdepth 1 '(' -name '*.md' -o -name Makefile -o -name meson.build ')'
 name='what git keeps is below 12000000 bytes'

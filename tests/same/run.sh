@@ -8,9 +8,10 @@ list_runs() {
 		"$root/tests/same/runs.list"
 }
 
-# spec_of_cases FOLDER/NAME.spec: NAME.spec here, as FOLDER/specs.cases or FOLDER.cases has it
-spec_of_cases() {
-	for cases in "${1%/*}/specs.cases" "${1%/*}.cases"; do
+# path_of FOLDER/NAME.spec: of that file, or of NAME.spec here, as FOLDER/specs.cases or FOLDER.cases has it
+path_of() {
+	[ ! -e "$root/$1" ] || { echo "$root/$1"; return; }
+	for cases in "$root/${1%/*}/specs.cases" "$root/${1%/*}.cases"; do
 		[ ! -e "$cases" ] || awk -v only="$(basename "$1" .spec)" -f "$root/tests/cases.awk" "$cases"
 	done | sed 's/$/.spec/'
 }
@@ -24,8 +25,7 @@ emit() {
 			emit_options=${emit_options%%--fast*}${emit_options#*--fast} ;;
 	esac
 	rm -f model.c model.h
-	emit_path=$root/$emit_spec
-	[ -e "$emit_path" ] || emit_path=$(spec_of_cases "$emit_path")
+	emit_path=$(path_of "$emit_spec")
 	eval "\"\$1\" --prefix made $emit_options -o model.c \"\$emit_path\""
 }
 

@@ -69,7 +69,8 @@ while read -r line; do
 	spec=${run%% *}
 	number=$((number + 1))
 	name=model$number
-	if ! eval "\"\$plgen\" --prefix $name ${run#"$spec"} -o $name.c \"\$root/\$spec\"" >log 2>&1; then
+	path=$(path_of "$spec")
+	if ! eval "\"\$plgen\" --prefix $name ${run#"$spec"} -o $name.c \"\$path\"" >log 2>&1; then
 		result 1 "$run: made"
 		continue
 	fi
