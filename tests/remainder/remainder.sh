@@ -209,17 +209,18 @@ orders()
     done
     result $status "${1##*/}, $2: order $3, $4"
 }
-orders "$here/kinked.spec" etdrk4 4 kink ''
-orders "$here/kinked.spec" dq4 2 kink 'here of order 2 at most: max(x - 0.5, 0) has a kink where x passes 0.5.'
-orders "$here/kinked.spec" etdrk2 2 kink ''
-orders "$here/kinked.spec" exact 0 kink ''
-orders "$here/jumping.spec" bm3 1 jump 'here of order 1 at most: (x > 0.3 ? 2 : 0) jumps where x passes 0.3.'
-orders "$here/jumping.spec" etd1 1 jump ''
-orders "$here/jumping.spec" exact 0 jump ''
-orders "$here/rates.spec" dq4 2 kink "here of order 2 at most: (x' > 0 ? 0.5 : 2)*x' has a kink where x' passes 0."
-orders "$here/bowed.spec" dq4 3 kink 'here of order 3 at most: 6*x*abs(x) is not smooth where x passes 0.'
-orders "$here/hertz.spec" nc2 2 kink 'here of order 2.5 at most: max(x, 0)^1.5 is not smooth where x passes 0.'
-orders "$here/timed.spec" dq4 1 jump 'here of order 1 at most: (t < 1.2345678 ? 8 : 2) jumps where t passes 1.2345678.'
+awk -f "$root/tests/cases.awk" "$here/specs.cases" >names
+orders kinked.spec etdrk4 4 kink ''
+orders kinked.spec dq4 2 kink 'here of order 2 at most: max(x - 0.5, 0) has a kink where x passes 0.5.'
+orders kinked.spec etdrk2 2 kink ''
+orders kinked.spec exact 0 kink ''
+orders jumping.spec bm3 1 jump 'here of order 1 at most: (x > 0.3 ? 2 : 0) jumps where x passes 0.3.'
+orders jumping.spec etd1 1 jump ''
+orders jumping.spec exact 0 jump ''
+orders rates.spec dq4 2 kink "here of order 2 at most: (x' > 0 ? 0.5 : 2)*x' has a kink where x' passes 0."
+orders bowed.spec dq4 3 kink 'here of order 3 at most: 6*x*abs(x) is not smooth where x passes 0.'
+orders hertz.spec nc2 2 kink 'here of order 2.5 at most: max(x, 0)^1.5 is not smooth where x passes 0.'
+orders timed.spec dq4 1 jump 'here of order 1 at most: (t < 1.2345678 ? 8 : 2) jumps where t passes 1.2345678.'
 orders "$root/models/duffing.spec" etdrk4 4 smooth ''
 orders "$root/models/beam4.spec" etdrk4 4 smooth ''
 orders "$root/models/scs.spec" exact 0 smooth ''
