@@ -7,11 +7,13 @@
 #include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 #include "report/report.h"
+#include "run/run.h"
 #include "step/linear/images.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#include <limits.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +108,75 @@ static bool define(struct work *w)
 	return read;
 }
 
+static void make_motion(void *context)
+{
+	struct work *w = context;
+	if (!make_of(w, w->spec->source))
+		abandon();
+}
+
+/* The step as it was asked for, made shorter so that a whole number of them, which is returned, ends there */
+static long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end)
+{
+	RATIONAL steps = ZERO;
+	INTEGER count = INTEGER_ZERO;
+	if (mpq_sgn(h) == 0)            /* that there is none is said where the model is made */
+		return 0;
+	mpq_div(steps, end, h);
+	mpz_cdiv_q(count, mpq_numref(steps), mpq_denref(steps));
+	if (mpz_sgn(count) == 0)
+		return 0;
+	mpq_set_z(steps, count);
+	mpq_div(steps, end, steps);
+	request->step = exact_text(steps);
+	return mpz_fits_slong_p(count) ? mpz_get_si(count) : LONG_MAX;
+}
+
+/* Of what the C would have none changes the motion, and its states are the written ones. */
+static struct request request_of_motion(const struct request *asked)
+{
+	struct request request = *asked;
+	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
+	request.fast = request.phasors = false;
+	request.modes = request.linearise = NULL;
+	request.rows = 0;
+	return request;
+}
+
+/* t=END and the states that the model's own step comes to then; NULL: it was said why it does not */
+static const char *place_on_motion(struct work *w, const struct model *model, const char **by)
+{
+	struct work moving = *w;
+	const char *end = exact_text(model->equations.motion_end), *place = format("t=%s", end);
+	const int states = model->system.states;
+	SCRATCH double *y = ARRAY(double, states + 1);
+	moving.options.request = request_of_motion(&w->options.request);
+	const long steps = divide_motion(&moving.options.request, model->h,
+					 model->equations.motion_end);
+	target_double();
+	const char *why = unheard_refusal_of(make_motion, &moving);
+	why = why ? why : motion_to(w->spec->name_at, moving.step, steps, y);
+	if (w->options.request.single)
+		target_float();
+	if (why)
+		say_error(w->spec->name_at, "--at x=0.1 linearises at given values", "the motion to t = %s: %s", end,
+			  why);
+	for (int i = 0; i < states; i++)
+		place = format("%s,%s=%s", place, model->names.state[i], shortest(y[i]));
+	*by = format("scheme %s", scheme_name(moving.step->model->scheme));
+	return why ? NULL : place;
+}
+
+/* With its linear equations, where it has others and a place is asked for */
+static struct model *model_at_place(struct work *w, const struct source *source, const struct request *equations)
+{
+	w->spec = parse_spec(source);
+	leave_step_open(w);
+	struct request request = *equations;
+	request.step = w->options.request.step;
+	return diagnostics_errors() ? NULL : model_build(w->spec, &request);
+}
+
 /* The spec, or that of its linear equations; NULL: it was said why not */
 static const struct source *source_of(struct work *w)
 {
@@ -119,10 +190,11 @@ static const struct source *source_of(struct work *w)
 	struct request equations = *request;    /* no scheme, closed form or modes of the nonlinear ones */
 	request->linearise = equations.scheme = equations.tolerance = equations.modes = NULL;
 	equations.solution = false;
-	w->spec = parse_spec(source);
-	leave_step_open(w);
-	equations.step = request->step;
-	struct model *model = diagnostics_errors() ? NULL : model_build(w->spec, &equations);
+	struct model *model = model_at_place(w, source, &equations);
+	if (model && model->equations.motion_end) {
+		equations.linearise = place_on_motion(w, model, &equations.moved_by);
+		model = equations.linearise ? model_at_place(w, source, &equations) : NULL;
+	}
 	if (!model)
 		return diagnostics_errors() ? NULL : source;
 	if (!model->equations.linearised && w->options.at)
@@ -130,6 +202,7 @@ static const struct source *source_of(struct work *w)
 	if (!model->equations.linearised)
 		return source;
 	request->definitions.count = 0;
+	request->linearised_at = model->equations.point;
 	w->given = w->spec;
 	return source_text(format("%s, linearised", source->name), model->equations.linearised);
 }

@@ -236,7 +236,7 @@ static const struct row {
 	  .text = AT(value), .print = PRINT_RESPONSE },
 	{ "amplitude", "A", "of an excitation: clearances are swept by it, up and down (--response, --plot frf)",
 	  .text = AT(amplitude) },
-	{ "at", "rest|x=0.1,...", "of a nonlinear model: its linear equations at rest, or at these states",
+	{ "at", "rest|t=3|x=0.1,...", "of a nonlinear model: its linear equations at rest, at this time, at these states",
 	  .text = AT(at) },
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
 	  .take = take_plot },

@@ -41,7 +41,7 @@ void list_fixings(struct linearising *l)
 	add_fixing(l, NULL, 0, 0);
 }
 
-static struct point *point_of(struct linearising *l)
+struct point *point_of(struct linearising *l)
 {
 	for (int i = 0; i < l->states; i++)
 		mpq_set(l->fixing[i].value, l->state[i]);
@@ -50,7 +50,7 @@ static struct point *point_of(struct linearising *l)
 	return point;
 }
 
-static void value_at(struct linearising *l, struct point *point, const struct form *form, mpq_ptr value)
+void value_at(struct linearising *l, struct point *point, const struct form *form, mpq_ptr value)
 {
 	const struct form *there = form_at(point, form);
 	if (!is_constant(there))

@@ -5,11 +5,14 @@
  *
  * With F(q'', q', q, u, t) = 0 the equations as written, M = dF/dq'', C = dF/dq', K = dF/dq, and the inputs act by
  * -dF/du and -dF/du'. Derivatives are exact forms, evaluated in rationals, functions in 256 bits. What depends on time
- * alone stays a load; what else depends on time is taken at t = 0. */
+ * alone stays a load; what else depends on time is taken at t, 0 unless another time was asked for. */
 #define _GNU_SOURCE
 #include "capability.h"
 #include "checks.h"
 #include "linearise.h"
+#include "reads.h"
+#include "model/regions/expressions.h"
+#include "model/regions/regions.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,19 +29,20 @@ static int state_called(const struct model *model, const char *name, size_t leng
 	return -1;
 }
 
-/* Of NAME=EXPR at `text`: the state that it names; what is no state, or was given, is an error at `place`. */
+/* Of NAME=EXPR at `text`: the place that it names, behind the states t; what is no state, or was given, is an error. */
 static int state_given(const struct linearising *l, const char *text, size_t name, struct place place, bool *given)
 {
 	if (!text[name])
 		error(place, NULL, "--at takes rest, or NAME=EXPR with commas between");
 	while (name > 0 && text[name - 1] == ' ')
 		name--;
-	const int state = state_called(l->b->model, text, name);
+	const bool time = name == 1 && *text == 't';
+	const int state = time ? l->states : state_called(l->b->model, text, name);
 	if (state < 0)
 		error(place, "states are coordinates, and their velocities: --at x=0.1,x'=2",
 		      "no state is called '%.*s'", (int)name, text);
 	if (given[state])
-		error(place, NULL, "%s is given twice", l->b->model->names.state[state]);
+		error(place, NULL, "%s is given twice", time ? "t" : l->b->model->names.state[state]);
 	given[state] = true;
 	return state;
 }
@@ -51,26 +55,38 @@ static size_t end_of_value(const char *text, size_t end)
 	return end;
 }
 
-/* NAME=EXPR,... in `at` */
-static void take_values(struct linearising *l, const char *at)
+static mpq_ptr time_of(const struct linearising *l)
+{
+	return l->fixing[l->fixings - 1].value;
+}
+
+/* NAME=EXPR,... in `at`; returns how many */
+static int take_values(struct linearising *l, const char *at)
 {
 	struct source *source = source_argument(at);
-	bool *given = ARRAY(bool, (size_t)l->states);
+	bool *given = ARRAY(bool, (size_t)l->states + 1);
 	const char *text = source->text;
+	int count = 0;
 	do {
 		text += strspn(text, ", ");
 		const size_t name = strcspn(text, "="), end = end_of_value(text, name);
 		struct place place = { source, (size_t)(text - source->text) };
-		mpq_ptr value = l->state[state_given(l, text, name, place, given)];
+		const int state = state_given(l, text, name, place, given);
+		mpq_ptr value = state < l->states ? l->state[state] : time_of(l);
 		struct node *node = parse_argument(l->b->spec, source, place.offset + name + 1, place.offset + end);
 		if (!node)
 			abandon();
 		collect_constant(&l->b->collector, node, value);
 		if (beyond_range(value))
 			error(place, NULL, "the value is beyond the range of %s", target_name());
+		if (state == l->states && mpq_sgn(value) < 0)
+			error(place, NULL, "a motion begins at t = 0");
 		text += end;
+		count++;
 	} while (*text);
-	find_residuals(l);
+	l->timed = given[l->states];
+	l->fixing[l->fixings - 1].form = form_constant(time_of(l));
+	return count;
 }
 
 /* ---- the spec ---- */
@@ -314,20 +330,95 @@ static void list_inputs(struct linearising *l)
 			l->input[s->index] = s;
 }
 
-static void say_point(const struct linearising *l, bool rest)
+static int segment_at(const struct linearising *l)
+{
+	const struct linear *system = &l->b->model->system;
+	int segment = 0;
+	while (segment < system->segments - 1 && mpq_cmp(system->change[segment], time_of(l)) < 0)
+		segment++;
+	return segment;
+}
+
+/* 0 < x - y < 0.1: between which of its breakpoints it is there; *interval counts them from below */
+static const char *side_text(struct linearising *l, const struct expression *e, struct point *point, int *interval)
+{
+	const struct form *form = form_in(e, e->segments > 1 ? segment_at(l) : 0);
+	RATIONAL value = ZERO;
+	int k = 0;
+	value_at(l, point, l->timed ? form : without_loads(form), value);
+	while (k < e->breaks && mpq_cmp(e->at[k], value) < 0)
+		k++;
+	*interval = k;
+	return format("%s%s%s", k > 0 ? format("%s < ", readable_text(e->at[k - 1])) : "",
+		      form_text(l->b->model, form), k < e->breaks ? format(" < %s", readable_text(e->at[k])) : "");
+}
+
+/* ; in region 1, where 0 < x - y */
+static const char *region_text(struct linearising *l)
+{
+	const struct switching *s = l->b->model->switching;
+	const char *list = "";
+	int region = 0, interval;
+	if (!s || s->expressions == 0)
+		return "";
+	struct point *point = point_of(l);
+	for (int i = 0; i < s->expressions; i++) {
+		const char *side = side_text(l, &s->expression[i], point, &interval);
+		region += interval * s->expression[i].stride;
+		if (i < NAMED)
+			list = format("%s%s%s", list, i ? ", " : "", side);
+	}
+	if (s->expressions > NAMED)
+		list = format("%s and %d more inequalities", list, s->expressions - NAMED);
+	return format("; in region %d, where %s", region, list);
+}
+
+/* ; loads are as there: cos(5*t) = 0.28: their functions of time, in the equations */
+static const char *loads_text(struct linearising *l)
 {
 	const char *list = "";
+	RATIONAL value = ZERO;
+	struct point *point = point_of(l);
+	struct form *all = NEW(struct form), *one;
+	for (int i = 0; i < l->n; i++)
+		for (int k = 0; k < l->residual[i]->terms; k++)
+			if (l->residual[i]->term[k].basis.kind == BASIS_WAVE &&
+			    !form_find(all, &l->residual[i]->term[k].basis))
+				all = form_sum(all, form_unit(l->residual[i]->term[k].basis), false);
+	for (int k = 0; k < all->terms && k < NAMED; k++) {
+		one = form_unit(all->term[k].basis);
+		value_at(l, point, one, value);
+		list = format("%s%s%s = %.6g", list, *list ? ", " : "; loads are as there: ",
+			      form_text(l->b->model, one), mpq_get_d(value));
+	}
+	return all->terms > NAMED ? format("%s and %d more", list, all->terms - NAMED) : list;
+}
+
+/* rest: x = 0.1; t = 3 of the motion from the initial values, by scheme taylor: x = 0.1, x' = 2 */
+static const char *point_text(struct linearising *l)
+{
 	const struct model *model = l->b->model;
-	const int states = rest ? l->n : l->states;
+	const char *list = l->rest ? "rest: " : "", *moved = l->b->request->moved_by;
+	const int states = l->rest ? l->n : l->states;
+	if (l->timed)
+		list = format("t = %.6g%s", mpq_get_d(time_of(l)),
+			      moved ? format(" of the motion from the initial values, %s: ", moved) : ", ");
 	for (int i = 0; i < states && i < NAMED; i++)
 		list = format("%s%s%s = %s", list, i ? ", " : "", model->names.state[i],
 			      format("%.6g", mpq_get_d(l->state[i])));
 	if (states > NAMED)
 		list = format("%s and %d more", list, states - NAMED);
-	const bool varies = l->varies || loads_change(&model->system);
-	say_note(l->b->spec->name_at, "linearised at %s%s%s%s%s", rest ? "rest: " : "", list,
-		 rest || is_equilibrium(l) ? "" : "; the motion does not stay there, and its constant acceleration is "
-						  "left out",
+	return format("%s%s%s", list, region_text(l), l->timed ? loads_text(l) : "");
+}
+
+static void say_point(struct linearising *l)
+{
+	const struct model *model = l->b->model;
+	const bool varies = !l->timed && (l->varies || loads_change(&model->system));
+	say_note(l->b->spec->name_at, "linearised at %s%s%s%s", model->equations.point,
+		 l->rest || is_equilibrium(l) ? ""
+		 : l->timed ? "; coefficients are those of that time"
+			    : "; the motion does not stay there, and its constant acceleration is left out",
 		 varies ? "; what depends on time is as at t = 0" : "",
 		 model->switching ? "; --amplitude A sweeps through all regions" : "");
 }
@@ -342,11 +433,46 @@ static void check_contacts(const struct building *b)
 		error(b->spec->name_at, NULL, "delayed inputs have no linear equations without delay");
 }
 
+/* The point and what F is of; false: the states there are those of a motion that has to be run first */
+static bool find_point(struct linearising *l)
+{
+	struct model *model = l->b->model;
+	const char *place = l->b->request->linearise;
+	l->rest = strcmp(place, "rest") == 0;
+	for (int i = 0; i < l->states; i++)
+		mpq_set(l->state[i], model->initial[i]);
+	const int given = l->rest ? 0 : take_values(l, place);
+	for (int i = 0; i < l->n; i++) {
+		const struct form *form = l->b->whole->residual[i].form;
+		l->residual[i] = l->timed ? form : without_loads(form);
+	}
+	if (l->timed && given == 1) {
+		model->equations.motion_end = time_of(l);
+		return false;
+	}
+	if (l->rest)
+		find_equilibrium(l);
+	else
+		find_residuals(l);
+	return true;
+}
+
+static void print_spec(FILE *to, struct linearising *l)
+{
+	const struct model *model = l->b->model;
+	print_declarations(to, l);
+	if (!l->timed)
+		print_initials(to, l);
+	print_equations(to, l);
+	print_outputs(to, l);
+	if (mpq_sgn(model->h) > 0)
+		fprintf(to, "step %s\n", number_text(model->h));
+}
+
 void linearise(void *building)
 {
 	struct building *b = building;
 	struct model *model = b->model;
-	const bool rest = strcmp(b->request->linearise, "rest") == 0;
 	struct linearising l = { .b = b, .n = model->n, .states = model->system.states, .fall = 1e-4 };
 	size_t length;
 	char *text;
@@ -360,26 +486,16 @@ void linearise(void *building)
 	l.state = rationals((size_t)l.states);
 	l.F = rationals((size_t)l.n);
 	l.residual = ARRAY(const struct form *, l.n);
-	for (int i = 0; i < l.states; i++)
-		mpq_set(l.state[i], model->initial[i]);
-	for (int i = 0; i < l.n; i++)
-		l.residual[i] = without_loads(b->whole->residual[i].form);
-	if (rest)
-		find_equilibrium(&l);
-	else
-		take_values(&l, b->request->linearise);
+	if (!find_point(&l))
+		return;
 	find_highest(&l);
 	check_kinks(&l);
 	l.looks = true;
 	FILE *to = need_memory(open_memstream(&text, &length));
-	print_declarations(to, &l);
-	print_initials(to, &l);
-	print_equations(to, &l);
-	print_outputs(to, &l);
-	if (mpq_sgn(model->h) > 0)
-		fprintf(to, "step %s\n", number_text(model->h));
+	print_spec(to, &l);
 	fclose(to);
 	model->equations.linearised = format("%s", text);
+	model->equations.point = point_text(&l);
 	free(text);
-	say_point(&l, rest);
+	say_point(&l);
 }

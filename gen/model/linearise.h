@@ -12,8 +12,10 @@ struct linearising {
 	int fixings;
 	struct fixing *fixing;      /* states, highest derivatives, inputs and their slopes, t */
 	mpq_t *state;               /* the point */
-	const struct form **residual; /* per row: F without what depends on time alone */
+	const struct form **residual; /* per row: F */
 	mpq_t *F;
+	bool rest;                  /* an equilibrium was asked for */
+	bool timed;                 /* loads are as at t; else F is without them */
 	bool looks, varies;         /* slopes are looked at for what depends on time; some does */
 	double fall;                /* how far it moves where nothing holds it, doubled each time */
 };
@@ -23,6 +25,8 @@ struct linearising {
 void list_fixings(struct linearising *l);
 /* d form / d what `fixing` fixes, of `count` forms at the point */
 void slopes_at(struct linearising *l, int count, const struct form *const *form, int fixing, mpq_t *slope);
+struct point *point_of(struct linearising *l);
+void value_at(struct linearising *l, struct point *point, const struct form *form, mpq_ptr value);
 void find_residuals(struct linearising *l);                 /* F, where the highest derivatives are 0 */
 bool is_equilibrium(const struct linearising *l);           /* F is 0 */
 /* From the point on, without velocities; leaves the statement where none is found */

@@ -39,7 +39,9 @@ struct request {                    /* what the user asks for on the command lin
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: see `phasors` */
-	const char *linearise;      /* where: rest, or states and their values; NULL: nowhere */
+	const char *linearise;      /* where: rest, t=EXPR, or states and their values; NULL: nowhere */
+	const char *moved_by;       /* the scheme that brought the states there; NULL: they were given */
+	const char *linearised_at;  /* the point that these linear equations are at; NULL: they are the model's own */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	struct definitions definitions;

@@ -323,6 +323,7 @@ void text_equations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
+	text_point(to, step);
 	for (int i = 0; i < spec->equations; i++)
 		fprintf(to, "    %s\n",
 			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));

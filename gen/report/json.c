@@ -274,6 +274,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_rational_matrix(to, "C", model->written->n, model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, model->written->system.K);
 	json_poles(to, step);
+	json_point(to, step);
 	json_nonlinear(to, step);
 	if (!is_nonlinear(step))
 		json_linear(to, step);

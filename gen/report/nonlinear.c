@@ -2,7 +2,7 @@
 /* Of a model that is not linear there are no poles, mode shapes, frequency responses and static gains: those of the
  * terms that happen to be linear are of another model. What they would leave out is said by name. */
 #include "report/report.h"
-#include "step/step.h"
+#include "step/linear/images.h"
 
 enum { NAMED = 12 };
 
@@ -38,6 +38,32 @@ void json_nonlinear(FILE *to, const struct step *step)
 	for (int i = 0; i < model->nonlinear.terms; i++)
 		fprintf(to, "%s\"%s\"", i ? ", " : "", json_text(model->nonlinear.term[i].text));
 	fputs("],\n", to);
+}
+
+/* By the largest real part of a pole */
+static const char *stability_of(const struct step *step)
+{
+	struct pole_report *pole;
+	const int count = poles_of(step->model, step->written, &pole);
+	int most = -1;
+	for (int i = 0; i < count; i++)
+		most = mpfr_sgn(pole[i].re) > most ? mpfr_sgn(pole[i].re) : most;
+	return most < 0 ? "stable" : most > 0 ? "unstable" : "marginal";
+}
+
+void text_point(FILE *to, const struct step *step)
+{
+	const char *at = step->shown->model->asked.linearised_at;
+	if (at)
+		fprintf(to, "Linear equations of the deviations from %s.\nThey are %s.\n\n", at, stability_of(step));
+}
+
+void json_point(FILE *to, const struct step *step)
+{
+	const char *at = step->shown->model->asked.linearised_at;
+	if (at)
+		fprintf(to, "  \"linearised\": {\"at\": \"%s\", \"stability\": \"%s\"},\n", json_text(at),
+			stability_of(step));
 }
 
 void need_linear(const struct step *step, const char *what)

@@ -42,6 +42,8 @@ const char *rising_text(const struct divided *d);           /* likewise */
 bool is_nonlinear(const struct step *step);
 void text_nonlinear(FILE *to, const struct step *step);     /* what is not told of it, and why */
 void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
+void text_point(FILE *to, const struct step *step);         /* where they were linearised, where they were */
+void json_point(FILE *to, const struct step *step);         /* a member of an object, or nothing */
 void need_linear(const struct step *step, const char *what); /* "poles"; leaves the statement where it is not linear */
 
 /* ---- reach.c: what a series costs, and how far it reaches ---- */

@@ -44,6 +44,9 @@ void   running_needed(struct running *r, double *value);     /* per need: its ou
 int    running_status(struct running *r);
 void   running_rhs(struct running *r, double t, const double *y, const double *u, double *slope);
 
+/* From the spec's initial values by so many steps, inputs 0: the states then; NULL, or why there are none */
+const char *motion_to(struct place at, const struct step *step, long steps, double *y);
+
 /* ---- drive.c: inputs that are tried ---- */
 
 struct sampled {                      /* samples at t = 0, h, 2 h, ... */

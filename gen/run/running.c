@@ -2,6 +2,8 @@
 /* An instance of a model that runs here, driven by its descriptor. */
 #include "run/run.h"
 
+enum { MOST_STEPS = 10000000 };     /* of a motion */
+
 struct running {
 	const struct step *step;
 	struct native native;
@@ -153,4 +155,23 @@ void running_rhs(struct running *r, double t, const double *y, const double *u, 
 	else
 		((alone *)rhs)(t, r->y, r->slope);
 	from_target(r, r->slope, slope, r->states);
+}
+
+const char *motion_to(struct place at, const struct step *step, long steps, double *y)
+{
+	const char *why;
+	struct running *r = steps > MOST_STEPS ? NULL : running_new(at, step, 0, &why);
+	if (steps > MOST_STEPS)
+		return format("it takes more than %d steps", MOST_STEPS);
+	if (!r)
+		return why;
+	double *u = ARRAY(double, r->inputs + 1);
+	running_start(r, 0, NULL);
+	for (long k = 0; k < steps; k++) {
+		running_step(r, u);
+		if (running_status(r) != 0)
+			return format("it ends with status %d at t = %.6g", running_status(r), running_time(r));
+	}
+	running_state(r, y);
+	return NULL;
 }

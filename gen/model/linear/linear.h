@@ -48,7 +48,9 @@ struct equations {                  /* as they are written */
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
 	const struct atoms *atoms;
-	const char *linearised;     /* the spec of the linear ones, where that was asked for of nonlinear ones */
+	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
+	const char *linearised, *point;
+	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;
 };
