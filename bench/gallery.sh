@@ -34,6 +34,7 @@ pendulum 20 0.05 taylor
 quad2dof 60 0.2 taylor
 quarter_car 3 0.01
 quarter_car_bumps 3 0.01
+rotor -
 scs 5 0.0125
 scs_weak 1 0.0025
 sdcs 10 0.025
@@ -67,6 +68,13 @@ record() {
 			printf "%.6g,%.9g%s\n", t, u, columns ~ /top/ ? ",0" : "" } }'
 }
 
+# Over its speed
+campbell() {
+	"${plrun%plrun}plgen" --plot campbell --sweep w=0:600 --orders 1,2 -o "$work/picture.svg" "$1" 2>"$work/said" ||
+		{ cat "$work/said" >&2; exit 1; }
+	awk -f bench/svg.awk "$work/picture.svg" >"$folder/$2.svg"
+}
+
 echo "$lengths" | while read -r name end step scheme; do
 	record "$name" "$end" "$step" >"$work/record.csv"
 	case $name in
@@ -76,6 +84,7 @@ echo "$lengths" | while read -r name end step scheme; do
 		*) shown= ;;
 	esac
 	spec=models/$name.spec
+	[ "$name" != rotor ] || { campbell "$spec" rotor; continue; }
 	if [ -n "$shown" ]; then
 		sed "$shown" "$spec" >"$work/$name.spec"
 		spec=$work/$name.spec

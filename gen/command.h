@@ -21,6 +21,8 @@ struct options {
 	int definitions;
 	const char **definition;        /* NAME=EXPR */
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
+	bool campbell;                  /* the picture of --plot, with: */
+	const char *sweep, *orders, *whirl; /* NULL: not given */
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;

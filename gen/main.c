@@ -6,6 +6,7 @@
 #include "model/tunable/elsewhere.h"
 #include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
+#include "report/campbell.h"
 #include "report/report.h"
 #include "run/run.h"
 #include "step/linear/images.h"
@@ -438,6 +439,66 @@ static void print_depfile(const struct work *w)
 	file_close(f);
 }
 
+/* ---- over a param ---- */
+
+struct many { const struct work *first; struct work now; };
+
+/* All are of the same text; of later ones what it warns of was said of the first. */
+static void make_one(void *context)
+{
+	struct many *m = context;
+	const struct source *source = source_of(&m->now);
+	m->now.spec = source ? parse_spec(source) : NULL;
+	if (!source || diagnostics_errors() || !make_model(&m->now))
+		abandon();
+	if (m->now.model->nonlinear.terms > 0)
+		error(m->now.spec->name_at, NULL, "the equations are not linear");
+}
+
+static const struct model *model_with(void *context, const char *definition)
+{
+	struct many *m = context;
+	const bool again = m->now.model;
+	m->now = *m->first;
+	struct request *request = &m->now.options.request;
+	const char **all = ARRAY(const char *, request->definitions + 1);
+	for (int i = 0; i < request->definitions; i++)
+		all[i] = request->definition[i];
+	all[request->definitions++] = definition;
+	request->definition = all;
+	const char *refused = again ? unheard_refusal_of(make_one, m) : NULL;
+	if (refused)
+		error((struct place){ source_argument(definition), 0 }, NULL, "%s", refused);
+	if (!again)
+		make_one(m);
+	return m->now.model;
+}
+
+static void find_and_print_campbell(void *context)
+{
+	struct work *w = context;
+	const struct options *o = &w->options;
+	struct many many = { .first = w };
+	struct campbell c = { .build = model_with, .context = &many };
+	find_campbell(&c, o->sweep, o->orders, o->whirl);
+	w->spec = many.now.given ? (struct spec *)many.now.given : many.now.spec;
+	print_campbell(w->text->to, &c, picture_of_file(o->output));
+}
+
+static bool draw_campbell(struct work *w)
+{
+	w->text = file_new(w->options.output);
+	const bool printed = statement_guard(find_and_print_campbell, w);
+	file_close(w->text);
+	if (!printed || (w->options.strict && diagnostics_harden()))
+		return false;
+	print_depfile(w);
+	if (!spares(w->spec->data.files, w->spec->data.file))
+		return false;
+	publish();
+	return true;
+}
+
 /* ---- the whole ---- */
 
 /* What looks at a model without what is around it */
@@ -461,6 +522,8 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
+	if (w->options.campbell)
+		return draw_campbell(w);
 	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) ||
 	    (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;

@@ -74,7 +74,8 @@ static void take_solution(struct options *options, const char *value)
 
 static void take_plot(struct options *options, const char *value)
 {
-	const char *wrong = wrong_picture(value);
+	options->campbell = strcmp(value, "campbell") == 0;
+	const char *wrong = options->campbell ? NULL : wrong_picture(value);
 	if (wrong)
 		wrong_usage(format("--plot takes %s, found '%s'", PICTURE_KINDS, wrong));
 	set_print(options, PRINT_PLOT);
@@ -236,10 +237,16 @@ static const struct row {
 	  .text = AT(value), .print = PRINT_RESPONSE },
 	{ "amplitude", "A", "of an excitation: clearances are swept by it, up and down (--response, --plot frf)",
 	  .text = AT(amplitude) },
-	{ "at", "rest|t=3|x=0.1,...", "of a nonlinear model: its linear equations at rest, at this time, at these states",
+	{ "at", "rest|t=3|x=0.1,...", "of a nonlinear model: its linear equations at rest, then, or at these states",
 	  .text = AT(at) },
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
 	  .take = take_plot },
+	{ "sweep", "w=0:500[:N]", "of --plot campbell: poles over a param, 61 values; -o also FILE.csv, FILE.json",
+	  .text = AT(sweep) },
+	{ "orders", "1,2,...", "of --plot campbell: multiples of the speed that are drawn (default: 1)",
+	  .text = AT(orders) },
+	{ "whirl", "x:y,...", "of --plot campbell: pairs of coordinates, forward from the first to the second",
+	  .text = AT(whirl) },
 	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .print = PRINT_REPORT },
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", .flag = AT(rhs) },
 	{ "step", "EXPR", "instead of the spec's step", .text = AT(request.step) },
@@ -456,13 +463,28 @@ static void note_all(struct options *options)
 static void find_header(struct options *options)
 {
 	size_t length = options->output ? strlen(options->output) : 0;
-	if (options->print == PRINT_PLOT && options->output && picture_of_file(options->output) == PICTURE_NONE)
-		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf, found '%s'", options->output));
+	const enum picture_format as = picture_of_file(options->output);
+	if (options->print == PRINT_PLOT && (as == PICTURE_NONE || (as > PICTURE_PDF && !options->campbell)))
+		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf%s, found '%s'",
+				   options->campbell ? ", of campbell also FILE.csv and FILE.json" : "",
+				   options->output));
 	if (!options->output || options->print != PRINT_C)
 		return;
 	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)
 		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
 	options->header = format("%.*s.h", (int)length - 2, options->output);
+}
+
+static void check_campbell(const struct options *options)
+{
+	const struct { const char *value, *option; } of[] = {
+		{ options->sweep, "--sweep" }, { options->orders, "--orders" }, { options->whirl, "--whirl" }
+	};
+	for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+		if (of[i].value && !options->campbell)
+			wrong_usage(format("%s goes with --plot campbell", of[i].option));
+	if (options->campbell && !options->sweep)
+		wrong_usage("--plot campbell takes the param and its values from --sweep w=0:500");
 }
 
 /* Of an FMU everything else that is printed, and what nothing in it would call */
@@ -528,10 +550,11 @@ void read_options(int argc, char **argv, struct options *options)
 	if (options->bundle && options->print != PRINT_C)
 		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
 	if (options->amplitude && options->print != PRINT_RESPONSE &&
-	    !(options->print == PRINT_PLOT && has_frf(options->value)))
+	    !(options->print == PRINT_PLOT && !options->campbell && has_frf(options->value)))
 		wrong_usage("--amplitude goes with --response and --plot frf");
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
 	note_all(options);
+	check_campbell(options);
 	check_fmu(options);
 	find_header(options);
 	check_names(options);

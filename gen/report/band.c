@@ -10,8 +10,7 @@ enum { ROWS = 200 };
 
 static const char range_note[] = "--response takes F0:F1[:N], from and to in Hz, and how many";
 
-/* A number up to `end`; false: it is none */
-static bool read_number(const char *text, const char *end, double *number)
+bool read_number(const char *text, const char *end, double *number)
 {
 	char *stop;
 	const char *copy = format("%.*s", (int)(end - text), text);

@@ -454,12 +454,13 @@ const char *wrong_picture(const char *list)
 
 enum picture_format picture_of_file(const char *path)
 {
-	static const char *const ending[] = { [PICTURE_SVG] = ".svg", [PICTURE_PNG] = ".png", [PICTURE_PDF] = ".pdf" };
+	static const char *const ending[] = { [PICTURE_SVG] = ".svg", [PICTURE_PNG] = ".png", [PICTURE_PDF] = ".pdf",
+						[PICTURE_CSV] = ".csv", [PICTURE_JSON] = ".json" };
 	size_t length = path ? strlen(path) : 0;
 	if (!path)
 		return PICTURE_SVG;
-	for (int i = PICTURE_SVG; i <= PICTURE_PDF; i++)
-		if (length > 4 && strcmp(path + length - 4, ending[i]) == 0)
+	for (int i = PICTURE_SVG; i <= PICTURE_JSON; i++)
+		if (length > strlen(ending[i]) && strcmp(path + length - strlen(ending[i]), ending[i]) == 0)
 			return (enum picture_format)i;
 	return PICTURE_NONE;
 }
@@ -473,7 +474,7 @@ static const char *name_of(const char *list)
 	return name;
 }
 
-static void print_terminal(FILE *to, enum picture_format as, int height, const char *name)
+void print_terminal(FILE *to, enum picture_format as, int height, const char *name)
 {
 	if (as == PICTURE_PDF)
 		fprintf(to, "set term pdfcairo noenhanced size 9in,%.2fin font 'sans,10'\n", height / 100.0);

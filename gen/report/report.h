@@ -148,6 +148,7 @@ void json_linear(FILE *to, const struct step *step);         /* members of an ob
 /* ---- frf.c: frequency responses ---- */
 
 struct band { double from, to; int count; };                 /* [Hz], in equal ratios */
+bool read_number(const char *text, const char *end, double *number); /* up to `end`; false: it is none */
 struct band band_of(const char *text);                       /* F0:F1[:N] of the command line; leaves the statement */
 double frequency_of(const struct band *band, int row);
 struct band band_of_poles(int count, const struct pole_report *pole, int rows); /* around them */
@@ -215,10 +216,12 @@ void draw(FILE *to, FILE *script);                          /* what gnuplot make
 
 /* ---- plot.c: pictures ---- */
 
-#define PICTURE_KINDS "response, poles, modes and frf, with commas between"
-enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF };
+#define PICTURE_KINDS "response, poles, modes and frf, with commas between, or campbell"
+enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF, PICTURE_CSV, PICTURE_JSON };
 const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
 enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
+/* For gnuplot; name: of what is drawn, with commas between */
+void print_terminal(FILE *to, enum picture_format as, int height, const char *name);
 bool has_frf(const char *list);                             /* of kinds, none of them wrong */
 /* amplitude: of the excitation that frf sweeps with; NULL: it does not */
 void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as);

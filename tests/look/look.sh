@@ -159,7 +159,7 @@ result $? 'a file stays as it was where gnuplot fails'
 path=
 refused 2 '--amplitude goes with --response and --plot frf' 'an amplitude without a sweep' --plot poles --amplitude 1 \
 	"$spec"
-refused 2 "--plot takes response, poles, modes and frf, with commas between, found 'pole'" 'no such picture' \
+refused 2 "with commas between, or campbell, found 'pole'" 'no such picture' \
 	--plot poles,pole "$spec"
 refused 2 "found ''" 'a picture without a name' --plot poles, "$spec"
 refused 2 "-o of --plot takes FILE.svg, FILE.png or FILE.pdf, found 'a.c'" 'no such ending' --plot poles -o a.c "$spec"
@@ -245,7 +245,8 @@ at rest 'rest: q[1] = 0.5, q[2] = 0, z = -0.693147' "model m\ncoord q[2], z\ninp
 q'' + [2, -1; -1, 4]*q + [s; 2*s] = [1 + u; -0.5]\nz' + exp(z) = q[1]\noutput q[1], z" \
 	"model m\ncoord q[2], z\ninput u
 q'' + [2, -0.5; -1, 5]*q = [u; 0]\nz' + 0.5*z = q[1]\noutput q[1], z"
-# Where the model's own motion is at t: x = 1/(1 + t); a mass that falls from 0.2 m by 10 m/s^2 onto a spring at t = 0.2 s
+# Where the model's own motion is at t: x = 1/(1 + t); a mass that falls from 0.2 m by 10 m/s^2 onto a spring, which it
+# meets at t = 0.2 s
 bend="model m\ncoord x, y\ninput u\ninit x = 1, y = 1, y' = 1\ntolerance 1e-14
 x' + x^2 = u\ny'' + 0.2*y' + (2 + sin(pi*t))*y^2 = u + cos(pi*t/3)\noutput x"
 at t=1 't = 1 of the motion from the initial values, scheme taylor: x = 0.5, y = ' "$bend" \
@@ -294,6 +295,70 @@ linear 'scheme pl' "x'' + x' + k*x = u" --scheme pl
 linear 'scheme taylor, and a tunable param' "x'' + x' + k*x = u
 tunable k" --scheme taylor
 
+# ---- Campbell diagrams ----
+
+# An undamped rotor whirls by e^{iv t} with (k - m v^2)(kr - It v^2 + Ip w v) = kt^2, v above 0 forward and below 0
+# backward (Den Hartog 1956, 6.4); at v = w and v = -w that is of second degree in w^2.
+"$plgen" --plot campbell --sweep w=0:600:13 -D c=0 --orders 1,2 -o rotor.csv "$root/models/rotor.spec" 2>log &&
+	awk -F '[, ]' 'BEGIN { pi = 4 * atan2(1, 1); EI = 2.1e11 * pi * 0.03^4 / 64; L = 0.4
+			k = 12 * EI / L^3; kt = 6 * EI / L^2; kr = 4 * EI / L; m = 10; It = 0.1; Ip = 0.2 }
+		function off(v, w,  one, two) {
+			one = k - m * v * v
+			two = kr - It * v * v + Ip * w * v
+			return (one * two - kt^2) / ((k + m * v * v) * (kr + It * v * v + Ip * w * v) + kt^2)
+		}
+		function close_to(got, want, what) {
+			print what, got, want
+			if (!(got / want - 1 < 1e-9 && got / want - 1 > -1e-9)) wrong = 1
+		}
+		# (k - m z)(kr - j z) = kt^2 by z = w^2: the lower one that is above 0
+		function critical(j,  p, q, one, two) {
+			p = (k * j + kr * m) / (m * j)
+			q = (k * kr - kt^2) / (m * j)
+			one = (p - sqrt(p * p - 4 * q)) / 2
+			two = (p + sqrt(p * p - 4 * q)) / 2
+			return sqrt(one > 0 && (one < two || two < 0) ? one : two)
+		}
+		/^[0-9]/ { rows++; v = 2 * pi * $3; w = $1
+			e = $7 == "backward" ? off(-v, w) : off(v, w)
+			if (!(e < 1e-11 && e > -1e-11) || $7 != (w == 0 ? "planar" : $8 > 0 ? "forward" : "backward")) {
+				print $0, e; wrong = 1 }
+			if (w > 0 && ($8 * $8 < 1 - 1e-9 || $4 != 0)) wrong = 1 }
+		/^# 1x.*backward/ { seen++; close_to(2 * pi * substr($10, 1), critical(It + Ip), "backward, 1x") }
+		/^# 1x.*forward/ { seen++; close_to(2 * pi * $10, critical(It - Ip), "forward, 1x") }
+		/^# 2x/ { twice++ }
+		END { exit wrong || rows != 52 || seen != 2 || twice != 3 }' rotor.csv >log
+result $? 'campbell: whirl of a rotor with a gyroscopic moment, and its critical speeds'
+"$plgen" --plot campbell --sweep w=0:600:13 --whirl y:x,b:a -o back.csv "$root/models/rotor.spec" 2>log &&
+	"$plgen" --plot campbell --sweep w=0:600:13 -o back.json "$root/models/rotor.spec" 2>>log && python -c '
+import json, sys
+rows = [line.split(",") for line in open("back.csv") if line[0].isdigit()]
+told = json.load(open("back.json"))
+other = {"forward": "backward", "backward": "forward", "planar": "planar"}
+modes = [(v["value"], m) for v in told["values"] for m in v["modes"]]
+wrong = len(modes) != len(rows) or len(rows) != 52 or len(told["crossings"]) != 2 or told["unit"] != "rad/s"
+for row, (value, m) in zip(rows, modes):
+    wrong |= float(row[0]) != value or float(row[2]) != m["frequency_hz"] or row[6] != other[m["whirl"]]
+wrong |= [p["by"] for p in told["pairs"]] != ["gyroscopic terms", "names"]
+sys.exit(wrong)' >>log 2>&1
+result $? 'campbell: JSON, and pairs the other way around'
+# A cubic spring that a weight bends by 1: K = 1 + 3*0.25*x^2 there, sqrt(k + 0.75)/(2 pi) Hz; the speed in rpm
+printf "model m\nparam k = 1\ncoord x\nx'' + k*x + 0.25*x^3 = k + 0.25\nstep 0.1\n" >bent.spec
+"$plgen" --plot campbell --sweep k=1:3rpm:3 --orders 10 -o bent.csv bent.spec 2>log && awk -F , '/^[0-9]/ { rows++
+	d = $3 * 8 * atan2(1, 1) / sqrt($1 + 0.75) - 1; if (d * d > 1e-24 || $7 != "none") wrong = 1 }
+	/^# 10x crosses mode 1 at k = 1\.[0-9]*: 0\.[0-9]* Hz/ { seen++ }
+	END { exit wrong || rows != 3 || seen != 1 }' bent.csv
+result $? 'campbell: a nonlinear model at rest for each value; rpm'
+refused 2 '--plot campbell takes the param and its values from --sweep' 'campbell alone' --plot campbell "$spec"
+refused 2 '--sweep goes with --plot campbell' 'a sweep alone' --sweep w=0:1 --plot poles "$spec"
+refused 2 'of campbell also FILE.csv and FILE.json' 'an ending of campbell' --plot campbell --sweep w=0:1 -o a.c "$spec"
+refused 2 "found 'a.csv'" 'an ending of others' --plot poles -o a.csv "$spec"
+refused 1 'expected two values that rise' 'a sweep that falls' --plot campbell --sweep w=3:1 "$spec"
+refused 1 'expected a number of values from 2' 'one value' --plot campbell --sweep w=0:1:1 "$spec"
+refused 1 'up to 16 numbers above 0' 'order 0' --plot campbell --sweep w=0:1 --orders 0 "$spec"
+refused 1 "'x:q' is none" 'a pair that is none' --plot campbell --sweep w=1:2 --whirl x:q "$root/models/rotor.spec"
+refused 1 "no param is named 'zz'" 'a sweep of nothing' --plot campbell --sweep zz=0:1 "$spec"
+
 # ---- with gnuplot ----
 
 if command -v gnuplot >log; then
@@ -304,6 +369,8 @@ if command -v gnuplot >log; then
 			"$plgen" --plot frf,poles -o "b.$end" "$spec" && [ ! -s out ] &&
 			head -c 8 "a.$end" | grep -aqF "${kind#* }" || good=1
 	done
+	"$plgen" --plot campbell --sweep w=0:600 --orders 1,2 -o rotor.svg "$root/models/rotor.spec" 2>log &&
+		grep -q '<svg ' rotor.svg && grep -q 'crosses mode 2 at w = 163.347' log || good=1
 	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
 	result $? 'svg, png and pdf'
 	for name in models/sdcsf models/quarter_car models/tuned_floor tests/refresh/growing; do
