@@ -460,12 +460,12 @@ static const struct model *model_with(void *context, const char *definition)
 	struct many *m = context;
 	const bool again = m->now.model;
 	m->now = *m->first;
-	struct request *request = &m->now.options.request;
-	const char **all = ARRAY(const char *, request->definitions + 1);
-	for (int i = 0; i < request->definitions; i++)
-		all[i] = request->definition[i];
-	all[request->definitions++] = definition;
-	request->definition = all;
+	struct options *o = &m->now.options;
+	const char **all = ARRAY(const char *, o->definitions + 1);
+	for (int i = 0; i < o->definitions; i++)
+		all[i] = o->definition[i];
+	all[o->definitions++] = definition;
+	o->definition = all;
 	const char *refused = again ? unheard_refusal_of(make_one, m) : NULL;
 	if (refused)
 		error((struct place){ source_argument(definition), 0 }, NULL, "%s", refused);
