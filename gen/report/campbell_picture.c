@@ -151,7 +151,8 @@ static const char *curves_text(const struct campbell *c, int column)
 	for (enum whirl w = WHIRL_NONE; w <= WHIRL_MIXED; w++)
 		if (has_whirl(c, w))
 			text = format("%s%s$%s using 1:%d with lines lw 2 %s title '%s'", text,
-				      *text ? ", " : "plot ", whirl_name[w], column, style[w], w == WHIRL_NONE ? "modes" : whirl_name[w]);
+				      *text ? ", " : "plot ", whirl_name[w], column, style[w],
+				      w == WHIRL_NONE ? "modes" : whirl_name[w]);
 	return *text ? text : "plot NaN notitle";
 }
 
