@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Modes over a param as CSV, as JSON, as a picture: frequencies with the lines of orders and what crosses them, and
  * damping ratios. */
+#include "host/picture.h"
 #include "report/campbell.h"
 
 #include <math.h>
@@ -142,17 +143,16 @@ static double lowest_ratio(const struct campbell *c)
 /* Lines differ in colour and in dashes. */
 static const char *curves_text(const struct campbell *c, int column)
 {
-	static const char *const style[] = {
-		[WHIRL_NONE] = "dt 1 lc rgb '#1f5fa8'", [WHIRL_PLANAR] = "dt 3 lc rgb '#505050'",
-		[WHIRL_FORWARD] = "dt 1 lc rgb '#1f5fa8'", [WHIRL_BACKWARD] = "dt 2 lc rgb '#b03020'",
-		[WHIRL_MIXED] = "dt 4 lc rgb '#7040a0'"
-	};
+	static const int style[] = { [WHIRL_NONE] = 0, [WHIRL_FORWARD] = 0, [WHIRL_BACKWARD] = 1, [WHIRL_PLANAR] = 2,
+				     [WHIRL_MIXED] = 3 };
 	const char *text = "";
-	for (enum whirl w = WHIRL_NONE; w <= WHIRL_MIXED; w++)
+	for (enum whirl w = WHIRL_NONE; w <= WHIRL_MIXED; w++) {
+		const struct picture_curve *curve = &picture_curve[style[w]];
 		if (has_whirl(c, w))
-			text = format("%s%s$%s using 1:%d with lines lw 2 %s title '%s'", text,
-				      *text ? ", " : "plot ", whirl_name[w], column, style[w],
+			text = format("%s%s$%s using 1:%d with lines lw 2 dt %s lc rgb '%s' title '%s'", text,
+				      *text ? ", " : "plot ", whirl_name[w], column, curve->dash, curve->colour,
 				      w == WHIRL_NONE ? "modes" : whirl_name[w]);
+	}
 	return *text ? text : "plot NaN notitle";
 }
 
@@ -216,9 +216,9 @@ static void print_script(FILE *to, const struct campbell *c)
 
 static void print_picture_of(FILE *to, const struct campbell *c, enum picture_format as)
 {
-	enum { TALL = 640 };
+	enum { WIDE = 900, TALL = 640 };
 	FILE *script = new_script();
-	print_terminal(script, as, TALL, "campbell");
+	print_terminal(script, as, WIDE, TALL, "campbell");
 	print_script(script, c);
 	draw(to, script);
 	fclose(script);

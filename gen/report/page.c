@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how
- * far it may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
+ * far it may be off. It reads well at 400 points of width too: pictures have a sheet of that width, text breaks, and
+ * matrices alone move in frames of their own. */
 #include "report/report.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
@@ -20,13 +21,16 @@ static const char style[] =
 	"nav a{margin-right:.9em;white-space:nowrap}a{color:#1f5fa8}p{margin:.5em 0}\n"
 	".wide{overflow-x:auto;margin:.5em 0}\n"
 	"pre{font:.85rem/1.45 ui-monospace,monospace;background:#f5f5f5;padding:.6em .8em;margin:.5em 0;"
-	"overflow-x:auto}\n"
-	"pre.text{white-space:pre-wrap;overflow-wrap:anywhere}\n"
+	"white-space:pre-wrap;overflow-wrap:anywhere}\n"
 	"table{border-collapse:collapse;font-size:.9rem}td,th{padding:.2em .7em;text-align:right;"
 	"border-bottom:1px solid #e4e4e4;white-space:nowrap}th{font-weight:600}\n"
 	"td.name,th.name{text-align:left}table.matrix{display:inline-table;margin:.3em 1.4em .3em 0;"
 	"border-left:2px solid #444;border-right:2px solid #444}table.matrix td{border:0}\n"
-	"figure{margin:.6em 0;overflow-x:auto}figure svg{display:block;width:100%;min-width:38rem;height:auto}\n";
+	"figure{margin:.6em 0}figure svg{display:block;width:100%;height:auto}.narrow{display:none}\n"
+	"@media(max-width:40rem){.broad{display:none}.narrow{display:block}body{padding:.6rem}"
+	"table{font-size:.75rem}td,th{padding:.2em .35em}td,th{white-space:normal}"
+	"td.name{overflow-wrap:anywhere}td.name:last-child{min-width:8em}table.matrix td{white-space:nowrap}"
+	"pre{font-size:.75rem}}\n";
 
 /* ---- text as HTML ---- */
 
@@ -52,12 +56,11 @@ static void copy_escaped(FILE *from, FILE *to)
 }
 
 /* What is told a person, as it is */
-static void print_words(FILE *to, const struct step *step, void (*print)(FILE *to, const struct step *step),
-			const char *kind)
+static void print_words(FILE *to, const struct step *step, void (*print)(FILE *to, const struct step *step))
 {
 	FILE *words = new_script();
 	print(words, step);
-	fprintf(to, "<pre%s>", kind);
+	fputs("<pre>", to);
 	copy_escaped(words, to);
 	fputs("</pre>\n", to);
 	fclose(words);
@@ -73,7 +76,7 @@ static const struct model *reported_model(const struct step *step)
 
 static void print_equations(FILE *to, const struct step *step)
 {
-	print_words(to, step, text_equations, "");
+	print_words(to, step, text_equations);
 }
 
 static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
@@ -113,7 +116,7 @@ static void print_matrices(FILE *to, const struct step *step)
 
 static void print_left_out(FILE *to, const struct step *step)
 {
-	print_words(to, step, text_nonlinear, " class=\"text\"");
+	print_words(to, step, text_nonlinear);
 }
 
 static bool is_linear_model(const struct step *step)
@@ -210,12 +213,12 @@ static void print_chosen(FILE *to, const struct step *step)
 		readable_text(model->h), target_name());
 	if (model->nonlinear.obstacle && model->nonlinear.why)
 		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->nonlinear.why));
-	print_words(to, step, text_course, " class=\"text\"");
+	print_words(to, step, text_course);
 }
 
 static void print_cost(FILE *to, const struct step *step)
 {
-	print_words(to, step, text_cost, " class=\"text\"");
+	print_words(to, step, text_cost);
 }
 
 static const struct section sections[] = {

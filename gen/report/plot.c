@@ -1,32 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures of a model as scripts for gnuplot: panels below each other, or beside. All numbers are in the script, those
- * of frf as --response prints them, those of response as --solution does. No dates, no paths. */
+ * of frf as --response prints them, those of response as --solution does. No dates, no paths. A page has each picture
+ * twice, on a wide sheet and on a narrow one for telephones: the same numbers, laid out once for each. Legends stand
+ * above their panels, never on curves, and curves of one panel differ in dashes and marks too. */
 #include "model/regions/regions.h"
+#include "host/picture.h"
 #include "report/report.h"
 #include "step/linear/images.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { WIDTH = 900, CURVES = 8, DRIVES = 6, OUTPUTS = 12, SHAPES = 12, POINTS = 600 };
+enum { WIDE = 900, NARROW = 400, SHEETS = 2, CURVES = PICTURE_CURVES, DRIVES = 6, OUTPUTS = 12, SHAPES = 12,
+       POINTS = 600 };
 
 struct panel {
-	int left, top, width, height;   /* in points of a screen */
+	int sheet, left, top, width, height;   /* in points of a screen */
 	const char *text;               /* commands */
 };
 struct picture {
 	const struct step *step;
 	const char *amplitude;          /* of an excitation that sweeps; NULL: frequency responses are linear */
 	FILE *data;                     /* $name << END ... */
-	int panels, height;
+	int sheets, width[SHEETS], height[SHEETS];
+	int panels;
 	struct panel *panel;
 };
 
 /* ---- panels ---- */
 
-static void add_panel(struct picture *p, int left, int width, int height, const char *text)
+static void add_panel(struct picture *p, int sheet, int left, int width, int height, const char *text)
 {
-	*MORE(p->panel, p->panels) = (struct panel){ left, p->height, width, height, text };
+	*MORE(p->panel, p->panels) = (struct panel){ sheet, left, p->height[sheet], width, height, text };
+}
+
+/* Over the whole width, the next below it */
+static void add_row(struct picture *p, int sheet, int height, const char *text)
+{
+	add_panel(p, sheet, 0, p->width[sheet], height, text);
+	p->height[sheet] += height;
+}
+
+static const char above[] = "set key outside top left horizontal Left reverse samplen 3\n";
+
+/* Curve k of a panel of `points` points; dash: NULL, or another than its own */
+static const char *curve(int k, const char *dash, int points)
+{
+	const struct picture_curve *c = &picture_curve[k % CURVES];
+	return format("with linespoints lw 1.4 dt %s pt %d ps 0.5 pi %d lc rgb '%s'", dash ? dash : c->dash, c->mark,
+		      points / 12 + 1, c->colour);
 }
 
 /* Names are identifiers with primes and indices, and what loads are in time: nothing in them means more in quotes. */
@@ -41,84 +63,12 @@ static void note_first(int shown, int all, const char *what)
 		fprintf(stderr, "plgen: note: the first %d of %d %s are drawn\n", shown, all, what);
 }
 
-/* ---- poles ---- */
-
-/* 0, and their largest sizes */
-static void window_of_poles(int count, const struct pole_report *pole, double *left, double *right, double *high)
-{
-	*left = *right = *high = 0;
-	for (int i = 0; i < count; i++) {
-		double re = mpfr_get_d(pole[i].re, MPFR_RNDN), im = fabs(mpfr_get_d(pole[i].im, MPFR_RNDN));
-		*left = fmin(*left, re);
-		*right = fmax(*right, re);
-		*high = fmax(*high, im);
-	}
-	double wide = fmax(-*left, *right);
-	*high = *high > 0 ? 1.25 * *high : wide > 0 ? wide : 1;
-	wide = wide > 0 ? wide : 0.1 * *high;
-	*left = *left < 0 ? 1.25 * *left : -wide;
-	*right = *right > 0 ? 1.25 * *right : 0.2 * wide;
-}
-
-/* Poles of one damping ratio lie on a ray: im = re sqrt(1 - z^2)/z; to the edge of the window */
-static const char *rays_of(double left, double high)
-{
-	static const double ratio[] = { 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3,
-					0.4, 0.5, 0.6, 0.7, 0.8, 0.9 };
-	const char *text = "";
-	double before = HUGE_VAL;
-	for (size_t i = 0; i < sizeof ratio / sizeof *ratio; i++) {
-		double slope = sqrt(1 - ratio[i] * ratio[i]) / ratio[i], turn = -left * slope / high;
-		double x = turn > 1 ? -high / slope : left, y = turn > 1 ? high : -left * slope;
-		if (turn > 8 || turn < 0.12 || before < 1.7 * turn)
-			continue;
-		before = turn;
-		for (int side = 1; side >= -1; side -= 2)
-			text = format("%sset arrow from 0,0 to %.10g,%.10g nohead lc rgb '#c8c8c8' lw 0.8\n", text, x,
-				      side * y);
-		text = format("%sset label '%g' at %.10g,%.10g %s tc rgb '#808080'\n", text, ratio[i], x, y,
-			      turn > 1 ? "center offset 0,0.5" : "left offset 0.5,0.7");
-	}
-	return text;
-}
-
-/* Each with its frequency, where that does not stand on another's */
-static void print_poles(FILE *to, int count, const struct pole_report *pole, double high)
-{
-	double reported = HUGE_VAL;
-	fputs("$poles << END\n", to);
-	for (int i = count - 1; i >= 0; i--) {
-		double re = mpfr_get_d(pole[i].re, MPFR_RNDN), im = mpfr_get_d(pole[i].im, MPFR_RNDN);
-		const char *text = "";
-		if (reported - im > 0.08 * high || i == count - 1) {
-			text = format("%.4g Hz%s", mpfr_get_d(pole[i].hertz, MPFR_RNDN),
-				      pole[i].multiplicity > 1 ? format(", %d-fold", pole[i].multiplicity) : "");
-			reported = im;
-		}
-		fprintf(to, "%.17g %.17g \"%s\"\n", re, im, text);
-		if (pole[i].pair)
-			fprintf(to, "%.17g %.17g \"\"\n", re, -im);
-	}
-	fputs("END\n", to);
-}
-
 static void plot_poles(struct picture *p)
 {
-	struct pole_report *pole;
-	double left, right, high;
 	need_linear(p->step, "poles");
-	int count = poles_of(p->step->model, p->step->written, &pole);
-	window_of_poles(count, pole, &left, &right, &high);
-	print_poles(p->data, count, pole, high);
-	add_panel(p, 0, WIDTH, 480, format(
-		"set title 'poles, and rays of equal damping ratio'\nunset key\nset lmargin 12\nset rmargin 5\n"
-		"set tmargin 3.4\n"
-		"set xlabel 're [1/s]'\nset ylabel 'im [rad/s]'\nset xzeroaxis lt 1 lc rgb '#606060'\n"
-		"set yzeroaxis lt 1 lc rgb '#606060'\n%s"
-		"plot [%.10g:%.10g] [%.10g:%.10g] $poles using 1:2 with points pt 2 ps 1.2 lw 2 lc rgb '#b03020', "
-		"'' using 1:2:3 with labels left offset 0.8,0.4 font ',9'\n",
-		rays_of(left, high), left, right, -high, high));
-	p->height += 480;
+	const char *text = draw_poles(p->data, p->step);
+	for (int sheet = 0; sheet < p->sheets; sheet++)
+		add_row(p, sheet, 480, p->width[sheet] == NARROW ? format("set xtics rotate by -45\n%s", text) : text);
 }
 
 /* ---- mode shapes ---- */
@@ -141,25 +91,29 @@ static bool is_complex(const struct mode_shape *shape, int n)
 	return false;
 }
 
-static void add_shape(struct picture *p, const struct model *model, const struct mode_shape *shape, int k, int shapes)
+static void print_shape(FILE *to, const struct model *model, const struct mode_shape *shape, int k)
+{
+	fprintf(to, "$shape%d << END\n", k + 1);
+	for (int i = 0; i < model->n; i++)
+		fprintf(to, "%d %.17g %.17g\n", i + 1, shape->re[i], shape->im[i]);
+	fputs("END\n", to);
+}
+
+static void add_shape(struct picture *p, int sheet, const struct model *model, const struct mode_shape *shape, int k,
+		      int shapes)
 {
 	enum { TALL = 210 };
 	bool twofold = is_complex(shape, model->n);
-	int columns = shapes < 3 ? shapes : 3, wide = WIDTH / columns;
+	int most = p->width[sheet] / 300, columns = shapes < most ? shapes : most, wide = p->width[sheet] / columns;
 	double hertz = mpfr_get_d(shape->pole->hertz, MPFR_RNDN);
 	double ratio = mpfr_get_d(shape->pole->damping_ratio, MPFR_RNDN);
-	fprintf(p->data, "$shape%d << END\n", k + 1);
-	for (int i = 0; i < model->n; i++)
-		fprintf(p->data, "%d %.17g %.17g\n", i + 1, shape->re[i], shape->im[i]);
-	fputs("END\n", p->data);
-	add_panel(p, k % columns * wide, wide, TALL, format(
+	add_panel(p, sheet, k % columns * wide, wide, TALL, format(
 		"set title '%.5g Hz, damping ratio %.3g'\nset lmargin 7\nset rmargin 2\nset xzeroaxis lt 1 lc rgb "
-		"'#606060'\nset ytics 0.5\n%s%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 with linespoints pt 7 "
-		"ps 0.6 lw 1.6 lc rgb '#1f5fa8' title 're'%s\n", hertz, ratio, twofold ? "" : "unset key\n",
-		coordinate_tics(model, 15 / columns), model->n, k + 1,
-		twofold ? ", '' using 1:3 with linespoints pt 6 ps 0.6 dt 2 lc rgb '#b03020' title 'im'" : ""));
+		"'#606060'\nset ytics 0.5\n%s%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 %s title 're'%s\n",
+		hertz, ratio, twofold ? above : "unset key\n", coordinate_tics(model, wide / 60), model->n, k + 1,
+		curve(0, NULL, 0), twofold ? format(", '' using 1:3 %s title 'im'", curve(1, NULL, 0)) : ""));
 	if (k % columns == columns - 1 || k == shapes - 1)
-		p->height += TALL;
+		p->height[sheet] += TALL;
 }
 
 static void plot_modes(struct picture *p)
@@ -173,14 +127,14 @@ static void plot_modes(struct picture *p)
 		error(of->asked.step_at, NULL, "the model has %d coordinates: mode shapes are limited to %d",
 		      of->system.n, LIMIT_SHAPES);
 	note_first(shown, count, "mode shapes");
-	for (int k = 0; k < shown; k++)
-		add_shape(p, of, &shape[k], k, shown);
+	for (int k = 0; k < shown; k++) {
+		print_shape(p->data, of, &shape[k], k);
+		for (int sheet = 0; sheet < p->sheets; sheet++)
+			add_shape(p, sheet, of, &shape[k], k, shown);
+	}
 }
 
 /* ---- frequency responses ---- */
-
-static const char *const colour[CURVES] = { "#1f5fa8", "#b03020", "#2e8b57", "#c08000", "#7040a0", "#008b8b", "#a05050",
-					    "#505050" };
 
 /* The curves of one drive: those that are not 0; column 2, 4, ... of the data are sizes, after each an angle */
 static const char *curves(const struct responses *r, const char *data, int first, int last, int angle, int *count)
@@ -191,8 +145,8 @@ static const char *curves(const struct responses *r, const char *data, int first
 		if (r->transfer[k].N.length == 0)
 			continue;
 		if (*count < CURVES)
-			text = format("%s%s using 1:%d with lines lw 1.6 lc rgb '%s' title %s", text,
-				      *text ? ", ''" : format("plot %s", data), 2 * k + 2 + angle, colour[*count],
+			text = format("%s%s using 1:%d %s title %s", text, *text ? ", ''" : format("plot %s", data),
+				      2 * k + 2 + angle, curve(*count, NULL, r->band.count),
 				      quoted(r->transfer[k].output));
 		++*count;
 	}
@@ -201,19 +155,20 @@ static const char *curves(const struct responses *r, const char *data, int first
 
 static const char *frame_of(const struct band *band)
 {
-	return format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 12\nset rmargin 20\nset key "
-		      "outside right top\nset format y '%%.3g'\n", band->from, band->to);
+	return format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 10\nset rmargin 3\n%sset format y "
+		      "'%%.3g'\n", band->from, band->to, above);
 }
 
 static void add_size_and_angle(struct picture *p, const char *frame, const char *title, const char *size,
 			       const char *angle)
 {
-	add_panel(p, 0, WIDTH, 270, format("%sset title %s\nset logscale y\nset format x ''\nset ylabel 'magnitude'\n"
-					   "set bmargin 0.6\n%s\n", frame, quoted(title), size));
-	p->height += 270;
-	add_panel(p, 0, WIDTH, 190, format("%sset key off\nset tmargin 0.6\nset ylabel 'phase [deg]'\nset ytics 90\n"
-					   "set xlabel 'f [Hz]'\n%s\n", frame, angle));
-	p->height += 190;
+	for (int sheet = 0; sheet < p->sheets; sheet++) {
+		add_row(p, sheet, 300, format("%sset title %s\nset logscale y\nset format x ''\n"
+					      "set ylabel 'magnitude'\nset bmargin 0.6\n%s\n", frame,
+					      quoted(title), size));
+		add_row(p, sheet, 190, format("%sset key off\nset tmargin 0.6\nset ylabel 'phase [deg]'\nset ytics 90\n"
+					      "set xlabel 'f [Hz]'\n%s\n", frame, angle));
+	}
 }
 
 static void add_bode(struct picture *p, const struct responses *r, int first, int last)
@@ -260,9 +215,9 @@ static const char *sweep_curves(const struct sweeps *s, int first, int last, int
 	const char *text = "plot ";
 	for (int k = first; k < last && k - first < CURVES; k++)
 		for (int down = 0; down < 2; down++)
-			text = format("%s%s using 1:%d with lines lw 1.6 %slc rgb '%s' title %s", text,
-				      k > first || down ? ", ''" : "$frf", 4 * k + 2 * down + 2 + angle,
-				      down ? "dt 2 " : "", colour[k - first],
+			text = format("%s%s using 1:%d %s title %s", text, k > first || down ? ", ''" : "$frf",
+				      4 * k + 2 * down + 2 + angle,
+				      curve(k - first, down ? "(12,6)" : "1", s->band.count),
 				      quoted(format("%s%s", s->of[k].output, down ? ", down" : "")));
 	return text;
 }
@@ -371,15 +326,13 @@ static void need_responses(const struct step *step)
 		      "the model has inputs, whose samples are not known: its response cannot be drawn");
 }
 
-static void add_response(struct picture *p, int output, int column, bool last)
+static void add_response(struct picture *p, int sheet, int output, int column, bool last)
 {
-	int tall = last ? 190 : 150;
-	add_panel(p, 0, WIDTH, tall, format(
+	add_row(p, sheet, last ? 190 : 150, format(
 		"set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y '%%.3g'\nset tmargin 1\n"
-		"set autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb '#1f5fa8'\n",
+		"set autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb '%s'\n",
 		quoted(p->step->shown->model->output[output].name),
-		last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column));
-	p->height += tall;
+		last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column, picture_curve[0].colour));
 }
 
 static void print_samples(struct picture *p, int count, const int *output)
@@ -421,8 +374,8 @@ static void plot_response(struct picture *p)
 	print_samples(p, count, output);
 	if (single)
 		target_float();
-	for (int i = 0; i < count; i++)
-		add_response(p, output[i], i + 2, i == count - 1);
+	for (int i = 0; i < count * p->sheets; i++)
+		add_response(p, i / count, output[i % count], i % count + 2, i % count == count - 1);
 }
 
 /* ---- a picture ---- */
@@ -474,27 +427,30 @@ static const char *name_of(const char *list)
 	return name;
 }
 
-void print_terminal(FILE *to, enum picture_format as, int height, const char *name)
+void print_terminal(FILE *to, enum picture_format as, int width, int height, const char *name)
 {
 	if (as == PICTURE_PDF)
 		fprintf(to, "set term pdfcairo noenhanced size 9in,%.2fin font 'sans,10'\n", height / 100.0);
 	else if (as == PICTURE_PNG)
-		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", WIDTH,
+		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", width,
 			height);
 	else
 		fprintf(to, "set term svg noenhanced size %d,%d font 'sans,12' background '#ffffff' name \"%s\"\n",
-			WIDTH, height, name_of(name));
+			width, height, name_of(name));
 }
 
-static void print_panels(FILE *to, const struct picture *p)
+static void print_panels(FILE *to, const struct picture *p, int sheet)
 {
+	const double wide = p->width[sheet], tall = p->height[sheet];
 	fprintf(to, "set multiplot\n");
 	for (int i = 0; i < p->panels; i++) {
 		const struct panel *panel = &p->panel[i];
+		if (panel->sheet != sheet)
+			continue;
 		fprintf(to, "reset\nset encoding utf8\nset grid lt 1 lc rgb '#e4e4e4'\nset border lc rgb '#606060'\n"
-			    "set origin %.6f,%.6f\nset size %.6f,%.6f\n%s", (double)panel->left / WIDTH,
-			1 - (double)(panel->top + panel->height) / p->height, (double)panel->width / WIDTH,
-			(double)panel->height / p->height, panel->text);
+			    "set origin %.6f,%.6f\nset size %.6f,%.6f\n%s", panel->left / wide,
+			1 - (panel->top + panel->height) / tall, panel->width / wide, panel->height / tall,
+			panel->text);
 	}
 	fputs("unset multiplot\n", to);
 }
@@ -509,34 +465,44 @@ bool has_frf(const char *list)
 	return false;
 }
 
-void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as)
+static struct picture picture_of(const struct step *step, const char *list, const char *amplitude, int sheets)
 {
-	struct picture p = { .step = step, .amplitude = amplitude, .data = new_script() };
-	FILE *script = new_script();
+	struct picture p = { .step = step, .amplitude = amplitude, .data = new_script(), .sheets = sheets,
+			     .width = { WIDE, NARROW } };
 	for (const char *name = list; *name; name += *name == ',') {
 		size_t length = strcspn(name, ",");
 		kind_of(name, length)->plot(&p);
 		name += length;
 	}
-	if (p.height == 0)
+	if (p.height[0] == 0)
 		error(step->model->asked.step_at, NULL,
 		      "there is nothing to draw: no output that is linear reacts to an input or a load");
-	print_terminal(script, as, p.height, list);
-	copy_file(p.data, script);
-	print_panels(script, &p);
+	return p;
+}
+
+static void draw_sheet(FILE *to, const struct picture *p, int sheet, enum picture_format as, const char *name)
+{
+	FILE *script = new_script();
+	print_terminal(script, as, p->width[sheet], p->height[sheet], name);
+	copy_file(p->data, script);
+	print_panels(script, p, sheet);
 	draw(to, script);
-	fclose(p.data);
 	fclose(script);
 }
 
-/* Without what stands before it in a file of its own: <?xml ...?> and <!DOCTYPE ...> */
-void picture_in_page(FILE *to, const struct step *step, const char *kind)
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as)
 {
-	FILE *picture = new_script();
+	struct picture p = picture_of(step, list, amplitude, 1);
+	draw_sheet(to, &p, 0, as, list);
+	fclose(p.data);
+}
+
+/* Without what stands before it in a file of its own: <?xml ...?> and <!DOCTYPE ...> */
+static void put_in_page(FILE *to, FILE *picture, const char *class)
+{
 	bool inside = false;
-	print_picture(picture, step, kind, NULL, PICTURE_SVG);
 	rewind(picture);
-	fputs("<figure>\n", to);
+	fprintf(to, "<figure class=\"%s\">\n", class);
 	for (char line[4096]; fgets(line, sizeof line, picture);) {
 		inside = inside || strncmp(line, "<svg", 4) == 0;
 		if (inside)
@@ -544,4 +510,16 @@ void picture_in_page(FILE *to, const struct step *step, const char *kind)
 	}
 	fputs("</figure>\n", to);
 	fclose(picture);
+}
+
+void picture_in_page(FILE *to, const struct step *step, const char *kind)
+{
+	static const char *const class[SHEETS] = { "broad", "narrow" };
+	struct picture p = picture_of(step, kind, NULL, SHEETS);
+	for (int sheet = 0; sheet < SHEETS; sheet++) {
+		FILE *picture = new_script();
+		draw_sheet(picture, &p, sheet, PICTURE_SVG, format("%s,%s", kind, class[sheet]));
+		put_in_page(to, picture, class[sheet]);
+	}
+	fclose(p.data);
 }

@@ -214,14 +214,16 @@ FILE *new_script(void);                                     /* a file without a 
 void copy_file(FILE *from, FILE *to);                       /* from its start */
 void draw(FILE *to, FILE *script);                          /* what gnuplot makes of it; it is said where it cannot */
 
-/* ---- plot.c: pictures ---- */
+/* ---- poles.c, plot.c: pictures ---- */
+
+const char *draw_poles(FILE *data, const struct step *step);   /* $poles, and the commands of a panel */
 
 #define PICTURE_KINDS "response, poles, modes and frf, with commas between, or campbell"
 enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF, PICTURE_CSV, PICTURE_JSON };
 const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
 enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
 /* For gnuplot; name: of what is drawn, with commas between */
-void print_terminal(FILE *to, enum picture_format as, int height, const char *name);
+void print_terminal(FILE *to, enum picture_format as, int width, int height, const char *name);
 bool has_frf(const char *list);                             /* of kinds, none of them wrong */
 /* amplitude: of the excitation that frf sweeps with; NULL: it does not */
 void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as);

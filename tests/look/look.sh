@@ -132,6 +132,43 @@ result $? 'no paths and no dates in a script'
 PATH=$PWD/own:$PATH "$plgen" --report "$root/models/sdcsf.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1
 result $? 'a page without pictures is closed well'
 
+# ---- how pictures look ----
+
+# Every pole has its frequency beside the plane, texts at least 13 points of 360 apart and within it; or none has
+cat >many.spec <<'END'
+model many
+coord q[12]
+matrix K = "many.mtx"
+q'' + 0.01*q' + K*q = 0
+init q[1] = 1
+step 0.01
+END
+awk 'BEGIN { print "%%MatrixMarket matrix coordinate real general\n12 12 12"
+	for (i = 1; i <= 12; i++) print i, i, 100 + i * i / 10 }' >many.mtx
+PATH=$PWD/own:$PATH "$plgen" --plot poles many.spec >script 2>log
+"$plgen" --explain=json many.spec | tr -d '{}' | awk -F '[:,]' '/"frequency_hz"/ { printf "%.4g Hz\n", $2 }' >expected
+sed -n 's/^set label "\(.* Hz\)" at graph 1.025,first .*/\1/p' script | tac | diff expected - >>log &&
+	[ "$(wc -l <expected)" -eq 12 ]
+result $? 'every pole has its frequency'
+awk '/^plot / { high = $3; sub(/.*:/, "", high); high += 0 }
+	/Hz" at graph/ { split($0, part, /first /); at[++n] = part[2] + 0 }
+	END { for (i = 1; i <= n; i++) if (at[i] > high || at[i] < -high ||
+			(i > 1 && at[i - 1] - at[i] < 2 * high * 13 / 360 * 0.999)) { print i, at[i], high; bad = 1 }
+		exit bad || n != 12 || !(high > 0) }' script >log
+result $? 'no text of a pole is on another'
+sed -i 's/q\[12\]/q[28]/; s/many.mtx/more.mtx/' many.spec
+awk 'BEGIN { print "%%MatrixMarket matrix coordinate real general\n28 28 28"
+	for (i = 1; i <= 28; i++) print i, i, 100 + i * i / 10 }' >more.mtx
+PATH=$PWD/own:$PATH "$plgen" --plot poles many.spec >script 2>log
+! grep -q 'Hz"' script && grep -q "damping ratio; 28, listed by --explain'" script
+result $? 'none of too many has'
+
+# A page has each picture on a broad and on a narrow sheet, of the same numbers
+PATH=$PWD/own:$PATH "$plgen" --plot frf "$root/models/sdcsf.spec" >script 2>log
+[ "$(grep -c '^set key outside top left' script)" -eq 2 ] && grep '^plot' script | head -n 1 | tr , '\n' |
+	grep -o 'dt .* pt [0-9]*\|#[0-9a-f]*' | sort | uniq -d >log && [ ! -s log ]
+result $? 'legends above their panels; curves differ in dash, mark and colour'
+
 # ---- without gnuplot, and where it fails ----
 
 # refused STATUS TEXT NAME OPTION...: nothing on standard output
@@ -375,8 +412,9 @@ if command -v gnuplot >log; then
 	result $? 'svg, png and pdf'
 	for name in models/sdcsf models/quarter_car models/tuned_floor tests/refresh/growing; do
 		"$plgen" --report "$root/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
-			grep -q '<svg ' page
-		result $? "the page of $name"
+			[ "$(grep -c '^ width="900"' page)" -ge 3 ] &&
+			[ "$(grep -c '^ width="900"' page)" -eq "$(grep -c '^ width="400"' page)" ]
+		result $? "the page of $name, each picture on a broad and on a narrow sheet"
 	done
 	for name in models/bilinear models/quarter_car_bumps models/beam4 models/pendulum tests/remainder/gated; do
 		"$plgen" --report "$root/$name.spec" >page 2>log &&
