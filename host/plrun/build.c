@@ -216,6 +216,16 @@ struct toolchain *find_tools(void)
 	return t;
 }
 
+const char *plgen_of(const struct toolchain *t)
+{
+	return t->plgen;
+}
+
+const char *runtime_of(const struct toolchain *t)
+{
+	return t->runtime;
+}
+
 void hash_tools(const struct toolchain *t, struct hash *h)
 {
 	hash_bytes(h, &t->key.value, sizeof t->key.value);

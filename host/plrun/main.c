@@ -189,6 +189,8 @@ int main(int argc, char **argv)
 	if (w.size > 1 && !s.options.sweep)
 		fail(WRONG_USAGE, "several processes share out a sweep, and nothing else");
 	s.tools = find_tools();
+	if (s.options.chart)
+		run_chart(s.tools, &s.options);
 	make_code(&s);
 	s.machine = machine_of(s.tools, s.code, &error);
 	if (!s.machine)

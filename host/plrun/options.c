@@ -62,6 +62,7 @@ static void take_psd(struct options *o, const char *value) { read_window(o, valu
 static void take_dark(struct options *o, const char *value) { (void)value; o->look.dark = true; }
 static void take_paper(struct options *o, const char *value) { (void)value; o->look.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
+static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
 
 static void take_log(struct options *o, const char *value)
@@ -182,6 +183,8 @@ static const struct row {
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
+	{ "chart", NULL, "error against time of plgen's steps and other solvers, in the folder -o (default: charts)",
+	  take_chart },
 	{ "progress", NULL, "how far it is on standard error, also where that is no terminal", take_progress },
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
@@ -308,8 +311,21 @@ static void check_look(const struct options *o)
 		say_note("an SVG names its fonts and has none inside; a .pdf has");
 }
 
+/* A chart is of the model as it is written. */
+static void check_chart(const struct options *o)
+{
+	const char *surplus = o->definitions ? "-D" : o->input ? "--input" : o->sweep ? "--sweep" : o->plot ? "--plot"
+			    : o->stats ? "--stats" : o->window ? "--psd" : o->show ? "--show"
+			    : o->passed_count ? o->passed[0] : NULL;
+	if (o->chart && surplus)
+		wrong_usage(format("--chart takes the spec, T, --every and -o FOLDER alone, found %s", surplus));
+	if (o->chart && o->spec && strcmp(o->spec, "-") == 0)
+		wrong_usage("--chart reads the spec many times: it has to be a file");
+}
+
 static void check(const struct options *o)
 {
+	check_chart(o);
 	check_look(o);
 	if (!o->spec)
 		wrong_usage("no spec is given");

@@ -35,6 +35,7 @@
  *     sweep.c     lines of params, and what a run with each comes to
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
+ *     chart.c     error against time, with other solvers
  *
  * A param that the spec declares tunable changes without compiling (`retune`); any other is given to plgen as -D, and
  * compiled once for each value.  The line of a sweep depends on its params alone: who computes it, and when, does not
@@ -127,7 +128,7 @@ struct options {
 	const struct cosines *window;           /* of a power spectral density; NULL: none */
 	unsigned long segment;                  /* steps; 0: as the run is long */
 	double overlap;                         /* parts of a segment */
-	const char *chart;                      /* --chart; NULL: a run */
+	bool chart;
 	int jobs;                               /* 0: as many as there are cores */
 };
 void read_options(int argc, char **argv, struct options *o);
@@ -187,6 +188,8 @@ const char *cache_folder(void);                         /* made when it is not t
 
 struct toolchain;                               /* plgen, the compiler, the runtime */
 struct toolchain *find_tools(void);
+const char *plgen_of(const struct toolchain *t);
+const char *runtime_of(const struct toolchain *t);
 
 /* The C of a spec, with `extra` definitions "NAME=EXPR" beside the options'.  Its messages are shown unless `quiet`;
  * NULL: it went wrong, *error says how, *status is plgen's. */
@@ -382,6 +385,10 @@ struct stats stats_new(int outputs);
 void stats_add(void *who, uint64_t k, const double *out);
 double stats_rms(const struct stats *s, int output);
 void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h);
+
+/* ---- chart.c ---- */
+
+_Noreturn void run_chart(const struct toolchain *t, const struct options *o);
 
 /* ---- sweep.c, journal.c, workers.c ---- */
 

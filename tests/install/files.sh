@@ -60,4 +60,32 @@ result $? 'a bundle has the same bytes from the build and from what is installed
 CC=${run_cc%% *} XDG_CACHE_HOME=$work/cache plrun "$prefix/share/plgen/models/scs.spec" 1 >out 2>log &&
 	[ "$(wc -l <out)" -gt 10 ]
 result $? 'plrun runs'
+
+# A chart of any model, by the sources of other solvers that are installed; without a word of the source tree
+mkdir elsewhere bare
+cp "$prefix/share/plgen/models/scs.spec" 'elsewhere/my own.spec'
+if command -v gnuplot >/dev/null; then
+	(cd elsewhere && CHARTS_OPTIMIZE=-O0 plrun --chart 'my own.spec' 0.2 -o 'a chart') >out 2>log
+	[ $? -eq 0 ] && [ "$(grep -c '^error below 1e-[0-9]*: ' out)" -eq 4 ] &&
+		grep -q '</svg>' 'elsewhere/a chart/scs.svg'
+	result $? 'plrun --chart: a picture and a verdict for each wanted error'
+	for method in exact DOP853 RADAU5 RADAU9 'GSL rk8pd' 'CVODE BDF'; do
+		awk -F, -v method="\"$method\"" '$1 == method && $6 == "ok" && $5 < 1e-2 { good++ }
+			END { exit !good }' 'elsewhere/a chart/scs.csv' || echo "$method: no error below 1e-2"
+	done >log
+	[ ! -s log ]
+	result $? 'plrun --chart: the solvers of the charts'
+else
+	skip 'plrun --chart' 'no gnuplot'
+fi
+printf '#!/bin/sh\nexit 1\n' >bare/cc
+chmod +x bare/cc
+CC=$PWD/bare/cc plrun --chart 'elsewhere/my own.spec' 1 >out 2>log
+[ $? -eq 1 ] && [ ! -s out ] && grep -q '^chart: not installed: gcc libsundials-dev libgsl-dev' log
+result $? 'plrun --chart: what is not installed is named'
+mv "$prefix/share/plgen/charts" "$prefix/share/plgen/away"
+plrun --chart 'elsewhere/my own.spec' 1 >out 2>log
+[ $? -eq 1 ] && grep -q 'own.sh. is not there: install plgen with its charts' log
+result $? 'plrun --chart: without the charts it says so'
+mv "$prefix/share/plgen/away" "$prefix/share/plgen/charts"
 tap_end

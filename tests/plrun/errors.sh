@@ -132,6 +132,14 @@ fold high frequencies onto low ones
 $usage" swing.spec 1 --psd --every 0.2
 refuses 'densities of a sweep' 2 "plrun: error: --psd and --sweep: one at a time
 $usage" swing.spec 1 --psd --sweep k=1:2:3
+refuses 'a chart with a param' 2 "plrun: error: --chart takes the spec, T, --every and -o FOLDER alone, found -D
+$usage" --chart swing.spec 1 -D k=2
+refuses 'a chart with an option of plgen' 2 "plrun: error: --chart takes the spec, T, --every and -o FOLDER alone, \
+found --scheme=taylor
+$usage" --chart swing.spec 1 --scheme taylor
+refuses 'a chart of standard input' 2 "plrun: error: --chart reads the spec many times: it has to be a file
+$usage" --chart - 1
+refuses 'a chart of nothing' 1 'chart: no file none.spec' --chart none.spec 1
 for range in k= k=1 k=1:2 k=1:b:3 k=1:2:3:lin k=1:2:3:log:4; do
 	form="--sweep takes FILE.csv or NAME=FROM:TO:COUNT[:log]"
 	refuses "a sweep over $range" 2 "plrun: error: $form, found '$range'

@@ -3,15 +3,33 @@
 # own.sh [-q] PLGEN SPEC FOLDER [UNTIL] [EVERY]: error against time on any spec, plgen's steps beside what else there
 # is; FOLDER/NAME.csv, .svg, .png and a verdict. UNTIL, EVERY [s]: the history's end and the time between outputs;
 # without them the spec's step, and 1000 of it or 300 where there are more than 12 states. -q: times are taken once, and
-# of plgen's tolerances the least alone, for tests. Run at the top of the source tree. What plgen refuses is said in its
-# own words, and the exit status is 1.
+# of plgen's tolerances the least alone, for tests. It may be started from anywhere: `plrun --chart` does. PLGEN_RUNTIME
+# names the runtime, where it is not that of the source tree. What plgen refuses is said in its own words, and the exit
+# status is 1.
 set -e
 quick=
 [ "$1" != -q ] || { quick=-q; shift; }
 plgen=$1 spec=$2 folder=$3 until=$4 every=$5
-own=bench/charts/own
+own=$(dirname "$0")
+charts=$own/..
+PLGEN_RUNTIME=${PLGEN_RUNTIME:-$charts/../../runtime}
+export PLGEN_RUNTIME
 cc=${CC:-cc}
-[ -f "$spec" ] || { echo "own.sh: no file $spec; give one as SPEC=my.spec" >&2; exit 1; }
+[ -f "$spec" ] || { echo "chart: no file $spec" >&2; exit 1; }
+
+# has HEADER: may a program include it?
+has() {
+	echo "#include <$1>" | $cc -E -x c - >/dev/null 2>&1
+}
+missing=
+has stdio.h && command -v ar >/dev/null || missing="$missing gcc"
+has cvode/cvode.h && has arkode/arkode_erkstep.h || missing="$missing libsundials-dev"
+has gsl/gsl_odeiv2.h || missing="$missing libgsl-dev"
+command -v gnuplot >/dev/null || missing="$missing gnuplot-nox"
+if [ -n "$missing" ]; then
+	echo "chart: not installed:$missing (as Debian and Ubuntu call what has SUNDIALS, GSL, gnuplot)" >&2
+	exit 1
+fi
 work=$(mktemp -d "${TMPDIR:-/tmp}/own.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
@@ -27,17 +45,17 @@ number() {
 
 if ! "$plgen" --rhs --prefix subject ${every:+--step "$every"} "$spec" >"$work/subject_pl.c" 2>"$work/said"; then
 	cat "$work/said" >&2
-	echo "own.sh: plgen refuses the spec, so there is nothing to chart" >&2
+	echo "chart: plgen refuses the spec, so there is nothing to chart" >&2
 	exit 1
 fi
 if grep -q 'const pl_guard ' "$work/subject_pl.c"; then
-	echo "own.sh: $spec: what bounces is not charted: NAME_rhs has no jumps of velocity," \
+	echo "chart: $spec: what bounces is not charted: NAME_rhs has no jumps of velocity," \
 		"so no peer follows it and nothing says what is true" >&2
 	exit 1
 fi
 if sed -n 's/^static const int subject_start_samples\[[0-9]*\] = {\(.*\)};.*/\1/p' "$work/subject_pl.c" |
 	grep -q '[2-9]'; then
-	echo "own.sh: $spec: inputs that are joined by polynomials of higher degree than 1 are not charted: they" \
+	echo "chart: $spec: inputs that are joined by polynomials of higher degree than 1 are not charted: they" \
 		"reach over several outputs, which no step of another method follows" >&2
 	exit 1
 fi
@@ -60,7 +78,7 @@ else
 	units=$([ "$states" -le 12 ] && echo 1000 || echo 300)
 fi
 if [ "$units" -lt 1 ] || [ "$units" -gt 100000 ]; then
-	echo "own.sh: UNTIL=$until with EVERY=$every are $units outputs; 1 to 100000 can be charted" >&2
+	echo "chart: UNTIL=$until with EVERY=$every are $units outputs; 1 to 100000 can be charted" >&2
 	exit 1
 fi
 
@@ -88,31 +106,31 @@ awk -v states="$states" '
 
 # ---- plgen's variants ----
 
-sh bench/charts/variant.sh "$plgen" "$work/model.so" "$spec" --step "$every"
-sh bench/charts/variant.sh "$plgen" "$work/exact-1.so" "$spec" --step "$every" --scheme exact
+sh "$charts/variant.sh" "$plgen" "$work/model.so" "$spec" --step "$every"
+sh "$charts/variant.sh" "$plgen" "$work/exact-1.so" "$spec" --step "$every" --scheme exact
 kinds='large left'
 [ "$states" -gt 12 ] || kinds='small left'
 [ ! -f "$work/exact-1.so" ] || kinds=exact
-grep -v '^#' $own/variants | while IFS='|' read -r method options setting values where; do
+grep -v '^#' "$own/variants" | while IFS='|' read -r method options setting values where; do
 	case " $kinds " in *" $where "*) ;; *) continue ;; esac
 	[ -z "$quick" ] || [ "$setting" != tolerance ] || values=${values##* }
 	for value in $values; do
 		file=$(echo "$method-$value" | tr -d ' ,').so
 		if [ "$setting" = tolerance ]; then
 			value=1e-$value
-			echo "$work/$file $spec --step $every $options --tolerance $value" >>"$work/make"
+			echo "'$work/$file' '$spec' --step $every $options --tolerance $value" >>"$work/make"
 		else
-			echo "$work/$file $spec --step ($every)/$value $options" >>"$work/make"
+			echo "'$work/$file' '$spec' --step ($every)/$value $options" >>"$work/make"
 		fi
 		printf '%s\t%s\t%s\t%s\t%s\n' "$file" "$method" "$setting" "$value" "$options" >>"$work/list"
 	done
 done
-xargs -P "${JOBS:-2}" -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
+xargs -P "${JOBS:-2}" -L1 sh "$charts/variant.sh" "$plgen" <"$work/make" &
 variants=$!
 for part in own kept_solvers kept_dop853 kept_radau kept_regions ../table; do
-	echo "-c $own/$part.c -o $work/${part#../}.o"
-done | xargs -P "${JOBS:-2}" -L1 $cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -fcx-limited-range -Iruntime -I$own \
-	-I"$work" -DSTATES="$states" -DINPUTS="$inputs" -DSECOND_ORDER="$second"
+	echo "-c '$own/$part.c' -o '$work/${part#../}.o'"
+done | xargs -P "${JOBS:-2}" -L1 $cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -fcx-limited-range -I"$PLGEN_RUNTIME" \
+	-I"$own" -I"$work" -DSTATES="$states" -DINPUTS="$inputs" -DSECOND_ORDER="$second"
 $cc "$work/own.o" "$work/kept_solvers.o" "$work/kept_dop853.o" "$work/kept_radau.o" "$work/kept_regions.o" \
 	"$work/table.o" "${CHARTS_RUNTIME:-$work/runtime.a}" -o "$work/own" \
 	-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
@@ -127,8 +145,8 @@ mv "$work/own.csv" "$folder/$name.csv"
 mv "$work/verdict.txt" "$folder/$name.txt"
 signal=
 [ "$inputs" = 0 ] || signal='inputs: sin(2π t/40E) + sin(2π t/17E)/2, E the time between outputs, sampled there'
-gnuplot -c $own/own.gp "$folder/$name.csv" "$folder" "$name" "$every" "$units" "$folder/$name.txt" "$signal"
+gnuplot -c "$own/own.gp" "$folder/$name.csv" "$folder" "$name" "$every" "$units" "$folder/$name.txt" "$signal"
 echo "$name: $units outputs, one every $every s${signal:+; $signal}"
 grep -v '^title:' "$folder/$name.txt"
-grep ',refused,' "$folder/$name.csv" | awk -F, -f bench/charts/csv.awk -f $own/refused.awk
+grep ',refused,' "$folder/$name.csv" | awk -F, -f "$charts/csv.awk" -f "$own/refused.awk"
 echo "$folder/$name.svg, $folder/$name.csv"
