@@ -156,7 +156,7 @@ static const char *curves(const struct responses *r, const char *data, int first
 static const char *frame_of(const struct band *band)
 {
 	return format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 10\nset rmargin 3\n%sset format y "
-		      "'%%.3g'\n", band->from, band->to, above);
+		      "'%%.5g'\n", band->from, band->to, above);
 }
 
 static void add_size_and_angle(struct picture *p, const char *frame, const char *title, const char *size,
@@ -329,7 +329,7 @@ static void need_responses(const struct step *step)
 static void add_response(struct picture *p, int sheet, int output, int column, bool last)
 {
 	add_row(p, sheet, last ? 190 : 150, format(
-		"set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y '%%.3g'\nset tmargin 1\n"
+		"set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y '%%.5g'\nset tmargin 1\n"
 		"set autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb '%s'\n",
 		quoted(p->step->shown->model->output[output].name),
 		last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column, picture_curve[0].colour));

@@ -179,7 +179,7 @@ static void print_look(FILE *to, const struct script *s, const struct sheet *she
 	for (const char *const *part = (const char *const[]){ "xtics", "ytics", "cbtics", "xlabel", "ylabel", "title",
 	     NULL }; *part; part++)
 		fprintf(to, "set %s textcolor rgb '%s'\n", *part, inks->text);
-	fprintf(to, "set format y '%%.3g'\nset format cb '%%.3g'\n");
+	fprintf(to, "set format y '%%.5g'\nset format cb '%%.5g'\n");
 }
 
 static void print_panels(FILE *to, const struct script *s, const struct sheet *sheet)
