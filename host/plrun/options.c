@@ -62,6 +62,7 @@ static void take_psd(struct options *o, const char *value) { read_window(o, valu
 static void take_dark(struct options *o, const char *value) { (void)value; o->look.dark = true; }
 static void take_paper(struct options *o, const char *value) { (void)value; o->look.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
+static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
 static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
 
@@ -181,6 +182,7 @@ static const struct row {
 	{ "sweep", "K=A:B:N", "... for N values of K from A to B, with :log in equal ratios; again: every combination",
 	  take_sweep },
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
+	{ "histories", NULL, "... its picture: every run, at most 8, one on the other", take_histories },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
 	{ "chart", NULL, "error against time of plgen's steps and other solvers, in the folder -o (default: charts)",
@@ -305,7 +307,7 @@ static void check_look(const struct options *o)
 		wrong_usage(format("%s is of a picture in a file: --plot FILE.svg", of_files));
 	if (l->dark && l->paper)
 		wrong_usage("--paper is light, and --dark is not");
-	if (l->log && o->ranges == 2)
+	if (l->log && o->ranges == 2 && !o->histories)
 		wrong_usage("--log: the axes of a map are logarithmic where its ranges are, K=A:B:N:log");
 	if (l->paper && strcmp(strrchr(o->plot_file, '.'), ".svg") == 0)
 		say_note("an SVG names its fonts and has none inside; a .pdf has");
@@ -331,8 +333,10 @@ static void check(const struct options *o)
 		wrong_usage("no spec is given");
 	if (!o->sweep && (o->peak || o->resume || o->jobs))
 		wrong_usage(format("%s goes with --sweep", o->peak ? "--peak" : o->resume ? "--resume" : "--jobs"));
-	if (o->sweep && o->plot && (o->ranges == 0 || o->ranges > 2))
-		wrong_usage("--plot draws a sweep over one range, or two");
+	if (o->histories && !(o->sweep && o->plot))
+		wrong_usage("--histories is a picture of a sweep: it goes with --sweep and --plot");
+	if (o->sweep && o->plot && !o->histories && (o->ranges == 0 || o->ranges > 2))
+		wrong_usage("--plot draws a sweep over one range, or two, or its --histories");
 	if (o->sweep && o->stats)
 		wrong_usage("--stats is of one run; a line of a sweep has them of its own");
 	if (o->window && (o->sweep || o->stats))

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures. Of a run: panels over one axis of time, or of one column over another; a long run is kept as the least and
  * the largest value of each column in buckets of equal length, more of them than a picture has points across, and as
- * the first of each, which is a point over another column. Of a sweep: panels over the range, or maps over two. */
+ * the first of each, which is a point over another column. Of a sweep: panels over the range, maps over two, or the
+ * runs one on the other, as a list of pictures. */
 #define _GNU_SOURCE
 #include "plrun.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +15,8 @@ enum { BUCKETS = 8192, PANELS = 12, FIRST = 0, LEAST, LARGEST, KEPT };      /* B
 struct picture {
 	const struct machine *machine;
 	const struct view *view;
+	struct picture *next;           /* of a sweep: the next run, over the same axes */
+	const char *label;              /* of a sweep */
 	double h;
 	uint64_t every;                 /* steps from one sample to the next */
 	int columns;
@@ -75,7 +79,15 @@ void picture_add(void *who, uint64_t k, const double *out)
 	}
 }
 
-/* ---- a run ---- */
+struct picture *picture_after(struct picture *last, struct picture *p, const char *label)
+{
+	p->label = label;
+	if (last)
+		last->next = p;
+	return p;
+}
+
+/* ---- runs ---- */
 
 static void print_row(FILE *to, const struct picture *p, size_t bucket, int kept)
 {
@@ -90,9 +102,9 @@ static void print_row(FILE *to, const struct picture *p, size_t bucket, int kept
 }
 
 /* A bucket of one step is a point; of more it is two, and the line between them is what happens in it. */
-static void print_data(FILE *to, const struct picture *p)
+static void print_data(FILE *to, const struct picture *p, const char *number)
 {
-	fputs("$data << END\n", to);
+	fprintf(to, "$data%s << END\n", number);
 	for (size_t b = 0; b < p->buckets; b++) {
 		print_row(to, p, b, LEAST);
 		if (p->stride > 1)
@@ -101,20 +113,22 @@ static void print_data(FILE *to, const struct picture *p)
 	fputs("END\n", to);
 	if (p->stride == 1)
 		return;
-	fputs("$first << END\n", to);
+	fprintf(to, "$first%s << END\n", number);
 	for (size_t b = 0; b < p->buckets; b++)
 		print_row(to, p, b, FIRST);
 	fputs("END\n", to);
 }
 
+/* Of all runs */
 static double extreme_of(const struct picture *p, int kept, int column)
 {
-	double most = 0;
-	for (size_t b = 0; b < p->buckets; b++) {
-		const double value = bucket_of(p, kept, b)[column];
-		if (b == 0 || (kept == LEAST ? value < most : value > most))
-			most = value;
-	}
+	double most = kept == LEAST ? HUGE_VAL : -HUGE_VAL;
+	for (; p; p = p->next)
+		for (size_t b = 0; b < p->buckets; b++) {
+			const double value = bucket_of(p, kept, b)[column];
+			if (kept == LEAST ? value < most : value > most)
+				most = value;
+		}
 	return most;
 }
 
@@ -136,9 +150,11 @@ static void print_log(FILE *to, const struct look *look)
 static void print_time(FILE *to, const struct picture *p, const struct look *look, bool last)
 {
 	const double each = (double)(p->stride * p->every) * p->h;
-	const double end = p->buckets > 1 ? (double)(p->buckets - 1) * each : 1;
+	double end = 0;
+	for (const struct picture *q = p; q; q = q->next)
+		end = fmax(end, (double)(q->buckets - (q->buckets > 0)) * (double)(q->stride * q->every) * q->h);
 	print_log(to, look);
-	fprintf(to, "set xrange [%g:%g]\nset offsets 0,0,%s\n", look->log_x ? each : 0, end,
+	fprintf(to, "set xrange [%g:%g]\nset offsets 0,0,%s\n", look->log_x ? each : 0, end > 0 ? end : 1,
 		look->log_y ? "0,0" : "graph 0.05,graph 0.05");
 	script_label(to, "xlabel", last ? "t [s]" : "");
 }
@@ -165,25 +181,38 @@ static void print_tics(FILE *to, const struct picture *p, const struct look *loo
 		script_tics(to, 'y', least, most);
 }
 
+/* Behind the names of a run's data; of a single one nothing */
+static const char *number_of(const struct picture *first, const struct picture *p)
+{
+	int number = 1;
+	for (const struct picture *q = first; q != p; q = q->next)
+		number++;
+	return first->next ? format("%d", number) : "";
+}
+
 /* Points of a run that is longer than the buckets: each is a state that was, and a line between two would be none. */
 static void print_panel(FILE *to, const struct picture *p, const struct look *look, const struct panel *panel,
 			bool last)
 {
 	const struct machine *m = p->machine;
-	const char *data = panel->x >= 0 && p->stride > 1 ? "$first" : "$data";
+	const bool several = p->next || panel->curves > 1;
+	int curves = 0;
 	if (panel->x < 0)
 		print_time(to, p, look, last);
 	else
 		print_over(to, p, look, panel->x);
 	script_label(to, "ylabel", panel->curves == 1 ? axis_label(m, panel->y[0]) : "");
 	print_tics(to, p, look, panel);
-	for (int k = 0; k < panel->curves; k++) {
-		if (look->log_y)
-			check_log(p, 'y', panel->y[k]);
-		script_curve(to, k, format("%s using %d:%d", data, panel->x + 2, panel->y[k] + 2),
-			     panel->curves > 1 ? m->output_names[panel->y[k]] : NULL,
-			     data[1] == 'f' ? 0 : p->buckets * (p->stride > 1 ? 2 : 1));
-	}
+	for (int k = 0; k < panel->curves && look->log_y; k++)
+		check_log(p, 'y', panel->y[k]);
+	for (const struct picture *q = p; q; q = q->next)
+		for (int k = 0; k < panel->curves; k++, curves++) {
+			const bool points = panel->x >= 0 && q->stride > 1;
+			script_curve(to, curves, format("%s%s using %d:%d", points ? "$first" : "$data",
+							number_of(p, q), panel->x + 2, panel->y[k] + 2),
+				     q->label ? q->label : several ? m->output_names[panel->y[k]] : NULL,
+				     points ? 0 : q->buckets * (q->stride > 1 ? 2 : 1));
+		}
 	putc('\n', to);
 }
 
@@ -199,12 +228,14 @@ void picture_draw(struct picture *p, const struct options *o)
 	struct script *s = script_new(&o->look, o->plot_file, p->machine->name, NULL);
 	const int panels = panels_of(p->view);
 	bool over = false;
-	print_data(script_data(s), p);
+	for (const struct picture *q = p; q; q = q->next)
+		print_data(script_data(s), q, number_of(p, q));
 	for (int i = 0; i < panels; i++) {
 		const struct panel *panel = &p->view->panel[i];
 		const bool last = i == panels - 1 || panel[1].x >= 0;
 		over = over || panel->x >= 0;
-		print_panel(script_panel(s, panel_height(p->view, panel, last)), p, &o->look, panel, last);
+		print_panel(script_panel(s, panel_height(p->view, panel, last) + (p->next ? 0.2 : 0)), p, &o->look,
+			    panel, last);
 	}
 	if (over && p->stride > 1)
 		say_note(format("one output over another: a point in %llu steps",
@@ -250,6 +281,10 @@ void picture_check(const struct view *v, const struct options *o)
 {
 	const int kinds = 2 + o->peak;
 	for (int i = 0; i < v->panels; i++) {
+		if (o->histories && v->panel[i].curves > 1)
+			fail(WRONG_USAGE, "--histories: a panel shows one output of all runs; a comma begins another");
+		if (o->histories)
+			continue;
 		if (v->panel[i].x >= 0)
 			fail(WRONG_USAGE, "--show: one output over another is a picture of one run");
 		if (v->panel[i].curves > 1 && o->ranges == 2)

@@ -122,7 +122,7 @@ struct options {
 	const char *sweep;                      /* the file, or the first range as it was given; NULL: one run */
 	struct range *range;
 	size_t ranges;                          /* 0: of the file */
-	bool peak, resume, stats;
+	bool peak, resume, stats, histories;
 	const char *show;                       /* NULL: the outputs */
 	struct look look;
 	const struct cosines *window;           /* of a power spectral density; NULL: none */
@@ -340,7 +340,9 @@ void rows_end(struct rows *r);
 struct picture;
 struct picture *picture_new(const struct machine *m, const struct view *v, double h, uint64_t every);
 watch picture_add;
-void picture_draw(struct picture *p, const struct options *o);
+/* `p`, a run of that label, drawn over the same axes as `last` and those before it; last: NULL, or as returned */
+struct picture *picture_after(struct picture *last, struct picture *p, const char *label);
+void picture_draw(struct picture *p, const struct options *o);  /* and those after it */
 void picture_check(const struct view *v, const struct options *o);  /* may it be of a sweep? */
 /* `lines`: of a sweep over one range or two, as printed, without their names; an empty one before each scan */
 void picture_sweep(const struct machine *m, const struct view *v, const struct options *o, const char *lines);

@@ -176,7 +176,7 @@ static void find_variants(struct sweep *s)
 			pthread_mutex_init(&s->variant[s->variants++].busy, NULL);
 		}
 		s->variant_of[order[i]] = s->variants - 1;
-		s->variant[s->variants - 1].left++;
+		s->variant[s->variants - 1].left += s->options->histories ? 2 : 1;
 	}
 	free(order);
 }
@@ -306,14 +306,14 @@ static double *params_of(const struct sweep *s, size_t row, const struct machine
 }
 
 /* NULL, or how it went wrong */
-static char *run_row(struct sweep *s, size_t row, const struct machine *m, struct stats *stats)
+static char *run_row(struct sweep *s, size_t row, const struct machine *m, watch *each, void *who)
 {
 	struct job job = { .machine = m, .record = s->record, .until = s->options->until };
 	double *params = params_of(s, row, m, &job.h);
 	job.params = is_tuned(s) ? params : NULL;
 	char *error = plan_run(&job);
 	if (!error)
-		error = run_steps(&job, stats_add, stats);
+		error = run_steps(&job, each, who);
 	free(params);
 	return error;
 }
@@ -345,12 +345,42 @@ char *sweep_line(struct sweep *s, size_t row)
 	char *line, *error;
 	FILE *to = need(open_memstream(&line, &length));
 	const struct machine *m = take_variant(s, v);
-	error = m ? run_row(s, row, m, &stats) : v->error;
+	error = m ? run_row(s, row, m, stats_add, &stats) : v->error;
 	leave_variant(v);
 	print_line(to, s, row, &stats, error);
 	fclose(to);
 	free(stats.of);
 	return line;
+}
+
+/* ---- the runs in a picture, once more: a line keeps none of its rows ---- */
+
+static char *label_of(const struct sweep *s, size_t row)
+{
+	char *text = format("%s", "");
+	for (size_t i = 0; i < s->params; i++)
+		text = format("%s%s%s = %s", text, i ? ", " : "", s->param[i].name, value_of(s, row, i));
+	return text;
+}
+
+static void draw_histories(struct sweep *s)
+{
+	struct picture *first = NULL, *last = NULL;
+	for (size_t row = 0; row < s->rows; row++) {
+		struct variant *v = &s->variant[s->variant_of[row]];
+		const struct machine *m = take_variant(s, v);
+		double h;
+		if (m) {
+			free(params_of(s, row, m, &h));
+			struct picture *p = picture_new(s->machine, s->view, h, 1);
+			char *error = run_row(s, row, m, picture_add, p);
+			last = picture_after(last, p, format("%s%s", label_of(s, row), error ? ", failed" : ""));
+			first = first ? first : last;
+		}
+		leave_variant(v);
+	}
+	if (first)
+		picture_draw(first, s->options);
 }
 
 /* ---- the sweep ---- */
@@ -481,6 +511,9 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 	struct sweep s = { .tools = t, .options = o, .machine = m, .view = v, .to = to };
 	s.record = o->input ? record_read(o, m) : NULL;
 	read_table(&s, c);
+	if (o->histories && s.rows > PICTURE_CURVES)
+		fail(WRONG_USAGE, format("--histories draws at most %d runs, and these are %zu", PICTURE_CURVES,
+					 s.rows));
 	find_variants(&s);
 	begin_output(&s, c, w);
 	workers_share(w, o->jobs, &s, s.rows, s.line, deliver, &s);
@@ -488,10 +521,12 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 		return 0;
 	progress_end();
 	journal_end(s.journal);
-	if (s.to_draw) {
+	if (s.to_draw)
 		fclose(s.to_draw);
+	if (o->histories)
+		draw_histories(&s);
+	else if (s.to_draw)
 		picture_sweep(m, v, o, s.drawn);
-	}
 	if (s.failed)
 		fprintf(stderr, "plrun: error: %zu of %zu runs failed: see the column status\n", s.failed, s.rows);
 	return s.failed ? WRONG_DATA : 0;

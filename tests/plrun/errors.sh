@@ -76,7 +76,7 @@ refuses 'jobs' 2 "plrun: error: --jobs takes a number from 1 to 4096, found '0'
 $usage" swing.spec 1 --sweep s.csv --jobs 0
 refuses 'jobs of one run' 2 "plrun: error: --jobs goes with --sweep
 $usage" swing.spec 1 --jobs 2
-refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one range, or two
+refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one range, or two, or its --histories
 $usage" swing.spec 1 --sweep s.csv --plot
 refuses 'statistics of a sweep' 2 "plrun: error: --stats is of one run; a line of a sweep has them of its own
 $usage" swing.spec 1 --sweep s.csv --stats
@@ -115,6 +115,13 @@ refuses 'too many curves' 2 "--show:1:16: error: a panel has at most 8 curves
 x+x+x+x+x+x+x+x+x
                ^
 note: a comma begins another panel" swing.spec 1 --show x+x+x+x+x+x+x+x+x
+refuses 'histories of one run' 2 "plrun: error: --histories is a picture of a sweep: it goes with --sweep and --plot
+$usage" swing.spec 1 --plot a.svg --histories
+refuses 'histories of many runs' 2 'plrun: error: --histories draws at most 8 runs, and these are 9' \
+	swing.spec 1 --sweep k=1:2:9 --plot a.svg --histories
+refuses 'histories of two outputs in a panel' 2 \
+	'plrun: error: --histories: a panel shows one output of all runs; a comma begins another' \
+	swing.spec 1 --sweep k=1:2:3 --plot a.svg --histories --show "x+x'"
 refuses 'one over another in a sweep' 2 "plrun: error: --show: one output over another is a picture of one run" \
 	swing.spec 1 --sweep k=1:2:3 --show "x:x'" --plot a.svg
 form='--psd takes WINDOW[:STEPS[:PERCENT]], found'

@@ -101,6 +101,17 @@ run "$models/sdcsf.spec" 2 --sweep k1=50:150:5 --show x1+x2 --plot sweep.svg >ro
 	grep -o '<title>[a-z]* of x[12]<' sweep.svg | sed 's/<[a-z]*>*//g' | tr '\n' , >log &&
 	grep -qx 'final of x1,rms of x1,final of x2,rms of x2,' log
 result $? '--show in a sweep: columns and curves'
+script "$models/sdcsf.spec" 2 --sweep k1=50:150:3 --sweep step=0.01:0.02:2 --show "x1,x1:x1'" \
+	--plot runs.svg --histories
+grep '^plot' script | sed -n 1p | grep -o "title '[^']*'" | sed "s/title //" | tr '\n' , >log
+grep -qxF "'k1 = 50, step = 0.01','k1 = 50, step = 0.02','k1 = 100, step = 0.01','k1 = 100, step = 0.02',$(
+	)'k1 = 150, step = 0.01','k1 = 150, step = 0.02'," log && [ "$(grep -c '^plot' script)" -eq 2 ]
+result $? '--histories: a curve for each run, in the order of the table'
+sed -n '/^\$data4/,/^END/{//d;p}' script >points
+run "$models/sdcsf.spec" 2 --step 0.02 -D k1=100 --show "x1,x1'" >rows.csv
+sed '1d; s/,/ /g' rows.csv >expected
+[ "$(wc -l <points)" -eq 101 ] && cmp expected points >log 2>&1
+result $? '--histories: the rows of a run with these values'
 
 mkdir home && echo 'system "touch started"' | tee home/.gnuplot >.gnuplot
 (HOME=$work/home XDG_CONFIG_HOME=$work/home; export HOME XDG_CONFIG_HOME
