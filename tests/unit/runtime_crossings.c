@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* runtime/crossings.c against closed forms and published values; starts on breakpoints, crossings that are easily missed.
- */
+/* runtime/crossings.c against closed forms and published values; starts on breakpoints, crossings that are easily
+ * missed. */
 #include "runtime_switched.h"
 
 /* ---- closed forms ---- */
