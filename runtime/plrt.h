@@ -412,6 +412,13 @@ typedef struct pl_place {
  * first two entries before it reads any other; these two never move. */
 enum { PL_MODEL_VERSION = 2 };
 
+/* NAME_units, of a model that has some: texts, "" where one is not known.  A state is kept in its SI unit; an input is
+ * given and an output comes out in the unit here; a param of NAME_retune is in SI units, and one of its own unit is so
+ * many of those. */
+typedef struct pl_units {
+    const char *const *state, *const *input, *const *output, *const *param, *const *param_factor;
+} pl_units;
+
 #define PL_REAL double
 #include "plreal.h"
 #undef PL_REAL

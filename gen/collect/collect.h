@@ -263,6 +263,11 @@ void collect_constant(struct collector *collector, struct node *node, mpq_ptr nu
 void param_value(const struct symbol *param, mpq_ptr value); /* collected before */
 void forget_lets(const struct spec *spec);
 
+/* ---- dimensions.c: units, of a spec that has some ---- */
+
+void check_dimensions(struct spec *spec);                   /* says what is wrong; names get the units that follow */
+void check_time(const struct node *node);                   /* leaves the statement where its unit is another */
+
 /* ---- table.c: the straight pieces of a table() as numbers ---- */
 
 struct straight {                      /* y + slope (argument - x), where the argument is below `end` */

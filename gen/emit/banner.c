@@ -510,6 +510,8 @@ static void banner_state(const struct emitter *e)
 {
 	int changes = e->system->segments - 1;
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
+	if (units_text(e->step))
+		banner_sentence(e, "%s", printable(units_text(e->step)));
 	for (int i = 0; i < given_inputs(e); i++)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
 	if (changes > 0 && !keeps_modes(e))

@@ -125,6 +125,13 @@ static void declare_checks(const struct emitter *e, bool rhs)
 			"largest deviation from the closed form, in units in the last place");
 }
 
+void declare_model(const struct emitter *e)
+{
+	announce(e, spell(e, "extern const pl_model $n_model;"), "");
+	if (e->model->spec->units)
+		announce(e, spell(e, "extern const pl_units $n_units;"), "");
+}
+
 static void declare_tables(const struct emitter *e)
 {
 	if (!e->step->shown->no.phi)
@@ -143,7 +150,7 @@ static void declare_tables(const struct emitter *e)
 		       "#define $n_to_whole $n_expand\n");
 	}
 	if (!e->model->delays)
-		announce(e, spell(e, "extern const pl_model $n_model;"), "");
+		declare_model(e);
 	if (tells_tolerance(e))
 		announce(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
 			"by how much a step may miss each state; 0: it has an absolute tolerance");

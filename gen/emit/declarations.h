@@ -19,6 +19,7 @@ void banner_normal(const struct emitter *e);
 const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
 const char **names_of_inputs(const struct emitter *e);
 void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
+void declare_model(const struct emitter *e);               /* the descriptor, and units where there are some */
 void announce(const struct emitter *e, const char *text, const char *comment);     /* one declaration */
 void open_declarations(const struct emitter *e, const char *included);
 void close_declarations(const struct emitter *e);

@@ -4,6 +4,7 @@
 #include "state.h"
 #include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
+#include "report/report.h"
 
 #include <string.h>
 
@@ -129,6 +130,43 @@ static void emit_allowed(const struct emitter *e)
 	    shortest(round_rational(e->model->truncation.tolerance)));
 }
 
+static void emit_units_of(const struct emitter *e, enum listed kind, const char *array, int count)
+{
+	const char **text = ARRAY(const char *, (size_t)count + 1);
+	for (int i = 0; i < count; i++)
+		text[i] = unit_of_listed(e->step, kind, i);
+	if (count > 0)
+		emit_name_list(e, array, count, text);
+}
+
+/* One of the param's own unit in SI units */
+static void emit_param_factors(const struct emitter *e, const struct tuning *tunable)
+{
+	const char **text = ARRAY(const char *, (size_t)tunable->given);
+	for (int k = 0; k < tunable->given; k++)
+		text[k] = format("%.17g", unit_factor(tunable->param[k].symbol->unit));
+	emit_name_list(e, "param_factors", tunable->given, text);
+}
+
+static void emit_units(const struct emitter *e, int inputs)
+{
+	const struct tuning *tunable = tunables_of(e->model);
+	const int states = e->system->states, outputs = e->model->outputs;
+	if (!e->model->spec->units)
+		return;
+	say(e, "\n/* Units as text; \"\" where none is known. */\n");
+	emit_units_of(e, LISTED_STATE, "state_units", states);
+	emit_units_of(e, LISTED_INPUT, "input_units", inputs);
+	emit_units_of(e, LISTED_OUTPUT, "output_units", outputs);
+	if (tunable) {
+		emit_units_of(e, LISTED_PARAM, "param_units", tunable->given);
+		emit_param_factors(e, tunable);
+	}
+	say(e, "const pl_units $n_units = { $n_state_units, %s, %s, %s };\n",
+	    inputs ? spell(e, "$n_input_units") : "NULL", outputs ? spell(e, "$n_output_units") : "NULL",
+	    tunable ? spell(e, "$n_param_units, $n_param_factors") : "NULL, NULL");
+}
+
 void emit_model(const struct emitter *e, int inputs, bool core)
 {
 	const struct tuning *tunable = tunables_of(e->model);
@@ -140,6 +178,7 @@ void emit_model(const struct emitter *e, int inputs, bool core)
 	say(e, "#define PL_NAME \"$n\"\n"
 	       "#define PL_SPEC_H $N_H\n"
 	       "#include \"descriptor.h\"\n");
+	emit_units(e, inputs);
 }
 
 void emit_descriptor(const struct emitter *e)

@@ -81,7 +81,7 @@ void emit_delay_declarations(const struct emitter *core)
 		declare_params(e);
 	if (e->model->asked.batch)
 		emit_batch_declarations(e);
-	announce(e, spell(e, "extern const pl_model $n_model;"), "");
+	declare_model(e);
 	close_declarations(e);
 }
 

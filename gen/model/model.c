@@ -28,7 +28,7 @@ static void define_override(struct building *b, const struct definition *d)
 		say_error(d->at, NULL, "'%s' is given already", d->name);
 	struct node *value = parse_argument(b->spec, d->at.source, d->from, d->until);
 	if (value)
-		symbol->value = value;
+		symbol->value = value->unit ? value : with_unit(value, symbol->unit_written ? symbol->unit : NULL);
 	else
 		symbol->broken = true;
 }
@@ -141,6 +141,8 @@ static void evaluate_step(void *context)
 	struct place at = b->spec->asked.step_at;
 	struct node *node = asked_or_written(b, b->request->step, b->spec->asked.step, &at);
 	b->model->asked.step_at = b->model->asked.end_at = at;
+	if (b->request->step)
+		check_time(node);
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
 		error(at, NULL, "the step must be above 0");
@@ -556,6 +558,9 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
+	give_states_in_units(&b);
+	if (spec->units && !request->again.tunable && !request->again.relative)
+		check_dimensions(spec);
 	collect_model(&b);
 	build_parts(&b);
 	model->equations.irrationals = b.collector.irrationals;
@@ -591,6 +596,7 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 	struct node *node = parse_argument(model->spec, at.source, 0, at.source->length);
 	if (!node)
 		abandon();
+	check_time(node);
 	collect_constant(&collector, node, value);
 	if (mpq_sgn(value) < 0)
 		error(at, NULL, "--solution takes a time that is not below 0");

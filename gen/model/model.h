@@ -76,6 +76,7 @@ struct model {
 	const struct modal_truncation *truncated; /* it is of some modes of another; NULL: it is not */
 };
 
+const struct unit *unit_of_state(const struct model *model, int state); /* as it is kept; NULL: not known */
 struct model *model_build(struct spec *spec, const struct request *request);
 struct model *model_copy(const struct model *model);         /* to change what is asked of it */
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */

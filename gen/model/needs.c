@@ -85,7 +85,7 @@ static void find_inputs(const struct finding *f)
 		if (i == system->inputs)
 			error(given->at, system->inputs ? NULL : "the model has none", "'%s' is not an input",
 			      given->name);
-		constant(given->most, f->found->most[i]);
+		constant(convert_unit(given->most, system->input[i].unit, true), f->found->most[i]);
 		if (mpq_sgn(f->found->most[i]) <= 0)
 			error(given->most->start, NULL, "the bound of an input is above 0, found %s",
 			      readable_text(f->found->most[i]));
@@ -106,7 +106,8 @@ static void find_requirement(void *context)
 	r->need = f->need;
 	refuse(CAN_NEED, f->model, f->need->at);
 	find_output(f);
-	constant(f->need->bound, r->bound);
+	const struct unit *unit = f->need->percent ? NULL : f->model->output[r->output].unit;
+	constant(convert_unit(f->need->bound, unit, true), r->bound);
 	if (mpq_sgn(r->bound) <= 0)
 		error(f->need->bound->start, NULL, "a need is above 0, found %s", readable_text(r->bound));
 	if (f->need->percent) {

@@ -95,6 +95,33 @@ static const struct node *find_acceleration(const struct node *node, int above)
 	return NULL;
 }
 
+/* ---- without output statements states are outputs in the units of their coordinates ---- */
+
+static void declare_state(struct spec *spec, const struct model *model, int state)
+{
+	const int index = model->system.coord[state], primes = state >= model->n;
+	struct symbol *coord = model->frame.coord[index], *output = NEW(struct symbol);
+	const int component = coord->length ? index - coord->index + 1 : 0;
+	const struct unit *unit = coord->unit_written ? unit_of_derivative(coord->unit, primes) : NULL;
+	struct node *value = convert_unit(state_node(coord, component, primes), unit, true);
+	*output = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = model->names.state[state], .at = coord->at,
+				   .statement = coord->statement, .index = spec->count.outputs++, .unit = unit,
+				   .unit_written = unit, .value = value };
+	add_symbol(spec, output);
+}
+
+/* Where those of all are SI units the states are as they are. */
+void give_states_in_units(struct building *b)
+{
+	bool other = false;
+	for (const struct symbol *s = b->spec->first; s; s = s->next)
+		other = other || (s->kind == SYMBOL_COORD && s->unit_written && !is_coherent(s->unit));
+	if (!other || b->spec->count.outputs > 0 || b->model->relative)
+		return;
+	for (int i = 0; i < b->model->system.states; i++)
+		declare_state(b->spec, b->model, i);
+}
+
 /* ---- one output statement may name a vector: one output per component ---- */
 
 struct output_work {
@@ -109,9 +136,19 @@ static void collect_output(void *context)
 	work->value = collect(&work->b->collector, work->symbol->value);
 }
 
-static void add_output(struct model *model, const char *name, struct node *value, struct form *form)
+static void add_output(struct model *model, const char *name, const struct symbol *s, struct form *form)
 {
-	*MORE(model->output, model->outputs) = (struct output){ .name = name, .value = value, .form = form };
+	*MORE(model->output, model->outputs) =
+		(struct output){ .name = name, .unit = s ? s->unit : NULL, .value = s ? s->value : NULL, .form = form };
+}
+
+/* The SI unit of a state as it is kept; NULL: not known */
+const struct unit *unit_of_state(const struct model *model, int state)
+{
+	const struct symbol *coord = model->frame.coord[model->system.coord[state]];
+	if (model->relative || !coord->unit)
+		return NULL;
+	return unit_of_dimension((const mpq_t *)unit_of_derivative(coord->unit, state >= model->n)->base);
 }
 
 /* q, q' as q[1], q[1]'; another vector v as v[1] */
@@ -199,7 +236,7 @@ static void name_outputs(struct building *b)
 		row = row || becomes_row(b, index, work.value, &reads_slider_force);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
-			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
+			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s,
 				   row ? work.value->cell[i] : NULL);
 			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
 			model->output[model->outputs - 1].reads_slider_force = reads_slider_force;
@@ -211,8 +248,10 @@ static void name_outputs(struct building *b)
 	}
 	model->declared_outputs = b->spec->count.outputs > 0;
 	const struct model *written = model->relative ? model->relative->written : model;
-	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
+	for (int i = 0; i < model->system.states && !model->declared_outputs; i++) {
 		add_output(model, written->names.state[i], NULL, NULL);
+		model->output[i].unit = unit_of_state(written, i);
+	}
 }
 
 static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)

@@ -109,7 +109,7 @@ static void name_inputs(struct building *b)
 	system->input = ARRAY(struct input, system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
-			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
+			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold, .unit = s->unit };
 	for (int i = b->spec->count.inputs; i < system->inputs; i++)
 		system->input[i].name = b->spec->tunable[param_of_input(b->spec, i)].symbol->name;
 	make_input_forces(system);

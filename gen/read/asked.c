@@ -31,9 +31,9 @@ static void add_bound(struct state_bound **list, int *count, struct state_bound 
 static void read_interval(struct parser *p, const char *example, struct node **low, struct node **high)
 {
 	expect_op(p, "[", format("'[': %s in [0, 1]", example));
-	*low = read_expression(p);
+	*low = read_quantity(p);
 	expect_op(p, ",", format("',': %s in [0, 1]", example));
-	*high = read_expression(p);
+	*high = read_quantity(p);
 	expect_op(p, "]", "']'");
 }
 
@@ -56,7 +56,7 @@ static void read_absolutes(struct parser *p)
 		struct state_bound absolute = read_bound_name(p, p->own->asked.absolutes, p->own->asked.absolute_of,
 							      "tolerance");
 		expect_op(p, "=", "'='");
-		absolute.low = read_expression(p);
+		absolute.low = read_quantity(p);
 		add_bound(&p->own->asked.absolute_of, &p->own->asked.absolutes, absolute);
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -75,7 +75,7 @@ void read_tolerance(struct parser *p)
 	p->own->asked.tolerance = read_expression(p);
 	if (take_op(p, ",")) {
 		expect_word(p, "absolute");
-		p->own->asked.absolute = read_expression(p);
+		p->own->asked.absolute = read_quantity(p);
 	}
 	expect_end(p);
 }
@@ -177,7 +177,7 @@ void read_operator(struct parser *p)
 			fixed = read_fixed_name(p);
 			expect_op(p, "=", "'='");
 		}
-		*MORE(fixed->value, fixed->values) = read_expression(p);
+		*MORE(fixed->value, fixed->values) = read_quantity(p);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -235,7 +235,7 @@ static struct need_input read_need_input(struct parser *p)
 	struct need_input input = { .at = name.at, .name = name.name };
 	expect_op(p, "|", "'|'");
 	expect_op(p, "<=", "'<='");
-	input.most = read_expression(p);
+	input.most = read_quantity(p);
 	return input;
 }
 
@@ -246,10 +246,10 @@ void read_need(struct parser *p)
 	p->lexer.needs = true;
 	need.output = read_output_name(p);
 	expect_word(p, "within");
-	need.bound = read_expression(p);
+	need.bound = read_quantity(p);
 	need.percent = take_op(p, "%");
 	expect_word(p, "until");
-	need.until = read_expression(p);
+	need.until = read_quantity(p);
 	if (p->token.kind != TOKEN_END) {
 		expect_word(p, "for");
 		do {

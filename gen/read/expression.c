@@ -42,6 +42,46 @@ void check_component(const struct symbol *symbol, int component, struct place at
 		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
 }
 
+/* ---- units ---- */
+
+/* x - 2 "mm": of the 2 or of all? Both may be; of a factor or a power only the one can be. */
+static void check_last_number(const struct node *value, struct place at)
+{
+	const struct node *last = value;
+	while ((last->kind == NODE_SUM || last->kind == NODE_CHOOSE) &&
+	       last->child[last->children - 1]->end.offset == last->end.offset)
+		last = last->child[last->children - 1];
+	if (last->kind != NODE_NUMBER || last == value || is_plain_number(value))
+		return;
+	const char *number = text_between(last->start, last->end);
+	size_t length = strcspn(at.source->text + at.offset + 1, "\"");
+	const char *unit = format("\"%.*s\"", (int)length, at.source->text + at.offset + 1);
+	const char *all = text_between(value->start, value->end);
+	error(at, format("brackets say which: (%s %s), or (%s) %s", number, unit, all, unit),
+	      "is this the unit of '%s' or of all before it?", number);
+}
+
+const struct unit *take_unit(struct parser *p, const struct node *value)
+{
+	if (p->token.kind != TOKEN_STRING)
+		return NULL;
+	if (value)
+		check_last_number(value, p->token.at);
+	struct token token = take(p);
+	struct place inside = { token.at.source, token.at.offset + 1 };
+	p->spec->units = true;
+	return unit_parse(inside, token.at.source->text + inside.offset, token.length - 2);
+}
+
+/* quantity: expression [ unit ] */
+struct node *read_quantity(struct parser *p)
+{
+	struct node *value = read_expression(p);
+	return with_unit(value, take_unit(p, value));
+}
+
+/* ---- names ---- */
+
 #define NO_ACCELERATION "what a component is given may use coordinates and their first derivatives"
 
 /* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
@@ -93,7 +133,9 @@ static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, 
 				    .used = true,
 				    .hold = symbol->hold,
 				    .delayed = symbol,
-				    .when = read_expression(p) };
+				    .unit = symbol->unit,
+				    .unit_written = symbol->unit_written,
+				    .when = read_quantity(p) };
 	expect_op(p, ")", "')' or an operator");
 	p->nesting--;
 	delayed->index = spec->count.inputs++;
@@ -190,14 +232,14 @@ static struct node *read_call(struct parser *p, struct token name, enum function
 		      token_text(p->token));
 	nest(p, name.at);
 	struct place separator = take(p).at;
-	add_child(call, read_expression(p), false, separator);
+	add_child(call, read_quantity(p), false, separator);
 	while (is_op(p, ",") || is_op(p, ";")) {
 		bool semicolon = is_op(p, ";");
 		if (semicolon != (function == FN_TABLE && call->children % 2 == 1))
 			unexpected(p,
 				   function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
 		separator = take(p).at;
-		add_child(call, read_expression(p), false, separator);
+		add_child(call, read_quantity(p), false, separator);
 	}
 	expect_op(p, ")", "',' or ')'");
 	p->nesting--;
@@ -212,7 +254,7 @@ static struct node *read_bracket(struct parser *p)
 {
 	struct place opening = take(p).at;
 	nest(p, opening);
-	struct node *inner = read_expression(p);
+	struct node *inner = read_quantity(p);
 	expect_op(p, ")", "')' or an operator");
 	p->nesting--;
 	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
@@ -230,7 +272,7 @@ static struct node *read_matrix(struct parser *p)
 	nest(p, separator);
 	for (int column = 0;;) {
 		take(p);
-		add_child(node, read_expression(p), false, separator);
+		add_child(node, read_quantity(p), false, separator);
 		column++;
 		separator = p->token.at;
 		if (is_op(p, ","))
@@ -279,7 +321,9 @@ static struct node *read_operand(struct parser *p)
 	}
 	if (is_reserved(name.name) && !find_symbol(p, name.name))   /* else broken: told where it is declared */
 		error(name.at, NULL, "'%s' is a reserved word", name.name);
-	return resolve_name(p, name);
+	struct node *node = resolve_name(p, name);
+	bool input = node->symbol && node->symbol->kind == SYMBOL_INPUT;
+	return input ? convert_unit(node, node->symbol->unit, false) : node;
 }
 
 /* primary: NUMBER | pi | t | name | call | ( expression ) */
@@ -378,7 +422,8 @@ struct node *read_condition(struct parser *p)
 	node->comparison = comparison;
 	node->start = left->start;
 	add_child(node, left, false, operator);
-	add_child(node, read_sum(p), false, operator);
+	struct node *right = read_sum(p);
+	add_child(node, with_unit(right, take_unit(p, right)), false, operator);
 	if (comparison_of(p, &comparison))
 		unexpected(p, "a single comparison");
 	return node;

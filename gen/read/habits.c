@@ -10,43 +10,13 @@ static const char NUMBER[] = "0123456789.";
 
 /* ---- units ---- */
 
-/* `power`: of ten, to the SI unit; of a unit that is no power of ten of one: what it is written as */
-static const struct unit {
-	const char *name;
-	int power;
-	const char *factor;
-} units[] = {
-	{ "m", 0, NULL }, { "s", 0, NULL }, { "kg", 0, NULL }, { "N", 0, NULL }, { "Nm", 0, NULL }, { "Ns", 0, NULL },
-	{ "rad", 0, NULL }, { "J", 0, NULL }, { "W", 0, NULL }, { "Pa", 0, NULL }, { "sec", 0, NULL },
-	{ "ms", -3, NULL }, { "us", -6, NULL }, { "ns", -9, NULL }, { "mm", -3, NULL }, { "um", -6, NULL },
-	{ "cm", -2, NULL }, { "km", 3, NULL }, { "g", -3, NULL }, { "mN", -3, NULL }, { "kN", 3, NULL },
-	{ "MN", 6, NULL }, { "kNm", 3, NULL }, { "kPa", 3, NULL }, { "MPa", 6, NULL }, { "GPa", 9, NULL },
-	{ "kW", 3, NULL }, { "deg", 0, "pi/180" }, { "degrees", 0, "pi/180" }, { "Hz", 0, "2*pi" },
-	{ "kHz", 3, "2*pi" }, { "rpm", 0, "2*pi/60" }
-};
-
-static const struct unit *unit_of(const char *name, size_t length)
-{
-	for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-		if (strlen(units[i].name) == length && strncmp(units[i].name, name, length) == 0)
-			return &units[i];
-	return NULL;
-}
-
 const char *unit_note(const char *number, size_t digits, const char *unit, size_t length)
 {
-	const struct unit *u = unit_of(unit, length);
-	const char *written = format("%.*s", (int)digits, number);
-	if (!u)
+	if (!is_unit_name(unit, length))
 		return NULL;
-	if (u->power)
-		written = strpbrk(written, "eE") ? format("%s*1e%d", written, u->power)
-						 : format("%se%d", written, u->power);
-	if (u->factor && u->factor[0] == 'p')
-		return format("numbers bear no units, and angles are radians: %s*%s", written, u->factor);
-	if (u->factor)
-		return format("numbers bear no units; as an angular frequency in rad/s: %s*%s", u->factor, written);
-	return format("numbers bear no units; in SI units: %s", written);
+	if (unit[length] == '/' || unit[length] == '^')
+		length += strspn(unit + length, "abcdefghijklmnopqrstuvwxyzACFHJKMNPTVW0123456789/^");
+	return format("a unit stands in quotes: %.*s \"%.*s\"", (int)digits, number, (int)length, unit);
 }
 
 /* 100 N/m, 1 ms, 30 deg: a unit behind a number */
@@ -60,7 +30,7 @@ const char *stray_unit_note(const struct parser *p)
 		start--;
 	if (start == end || !strchr(NUMBER, *start))
 		return NULL;
-	return unit_note(start, (size_t)(end - start), p->token.name, p->token.length);
+	return unit_note(start, (size_t)(end - start), text + p->token.at.offset, p->token.length);
 }
 
 /* ---- names ---- */

@@ -72,3 +72,60 @@ bool has_acceleration(const struct node *node)
 		found = has_acceleration(node->child[i]);
 	return found;
 }
+
+/* ---- units of values ---- */
+
+static void times_factor(struct node *product, const struct unit *unit, bool inverse)
+{
+	struct node *number = node_new(NODE_NUMBER, product->at), *pi = node_new(NODE_PI, product->at);
+	struct place end = product->end;
+	mpq_set(number->number, unit->factor);
+	if (mpq_cmp_ui(unit->factor, 1, 1) != 0)
+		add_child(product, number, inverse, product->at);
+	for (int i = 0; i < (unit->pi < 0 ? -unit->pi : unit->pi); i++)
+		add_child(product, pi, inverse != (unit->pi < 0), product->at);
+	product->end = end;
+}
+
+struct node *convert_unit(struct node *value, const struct unit *unit, bool inverse)
+{
+	if (!unit || is_coherent(unit))
+		return value;
+	struct node *product = node_new(NODE_PRODUCT, value->at);
+	product->start = value->start;
+	add_child(product, value, false, value->start);
+	times_factor(product, unit, inverse);
+	return product;
+}
+
+/* Made of numbers alone, so that a unit behind it counts them */
+bool is_plain_number(const struct node *node)
+{
+	bool plain = !node->unit && node->kind != NODE_NAME && node->kind != NODE_TIME;
+	for (int i = 0; i < node->children && plain; i++)
+		plain = is_plain_number(node->child[i]);
+	return plain;
+}
+
+struct node *with_unit(struct node *value, const struct unit *unit)
+{
+	if (!unit)
+		return value;
+	struct node *node = node_new(NODE_SUM, value->at);
+	bool counted = is_plain_number(value);
+	node->start = value->start;
+	add_child(node, counted ? convert_unit(value, unit, false) : value, false, value->start);
+	node->unit = unit;
+	node->counted = counted;
+	return node;
+}
+
+struct node *state_node(struct symbol *coord, int component, int primes)
+{
+	struct node *node = node_new(NODE_NAME, coord->at);
+	node->symbol = coord;
+	node->component = component;
+	node->primes = primes;
+	node->end.offset += strlen(coord->name);
+	return node;
+}

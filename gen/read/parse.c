@@ -182,6 +182,8 @@ static void declare_what_failed(struct parser *p, size_t from)
 	for (size_t i = after; i < p->lexer.end; i++) {
 		if (text[i] == '#')
 			i += strcspn(text + i, "\n");
+		if (text[i] == '"')             /* a unit, a file */
+			i += 1 + strcspn(text + i + 1, "\"\n");
 		if (i >= p->lexer.end)
 			break;
 		size_t length = strspn(text + i, WORD);
@@ -297,7 +299,7 @@ static void read_argument(void *context)
 	struct parser *p = &argument->parser;
 	p->token = lex_next(&p->lexer);
 	p->end = p->token.at;
-	struct node *value = argument->over ? take_order(p, argument->over) : read_expression(p);
+	struct node *value = argument->over ? take_order(p, argument->over) : read_quantity(p);
 	expect_end(p);
 	argument->value = value;
 }

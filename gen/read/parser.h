@@ -58,6 +58,8 @@ _Noreturn void peak_inside(struct place at);
 _Noreturn void unknown_name(struct parser *p, struct token token);
 struct node *resolve_name(struct parser *p, struct token token); /* what it stands for; a component of it follows */
 struct node *read_expression(struct parser *p);
+const struct unit *take_unit(struct parser *p, const struct node *value); /* behind it; NULL: none stands here */
+struct node *read_quantity(struct parser *p);               /* an expression, and a unit behind it or none */
 struct node *read_condition(struct parser *p);              /* an expression, or a single comparison of two */
 struct node *read_state(struct parser *p);                  /* at a name: what it stands for */
 /* a scalar coordinate, or a component; `ground`: or NULL, the ground */

@@ -31,8 +31,27 @@ void lex_number(struct token token, mpq_ptr value);        /* the decimal, exact
 
 /* ---- habits.c: what is written from habit of other programs, for the lexer ---- */
 
-/* 1 and ms: numbers bear no units; in SI units: 1e-3. NULL: the second is no unit */
+/* 1 and ms: a unit stands in quotes: 1 "ms". NULL: the second is no unit */
 const char *unit_note(const char *number, size_t digits, const char *unit, size_t length);
+
+/* ---- units.c: "kN s/m" as exponents of base units and a factor ---- */
+
+enum { UNIT_BASES = 7 };            /* m kg s A K mol cd; angles have none */
+struct unit {
+	const char *text;           /* as written, without quotes */
+	struct place at;            /* its opening quote */
+	mpq_t *base;                /* exponents, UNIT_BASES */
+	mpq_t factor;               /* one of it is factor pi^pi of the coherent SI unit */
+	int pi;
+};
+struct unit *unit_parse(struct place at, const char *text, size_t length); /* `at`: of its first character */
+bool is_unit_name(const char *name, size_t length);         /* with its prefix */
+double unit_factor(const struct unit *unit);                /* to the SI unit, for programs; NULL: 1 */
+bool is_coherent(const struct unit *unit);                  /* its factor is 1 */
+struct unit *unit_of_derivative(const struct unit *of, int primes);
+struct unit *unit_of_dimension(const mpq_t *base);          /* the coherent one, with its text */
+const char *base_unit_text(const mpq_t *base);              /* kg m/s^2 */
+const char *si_unit_text(const mpq_t *base);                /* N; where it has no such name, as above */
 
 /* ---- parse.c, statements.c: tokens to nodes and declarations ---- */
 
@@ -74,6 +93,8 @@ struct node {
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
+	const struct unit *unit;    /* of a SUM of one child: what stands behind it; else NULL */
+	bool counted;               /* the child is a number of these, times its factor; else it comes out in it */
 	enum { TIMELY_UNKNOWN, TIMELY, NOT_TIMELY } timely; /* reads nothing but t and params */
 	struct kept *kept;          /* of one that is: its value, and when it holds */
 };
@@ -119,6 +140,8 @@ struct symbol {
 	const struct symbol *delayed;
 	struct node *when;
 	struct node *value;         /* of param, let, output */
+	const struct unit *unit;    /* as written, or found by collect/dimensions.c; NULL: not known */
+	bool unit_written;
 	struct symbol_value made;
 	struct symbol *next_alike;  /* of the same bucket */
 	struct symbol *next;
@@ -269,6 +292,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct tunable *tunable;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
+	bool units;                 /* some are written: dimensions are checked */
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
@@ -294,6 +318,13 @@ struct definitions {                /* of a name that is there again the last co
 };
 bool definitions_read(const char *path, struct definitions *to); /* FILE.json, FILE.csv; false: it says what is wrong */
 void definitions_add(const char *text, struct definitions *to); /* NAME=EXPR of the command line */
+
+/* of node.c: units of values */
+bool is_plain_number(const struct node *node);              /* made of numbers alone */
+struct node *with_unit(struct node *value, const struct unit *unit); /* unit NULL: the value */
+/* times its factor, or divided by it */
+struct node *convert_unit(struct node *value, const struct unit *unit, bool inverse);
+struct node *state_node(struct symbol *coord, int component, int primes); /* at its declaration */
 
 /* ---- use.c: parts of a scene, for a reader ---- */
 

@@ -38,7 +38,7 @@ static void read_element(struct parser *p, int kind)
 	struct spec *spec = p->spec;
 	struct element element = { .kind = kind, .part = p->part };
 	element.at = (struct place){ p->lexer.source, p->statement };
-	element.value = read_expression(p);
+	element.value = read_quantity(p);
 	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
 	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER || kind == ELEMENT_FRICTION;
 	struct token first = p->token;

@@ -79,22 +79,32 @@ static const struct binding *binding_of(const struct parser *p, const char *name
 	return found;
 }
 
-/* In a part: what the scene gives instead */
-static struct node *given_value(struct parser *p, const char *name, struct node *value)
+/* In a part: what the scene gives instead; numbers of it count in the unit that is written in the part */
+static struct node *given_value(struct parser *p, const char *name, struct node *value, const struct unit *unit)
 {
 	const struct binding *binding = binding_of(p, name);
-	return binding ? binding->value : value;
+	value = binding ? binding->value : value;
+	return value && !value->unit ? with_unit(value, unit) : value;
 }
 
-/* param: param NAME = expression { , NAME = expression };   let: let NAME = expression */
+static void set_unit(struct symbol *symbol, const struct unit *unit)
+{
+	symbol->unit = unit;
+	symbol->unit_written = unit;
+}
+
+/* param: param NAME = expression [ unit ] { , NAME = expression [ unit ] };   let: let NAME = expression [ unit ] */
 static void read_definitions(struct parser *p, enum symbol_kind kind)
 {
 	do {
 		struct token name = expect_new_name(p, "a name");
 		expect_op(p, "=", "'='");
 		struct node *value = read_expression(p);
-		value = kind == SYMBOL_PARAM ? given_value(p, name.name, value) : value;
-		declare(p, name, kind, false)->value = value;
+		const struct unit *unit = take_unit(p, value);
+		value = kind == SYMBOL_PARAM ? given_value(p, name.name, value, unit) : with_unit(value, unit);
+		struct symbol *symbol = declare(p, name, kind, false);
+		symbol->value = value;
+		set_unit(symbol, unit);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -135,15 +145,18 @@ struct node *read_file_name(struct parser *p)
 	return node;
 }
 
-/* matrix: matrix NAME = ( STRING | expression ) { , ... } */
+/* matrix: matrix NAME = ( STRING | expression ) [ unit ] { , ... } */
 void read_matrix_statement(struct parser *p)
 {
 	do {
 		struct token name = expect_new_name(p, "the name of a matrix");
 		expect_op(p, "=", "'='");
 		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
-		value = given_value(p, name.name, value);
-		declare(p, name, SYMBOL_MATRIX, false)->value = value;
+		const struct unit *unit = take_unit(p, value);
+		value = given_value(p, name.name, value, unit);
+		struct symbol *symbol = declare(p, name, SYMBOL_MATRIX, false);
+		symbol->value = value;
+		set_unit(symbol, unit);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -174,7 +187,7 @@ void read_model(struct parser *p)
 	p->own->name_at = name.at;
 }
 
-/* coord: coord NAME [ '[' NUMBER ']' ] { , ... } */
+/* coord: coord NAME [ '[' NUMBER ']' ] [ unit ] { , ... } */
 void read_coord(struct parser *p)
 {
 	do {
@@ -186,6 +199,7 @@ void read_coord(struct parser *p)
 		symbol->length = length;
 		symbol->index = p->spec->count.components;
 		p->spec->count.components += length ? length : 1;
+		set_unit(symbol, take_unit(p, NULL));
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -222,17 +236,19 @@ static int take_hold(struct parser *p)
 	      "expected 'first', 'third', 'fifth' or 'seventh', found %s", token_text(p->token));
 }
 
-/* input: input NAME [ hold DEGREE ] { , NAME [ hold DEGREE ] } */
+/* input: input NAME [ unit ] [ hold DEGREE ] { , NAME [ unit ] [ hold DEGREE ] } */
 void read_input(struct parser *p)
 {
 	struct symbol *input;
 	int phrases = 0;
 	do {
 		struct token name = expect_new_name(p, "the name of an input");
-		struct node *connected = given_value(p, name.name, NULL);
+		const struct unit *unit = take_unit(p, NULL);
+		struct node *connected = given_value(p, name.name, NULL, unit);
 		input = declare(p, name, connected ? SYMBOL_LET : SYMBOL_INPUT, false);
 		input->value = connected;
 		input->connected = connected;
+		set_unit(input, unit);
 		if (!take_word(p, "hold"))
 			continue;
 		input->hold = take_hold(p);
@@ -277,7 +293,7 @@ struct token read_state_name(struct parser *p, struct symbol **coord, int *compo
 	return name;
 }
 
-/* init: init NAME [ ' ] = expression { , ... } */
+/* init: init NAME [ ' ] = expression [ unit ] { , ... } */
 void read_init(struct parser *p)
 {
 	do {
@@ -288,9 +304,17 @@ void read_init(struct parser *p)
 			error(p->token.at, init_note(p, name),
 			      "an initial value is the one at t = 0, which is not written");
 		expect_op(p, "=", "'='");
-		add_initial(p, name, coord, component, read_expression(p));
+		add_initial(p, name, coord, component, read_quantity(p));
 	} while (take_op(p, ","));
 	expect_end(p);
+}
+
+/* The unit in which what an output names is given; NULL: none is written */
+static const struct unit *unit_of_named(const struct symbol *known, int primes)
+{
+	if (!known || !known->unit || known->kind == SYMBOL_PARAM || known->kind == SYMBOL_MATRIX)
+		return NULL;
+	return primes ? unit_of_derivative(known->unit, primes) : known->unit;
 }
 
 /* An output that only names something: x1, x2', x1'', a let. */
@@ -303,6 +327,13 @@ static void read_plain_output(struct parser *p, struct token name)
 							 : resolve_name(p, name);
 	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
 					     : format("%s%.*s", name.name, value->primes, "''");
+	value->end = p->end;
+	const struct unit *written = take_unit(p, NULL),
+			  *unit = written ? written : unit_of_named(known, value->symbol ? value->primes : name.primes);
+	if (known && known->kind == SYMBOL_INPUT)       /* it is in its own unit already */
+		value = written ? convert_unit(value, known->unit, false) : value;
+	if (written || (known && known->kind != SYMBOL_INPUT))
+		value = convert_unit(value, unit, true);
 	if (p->token.kind != TOKEN_END && !is_op(p, ","))
 		unexpected(p, "'=' or ','");
 	if (p->part)                            /* the scene names it as it is */
@@ -316,7 +347,7 @@ static void read_plain_output(struct parser *p, struct token name)
 	};
 	symbol->index = p->spec->count.outputs++;
 	symbol->peak = peak;
-	value->end = p->end;
+	set_unit(symbol, unit);
 	add_symbol(p->spec, symbol);
 }
 
@@ -340,7 +371,7 @@ static _Noreturn void unnamed_output(const struct parser *p)
 	      "an output that is an expression needs a name");
 }
 
-/* output: output ( NAME = expression | NAME = peak ( expression ) | name ) { , ... } */
+/* output: output ( NAME = expression | NAME = peak ( expression ) | name ) [ unit ] { , ... } */
 void read_output(struct parser *p)
 {
 	do {
@@ -361,21 +392,26 @@ void read_output(struct parser *p)
 			expect_op(p, ")", "')' or an operator");
 		if (peak && p->token.kind == TOKEN_OPERATOR && strchr("+-*/^<>=!?", p->token.op[0]))
 			peak_inside(at);
+		const struct unit *unit = take_unit(p, value);
 		struct symbol *output = declare(p, name, p->part ? SYMBOL_PART_OUTPUT : SYMBOL_OUTPUT, false);
-		output->value = value;
+		if (is_plain_number(value) || p->part)
+			output->value = p->part ? with_unit(value, unit) : value;
+		else
+			output->value = convert_unit(value, unit, true);
+		set_unit(output, unit);
 		output->peak = peak;
 	} while (take_op(p, ","));
 	expect_end(p);
 }
 
-/* step: step expression */
+/* step: step expression [ unit ] */
 void read_step(struct parser *p)
 {
 	struct place at = last_token(p, 4);
 	if (p->own->asked.step)
 		error(at, NULL, "the step is given already");
 	p->own->asked.step_at = p->token.at;
-	p->own->asked.step = read_expression(p);
+	p->own->asked.step = read_quantity(p);
 	expect_end(p);
 }
 

@@ -63,6 +63,8 @@ static const char *stray_note(const struct parser *p)
 	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
 	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
 	const char *unit = word ? stray_unit_note(p) : NULL;
+	if (p->token.kind == TOKEN_STRING && after_operand)
+		return "a unit stands behind a whole value, at its end or in a bracket: (9.81 \"m/s^2\")";
 	if (decimal_comma(p))
 		return "the decimal mark is the point: 1.5";
 	if (p->goes_on && p->goes_on(p))
@@ -158,6 +160,8 @@ static bool declared_later(const struct parser *p, const char *name)
 		if (!coord && !begins(line, "param") && !begins(line, "let") && !begins(line, "matrix"))
 			continue;
 		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
+			if (*at == '"')         /* a unit, a file */
+				at += 1 + strcspn(at + 1, "\"\n");
 			size_t word = strspn(at, WORD);
 			const char *after = at + word + strspn(at + word, " \t");
 			if (word == length && at >= rest && strncmp(at, name, word) == 0 &&

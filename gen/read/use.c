@@ -95,7 +95,7 @@ static const struct text *read_text(const char *path, struct place at)
 
 /* ---- what the scene gives ---- */
 
-/* binding: NAME [ component ] { ' } = expression */
+/* binding: NAME [ component ] { ' } = expression [ unit ] */
 static struct binding read_binding(struct parser *p)
 {
 	if (p->token.kind != TOKEN_NAME)
@@ -105,6 +105,7 @@ static struct binding read_binding(struct parser *p)
 	binding.component = read_component(p, &binding.name.primes, false);
 	expect_op(p, "=", "'='");
 	binding.value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
+	binding.value = with_unit(binding.value, take_unit(p, binding.value));
 	return binding;
 }
 

@@ -45,7 +45,7 @@ static void read_assignment(struct parser *p, struct when *when)
 			error(jump.target->at, NULL, "'%s' jumps already in this statement",
 			      text_between(jump.target->start, jump.target->end));
 	expect_op(p, "=", "'='");
-	jump.value = read_expression(p);
+	jump.value = read_quantity(p);
 	*MORE(when->jump, when->jumps) = jump;
 }
 
@@ -101,7 +101,7 @@ void read_stop(struct parser *p)
 	if (same_place(when.from, when.to))
 		error(first.at, NULL, "it acts between a coordinate and itself");
 	expect_word(p, "at");
-	when.gap = read_expression(p);
+	when.gap = read_quantity(p);
 	expect_word(p, "restitution");
 	when.restitution = read_expression(p);
 	expect_end(p);

@@ -17,7 +17,7 @@ static const double two_pi = 6.283185307179586, planar = 0.01;
 static const char sweep_note[] = "--sweep takes NAME=FROM:TO[:N], TO with rad/s, rpm or Hz behind it where that is "
 				 "the unit of a speed: w=0:500, n=0:6000rpm:121";
 
-static const struct unit { const char *name; double hertz; } units[] = {
+static const struct speed_unit { const char *name; double hertz; } units[] = {
 	{ "rad/s", 1 / 6.283185307179586 }, { "rpm", 1.0 / 60 }, { "Hz", 1 }
 };
 

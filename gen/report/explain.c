@@ -377,6 +377,8 @@ void explain_text(FILE *to, const struct step *step)
 	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
 		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
 	text_equations(to, step);
+	if (units_text(step))
+		fprintf(to, "\n%s\n", units_text(step));
 	fprintf(to, "\n%sP(s) = M s^2 + C s + K with\n",
 		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients:\n" : "");
 	text_matrix(to, "M", model->written->n, model->written->system.M);

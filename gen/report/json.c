@@ -263,6 +263,7 @@ void explain_json(FILE *to, const struct step *step)
 	member_names(to, "states", states, model->names.state);
 	member_names(to, "outputs", model->outputs, output);
 	member_names(to, "inputs", model->spec->count.inputs, input);
+	json_units(to, step);
 	json_dropped(to, model);
 	if (model->truncated)
 		json_modal_truncation(to, model);

@@ -200,8 +200,8 @@ static void print_gains(FILE *to, const struct step *step)
 	      "gain</th><th class=\"name\">zeros [1/s]</th></tr>\n", to);
 	for (int k = 0; k < count; k++)
 		fprintf(to, "<tr><td class=\"name\">%s</td><td class=\"name\">%s</td><td>%s</td><td class=\"name\">%s"
-			    "</td></tr>\n", escaped(t[k].output), escaped(t[k].drive), static_gain_text(&t[k]),
-			zeros_text(model, &t[k]));
+			    "</td></tr>\n", escaped(labelled(model, t[k].output)), escaped(labelled(model, t[k].drive)),
+			static_gain_text(&t[k]), zeros_text(model, &t[k]));
 	fputs("</table></div>\n", to);
 }
 

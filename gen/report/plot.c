@@ -137,7 +137,8 @@ static void plot_modes(struct picture *p)
 /* ---- frequency responses ---- */
 
 /* The curves of one drive: those that are not 0; column 2, 4, ... of the data are sizes, after each an angle */
-static const char *curves(const struct responses *r, const char *data, int first, int last, int angle, int *count)
+static const char *curves(const struct model *model, const struct responses *r, const char *data, int first, int last,
+			  int angle, int *count)
 {
 	const char *text = "";
 	*count = 0;
@@ -147,7 +148,7 @@ static const char *curves(const struct responses *r, const char *data, int first
 		if (*count < CURVES)
 			text = format("%s%s using 1:%d %s title %s", text, *text ? ", ''" : format("plot %s", data),
 				      2 * k + 2 + angle, curve(*count, NULL, r->band.count),
-				      quoted(r->transfer[k].output));
+				      quoted(labelled(model, r->transfer[k].output)));
 		++*count;
 	}
 	return text;
@@ -174,13 +175,14 @@ static void add_size_and_angle(struct picture *p, const char *frame, const char 
 static void add_bode(struct picture *p, const struct responses *r, int first, int last)
 {
 	int count, angles;
-	const char *size = curves(r, "$frf", first, last, 0, &count);
-	const char *angle = curves(r, "$frf", first, last, 1, &angles);
+	const char *size = curves(p->step->shown->model, r, "$frf", first, last, 0, &count);
+	const char *angle = curves(p->step->shown->model, r, "$frf", first, last, 1, &angles);
 	const char *frame = frame_of(&r->band);
 	note_first(count < CURVES ? count : CURVES, count, "outputs");
 	if (count == 0)
 		return;
-	add_size_and_angle(p, frame, format("outputs over %s", r->transfer[first].drive), size, angle);
+	add_size_and_angle(p, frame, format("outputs over %s", labelled(p->step->shown->model,
+									 r->transfer[first].drive)), size, angle);
 }
 
 /* ---- sweeps, up and down ---- */
@@ -244,7 +246,7 @@ static void plot_sweeps(struct picture *p)
 		note_first(last - first < CURVES ? last - first : CURVES, last - first, "outputs");
 		if (drives < DRIVES)
 			add_size_and_angle(p, frame_of(&s.band), format("outputs over %s, swept with amplitude %s",
-									s.of[first].drive, p->amplitude),
+						labelled(p->step->shown->model, s.of[first].drive), p->amplitude),
 					   sweep_curves(&s, first, last, 0), sweep_curves(&s, first, last, 1));
 	}
 	note_first(drives < DRIVES ? drives : DRIVES, drives, "inputs and loads");
@@ -331,7 +333,7 @@ static void add_response(struct picture *p, int sheet, int output, int column, b
 	add_row(p, sheet, last ? 190 : 150, format(
 		"set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y '%%.5g'\nset tmargin 1\n"
 		"set autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb '%s'\n",
-		quoted(p->step->shown->model->output[output].name),
+		quoted(labelled(p->step->shown->model, p->step->shown->model->output[output].name)),
 		last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column, picture_curve[0].colour));
 }
 

@@ -37,6 +37,14 @@ void json_rationals(FILE *to, const char *indent, const char *key, int rows, int
 const char *breakpoints_text(int count, const mpq_t *at);   /* 1, 2 */
 const char *rising_text(const struct divided *d);           /* likewise */
 
+/* ---- units.c: of what is shown ---- */
+
+enum listed { LISTED_STATE, LISTED_INPUT, LISTED_OUTPUT, LISTED_PARAM };
+const char *unit_of_listed(const struct step *step, enum listed kind, int index); /* as its text; "": not known */
+const char *labelled(const struct model *model, const char *name); /* of an output or input, as at an axis: f [kN] */
+const char *units_text(const struct step *step);            /* a sentence; NULL: none are written */
+void json_units(FILE *to, const struct step *step);          /* a member of an object, where some are */
+
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
 bool is_nonlinear(const struct step *step);

@@ -23,6 +23,7 @@ struct load {                       /* force on the equations: t^k times one wav
 struct input {                      /* a sampled input u */
 	const char *name;
 	int hold;                   /* degree of the polynomial through samples around; 0: held, 1: a ramp */
+	const struct unit *unit;    /* in which it is given; NULL: not known */
 	mpq_t *force[2];            /* of u and of u': one rational per equation */
 };
 struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n) - heldK q(t_n) */

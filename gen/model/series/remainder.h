@@ -12,6 +12,7 @@ struct model;
 
 struct output {
 	const char *name;
+	const struct unit *unit;    /* in which it is given; NULL: not known */
 	struct node *value;         /* as written */
 	/* the largest size so far is asked for; reads what friction without mass bears */
 	bool peak, reads_slider_force;

@@ -5,10 +5,10 @@
 #include "step/step.h"
 
 enum { GUARD_BITS = 64, GROWTH_INTEGER_BITS = 16 };  /* of a growth, its sign among them */
-enum unit { TURN, OCTAVE };         /* 2 pi, ln 2: what an angle is divided by, and the logarithm of a growth */
+enum phase_unit { TURN, OCTAVE };         /* 2 pi, ln 2: what an angle is divided by, and the logarithm of a growth */
 
 /* q / unit, enclosed with x's precision */
-static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
+static void divide_by_unit(mpq_srcptr q, enum phase_unit unit, mpfi_ptr x)
 {
 	INTERVAL divisor = OVER_BITS(mpfi_get_prec(x));
 	if (unit == TURN)
@@ -21,14 +21,14 @@ static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
 	mpfi_div(x, x, divisor);
 }
 
-static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum unit unit, long precision)
+static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum phase_unit unit, long precision)
 {
 	error(step->model->asked.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
 	      unit == TURN ? "(2*pi)" : "ln 2", precision);
 }
 
 /* The integer nearest to 2^fraction q / unit */
-static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit unit, int fraction, mpz_ptr nearest)
+static void nearest_multiple(const struct step *step, mpq_srcptr q, enum phase_unit unit, int fraction, mpz_ptr nearest)
 {
 	long above = rational_bits(q) + 1, precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
 	long limit = 2 * precision + LIMIT_PRECISION;
@@ -55,7 +55,8 @@ static void saturate(mpz_ptr n, int bits)
 }
 
 /* q / unit as so many bits with `fraction` of them behind the point, wrapped */
-static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum unit unit, int bits, int fraction)
+static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum phase_unit unit, int bits,
+				     int fraction)
 {
 	struct fixed_point x;
 	INTEGER whole = INTEGER_ZERO, part = INTEGER_ZERO;
@@ -100,7 +101,7 @@ static struct advance advance_over(const struct step *step, const struct wave *w
 	return advance;
 }
 
-static struct rate rate_of(const struct step *step, mpq_srcptr q, enum unit unit)
+static struct rate rate_of(const struct step *step, mpq_srcptr q, enum phase_unit unit)
 {
 	struct rate rate = { .words = phase_bits(step) == 64 ? 2 : 3 };
 	int bits = 64 * rate.words;

@@ -1,0 +1,121 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# units.sh PLGEN PLRUN CASES: models with units, as TAP.  Each runs with the numbers of the same model in SI units by
+# hand, to 1e-9 of the largest value of each output; nothing is found wrong in it; each mistake is found at its term.
+set -u
+case $1 in */*) plgen=$(cd "${1%/*}" && pwd)/${1##*/} ;; *) plgen=$1 ;; esac
+plrun=$2
+cases=$3
+LC_ALL=C
+export LC_ALL
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+number=0
+failed=0
+
+report()        # STATUS TEXT
+{
+	number=$((number + 1))
+	if [ "$1" = 0 ]; then
+		echo "ok $number - $2"
+	else
+		failed=1
+		echo "not ok $number - $2"
+		sed 's/^/# /' "$work/said"
+	fi
+}
+
+awk -v work="$work" '
+/^#/ && !file { next }
+/^=== /       { name = $2; print name, $3 > (work "/list"); file = work "/" name ".spec"; next }
+/^--- si/     { file = work "/" name ".si.spec"; sub(/^--- si /, ""); print > (work "/" name ".factors"); next }
+/^--- mist/   { file = work "/" name ".mistakes"; next }
+NF            { print > file }' "$cases" || exit 1
+
+# The record of an input that a model has: a ramp of 10 in the unit of its samples, and that in SI units
+record()        # SPEC FACTOR
+{
+	if grep -q '^input' "$1"; then
+		echo "t,front"
+		awk -v f="$2" 'BEGIN {
+			for (k = 0; k <= 1000; k++)
+				printf "%.17g,%.17g\n", k * 0.002, f * (k < 250 ? k / 25 : 10)
+		}'
+	fi
+}
+
+run()           # SPEC T FACTOR
+{
+	record "$1" "$3" > "$work/in.csv"
+	if [ -s "$work/in.csv" ]; then
+		"$plrun" "$1" "$2" --input "$work/in.csv"
+	else
+		"$plrun" "$1" "$2"
+	fi
+}
+
+# Output by output the largest difference over the largest value
+compare()       # WITH_UNITS SI FACTORS
+{
+	awk -F, -v factors="$3" '
+	BEGIN { count = split(factors, factor, " ") }
+	NR == FNR { for (i = 2; i <= NF; i++) a[FNR, i] = $i; rows = FNR; next }
+	FNR == 1 { for (i = 2; i <= NF; i++) name[i] = $i; columns = NF; next }
+	{
+		for (i = 2; i <= NF; i++) {
+			x = a[FNR, i]; y = $i * factor[i - 1]
+			d = x > y ? x - y : y - x
+			if (d > worst[i]) { worst[i] = d; at[i] = $1; one[i] = x; other[i] = y }
+			x = x < 0 ? -x : x
+			if (x > largest[i]) largest[i] = x
+		}
+		seen = FNR
+	}
+	END {
+		bad = rows < 20 || seen != rows || columns != count + 1
+		for (i = 2; i <= columns; i++) {
+			ok = largest[i] > 0 && worst[i] <= 1e-9 * largest[i]
+			printf "%s%s: %.17g and %.17g at t = %s, largest %.6g, tolerance 1e-9 of that\n",
+			       ok ? "" : "WRONG ", name[i], one[i], other[i], at[i], largest[i]
+			bad = bad || !ok
+		}
+		exit bad
+	}' "$1" "$2"
+}
+
+# WRITTEN => MISTAKEN @ TERM
+mistake()       # NAME LINE
+{
+	awk -v line="$2" '
+	BEGIN { split(line, half, " => "); split(half[2], part, " @ "); from = half[1]; to = part[1] }
+	!done && (i = index($0, from)) { $0 = substr($0, 1, i - 1) to substr($0, i + length(from)); done = 1 }
+	{ print }
+	END { exit !done }' "$work/$1.spec" > "$work/wrong.spec" || return 1
+	(cd "$work" && "$plgen" wrong.spec) > /dev/null 2> "$work/said"
+	[ $? = 1 ] || return 1
+	awk -v terms="${2#* @ }" '
+	BEGIN { count = split(terms, term, " @ ") }
+	/ error: / {
+		split($0, place, ":")
+		getline
+		right += index(substr($0, place[3]), term[++errors]) == 1
+	}
+	END { exit !(errors == count && right == count) }' "$work/said"
+}
+
+while read -r name until; do
+	"$plgen" "$work/$name.spec" > /dev/null 2> "$work/said"
+	report $? "$name: nothing is wrong in it"
+	run "$work/$name.spec" "$until" 1 > "$work/units.csv" 2> "$work/said" &&
+		run "$work/$name.si.spec" "$until" 0.001 > "$work/si.csv" 2>> "$work/said" &&
+		compare "$work/units.csv" "$work/si.csv" "$(cat "$work/$name.factors")" > "$work/said"
+	report $? "$name: as by hand"
+	while read -r line; do
+		mistake "$name" "$line"
+		report $? "$name: $line"
+	done < "$work/$name.mistakes"
+done < "$work/list"
+echo "1..$number"
+exit $failed
