@@ -209,6 +209,11 @@ classdef plgen_model < handle
         % those of a step over which u is held, or []
         function s = state_space(m, loads)
             e = linear(m, "state space");
+            delayed = e.ss.inputs(! cellfun(@isempty, strfind(e.ss.inputs, ".delayed")));
+            if ! isempty(delayed)
+                fail([m.name, ": inputs are delayed, so it has no state space over them: it would leave out ", ...
+                      strjoin(delayed, ", ")]);
+            end
             column = ismember(e.ss.inputs, m.inputs) != (nargin > 1 && loads);
             s = space_of(e.ss, column, numel(m.states));
             s.discrete = [];

@@ -709,6 +709,10 @@ class Model:
     def state_space(self, loads=False):
         """StateSpace over the inputs; loads: over the spec's loads, each with its function of time as an input."""
         own = self._linear('state space')['ss']
+        delayed = [name for name in own['inputs'] if '.delayed' in name]
+        if delayed:
+            raise Error('{}: inputs are delayed, so it has no state space over them: it would leave out {}'.format(
+                self.name, ', '.join(delayed)))
         column = [i for i, name in enumerate(own['inputs']) if (name in self.inputs) != loads]
         space = StateSpace(own, column, self.states)
         if own['discrete']:

@@ -219,6 +219,11 @@ refuses('a jump where there is none', 'held: it has no jump', lambda: Model('hel
 refuses('tau beyond the step', 'tau is not in 0 .. h', lambda: model('sdcsf').at(0.02), ValueError)
 refuses('pickling', 'a Model is compiled code and cannot be pickled; copy() makes another',
         lambda: pickle.dumps(m), TypeError)
+with open('late.spec', 'w') as late:
+    late.write("model late\ncoord x\ninput u\nx'' + x = u(t - 0.1)\nstep 0.05\n")
+refuses('the state space of a delay',
+        'late: inputs are delayed, so it has no state space over them: it would leave out u.delayed1',
+        lambda: Model('late.spec').ss)
 refuses('the state space of a stop',
         'stop: not linear, so it has no state space: it would leave out max(x, 0)', lambda: model('stop').ss)
 refuses('the Phi of a stop', 'stop: not linear, so it has no Phi: it would leave out max(x, 0)',
