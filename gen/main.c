@@ -291,6 +291,17 @@ static const char *header_name(const struct work *w)
 	return w->options.fmu ? fmu_header_name(w->model) : base_name(w->options.header);
 }
 
+/* What explains a model says what a step takes on a board. */
+static void measure_board(struct work *w)
+{
+	const enum print print = w->options.print;
+	if (print != PRINT_EXPLAIN && print != PRINT_JSON && print != PRINT_REPORT)
+		return;
+	struct board_cost *cost = NEW(struct board_cost);
+	*cost = board_cost_of(w->spec->name_at, w->step);
+	w->step->board = cost;
+}
+
 static void print_main_text(void *context)
 {
 	const struct work *w = context;
@@ -341,6 +352,7 @@ static bool find_rows(struct work *w)
 
 static bool print_text(struct work *w)
 {
+	measure_board(w);
 	w->text = w->options.fmu ? file_inside() : file_new(w->options.output);
 	bool printed = statement_guard(print_main_text, w);
 	file_close(w->text);

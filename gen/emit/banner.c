@@ -478,6 +478,10 @@ static void banner_cost(const struct emitter *e)
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
+	if (is_linear_alone(e->step) && !e->step->refresh)
+		say(e, " * On a Cortex-M4, %s: about %s instructions.\n",
+		    e->model->asked.single ? "whose FPU has float" : "double in software",
+		    two_digits(instructions_of_linear(e->step)));
 	if (peaks_by_values(e->step))
 		banner_sentence(e, "Peaks are looked for by values inside a step where the last three ends do not "
 				   "show that none is passed.");

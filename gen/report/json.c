@@ -167,6 +167,10 @@ static void json_cost(FILE *to, const struct step *step)
 	if (step->forced)
 		fprintf(to, ",\n    \"shown\": {\"multiplications\": %d, \"additions\": %d}",
 			step->forced->multiplications, step->forced->additions);
+	if (step->board && !step->board->why)
+		fprintf(to, ",\n    \"board\": {\"target\": \"cortex-m4\", \"instructions\": %.3g, \"most\": %.3g, "
+			"\"steps\": %d, \"bytes\": %ld}", step->board->mean, step->board->most, step->board->steps,
+			step->board->bytes);
 	if (step->rows)
 		fprintf(to, ",\n    \"rows\": {\"count\": %d, \"numbers\": %d}", step->rows->count,
 			row_numbers(step));

@@ -18,9 +18,9 @@ extern const char math_prototypes[], math_counts[];         /* C: of <math.h>; t
 /* ---- native.c: compiled into memory ---- */
 
 enum running_with { WITH_RHS = 1, WITH_COUNTS = 2 };        /* NAME_rhs; counts of what is done */
-/* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>. Of what the runtime
- * does with arrays it is an estimate. */
-struct counted { uint64_t multiplications, additions, calls; };
+/* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>, a wave the runtime's
+ * cos and sin, whose sums and products are counted too. Of what the runtime does with arrays it is an estimate. */
+struct counted { uint64_t multiplications, additions, calls, waves; };
 struct native {
 	const void *model, *rhs;    /* the descriptor; NULL: without */
 	const struct counted *counted;
@@ -44,6 +44,7 @@ void   running_needed(struct running *r, double *value);     /* per need: its ou
 int    running_status(struct running *r);
 void   running_rhs(struct running *r, double t, const double *y, const double *u, double *slope);
 
+struct board_cost board_cost_of(struct place at, const struct step *step);
 /* From the spec's initial values by so many steps, inputs 0: the states then; NULL, or why there are none */
 const char *motion_to(struct place at, const struct step *step, long steps, double *y);
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An instance of a model that runs here, driven by its descriptor. */
 #include "run/run.h"
+#include "step/cost.h"
 
-enum { MOST_STEPS = 10000000 };     /* of a motion */
+enum { MOST_STEPS = 10000000,       /* of a motion */
+       COUNTED_STEPS = 200, MOST_COUNTED = 2000000000 };
 
 struct running {
 	const struct step *step;
@@ -174,4 +176,34 @@ const char *motion_to(struct place at, const struct step *step, long steps, doub
 	}
 	running_state(r, y);
 	return NULL;
+}
+
+/* Of the operations from one count to the next */
+static double instructions_between(const struct step *step, struct counted from, struct counted to)
+{
+	return instructions_of(step, (struct operations){ (double)(to.multiplications - from.multiplications),
+							  (double)(to.additions - from.additions),
+							  (double)(to.calls - from.calls),
+							  (double)(to.waves - from.waves) });
+}
+
+struct board_cost board_cost_of(struct place at, const struct step *step)
+{
+	struct board_cost cost = { 0 };
+	struct running *r = running_new(at, step, WITH_COUNTS, &cost.why);
+	if (!r)
+		return cost;
+	double *u = ARRAY(double, r->inputs + 1), sum = 0;
+	running_start(r, 0, NULL);
+	while (cost.steps < COUNTED_STEPS && sum < MOST_COUNTED && running_status(r) == 0) {
+		const struct counted before = running_counted(r);
+		running_step(r, u);
+		const double now = instructions_between(step, before, running_counted(r));
+		sum += now;
+		cost.most = now > cost.most ? now : cost.most;
+		cost.steps++;
+	}
+	cost.mean = sum / cost.steps;
+	cost.bytes = (long)CALL(r, size);
+	return cost;
 }

@@ -11,6 +11,8 @@
 #include "step/linear/rows.h"
 #include "tapes.h"
 
+#include <math.h>
+
 struct cost { int multiplications, additions, calls; };
 
 static void add_cost(struct cost *to, int times, struct cost of)
@@ -187,6 +189,34 @@ double cost_of_step(const struct step *step, const struct target *target)
 		return (multiplications + additions) * (single ? 1 : 2);
 	return target->cost[single].multiplication * multiplications + target->cost[single].addition * additions +
 	       target->cost[single].wave * waves_of(step) / refresh + target->cost[single].step;
+}
+
+/* Fitted as those of needs.c; in float the search for events goes by loops over arrays. */
+double instructions_of(const struct step *step, struct operations of)
+{
+	static const struct { double multiplication, addition, searched, wave, call, step; } each[2] = {
+		{ 58, 78, 0, 1970, 1180, 0 }, { 1.5, 1.5, 20, 110, 67, 12 }
+	};
+	const bool single = step->model->asked.single, searched = single && step->model->switching;
+	const double m = of.multiplications - of.waves * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL);
+	const double a = of.additions - of.waves * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD);
+	return (searched ? each[1].searched * (m + a) : each[single].multiplication * m + each[single].addition * a) +
+	       each[single].wave * of.waves + each[single].call * of.calls + each[single].step;
+}
+
+const char *two_digits(double count)
+{
+	double unit = 1;
+	while (count / unit >= 99.5)
+		unit *= 10;
+	return format("%.0f", floor(count / unit + 0.5) * unit);
+}
+
+double instructions_of_linear(const struct step *step)
+{
+	const struct program *program = step->program;
+	return instructions_of(step, (struct operations){ program->multiplications, program->additions, program->calls,
+							  waves_of(step) });
 }
 
 void count_peaks(struct step *step)

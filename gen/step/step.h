@@ -9,6 +9,13 @@
 
 struct refresh;
 struct choice;
+
+struct board_cost {                 /* of a step on a Cortex-M4, whose FPU has float alone */
+	double mean, most;          /* instructions, an estimate by the operations that steps have done */
+	int steps;                  /* from the initial values on, inputs 0 */
+	long bytes;                 /* of an instance */
+	const char *why;            /* there is none; NULL: there is */
+};
 struct collocation;
 struct event_split;
 struct expansion;
@@ -82,6 +89,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct refresh *refresh;    /* NULL: functions of loads in every step */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
+	const struct board_cost *board; /* NULL: it was not measured */
 	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
 	struct tuned_blocks *blocks; /* NULL: no linear step with tunable params */
 	struct layout layout;       /* of x */
