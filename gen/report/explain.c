@@ -144,8 +144,8 @@ static void text_board(FILE *to, const struct step *step)
 	const struct board_cost *b = step->board;
 	if (!b || b->why)
 		return;
-	fprintf(to, "On a Cortex-M4, %s: about %s instructions a step, %s at most, by the operations of %d steps from the "
-		    "initial values, inputs 0; an instance has %ld bytes.\n",
+	fprintf(to, "On a Cortex-M4, %s: about %s instructions a step, %s at most, by the operations of %d steps "
+		    "from the initial values, inputs 0; an instance has %ld bytes.\n",
 		step->model->asked.single ? "whose FPU has float" : "double in software", two_digits(b->mean),
 		two_digits(b->most), b->steps, b->bytes);
 }
