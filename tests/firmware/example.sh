@@ -86,6 +86,21 @@ result $? 'the Makefile as it stands builds what runs on the M4F'
 diff out.m4f out.m3 >>log && diff out.m4f out.m0 >>log
 result $? 'all boards say the same'
 
+# Retuned in the background: an instruction every 64 ns, 15625 in a millisecond, which a retune exceeds
+board m4f
+{ cat "$root/models/quarter_car.spec"; echo 'tunable cs'; } |
+    "$plgen" --real float --prefix suspension -o suspension_pl.c - >log 2>&1 &&
+    $arm-gcc $optimize $cpu -Wall -Wextra -Wdouble-promotion -Werror -I. -I"$root/runtime" -I"$firmware" \
+        "$root/doc/firmware/retune.c" suspension_pl.c "$firmware/retune_board.c" "$firmware/start.c" \
+        "$firmware/semihosting.c" "$firmware/digits.c" "$m4f" -nostartfiles -Wl,--gc-sections -L"$firmware" \
+        -T "$script" -o retune.elf >>log 2>&1 &&
+    emulate 600 retune.elf -icount shift=6,align=off,sleep=off >out 2>>log
+status=$?
+echo "status $status; ticks, inside a retune, with other coefficients, with other bits:" >>log
+cat out >>log
+[ $status -eq 0 ] && awk '{ exit !($1 == 1000 && $2 >= 100 && $3 >= 100 && $4 == 0) }' out
+result $? 'retuned in the background, used in the interrupt: the bits of a retune between two steps'
+
 echo '#include "cycles.h"
 uint32_t spent(void (*f)(void));
 uint32_t spent(void (*f)(void))
