@@ -451,6 +451,15 @@ static void print_depfile(const struct work *w)
 	file_close(f);
 }
 
+static void print_names(const struct work *w)
+{
+	if (!w->options.a2l)
+		return;
+	struct file *f = file_new(w->options.a2l);
+	print_a2l(f->to, w->step);
+	file_close(f);
+}
+
 /* ---- over a param ---- */
 
 struct many { const struct work *first; struct work now; };
@@ -544,6 +553,7 @@ static bool compile(struct work *w)
 	if (!print_fmu(w))
 		return false;
 	print_depfile(w);
+	print_names(w);
 	if (!spares(w->spec->data.files, w->spec->data.file))
 		return false;
 	publish();

@@ -270,6 +270,8 @@ static const struct row {
 	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", .text = AT(request.modes) },
 	{ "rows", "K", "in a block of NAME_run; 1: step by step (default; with --fast: by the model's size)",
 	  .take = take_rows },
+	{ "a2l", "FILE.a2l", "also write names of states, outputs and tunable params for calibration tools",
+	  .text = AT(a2l) },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", .text = AT(depfile) },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", .flag = AT(request.selftest) },
 	{ "batch", NULL, "also emit NAME_batch: many instances in one call",
@@ -475,6 +477,15 @@ static void find_header(struct options *options)
 	options->header = format("%.*s.h", (int)length - 2, options->output);
 }
 
+static void check_a2l(const struct options *options)
+{
+	if (options->a2l && (options->print != PRINT_C || options->fmu))
+		wrong_usage(format("--a2l goes with C: it does not go with %s",
+				   options->fmu ? "--fmu" : option_of_print(options->print)));
+	if (options->a2l && !ends_in(options->a2l, ".a2l"))
+		wrong_usage(format("--a2l takes the name of a file, FILE.a2l, found '%s'", options->a2l));
+}
+
 static void check_campbell(const struct options *options)
 {
 	const struct { const char *value, *option; } of[] = {
@@ -533,7 +544,7 @@ static void check_spelling(const struct options *options, const char *const *pat
 static void check_names(const struct options *options)
 {
 	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
-			       options->params };
+			       options->a2l, options->params };
 	enum { PATHS = sizeof path / sizeof *path };
 	check_spelling(options, path, PATHS);
 	for (int i = 0; i < PATHS; i++)
@@ -554,6 +565,7 @@ void read_options(int argc, char **argv, struct options *options)
 		wrong_usage("--amplitude goes with --response and --plot frf");
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
 	note_all(options);
+	check_a2l(options);
 	check_campbell(options);
 	check_fmu(options);
 	find_header(options);

@@ -13,7 +13,7 @@
 
 static bool reported;           /* that standard output cannot be written */
 
-enum { FILES = 3 };              /* C, header, depfile */
+enum { FILES = 4 };              /* C, header, depfile, names for calibration */
 static struct file file[FILES];
 static int files;
 

@@ -2,10 +2,10 @@
 /* A quarter car whose damper is turned while it runs: a timer interrupt steps it at 1 kHz, the background computes what
  * another cs makes of the coefficients.  suspension_pl.c is of `quarter_car.spec` with a line `tunable cs`.
  *
- * suspension_retune takes longer than a step may and touches the coefficients alone: it may be interrupted anywhere, and
- * nothing is masked.  suspension_use copies them into the instance, which is the interrupt's: there it is called, between
- * two steps.  One buffer is enough, since the background leaves it alone from when it hands it over until it was taken.
- * To call suspension_use outside instead, mask the interrupt around it, never around suspension_retune. */
+ * suspension_retune takes longer than a step may and touches the coefficients alone: it may be interrupted anywhere,
+ * and nothing is masked.  suspension_use copies them into the instance, which is the interrupt's: there it is called,
+ * between two steps.  One buffer is enough, since the background leaves it alone from when it hands it over until it
+ * was taken. To call suspension_use outside instead, mask the interrupt around it, never around suspension_retune. */
 #include "suspension_pl.h"
 
 #ifndef BOARD_CLOCK_HZ

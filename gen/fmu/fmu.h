@@ -40,6 +40,10 @@ struct fmu_variables {
 /* in the order of runtime/fmi/plfmu.h: time, inputs, outputs, tunable params, states, params that nothing changes */
 struct fmu_variables variables_of(const struct step *step);
 
+/* ---- a2l.c: for calibration tools ---- */
+
+void print_a2l(FILE *to, const struct step *step);
+
 /* ---- description.c: modelDescription.xml, and of FMI 3.0 sources/buildDescription.xml ---- */
 
 enum { FMU_SOURCES = 2 };           /* the standard's functions, the model */

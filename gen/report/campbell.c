@@ -35,6 +35,21 @@ static const char *take_unit(struct campbell *c, const char *text, const char *e
 	return end;
 }
 
+/* Of a param that has one of its own, in which its values then are */
+static void take_unit_of_param(struct campbell *c, const struct spec *spec)
+{
+	for (const struct symbol *s = spec->first; s && !c->unit; s = s->next) {
+		if (s->kind != SYMBOL_PARAM || !s->unit_written || strcmp(s->name, c->param) != 0)
+			continue;
+		c->unit = s->unit->text;
+		c->hertz = unit_factor(s->unit) / (strstr(c->unit, "Hz") ? 1 : two_pi);
+	}
+	if (!c->unit) {
+		c->unit = units[0].name;
+		c->hertz = units[0].hertz;
+	}
+}
+
 static void take_sweep(struct campbell *c, const char *text)
 {
 	struct place at = { source_argument(text), 0 };
@@ -44,8 +59,6 @@ static void take_sweep(struct campbell *c, const char *text)
 	if (!colon || equals == text)
 		error(at, sweep_note, "expected a param, '=' and two values");
 	c->param = format("%.*s", (int)(equals - text), text);
-	c->unit = units[0].name;
-	c->hertz = units[0].hertz;
 	const char *stop = take_unit(c, colon + 1, last ? last : end);
 	if (!read_number(equals + 1, colon, &c->from) || !read_number(colon + 1, stop, &c->to) || c->from < 0 ||
 	    !(c->to > c->from && isfinite(c->to)))
@@ -336,6 +349,7 @@ void find_campbell(struct campbell *c, const char *sweep, const char *orders, co
 	take_sweep(c, sweep);
 	take_orders(c, orders ? orders : "1");
 	const struct model *model = model_at(c, c->to);
+	take_unit_of_param(c, model->spec);
 	c->n = model->n;
 	c->name = model->name;
 	c->coord = model->names.coord;

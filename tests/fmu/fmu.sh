@@ -381,4 +381,50 @@ for version in 2 3; do
         ./plant_own.so plant
 done
 
+# ---- names for calibration tools ----
+
+# ASAP2: /begin and /end in pairs, identifiers that are some and no two alike, each element of each array once
+cat >names.py <<'END'
+import re, sys
+text = re.sub(r'/\*.*?\*/', ' ', open(sys.argv[1]).read(), flags=re.S)
+tokens = re.findall(r'"(?:[^"\\]|\\.)*"|[^\s"]+', text)
+assert tokens[:3] == ['ASAP2_VERSION', '1', '61'], tokens[:3]
+open_now, blocks = [], []
+for place, token in enumerate(tokens):
+    if token == '/begin':
+        open_now.append((tokens[place + 1], place + 2))
+    elif token == '/end':
+        kind, first = open_now.pop()
+        assert tokens[place + 1] == kind, (kind, tokens[place + 1])
+        blocks.append((kind, tokens[first:place]))
+assert not open_now and [k for k, b in blocks][-2:] == ['MODULE', 'PROJECT']
+things = [b for k, b in blocks if k in ('MEASUREMENT', 'CHARACTERISTIC')]
+names = [b[0] for b in things]
+assert len(set(names)) == len(names), names
+for name in names:
+    assert all(re.fullmatch(r'[A-Za-z_][A-Za-z0-9_]*(\[[0-9]+\])?', part) for part in name.split('.')), name
+places = sorted((b[b.index('SYMBOL_LINK') + 1].strip('"'), int(b[b.index('SYMBOL_LINK') + 2])) for b in things)
+count = {w.split('=')[0]: int(w.split('=')[1]) for w in sys.argv[3:]}
+size = int(sys.argv[2])
+assert places == sorted((a, size * i) for a, n in count.items() for i in range(n)), places
+listed = sorted(n for k, b in blocks if k.startswith('REF_') for n in b)
+assert listed == sorted(names), listed
+limits = {b[0].split('.')[-1]: (b[7], b[8]) for k, b in blocks if k == 'CHARACTERISTIC'}
+print(len(names), 'names;', limits)
+END
+printf '%s\n' 'model cal' 'param k = 18 "kN/m", c = 3, m = 1 "kg" # stiff "as built" \ kN/m' 'coord x, x_dot' \
+    'coord q[2]' 'input u' "m*x'' + c*x' + k*x = u" "x_dot' = x'" "q'' = [u; 0]" "output a = x'', x, x'" \
+    'tunable k in [10 "kN/m", 20 "kN/m"], c' 'step 0.01' >cal.spec
+"$plgen" --a2l cal.a2l -o cal.c cal.spec >log 2>&1 &&
+    python names.py cal.a2l 8 cal_states=7 cal_outputs=3 cal_params=2 >>log 2>&1 &&
+    grep -q "'k': ('10000.0', '20000.0')" log && grep -q 'PHYS_UNIT "N/m"' cal.a2l && grep -q 'x_dot_ ' cal.a2l
+result $? 'names for calibration: blocks, identifiers, places, ranges and units'
+"$plgen" --real float --a2l plain.a2l "$models/stop.spec" >plain.c 2>log &&
+    python names.py plain.a2l 4 "stop_states=$(sed -n 's/.*STOP_STATES = \([0-9]*\).*/\1/p' plain.c | head -n 1)" \
+        "stop_outputs=$(sed -n 's/.*STOP_OUTPUTS = \([0-9]*\).*/\1/p' plain.c | head -n 1)" >>log 2>&1
+result $? 'names for calibration in float, of a model with regions'
+"$plgen" --a2l cal.a2l --explain cal.spec >log 2>&1
+[ $? -eq 2 ] && grep -q 'error: --a2l goes with C: it does not go with --explain' log
+result $? 'names for calibration without C'
+
 tap_end
