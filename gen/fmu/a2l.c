@@ -148,11 +148,11 @@ void print_a2l(FILE *to, const struct step *step)
 	struct a2l a = { to, step->model->name, step->model->asked.single, variables_of(step), NULL, 0 };
 	fprintf(to,
 		"ASAP2_VERSION 1 61\n/* %s: made by plgen " PLGEN_VERSION ". The arrays are the program's own:\n"
-		    " * NAME_get(&s, %s_states), NAME_out(&s, %s_outputs), NAME_retune(&c, %s_params, h). */\n"
-		    "/begin PROJECT %s \"\"\n  /begin MODULE %s_model \"\"\n"
-		    "    /begin MOD_COMMON \"\"\n      BYTE_ORDER MSB_LAST\n      ALIGNMENT_FLOAT%d_IEEE %d\n"
-		    "    /end MOD_COMMON\n"
-		    "    /begin RECORD_LAYOUT PL_VALUE\n      FNC_VALUES 1 %s COLUMN_DIR DIRECT\n    /end RECORD_LAYOUT\n",
+		" * NAME_get(&s, %s_states), NAME_out(&s, %s_outputs), NAME_retune(&c, %s_params, h). */\n"
+		"/begin PROJECT %s \"\"\n  /begin MODULE %s_model \"\"\n"
+		"    /begin MOD_COMMON \"\"\n      BYTE_ORDER MSB_LAST\n      ALIGNMENT_FLOAT%d_IEEE %d\n"
+		"    /end MOD_COMMON\n"
+		"    /begin RECORD_LAYOUT PL_VALUE\n      FNC_VALUES 1 %s COLUMN_DIR DIRECT\n    /end RECORD_LAYOUT\n",
 		a.name, a.name, a.name, a.name, a.name, a.name, a.single ? 32 : 64, a.single ? 4 : 8, type_of(&a));
 	print_variables(&a, step);
 	print_groups(&a);
