@@ -17,8 +17,8 @@ static void define_override(struct building *b, const struct definition *d)
 	struct symbol *symbol = spec_find(b->spec, d->name);
 	if (symbol && symbol->broken)
 		return;
-	if (!symbol || symbol->kind != SYMBOL_PARAM) {
-		const char *note = symbol ? "-D and --params give a param another value"
+	if (!symbol || (symbol->kind != SYMBOL_PARAM && symbol->kind != SYMBOL_MATRIX)) {
+		const char *note = symbol ? "-D and --params give params and matrices another value"
 					  : spec_suggestion(b->spec, d->name);
 		say_error(d->at, note, symbol ? "'%s' is not a param" : "no param is named '%s'", d->name);
 		return;
@@ -26,7 +26,7 @@ static void define_override(struct building *b, const struct definition *d)
 	const struct place given = symbol->value->start;        /* when a model is built again, by this one itself */
 	if (given.source == d->at.source && (given.offset < d->from || given.offset >= d->until))
 		say_error(d->at, NULL, "'%s' is given already", d->name);
-	struct node *value = parse_argument(b->spec, d->at.source, d->from, d->until);
+	struct node *value = parse_definition(b->spec, d, symbol);
 	if (value)
 		symbol->value = value->unit ? value : with_unit(value, symbol->unit_written ? symbol->unit : NULL);
 	else

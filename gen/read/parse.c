@@ -291,6 +291,7 @@ struct spec *parse_whole(const struct source *source, const struct part_reader *
 struct argument {
 	struct parser parser;
 	struct node *value, **over; /* over: behind the name of a scheme */
+	bool matrix;                /* the name of a file may stand there */
 };
 
 static void read_argument(void *context)
@@ -299,14 +300,17 @@ static void read_argument(void *context)
 	struct parser *p = &argument->parser;
 	p->token = lex_next(&p->lexer);
 	p->end = p->token.at;
-	struct node *value = argument->over ? take_order(p, argument->over) : read_quantity(p);
+	const bool file = argument->matrix && p->token.kind == TOKEN_STRING;
+	struct node *value = file ? read_file_name(p)
+			     : argument->over ? take_order(p, argument->over)
+					      : read_quantity(p);
 	expect_end(p);
 	argument->value = value;
 }
 
-static struct node *parse_part(struct spec *spec, struct lexer lexer, struct node **over)
+static struct node *parse_part(struct spec *spec, struct lexer lexer, struct argument argument)
 {
-	struct argument argument = { .parser = { .spec = spec, .own = spec, .lexer = lexer }, .over = over };
+	argument.parser = (struct parser){ .spec = spec, .own = spec, .lexer = lexer };
 	argument.parser.lexer.points = spec->scene.uses;
 	statement_guard(read_argument, &argument);
 	return argument.value;
@@ -314,12 +318,20 @@ static struct node *parse_part(struct spec *spec, struct lexer lexer, struct nod
 
 struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over)
 {
-	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = source->length }, over);
+	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = source->length },
+			  (struct argument){ .over = over });
 }
 
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from, size_t until)
 {
-	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = until }, NULL);
+	return parse_part(spec, (struct lexer){ .source = source, .position = from, .end = until },
+			  (struct argument){ 0 });
+}
+
+struct node *parse_definition(struct spec *spec, const struct definition *d, const struct symbol *symbol)
+{
+	return parse_part(spec, (struct lexer){ .source = d->at.source, .position = d->from, .end = d->until },
+			  (struct argument){ .matrix = symbol->kind == SYMBOL_MATRIX });
 }
 
 struct listing {

@@ -316,6 +316,8 @@ struct definitions {                /* of a name that is there again the last co
 	int count;
 	struct definition *definition;
 };
+/* the value, of a param or of a matrix: "FILE.mtx" too; NULL: it was said what is wrong */
+struct node *parse_definition(struct spec *spec, const struct definition *d, const struct symbol *symbol);
 bool definitions_read(const char *path, struct definitions *to); /* FILE.json, FILE.csv; false: it says what is wrong */
 void definitions_add(const char *text, struct definitions *to); /* NAME=EXPR of the command line */
 
