@@ -263,7 +263,7 @@ static const struct row {
 	{ "refresh", "N", "cos, sin, exp of loads every N steps, rotated between by a table; 1: every step (default)",
 	  .take = take_refresh },
 	{ "anchors", "N", .take = take_refresh },
-	{ "D", "NAME=EXPR", "another value for a param or a matrix; EXPR may use the spec's params", .take = take_definition },
+	{ "D", "NAME=EXPR", "another value for a param, or matrix; of the spec's params too", .take = take_definition },
 	{ "params", "FILE", "values of params from FILE.json or FILE.csv; those of -D win", .take = take_params },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", .text = AT(request.prefix) },
 	{ "reduce", NULL, "leave out what the outputs cannot see", .take = take_reduce },
