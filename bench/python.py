@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# ns per step of a million steps by plgen.py, the least of 10 samples: into an array of the caller's, into a new one, by
-# NAME_run
+# ns per step of a million steps by the package, the least of 10 samples: into an array of the caller's, into a new one,
+# by NAME_run
 import sys
 import time
 

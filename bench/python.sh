@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# python.sh BUILD: a million steps with all outputs kept by plgen.py, beside a C program: ns per step, minima of three
-# runs of each in turn
+# python.sh BUILD: a million steps with all outputs kept by the Python package, beside a C program: ns per step, minima
+# of three runs of each in turn
 set -e
 build=$1
 work=$(mktemp -d)

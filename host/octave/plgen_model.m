@@ -1,5 +1,5 @@
 % SPDX-License-Identifier: MIT-0
-% plgen_model: a model of plgen in Octave, by the calls of plgen.py.
+% plgen_model: a model of plgen in Octave, by the calls of the Python package.
 %
 %     mkoctfile --mex -Iruntime host/octave/plgen_mex.c     % once; plgen_mex.mex beside this file or on the path
 %

@@ -7,6 +7,7 @@ import pickle
 import re
 import sys
 import threading
+import warnings
 
 import numpy as np
 
@@ -217,19 +218,19 @@ refuses('no record at all before ramps', 'too few samples: the first 1 come befo
         lambda: Model('held.spec').run(np.zeros((0, 2))), ValueError)
 refuses('a jump where there is none', 'held: it has no jump', lambda: Model('held.spec').jump(3))
 refuses('tau beyond the step', 'tau is not in 0 .. h', lambda: model('sdcsf').at(0.02), ValueError)
-refuses('pickling', 'a Model is compiled code and cannot be pickled; copy() makes another',
-        lambda: pickle.dumps(m), TypeError)
 with open('late.spec', 'w') as late:
     late.write("model late\ncoord x\ninput u\nx'' + x = u(t - 0.1)\nstep 0.05\n")
 refuses('the state space of a delay',
         'late: inputs are delayed, so it has no state space over them: it would leave out u.delayed1',
-        lambda: Model('late.spec').ss)
-refuses('the state space of a stop',
-        'stop: not linear, so it has no state space: it would leave out max(x, 0)', lambda: model('stop').ss)
+        lambda: Model('late.spec').ss.A)
+refuses('an input that is not there', "no input is called 'pusch'; did you mean 'push'?",
+        lambda: Model('held.spec').run({'pusch': record[:5, 0], 'base': record[:5, 1]}), ValueError)
+refuses('a dict without an input', "the input 'base' has no samples; expected the inputs push, base",
+        lambda: Model('held.spec').step({'push': 1}), ValueError)
+refuses('to read a param that is not there', '"no tunable or given param is called \'kk\'; did you mean \'k\'?"',
+        lambda: Model('held.spec').params['kk'], KeyError)
 refuses('the Phi of a stop', 'stop: not linear, so it has no Phi: it would leave out max(x, 0)',
         lambda: model('stop').Phi)
-refuses('the response of a stop', 'stop: not linear, so it has no state space: it would leave out max(x, 0)',
-        lambda: model('stop').response([1.0]))
 os.environ['CC'] = 'no-such-compiler'
 refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
         lambda: model('sdcsf'))
@@ -281,4 +282,139 @@ else:
     other = lsim(StateSpace(a, B, C, D), record[:201], t, X0=[0.1, 0, 0, 0], interp=True)
     off = np.abs(y[:, 2] - other[1].reshape(-1)).max()
     case('lsim, ramps, an output with its input', off < 1e-11 * np.abs(y[:, 2]).max(), off, y[:3, 2], other[1][:3])
+# ---- one input, one output ----
+ONE = """model one
+param m = 2, k = 80
+tunable k, m
+coord x
+input u
+m*x'' + 0.6*x' + k*x = u
+output pull = k*x
+init x = 0.1
+step 1/64
+"""
+m, wide = Model(ONE), Model(ONE, squeeze=False)
+y, columns = m.run(record[:40, 0]), wide.run(record[:40, :1])
+case('rows of one output have one dimension', y.shape == (41,) and columns.shape == (41, 1) and
+     same(y, columns[:, 0].copy()), y.shape, columns.shape)
+m.reset()
+given = np.full(41, np.nan)
+case("... in an array of the caller's too", m.run(record[:40, 0], out=given) is given and same(given, y))
+
+# ---- many instances ----
+values = [50, 60.5, 80, 91.25] * 20
+
+
+BALL = "model ball\nparam k = 80\ntunable k\ncoord x\nx'' + k*max(x, 0) = -1\ninit x = -1\nstep 0.05\n"
+
+
+def alone(spec, u, **params):
+    one = Model(spec, **params)
+    return one.run(u), one.t
+
+
+for name, spec, u, other in (('in lanes', ONE, record[:40, 0], {'m': 1.5}),
+                             ('of a model with ramps', 'held.spec', record[:99], {}),
+                             ('of a model with loads', open('held.spec').read().replace('= push', '= push + sin(3*t)'),
+                              record[:99], {}),
+                             ('of a model that is not linear', BALL, 60, {})):
+    m = Model(spec)
+    rows = m.batch(u, {'k': values, **other}, jobs=3)
+    single = [alone(spec, u, k=k, **other) for k in values[:4]]
+    case('batch {}: each as it runs alone'.format(name), len(rows) == 80 and m.time == 0 and
+         all(same(rows[j].copy(), single[j % 4][0]) for j in range(80)) and same(m.t, single[0][1]) and
+         bool(m._lanes) == (name in ('in lanes', 'of a model with ramps')), rows.shape, m._lanes,
+         np.abs(rows[1] - single[1][0]).max())
+m = Model('held.spec')
+m.run(record[:30])
+rows = m.batch(record[30:60], {'m': [2, 2.5]})
+one = m.copy()
+one.retune(m=2.5)
+case('batch of a param that is not tunable, from where a model is', same(rows[1].copy(), one.run(record[30:60])) and
+     m.time == 29 / 64, rows.shape)
+refuses('arrays of params of other lengths', "params['c']: expected 3 values, found an array of shape (2,)",
+        lambda: Model('held.spec').batch(record, {'k': [1, 2, 3], 'c': [1, 2]}), ValueError)
+BOUND = "model hard\nparam k = 1\ntunable k in [0, 5]\ncoord x\nx'' + k*x = 0\nstep 0.1\ninit x = 1\n"
+said = message(Error, lambda: Model(BOUND).batch(5, {'k': [1, -2.0]}))
+case('refuses an instance that cannot be, with its values', said.startswith('with k = -2.0: hard: these values'), said)
+
+# ---- pickling ----
+m = Model('held.spec', k=70.25, matrices={})
+m.run(record[:30])
+other = pickle.loads(pickle.dumps(m))
+case('a pickled model goes on', same(other.run(record[30:90]), m.run(record[30:90])) and same(other.t, m.t) and
+     dict(other.params) == dict(m.params) and other.time == m.time)
+with open('changed.spec', 'w') as f:
+    f.write(ONE)
+kept = pickle.dumps(Model('changed.spec'))
+with open('changed.spec', 'w') as f:
+    f.write(ONE.replace('0.6', '0.7'))
+refuses('a pickled model of a spec that is another now',
+        'one: the spec, or plgen, is another than when this was pickled', lambda: pickle.loads(kept))
+
+# ---- matrices ----
+CHAIN = """model chain
+matrix M = "M.mtx", K = "K.mtx", f = "f.mtx"
+coord q[3]
+M*q'' + K*q = f*cos(2*t)
+init q[1] = 1
+step 1/32
+"""
+K = np.array([[2 / 3, -1e-3, 0], [-0.1, 7, 0], [0, 0, np.pi]])
+M = np.diag([1, 2, 3])
+full = Model(CHAIN, matrices={'M': M, 'K': K, 'f': [0.5, 0, 0]})
+case('matrices of NumPy, to the last bit', np.array_equal(full.explain['K'], K) and
+     np.array_equal(full.explain['M'], M), full.explain['K'])
+try:
+    from scipy import sparse
+except ImportError:
+    print('skip matrices of SciPy: no python3-scipy')
+else:
+    twice = sparse.coo_matrix(([0.25, 0.25], ([0, 0], [0, 0])), shape=(3, 1))
+    m = Model(CHAIN, matrices={'M': sparse.csc_matrix(M), 'K': sparse.csr_matrix(K), 'f': twice})
+    case('matrices of SciPy are the same', same(m.run(99), full.run(99)))
+refuses('a matrix of complex numbers', "matrix 'K': expected real numbers, found complex128",
+        lambda: Model(CHAIN, matrices={'K': 1j * K}), ValueError)
+refuses('a matrix with infinity', "matrix 'K': its entries are not all finite",
+        lambda: Model(CHAIN, matrices={'K': K + np.inf}), ValueError)
+
+# ---- linear equations of what is not linear ----
+BENT = """model bent
+param k = 3
+coord x, y
+input u
+x'' + 0.2*x' + sin(x) + x*y = u
+y' + k*y = x^2
+init x = 0.5
+output f = x*y
+output x
+step 0.01
+scheme taylor
+"""
+
+
+def slope(x, y):
+    return np.array([[0, 0, 1], [2 * x, -3, 0], [-np.cos(x) - y, -x, -0.2]])
+
+
+m = Model(BENT)
+A, B, C, D = m.linearise(at={'x': 0.25, 'y': 0.5, "x'": 2})
+case('at a point: by the derivatives written out', m.states == ('x', 'y', "x'") and
+     np.abs(A - slope(0.25, 0.5)).max() < 1e-15 and np.array_equal(B.ravel(), [0, 0, 1]) and
+     np.abs(C - [[0.5, 0.25, 0], [1, 0, 0]]).max() < 1e-15, A - slope(0.25, 0.5), C)
+case('jac', np.abs(m.jac(0, [0.25, 0.5, 2]) - slope(0.25, 0.5)).max() < 1e-15)
+m.state = [0.125, 1, 0]
+case('where it is now', np.abs(m.ss(at='now').A - slope(0.125, 1)).max() < 1e-15, m.ss(at='now').A)
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter('always')
+    poles = m.poles()
+    roots = np.linalg.eigvals(slope(0, 0))
+    far = min(np.abs(poles[:, None] - roots).min(axis=1).max(), np.abs(poles[:, None] - roots).min(axis=0).max())
+    case('at rest without a word of where, and that is said', far < 1e-12 and len(told) == 1 and
+         str(told[0].message) == 'bent: not linear, and linearised at rest: x = 0, y = 0', far,
+         [str(w.message) for w in told])
+at_rest = m.linearise()
+direct = at_rest.C @ np.linalg.solve(2j * np.eye(3) - at_rest.A, at_rest.B)
+case('its response at 2 rad/s', np.abs(m.frf(2.0, at='rest') - direct).max() < 1e-14 and at_rest.at ==
+     'linearised at rest: x = 0, y = 0', at_rest.at)
 print('end')
