@@ -245,8 +245,8 @@ static void say_limits(const struct psd *p)
 void psd_print(FILE *to, const struct psd *p)
 {
 	char text[LONGEST];
-	if (p->segments == 0)
-		fail(WRONG_DATA, "--psd: the run ended before a segment was full");
+	if (p->segments == 0)           /* the run ended early, and says why */
+		return;
 	say_note(method_of(p));
 	say_limits(p);
 	fputs("f", to);
@@ -266,6 +266,8 @@ void psd_print(FILE *to, const struct psd *p)
 /* Without frequency 0, which the means are taken from; both axes are logarithmic unless --log says which */
 void psd_draw(const struct psd *p, const struct view *v, const struct options *o)
 {
+	if (p->segments == 0)
+		return;
 	struct script *s = script_new(&o->look, o->plot_file, p->machine->name, method_of(p));
 	FILE *data = script_data(s);
 	const bool log_x = o->look.log_x || !o->look.log, log_y = o->look.log_y || !o->look.log;
