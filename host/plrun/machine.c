@@ -4,6 +4,7 @@
 #include "plrun.h"
 
 #include <dlfcn.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,6 +95,9 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 	memcpy(&m->allowed, &allowed, sizeof allowed);
 	memcpy(&m->allowedf, &allowed, sizeof allowed);
 	free(symbol);
+	symbol = format("%s_units", name);
+	m->units = dlsym(m->object, symbol);
+	free(symbol);
 	m->single = ((const struct head *)descriptor)->real_size == (int)sizeof(float);
 	m->model = descriptor;
 	m->modelf = descriptor;
@@ -123,11 +127,22 @@ void machine_close(struct machine *m)
 	free(m);
 }
 
-void machine_show(struct machine *m, const struct view *v)
+void machine_show(struct machine *m, const struct view *v, const struct options *o)
 {
-	m->shown = v->source;
+	m->view = v;
+	m->shown = o->show ? v->source : NULL;
 	m->outputs = v->columns;
-	m->output_names = v->name;
+	m->output_names = o->units ? v->label : v->name;
+}
+
+/* 25 mm are 25/1000 m, rounded once. */
+double param_value(const struct machine *m, int param, double value)
+{
+	double factor;
+	if (!m->units || !m->units->param_factor || !read_number(m->units->param_factor[param], &factor))
+		return value;
+	const double per = factor < 1 ? round(1 / factor) : 0;
+	return per > 1 && per * factor == 1 ? value / per : value * factor;
 }
 
 /* ---- an instance ---- */

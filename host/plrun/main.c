@@ -71,7 +71,7 @@ static void set_params(struct start *s)
 		}
 		for (int k = 0; k < m->params; k++)
 			if (strcmp(m->param_names[k], s->options.definition[i].name) == 0)
-				s->params[k] = value;
+				s->params[k] = param_value(m, k, value);
 	}
 }
 
@@ -146,7 +146,7 @@ static int run_once(struct start *s)
 	else if (!o->plot || o->output || !isatty(STDOUT_FILENO))
 		w.rows = rows_new(to, m, job.h, every);
 	if (o->plot && !o->window)
-		w.picture = picture_new(m, &s->view, job.h, every);
+		w.picture = picture_new(m, job.h, every);
 	error = run_steps(&job, watch_all, &w);
 	progress_end();
 	if (w.rows)
@@ -154,12 +154,12 @@ static int run_once(struct start *s)
 	if (w.stats)
 		stats_print(to, w.stats, m, job.h);
 	if (w.psd)
-		psd_print(to, w.psd);
+		psd_print(to, w.psd, o);
 	output_done(output, to);
 	if (w.picture)
 		picture_draw(w.picture, o);
 	if (w.psd && o->plot)
-		psd_draw(w.psd, &s->view, o);
+		psd_draw(w.psd, o);
 	if (error)
 		fprintf(stderr, "%s: error: %s\n", m->name, error);
 	return error ? WRONG_DATA : 0;
@@ -171,7 +171,7 @@ static int run_sweep(struct start *s, struct workers w)
 	if (s->options.plot)
 		picture_check(&s->view, &s->options);
 	FILE *to = output_open(w.rank == 0 ? s->options.output : NULL, &output);
-	int status = sweep_run(s->tools, &s->options, s->code, s->machine, &s->view, to, w);
+	int status = sweep_run(s->tools, &s->options, s->code, s->machine, to, w);
 	output_done(output, to);
 	return status;
 }
@@ -196,8 +196,7 @@ int main(int argc, char **argv)
 	if (!s.machine)
 		fail(WRONG_DATA, error);
 	s.view = view_of(s.machine, s.options.show);
-	if (s.options.show)
-		machine_show(s.machine, &s.view);
+	machine_show(s.machine, &s.view, &s.options);
 	check_end(&s);
 	set_params(&s);
 	status = s.options.sweep ? run_sweep(&s, w) : run_once(&s);

@@ -62,6 +62,7 @@ static void take_psd(struct options *o, const char *value) { read_window(o, valu
 static void take_dark(struct options *o, const char *value) { (void)value; o->look.dark = true; }
 static void take_paper(struct options *o, const char *value) { (void)value; o->look.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
+static void take_units(struct options *o, const char *value) { (void)value; o->units = true; }
 static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
 static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
@@ -168,6 +169,7 @@ static const struct row {
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
 	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x",
 	  take_show },
+	{ "units", NULL, "... names of columns with their units, x [mm], where the model has some", take_units },
 	{ "log", "x|y|xy", "... logarithmic axes", take_log },
 	{ "title", "TEXT", "... the title (default: the model's name)", take_title },
 	{ "size", "WxH", "... in pixels, with --paper in millimetres", take_size },

@@ -25,8 +25,9 @@ struct picture {
 	double *value[KEPT];            /* BUCKETS x columns */
 };
 
-struct picture *picture_new(const struct machine *m, const struct view *v, double h, uint64_t every)
+struct picture *picture_new(const struct machine *m, double h, uint64_t every)
 {
+	const struct view *v = m->view;
 	struct picture *p = need(calloc(1, sizeof *p));
 	*p = (struct picture){ .machine = m, .view = v, .h = h, .every = every, .stride = 1, .columns = v->columns };
 	for (int kept = 0; kept < KEPT; kept++)
@@ -163,7 +164,7 @@ static void print_over(FILE *to, const struct picture *p, const struct look *loo
 {
 	print_log(to, look);
 	fputs("set xrange [*:*]\nset offsets graph 0.03,graph 0.03,graph 0.05,graph 0.05\n", to);
-	script_label(to, "xlabel", axis_label(p->machine, column));
+	script_label(to, "xlabel", p->view->label[column]);
 	if (look->log_x)
 		check_log(p, 'x', column);
 }
@@ -201,7 +202,7 @@ static void print_panel(FILE *to, const struct picture *p, const struct look *lo
 		print_time(to, p, look, last);
 	else
 		print_over(to, p, look, panel->x);
-	script_label(to, "ylabel", panel->curves == 1 ? axis_label(m, panel->y[0]) : "");
+	script_label(to, "ylabel", panel_label(p->view, panel));
 	print_tics(to, p, look, panel);
 	for (int k = 0; k < panel->curves && look->log_y; k++)
 		check_log(p, 'y', panel->y[k]);
@@ -250,7 +251,7 @@ static void print_curves(FILE *to, const struct machine *m, const struct panel *
 {
 	static const char *const what[] = { "final", "rms", "peak" };
 	const int kinds = 2 + o->peak;
-	script_label(to, "ylabel", panel->curves == 1 ? axis_label(m, panel->y[0]) : "");
+	script_label(to, "ylabel", panel_label(m->view, panel));
 	for (int k = 0; k < panel->curves * kinds; k++) {
 		const int column = panel->y[k / kinds];
 		script_curve(to, k, format("$data using 2:%d", 3 + k % kinds * m->outputs + column),
@@ -263,18 +264,18 @@ static void print_curves(FILE *to, const struct machine *m, const struct panel *
 
 static void print_map(FILE *to, const struct machine *m, const struct panel *panel, const struct options *o)
 {
-	script_label(to, "title", format("%s of %s", o->peak ? "peak" : "rms", axis_label(m, panel->y[0])));
+	script_label(to, "title", format("%s of %s", o->peak ? "peak" : "rms", m->view->label[panel->y[0]]));
 	fprintf(to, "splot $data using 2:3:%d with pm3d notitle\n", 4 + (1 + o->peak) * m->outputs + panel->y[0]);
 }
 
-static void print_range(FILE *to, char axis, const struct range *r, bool log)
+static void print_range(FILE *to, char axis, const struct range *r, const char *label, bool log)
 {
 	const bool up = r->from < r->to;
 	const double from = up ? r->from : r->to, end = up ? r->to : r->from;
 	fprintf(to, "set %crange [%.17g:%.17g]\n", axis, from, end);
 	if (log)
 		script_log_tics(to, axis, from, end);
-	script_label(to, format("%clabel", axis), r->name);
+	script_label(to, format("%clabel", axis), label);
 }
 
 void picture_check(const struct view *v, const struct options *o)
@@ -295,8 +296,9 @@ void picture_check(const struct view *v, const struct options *o)
 	}
 }
 
-void picture_sweep(const struct machine *m, const struct view *v, const struct options *o, const char *lines)
+void picture_sweep(const struct machine *m, const struct options *o, const char *lines)
 {
+	const struct view *v = m->view;
 	struct script *s = script_new(&o->look, o->plot_file, m->name, NULL);
 	const int panels = panels_of(v);
 	const bool map = o->ranges == 2;
@@ -308,7 +310,8 @@ void picture_sweep(const struct machine *m, const struct view *v, const struct o
 		const bool last = map || i == panels - 1;
 		FILE *to = script_panel(s, map ? 2 : panel_height(v, &v->panel[i], last) + 0.15);
 		for (size_t r = 0; r < o->ranges; r++)
-			print_range(to, r ? 'y' : 'x', &o->range[r], o->range[r].log || o->look.log_x);
+			print_range(to, r ? 'y' : 'x', &o->range[r], param_label(m, o->range[r].name),
+				    o->range[r].log || o->look.log_x);
 		if (o->look.log_y)
 			fputs("set logscale y\n", to);
 		if (!last)

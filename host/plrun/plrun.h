@@ -122,7 +122,7 @@ struct options {
 	const char *sweep;                      /* the file, or the first range as it was given; NULL: one run */
 	struct range *range;
 	size_t ranges;                          /* 0: of the file */
-	bool peak, resume, stats, histories;
+	bool peak, resume, stats, histories, units;
 	const char *show;                       /* NULL: the outputs */
 	struct look look;
 	const struct cosines *window;           /* of a power spectral density; NULL: none */
@@ -224,6 +224,8 @@ struct machine {
 	size_t size;
 	double h;
 	const char *const *input_names, *const *output_names, *const *state_names, *const *param_names;
+	const pl_units *units;                  /* NULL: the model has none */
+	const struct view *view;                /* what it shows */
 	const int *ahead;                       /* of each input: samples that it has had before the first step */
 	int most_ahead;
 	double *param_values;
@@ -231,6 +233,7 @@ struct machine {
 struct machine *machine_open(const char *path, const char *name, char **error);     /* NULL: *error */
 struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error);
 void machine_close(struct machine *m);
+double param_value(const struct machine *m, int param, double value);     /* of its own unit, as retune takes it */
 
 /* ---- show.c ---- */
 
@@ -242,12 +245,14 @@ struct view {
 	int panels, columns;
 	struct panel *panel;
 	int *source;                            /* per column: an output of the model, or behind them a state */
-	const char **name;
+	const char **name, **unit, **label;     /* unit: "": none; label: the name with its unit */
 };
 struct view view_of(const struct machine *m, const char *text);     /* text: of --show, or NULL */
-void machine_show(struct machine *m, const struct view *v);         /* what it has from now on as outputs */
-const char *axis_label(const struct machine *m, int column);
-const char *psd_label(const struct machine *m, int column);
+/* What it has from now on as outputs: a choice of --show, or its own, called as they are or with --units by labels */
+void machine_show(struct machine *m, const struct view *v, const struct options *o);
+const char *panel_label(const struct view *v, const struct panel *p);   /* of its curves: "" where they differ */
+const char *psd_label(const struct view *v, const struct panel *p);
+const char *param_label(const struct machine *m, const char *name);
 /* In heights of a curve over t, with room for a legend and for what stands at the axis below */
 double panel_height(const struct view *v, const struct panel *p, bool labelled);
 
@@ -338,14 +343,14 @@ watch rows_add;
 void rows_end(struct rows *r);
 
 struct picture;
-struct picture *picture_new(const struct machine *m, const struct view *v, double h, uint64_t every);
+struct picture *picture_new(const struct machine *m, double h, uint64_t every);
 watch picture_add;
 /* `p`, a run of that label, drawn over the same axes as `last` and those before it; last: NULL, or as returned */
 struct picture *picture_after(struct picture *last, struct picture *p, const char *label);
 void picture_draw(struct picture *p, const struct options *o);  /* and those after it */
 void picture_check(const struct view *v, const struct options *o);  /* may it be of a sweep? */
 /* `lines`: of a sweep over one range or two, as printed, without their names; an empty one before each scan */
-void picture_sweep(const struct machine *m, const struct view *v, const struct options *o, const char *lines);
+void picture_sweep(const struct machine *m, const struct options *o, const char *lines);
 
 /* ---- gnuplot.c ---- */
 
@@ -368,8 +373,8 @@ bool is_window(const char *text);
 void read_window(struct options *o, const char *text);  /* NULL: the default */
 struct psd *psd_new(const struct machine *m, const struct options *o, double h, uint64_t steps);
 watch psd_add;
-void psd_print(FILE *to, const struct psd *p);
-void psd_draw(const struct psd *p, const struct view *v, const struct options *o);
+void psd_print(FILE *to, const struct psd *p, const struct options *o);
+void psd_draw(const struct psd *p, const struct options *o);
 
 /* ---- stats.c ---- */
 
@@ -401,7 +406,7 @@ struct workers {
 
 struct sweep;
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	      const struct view *v, FILE *to, struct workers w);        /* exit status */
+	      FILE *to, struct workers w);              /* exit status */
 char *sweep_line(struct sweep *s, size_t row);          /* computed, by any thread; ends with a newline */
 
 struct journal;

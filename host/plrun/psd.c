@@ -242,8 +242,9 @@ static void say_limits(const struct psd *p)
 	}
 }
 
-void psd_print(FILE *to, const struct psd *p)
+void psd_print(FILE *to, const struct psd *p, const struct options *o)
 {
+	const struct view *v = p->machine->view;
 	char text[LONGEST];
 	if (p->segments == 0)           /* the run ended early, and says why */
 		return;
@@ -251,7 +252,7 @@ void psd_print(FILE *to, const struct psd *p)
 	say_limits(p);
 	fputs("f", to);
 	for (int i = 0; i < p->machine->outputs; i++)
-		fprintf(to, ",psd %s", p->machine->output_names[i]);
+		fprintf(to, ",psd %s", o->units ? psd_label(v, &(struct panel){ -1, 1, { i } }) : v->name[i]);
 	for (size_t k = 0; k <= p->length / 2; k++) {
 		*put_shortest(text, frequency_of(p, k), false) = 0;
 		fprintf(to, "\n%s", text);
@@ -264,8 +265,9 @@ void psd_print(FILE *to, const struct psd *p)
 }
 
 /* Without frequency 0, which the means are taken from; both axes are logarithmic unless --log says which */
-void psd_draw(const struct psd *p, const struct view *v, const struct options *o)
+void psd_draw(const struct psd *p, const struct options *o)
 {
+	const struct view *v = p->machine->view;
 	if (p->segments == 0)
 		return;
 	struct script *s = script_new(&o->look, o->plot_file, p->machine->name, method_of(p));
@@ -288,7 +290,7 @@ void psd_draw(const struct psd *p, const struct view *v, const struct options *o
 		if (log_x)
 			script_log_tics(to, 'x', frequency_of(p, 1), frequency_of(p, p->length / 2));
 		script_label(to, "xlabel", last ? "f [Hz]" : "");
-		script_label(to, "ylabel", panel->curves == 1 ? psd_label(p->machine, panel->y[0]) : "[unit²/Hz]");
+		script_label(to, "ylabel", psd_label(v, panel));
 		for (int k = 0; k < panel->curves; k++)
 			script_curve(to, k, format("$data using 1:%d", panel->y[k] + 2),
 				     panel->curves > 1 ? p->machine->output_names[panel->y[k]] : NULL, p->length / 2);

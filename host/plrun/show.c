@@ -76,15 +76,31 @@ static _Noreturn void wrong_at(const struct list *l, const char *at, const char 
 	exit(WRONG_USAGE);
 }
 
+static const char *unit_of(const struct machine *m, int source)
+{
+	const char *const *list = !m->units ? NULL : source < m->own_outputs ? m->units->output : m->units->state;
+	return list ? list[source < m->own_outputs ? source : source - m->own_outputs] : "";
+}
+
+static const char *labelled(const char *name, const char *unit)
+{
+	return *unit ? format("%s [%s]", name, unit) : name;
+}
+
 static int column_of(struct view *v, const struct machine *m, int source)
 {
+	const size_t count = (size_t)v->columns + 1;
 	for (int i = 0; i < v->columns; i++)
 		if (v->source[i] == source)
 			return i;
-	v->source = need(reallocarray(v->source, (size_t)v->columns + 1, sizeof *v->source));
-	v->name = need(reallocarray(v->name, (size_t)v->columns + 1, sizeof *v->name));
+	v->source = need(reallocarray(v->source, count, sizeof *v->source));
+	v->name = need(reallocarray(v->name, count, sizeof *v->name));
+	v->unit = need(reallocarray(v->unit, count, sizeof *v->unit));
+	v->label = need(reallocarray(v->label, count, sizeof *v->label));
 	v->source[v->columns] = source;
 	v->name[v->columns] = name_of(m, source);
+	v->unit[v->columns] = unit_of(m, source);
+	v->label[v->columns] = labelled(name_of(m, source), unit_of(m, source));
 	return v->columns++;
 }
 
@@ -157,12 +173,27 @@ double panel_height(const struct view *v, const struct panel *p, bool labelled)
 
 /* ---- text at an axis ---- */
 
-const char *axis_label(const struct machine *m, int column)
+const char *panel_label(const struct view *v, const struct panel *p)
 {
-	return m->output_names[column];
+	const char *unit = v->unit[p->y[0]];
+	for (int k = 1; k < p->curves; k++)
+		if (strcmp(v->unit[p->y[k]], unit) != 0)
+			return "";
+	return p->curves == 1 ? v->label[p->y[0]] : labelled("", unit);
 }
 
-const char *psd_label(const struct machine *m, int column)
+const char *psd_label(const struct view *v, const struct panel *p)
 {
-	return format("%s [unit²/Hz]", m->output_names[column]);
+	const char *name = p->curves == 1 ? v->name[p->y[0]] : "", *unit = v->unit[p->y[0]];
+	if (!*unit || !*panel_label(v, p))
+		unit = "unit";
+	return format(strpbrk(unit, " /*^") ? "%s [(%s)²/Hz]" : "%s [%s²/Hz]", name, unit);
+}
+
+const char *param_label(const struct machine *m, const char *name)
+{
+	for (int k = 0; m->units && m->units->param && k < m->params; k++)
+		if (strcmp(m->param_names[k], name) == 0)
+			return labelled(name, m->units->param[k]);
+	return strcmp(name, "step") == 0 ? "step [s]" : name;
 }

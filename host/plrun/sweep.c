@@ -32,7 +32,6 @@ struct sweep {
 	const struct toolchain *tools;
 	const struct options *options;
 	const struct machine *machine;          /* at the values of the command line */
-	const struct view *view;
 	time_t began;
 	const struct record *record;
 	struct param *param;
@@ -220,8 +219,8 @@ static void build_variant(struct sweep *s, struct variant *v)
 	struct code *c = generate(s->tools, &with, definition, count, true, &v->error, &status);
 	if (c) {
 		v->machine = machine_of(s->tools, c, &v->error);
-		if (v->machine && o->show)
-			machine_show(v->machine, s->view);
+		if (v->machine)
+			machine_show(v->machine, s->machine->view, o);
 		free(c->text);
 		free(c);
 	}
@@ -285,6 +284,13 @@ static bool is_tuned(const struct sweep *s)
 	return false;
 }
 
+static void set_param(const struct machine *m, int k, const char *text, double *params)
+{
+	double value;
+	if (read_number(text, &value))
+		params[k] = param_value(m, k, value);
+}
+
 /* The tunables of a row beside those of the command line, and its step */
 static double *params_of(const struct sweep *s, size_t row, const struct machine *m, double *h)
 {
@@ -294,10 +300,10 @@ static double *params_of(const struct sweep *s, size_t row, const struct machine
 	for (int k = 0; k < m->params; k++) {
 		for (size_t i = 0; i < s->options->definitions; i++)
 			if (strcmp(m->param_names[k], s->options->definition[i].name) == 0)
-				read_number(s->options->definition[i].value, &params[k]);
+				set_param(m, k, s->options->definition[i].value, params);
 		for (size_t i = 0; i < s->params; i++)
 			if (strcmp(m->param_names[k], s->param[i].name) == 0)
-				read_number(value_of(s, row, i), &params[k]);
+				set_param(m, k, value_of(s, row, i), params);
 	}
 	for (size_t i = 0; i < s->params; i++)
 		if (s->param[i].step && s->param[i].tuned)
@@ -372,7 +378,7 @@ static void draw_histories(struct sweep *s)
 		double h;
 		if (m) {
 			free(params_of(s, row, m, &h));
-			struct picture *p = picture_new(s->machine, s->view, h, 1);
+			struct picture *p = picture_new(s->machine, h, 1);
 			char *error = run_row(s, row, m, picture_add, p);
 			last = picture_after(last, p, format("%s%s", label_of(s, row), error ? ", failed" : ""));
 			first = first ? first : last;
@@ -506,9 +512,9 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 }
 
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	      const struct view *v, FILE *to, struct workers w)
+	      FILE *to, struct workers w)
 {
-	struct sweep s = { .tools = t, .options = o, .machine = m, .view = v, .to = to };
+	struct sweep s = { .tools = t, .options = o, .machine = m, .to = to };
 	s.record = o->input ? record_read(o, m) : NULL;
 	read_table(&s, c);
 	if (o->histories && s.rows > PICTURE_CURVES)
@@ -526,7 +532,7 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 	if (o->histories)
 		draw_histories(&s);
 	else if (s.to_draw)
-		picture_sweep(m, v, o, s.drawn);
+		picture_sweep(m, o, s.drawn);
 	if (s.failed)
 		fprintf(stderr, "plrun: error: %zu of %zu runs failed: see the column status\n", s.failed, s.rows);
 	return s.failed ? WRONG_DATA : 0;

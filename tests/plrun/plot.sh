@@ -112,6 +112,28 @@ run "$models/sdcsf.spec" 2 --step 0.02 -D k1=100 --show "x1,x1'" >rows.csv
 sed '1d; s/,/ /g' rows.csv >expected
 [ "$(wc -l <points)" -eq 101 ] && cmp expected points >log 2>&1
 result $? '--histories: the rows of a run with these values'
+cat >units.spec <<'X'
+model units
+param k = 18 "kN/m"
+tunable k
+coord x "m"
+init x = 0.01
+(2 "kg")*x'' + (20 "N s/m")*x' + k*x = 0
+output x "mm", f = k*x "kN", a = x''
+step 1 "ms"
+X
+script units.spec 0.5 --show "x,f+a,x:x'" --plot units.svg
+grep "^set [xy]label '" script | cut -d"'" -f 2- | grep -v "^' noenh" >found
+printf "%s' noenhanced\n" 'x [mm]' 't [s]' 'x [mm]' "x'' [m/s]" >expected
+diff expected found >log
+result $? 'units at the axes, where the curves of a panel have one'
+script units.spec 0.5 --psd hann:64 --show "a,x,x+f" --plot units.svg
+grep "^set ylabel '" script | cut -d"'" -f 2 >found
+printf '%s\n' 'a [(m/s^2)²/Hz]' 'x [mm²/Hz]' ' [unit²/Hz]' | diff - found >log
+result $? 'units of spectral densities'
+script units.spec 0.5 --sweep k=10:20:3 --show x --plot units.svg
+grep -q "^set xlabel 'k \[kN/m\]'" script
+result $? 'the unit of a param at its axis'
 
 mkdir home && echo 'system "touch started"' | tee home/.gnuplot >.gnuplot
 (HOME=$work/home XDG_CONFIG_HOME=$work/home; export HOME XDG_CONFIG_HOME

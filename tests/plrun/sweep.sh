@@ -72,6 +72,28 @@ run car.spec --input road.csv --sweep k=12e3:2e4:3 --sweep m=250:350:3 --peak --
 { xmllint --noout map.svg && grep -q 'peak of comfort' map.svg && grep -q 'polygon' map.svg; } >log 2>&1
 result $? 'a map over two ranges'
 
+# ---- units: values of params are in their own, tunable or not ----
+cat >fixed.spec <<'X'
+model units
+param m = 2 "kg", k = 18 "kN/m", c = 20 "N s/m", L = 25 "mm"
+coord x "m"
+m*x'' + c*x' + k*(x - L) = 0
+output x "mm", f = k*x "kN", a = x''
+step 1 "ms"
+X
+sed 's/^coord/tunable k, L\n&/' fixed.spec >tuned.spec
+run fixed.spec 0.1 -D k=20 --sweep L=10:40:4 --units >fixed.csv
+run tuned.spec 0.1 -D k=20 --sweep L=10:40:4 --units >tuned.csv
+run tuned.spec 0.1 -D k=20 -D L=40 >rows.csv
+cat fixed.csv tuned.csv >log
+paste -d, fixed.csv tuned.csv | awk -F, '
+	NR == 1 { head = $0; next }
+	{ for (i = 1; i <= 8; i++) { d = $i - $(i + 9); if (d * d > 1e-24 * $i * $i) bad = 1 } last = $3 }
+	END { names = "run,L,final x [mm],final f [kN],final a [m/s^2],rms x [mm],rms f [kN],rms a [m/s^2],status"
+		exit bad || NR != 5 || head != names "," names || !(last > 50 && last < 70) }' &&
+	[ "$(tail -n 1 rows.csv | cut -d, -f 2)" = "$(tail -n 1 tuned.csv | cut -d, -f 3)" ]
+result $? 'params in their own units, tunable or not; names with units'
+
 # ---- statistics of one run, against those of its rows ----
 run car.spec --input road.csv >rows.csv
 run car.spec --input road.csv --stats >stats.csv
