@@ -56,13 +56,13 @@ class StateSpace:
         return self.C @ x + D
 
 
-def state_space(told: dict[str, Any], own: tuple[str, ...], loads: bool) -> StateSpace:
+def state_space(told: dict[str, Any], own: tuple[str, ...], loads: bool, name: str) -> StateSpace:
     """Of --explain=json: over the inputs `own`, or over the others, which are loads."""
     ss = told['ss']
     delayed = [name for name in ss['inputs'] if '.delayed' in name]
     if delayed:
         raise Error('{}: inputs are delayed, so it has no state space over them: it would leave out {}'.format(
-            told['model'], ', '.join(delayed)))
+            name, ', '.join(delayed)))
     column = [i for i, name in enumerate(ss['inputs']) if (name in own) != loads]
     space = StateSpace(ss, column, tuple(told['states']))
     if ss['discrete']:
@@ -130,9 +130,9 @@ class Linear:
         at: of a model that is not linear, where: 'rest' (by default, with a warning that says so), 'now', 'x=0.1', or
         a dict of states; others are the initial ones."""
         if self.explain['linear']:
-            return state_space(self.explain, self.inputs, loads)
+            return state_space(self.explain, self.inputs, loads, self.name)
         told, notes = self._explain(place(at, self))
-        space = state_space(told, self.inputs, loads)
+        space = state_space(told, self.inputs, loads, self.name)
         said = [line.partition(': note: ')[2] for line in notes.split('\n') if ': note: linearised ' in line]
         space.at = said[0] if said else 'linearised at ' + place(at, self)
         if at is None:
