@@ -31,19 +31,19 @@ cat >main.c <<-END
 	int main(void) { printf("%g\n", (double)subject_selftest()); }
 END
 
-# dropped MASS E GROUND: the mass below, restitutions
+# dropped MASS E GROUND [HEIGHT STEP]: the mass below, restitutions
 dropped() {
 	cat >balls.spec <<-END
 		model balls
 		coord a, b
-		init b = 1
+		init b = ${4:-1}
 		$1*a'' = -$1*9.81
 		b'' = -9.81
 		stop between ground, a at 0 restitution $3
 		stop between a, b at 0 restitution $2
-		step 0.1
+		step ${5:-0.1}
 	END
-	compared "a mass of $1 below, restitution $2, of the ground $3" balls.spec
+	compared "a mass of $1 below, restitution $2, of the ground $3${4:+, from $4, steps of $5}" balls.spec
 }
 
 for mass in 0.5 1 2 3 20; do
@@ -57,6 +57,7 @@ dropped 1 0.9 0.5
 dropped 1 1 0.9
 dropped 0.5 0.3 0.3
 dropped 1 0.5 0.1
+dropped 0.5 0.7 0.1 2 0.01              # where the crossing before the last of an instant blurs with the next
 for jumps in thrown counted; do
 	compared "$jumps" "$root/tests/contacts/$jumps.spec"
 done
