@@ -199,16 +199,21 @@ classdef plgen_model < handle
             e = m.told;
         end
         function p = get.Phi(m)
-            p = linear(m, "Phi").Phi;
+            e = m.explain;
+            if ! e.linear
+                fail([m.name, ": not linear, so it has no Phi: it would leave out ", strjoin(e.left_out, "; ")]);
+            end
+            p = e.Phi;
         end
         function s = get.ss(m)
             s = state_space(m);
         end
 
         % A, B, C, D (B1, D1 of u' where it acts) over the inputs, or with loads = true over the spec's loads; discrete:
-        % those of a step over which u is held, or []
-        function s = state_space(m, loads)
-            e = linear(m, "state space");
+        % those of a step over which u is held, or []. at: of a model that is not linear, where: "rest" (the default, and
+        % then a warning says so), "now", or states, "x=0.1,v=2"; s.at says it, and x, u, y are deviations from there
+        function s = state_space(m, loads, at = "")
+            [e, note] = equations(m, at);
             delayed = e.ss.inputs(! cellfun(@isempty, strfind(e.ss.inputs, ".delayed")));
             if ! isempty(delayed)
                 fail([m.name, ": inputs are delayed, so it has no state space over them: it would leave out ", ...
@@ -223,6 +228,19 @@ classdef plgen_model < handle
             end
             s.inputs = e.ss.inputs(column);
             s.outputs = e.ss.outputs;
+            s.at = note;
+        end
+
+        function [A, B, C, D] = linearise(m, at = "rest")
+            s = state_space(m, false, at);
+            [A, B, C, D] = {s.A, s.B, s.C, s.D}{:};
+        end
+
+        function p = poles(m, at = "")              % [1/s], each as often as it is there
+            p = [];
+            for one = equations(m, at).poles(:).'
+                p = [p; repmat(complex(one.re, one.im), one.multiplicity, 1)];
+            end
         end
 
         function r = response(m, f, varargin)       % outputs x inputs x f [Hz], complex
@@ -236,10 +254,22 @@ classdef plgen_model < handle
     end
 
     methods (Access = private)
-        function e = linear(m, what)
+        function [e, note] = equations(m, at)
             e = m.explain;
-            if ! e.linear
-                fail([m.name, ": not linear, so it has no ", what, ": it would leave out ", strjoin(e.left_out, "; ")]);
+            note = "";
+            if e.linear
+                return
+            end
+            where = [at, "rest"(1:4 * isempty(at))];
+            if strcmp(at, "now")
+                all_of_them = [m.states; num2cell(m.state)];
+                where = sprintf("%s=%.17g,", all_of_them{:})(1:end - 1);
+            end
+            [out, said] = plgen(m, changed(m), step_now(m), ["--explain=json --at ", quoted(where)]);
+            e = jsondecode(out);
+            note = regexp(said, 'linearised at [^\n]*', "match", "once");
+            if isempty(at)
+                warning("plgen:linearised", "%s: not linear, and %s", m.name, note);
             end
         end
 

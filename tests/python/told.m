@@ -118,8 +118,6 @@ refuses("a run that leaves the finite numbers", "hard: t = 0.4: the step has lef
 tell("... tells when, and its status", m.status == 1 && numel(m.t) == 4, m.status, m.t);
 refuses("a record too narrow", "expected rows of 2 numbers, the inputs", @() plgen_model("held.spec").run(ones(5, 3)));
 refuses("a jump where there is none", "plgen_mex: the model has no jump", @() plgen_model("held.spec").jump(3));
-refuses("the state space of a stop", ...
-        "stop: not linear, so it has no state space: it would leave out max(x, 0)", @() model("stop").ss);
 refuses("the Phi of a stop", "stop: not linear, so it has no Phi: it would leave out max(x, 0)", ...
         @() model("stop").Phi);
 
@@ -137,5 +135,47 @@ else
     direct = C * ((2i * pi * 0.3 * eye(4) - A) \ B) + D;
     r = m.response([0.3, 1]);
     tell("the response", isequal(size(r), [4, 2, 2]) && max(max(abs(r(:, :, 1) - direct))) < 1e-9, r(:, :, 1) - direct);
+end
+
+bent = ["model bent\nparam k = 3\ncoord x, y\ninput u\nx'' + 0.2*x' + sin(x) + x*y = u\ny' + k*y = x^2\n", ...
+        "init x = 0.5\noutput f = x*y\noutput x\nstep 0.01\nscheme taylor\n"];
+slope = @(x, y) [0, 0, 1; 2 * x, -3, 0; -cos(x) - y, -x, -0.2];
+m = plgen_model(bent);
+[A, B, C, D] = m.linearise("x=0.25,y=0.5,x'=2");
+tell("at a point: by the derivatives written out", max(max(abs(A - slope(0.25, 0.5)))) < 1e-15 && ...
+     isequal(B, [0; 0; 1]) && max(max(abs(C - [0.5, 0.25, 0; 1, 0, 0]))) < 1e-15, A - slope(0.25, 0.5), C);
+m.state = [0.125, 1, 0];
+tell("where it is now", max(max(abs(m.state_space(false, "now").A - slope(0.125, 1)))) < 1e-15);
+s = m.ss;
+[said, id] = lastwarn();
+tell("at rest without a word of where, and that is said", strcmp(id, "plgen:linearised") && ...
+     strcmp(s.at, "linearised at rest: x = 0, y = 0") && strcmp(said, ["bent: not linear, and ", s.at]) && ...
+     isequal(s.A, slope(0, 0)), said, s.at);
+p = sort(m.poles());
+tell("its poles", max(abs(p - sort(eig(slope(0, 0))))) < 1e-12, p);
+
+try
+    pkg load control
+catch
+    disp("skip lqr, lqe, c2d: no octave-control");
+end
+if exist("lqr", "file")
+    m = plgen_model("plain.spec");
+    [A, B, C, D] = m.linearise();
+    sys = ss(A, B, C, D);
+    Q = diag([100, 100, 1, 1]);
+    R = eye(2);
+    K = lqr(sys, Q, R);
+    [V, e] = eig([A, -B * B'; -Q, -A']);
+    V = V(:, real(diag(e)) < 0);
+    direct = real(B' * V(5:8, :) / V(1:4, :));
+    tell("lqr: as the Hamiltonian's stable subspace", max(max(abs(K - direct))) < 1e-9 * max(abs(K(:))), K - direct);
+    L = lqe(A, B, C, eye(2), eye(4));
+    [V, e] = eig([A', -C' * C; -B * B', -A]);
+    V = V(:, real(diag(e)) < 0);
+    direct = real(V(5:8, :) / V(1:4, :)) * C';
+    tell("lqe: likewise", max(max(abs(L - direct))) < 1e-9 * max(abs(L(:))), L - direct);
+    step = c2d(sys, m.h);
+    tell("c2d: the discrete one of plgen", max(max(abs([step.a - m.ss.discrete.A, step.b - m.ss.discrete.B]))) < 1e-13);
 end
 disp("end");
