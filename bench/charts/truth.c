@@ -244,8 +244,6 @@ static const struct equations by_hand[] = {
 	{ NULL, as_emitted, 1e-16L, 0 }
 };
 
-enum { COLUMNS = 9 };               /* of the extrapolation: order 18 */
-
 struct extrapolation {
 	const struct problem *p;
 	const struct equations *e;
@@ -254,51 +252,19 @@ struct extrapolation {
 	real scale_q, scale_v;          /* over the history so far */
 };
 
-/* Gragg 1965: the modified midpoint rule with `parts` substeps; its error has even powers only. The last slope is asked
- * for, too: without it no column would see a kink in the last eighteenth of a step. */
-static void midpoint(const struct extrapolation *x, real t, real H, int parts, const real *y, const real *slope,
-                     real *result)
-{
-	real before[MOST], now[MOST], f[MOST], h = H / parts;
-	for (int i = 0; i < x->size; i++) {
-		before[i] = y[i];
-		now[i] = y[i] + h * slope[i];
-	}
-	for (int k = 1; k < parts; k++) {
-		x->e->slopes(x->p, t + k * h, now, f);
-		for (int i = 0; i < x->size; i++) {
-			const real next = before[i] + 2 * h * f[i];
-			before[i] = now[i];
-			now[i] = next;
-		}
-	}
-	x->e->slopes(x->p, t + H, now, f);
-	for (int i = 0; i < x->size; i++)
-		result[i] = (before[i] + now[i] + h * f[i]) / 2;
-}
+#define GRAGG_TYPE const struct extrapolation
+#define GRAGG_SLOPES(x, t, y, f) (x)->e->slopes((x)->p, t, y, f)
+#include "gragg.h"
 
-/* y(t + H) into `result`; returns how far the last two columns are apart, relative to the scales. */
-static real extrapolate(const struct extrapolation *x, real t, real H, const real *y, real *result)
+/* The error is that of order 16, relative to the scales, of what is kept, of order 18. */
+static real extrapolated_error(const struct extrapolation *x, real t, real H, const real *y, real *result)
 {
-	real table[COLUMNS][MOST], slope[MOST], error = 0;
-	x->e->slopes(x->p, t, y, slope);
-	for (int k = 0; k < COLUMNS; k++) {
-		real last[MOST];
-		memcpy(last, table[0], sizeof last);
-		midpoint(x, t, H, 2 * (k + 1), y, slope, table[k]);
-		for (int m = k - 1; m >= 0; m--) {
-			const real ratio = (real)(k + 1) / (m + 1), factor = 1 / (ratio * ratio - 1);
-			for (int i = 0; i < x->size; i++)
-				table[m][i] = table[m + 1][i] + (table[m + 1][i] - table[m][i]) * factor;
-		}
-		if (k == COLUMNS - 1)
-			for (int i = 0; i < x->size && error == error; i++) {   /* until one is no number */
-				const real off = fabsl(table[0][i] - last[i]) /
-					(i < x->p->n ? x->scale_q : x->scale_v);
-				error = off <= error ? error : off;
-			}
+	real fewer[MOST], error = 0;
+	extrapolate(x, x->size, t, H, y, result, fewer);
+	for (int i = 0; i < x->size && error == error; i++) {   /* until one is no number */
+		const real off = fabsl(result[i] - fewer[i]) / (i < x->p->n ? x->scale_q : x->scale_v);
+		error = off <= error ? error : off;
 	}
-	memcpy(result, table[0], sizeof table[0]);
 	return error;
 }
 
@@ -310,14 +276,13 @@ static void keep_scales(struct extrapolation *x, const real *y)
 	}
 }
 
-/* The error is that of order 16; what is kept is of order 18. */
 static void follow(struct extrapolation *x, real from, real to, real *y)
 {
 	const real tolerance = x->e->tolerance;
 	real result[MOST];
 	for (real t = from; t < to;) {
 		const bool last = t + 1.01L * x->step >= to;
-		const real H = last ? to - t : x->step, error = extrapolate(x, t, H, y, result);
+		const real H = last ? to - t : x->step, error = extrapolated_error(x, t, H, y, result);
 		const real factor = error > 0 ? 0.9L * powl(tolerance / error, 1.0L / (2 * COLUMNS - 1)) : 4;
 		if (!(error <= tolerance)) {
 			x->step = H * (factor > 0.2L && factor < 0.9L ? factor : 0.2L);

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is true of any model: NAME_rhs in long double by extrapolation (Gragg, Bulirsch, Stoer; Hairer, Norsett, Wanner,
- * Solving Ordinary Differential Equations I, II.9), from output to output. Where forces have corners or jumps its steps
- * shrink until what is lost there is below the tolerance. plgen's step has no part in it. */
+/* What is true of any model: NAME_rhs in long double by extrapolation, from output to output. Where forces have corners
+ * or jumps its steps shrink until what is lost there is below the tolerance. plgen's step has no part in it. */
 #ifndef TRUTH_H
 #define TRUTH_H
 
 #include "own.h"
-
-enum { COLUMNS = 9 };                   /* 2, 4, ... 18 substeps */
 
 struct extrapolation {
 	quad tolerance;
@@ -34,49 +31,17 @@ INLINE void slope_long(struct extrapolation *x, quad t, const quad *y, quad *f)
 #endif
 }
 
-/* Gragg's midpoint rule with `steps` substeps over h, smoothed */
-static void midpoint(struct extrapolation *x, quad t, quad h, int steps, const quad *y, const quad *f, quad *end)
-{
-	const quad part = h / steps;
-	quad before[N], now[N], g[N];
-	for (int i = 0; i < N; i++) {
-		before[i] = y[i];
-		now[i] = y[i] + part * f[i];
-	}
-	for (int k = 1; k < steps; k++) {
-		slope_long(x, t + k * part, now, g);
-		for (int i = 0; i < N; i++) {
-			const quad next = before[i] + 2 * part * g[i];
-			before[i] = now[i];
-			now[i] = next;
-		}
-	}
-	slope_long(x, t + h, now, g);
-	for (int i = 0; i < N; i++)
-		end[i] = (before[i] + now[i] + part * g[i]) / 2;
-}
+#define GRAGG_TYPE struct extrapolation
+#define GRAGG_SLOPES(x, t, y, f) slope_long(x, t, y, f)
+#include "../gragg.h"
 
 /* One step to `end`; the size of its error over the tolerance */
-static quad extrapolate(struct extrapolation *x, quad t, quad h, const quad *y, quad *end)
+static quad error_of_step(struct extrapolation *x, quad t, quad h, const quad *y, quad *end)
 {
-	quad table[COLUMNS][N], f[N], worst = 0;
-	slope_long(x, t, y, f);
-	for (int j = 0; j < COLUMNS; j++) {
-		quad last[N];
-		midpoint(x, t, h, 2 * (j + 1), y, f, last);
-		for (int k = 0; k < j; k++) {           /* Aitken, Neville: from h/n_j and h/n_(j-k-1) */
-			const quad r = (quad)(j + 1) / (j - k), factor = 1 / (r * r - 1);
-			for (int i = 0; i < N; i++) {
-				const quad better = last[i] + (last[i] - table[k][i]) * factor;
-				table[k][i] = last[i];
-				last[i] = better;
-			}
-		}
-		memcpy(table[j], last, sizeof last);
-	}
+	quad fewer[N], worst = 0;
+	extrapolate(x, N, t, h, y, end, fewer);
 	for (int i = 0; i < N; i++) {
-		const quad off = fabsl(table[COLUMNS - 1][i] - table[COLUMNS - 2][i]);
-		end[i] = table[COLUMNS - 1][i];
+		const quad off = fabsl(end[i] - fewer[i]);
 		const quad scale = fmaxl(x->scale[x->velocity[i]], fmaxl(fabsl(y[i]), fabsl(end[i])));
 		if (!(off == 0))
 			worst = fmaxl(worst, off / (x->tolerance * scale));
@@ -100,7 +65,7 @@ static bool go_through(struct extrapolation *x, double *rows)
 		history.unit = k;
 		for (bool there = false; !there;) {
 			const quad h = (there = t + x->h * 1.0001L >= to) ? to - t : x->h;
-			const quad error = extrapolate(x, t, h, y, end);
+			const quad error = error_of_step(x, t, h, y, end);
 			const quad change = 0.9L * powl(1 / fmaxl(error, 1e-9L), 1.0L / (2 * COLUMNS - 1));
 			if (x->evaluations > x->most)
 				return false;
