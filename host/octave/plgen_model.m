@@ -210,7 +210,7 @@ classdef plgen_model < handle
         end
 
         % A, B, C, D (B1, D1 of u' where it acts) over the inputs, or with loads = true over the spec's loads; discrete:
-        % those of a step over which u is held, or []. at: of a model that is not linear, where: "rest" (the default, and
+        % those of a step over which u is held, or []. at: of a model that is not linear, where: "rest" (the default;
         % then a warning says so), "now", or states, "x=0.1,v=2"; s.at says it, and x, u, y are deviations from there
         function s = state_space(m, loads, at = "")
             [e, note] = equations(m, at);
