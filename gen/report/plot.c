@@ -48,7 +48,7 @@ static const char *curve(int k, const char *dash, int points)
 {
 	const struct picture_curve *c = &picture_curve[k % CURVES];
 	return format("with linespoints lw 1.4 dt %s pt %d ps 0.5 pi %d lc rgb '%s'", dash ? dash : c->dash, c->mark,
-		      points / 12 + 1, c->colour);
+		      points / (9 + k) + 1, c->colour);
 }
 
 /* Names are identifiers with primes and indices, and what loads are in time: nothing in them means more in quotes. */

@@ -77,8 +77,9 @@ void script_curve(FILE *to, int k, const char *data, const char *title, size_t p
 	fprintf(to, "%s %s with ", k ? "," : "plot", data);
 	if (points < 2)
 		fprintf(to, "points pt %d ps 0.4", c->mark);
-	else if (title)
-		fprintf(to, "linespoints lw 1.3 dt %s pt %d ps 0.6 pi %zu", c->dash, c->mark, points / 12 + 1);
+	else if (title)                 /* marks of curves that lie on each other stand apart */
+		fprintf(to, "linespoints lw 1.3 dt %s pt %d ps 0.6 pi %zu", c->dash, c->mark,
+			points / (9 + (size_t)k) + 1);
 	else
 		fputs("lines lw 1.3", to);
 	fprintf(to, " lc rgb '%s' %s", c->colour, title ? "title " : "notitle");

@@ -257,7 +257,7 @@ static void print_curves(FILE *to, const struct machine *m, const struct panel *
 		script_curve(to, k, format("$data using 2:%d", 3 + k % kinds * m->outputs + column),
 			     panel->curves == 1 ? what[k % kinds]
 						: format("%s of %s", what[k % kinds], m->output_names[column]),
-			     o->range[0].count < 12 ? o->range[0].count : 12);
+			     2);                /* a mark on each */
 	}
 	putc('\n', to);
 }
